@@ -1,0 +1,20 @@
+// Duration: nanoseconds, for both clocks.  Its own header so that config can speak of time.
+#pragma once
+
+#include <chrono>
+
+namespace chorus {
+
+using Duration = std::chrono::nanoseconds;
+
+/// Seconds as a double, for formulas and reports.
+[[nodiscard]] constexpr double seconds(Duration d) noexcept {
+  return std::chrono::duration<double>(d).count();
+}
+
+/// A duration from seconds; rounds to the nearest nanosecond.
+[[nodiscard]] constexpr Duration from_seconds(double s) noexcept {
+  return Duration(static_cast<Duration::rep>(s * 1e9 + (s < 0 ? -0.5 : 0.5)));
+}
+
+}  // namespace chorus

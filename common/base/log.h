@@ -1,0 +1,46 @@
+// Logging: one line per event, an event name and its fields, as text or JSON.
+//
+// `log::warn("sensor lost", {{"sensor", id.str()}, {"after_ms", 1500}});`
+// Events that can repeat at frame rate go through RateReport (rate_report.h), never here directly.
+#pragma once
+
+#include <concepts>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+#include "common/base/result.h"
+
+namespace chorus::log {
+
+enum class Level { Debug, Info, Warn, Error };
+enum class Format { Text, Json };
+
+struct Field {
+  std::string_view key;
+  std::string value;
+
+  Field(std::string_view k, std::string_view v) : key(k), value(v) {}
+  Field(std::string_view k, const std::string& v) : key(k), value(v) {}
+  Field(std::string_view k, const char* v) : key(k), value(v) {}
+  template <class T>
+    requires std::integral<T> || std::floating_point<T>
+  Field(std::string_view k, T v) : key(k), value(std::to_string(v)) {}
+};
+using Fields = std::initializer_list<Field>;
+
+/// Chooses the least level and the format; standard error is the only sink.
+void configure(Level least, Format format);
+
+/// "debug", "info", "warn", "error" / "text", "json", as config and command line spell them.
+[[nodiscard]] Result<Level> parse_level(std::string_view text);
+[[nodiscard]] Result<Format> parse_format(std::string_view text);
+
+void event(Level level, std::string_view name, Fields fields = {});
+
+inline void debug(std::string_view name, Fields fields = {}) { event(Level::Debug, name, fields); }
+inline void info(std::string_view name, Fields fields = {}) { event(Level::Info, name, fields); }
+inline void warn(std::string_view name, Fields fields = {}) { event(Level::Warn, name, fields); }
+inline void error(std::string_view name, Fields fields = {}) { event(Level::Error, name, fields); }
+
+}  // namespace chorus::log

@@ -1,0 +1,36 @@
+// Counts events that repeat and lets one line a second through per event.
+//
+// Thread-safe.  `RateReport dropped("frame dropped"); dropped.hit("queue full");` logs the first hit at once
+// and then at most one summary line a second with the count since the last line.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+#include "common/base/log.h"
+
+namespace chorus {
+
+class RateReport {
+ public:
+  explicit RateReport(std::string event, log::Level level = log::Level::Warn);
+
+  /// Counts one event; `detail` of the latest one is shown in the line.
+  void hit(std::string_view detail = {});
+
+  /// All events since construction.
+  [[nodiscard]] std::uint64_t total() const;
+
+ private:
+  const std::string event_;
+  const log::Level level_;
+  mutable std::mutex mutex_;
+  std::uint64_t total_ = 0;
+  std::uint64_t reported_ = 0;
+  std::chrono::steady_clock::time_point last_line_{};
+};
+
+}  // namespace chorus

@@ -1,0 +1,16 @@
+// One body as one sensor saw it at one instant.
+#pragma once
+
+#include "common/base/strong_id.h"
+#include "common/body/skeleton.h"
+#include "common/time/timestamp.h"
+
+namespace chorus {
+
+struct BodyFrame {
+  BodyId id;
+  Timestamp captured;
+  Skeleton<SensorSpace> skeleton;
+};
+
+}  // namespace chorus

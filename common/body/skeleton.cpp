@@ -1,0 +1,29 @@
+#include "common/body/skeleton.h"
+
+namespace chorus {
+namespace {
+
+template <class To, class From>
+Skeleton<To> moved(const Eigen::Isometry3d& to_from_from, const Skeleton<From>& body) {
+  const Eigen::Quaterniond turn(to_from_from.linear());
+  Skeleton<To> result;
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    const Joint& joint = body.joints[i];
+    result.joints[i] = {to_from_from * joint.position, turn * joint.orientation, joint.state};
+  }
+  return result;
+}
+
+}  // namespace
+
+Skeleton<WorldSpace> to_world(const Eigen::Isometry3d& world_from_sensor,
+                              const Skeleton<SensorSpace>& body) {
+  return moved<WorldSpace>(world_from_sensor, body);
+}
+
+Skeleton<SensorSpace> to_sensor(const Eigen::Isometry3d& sensor_from_world,
+                                const Skeleton<WorldSpace>& body) {
+  return moved<SensorSpace>(sensor_from_world, body);
+}
+
+}  // namespace chorus

@@ -1,0 +1,67 @@
+// One tracked body at one instant: 25 joints in one coordinate space.
+//
+// Units:  metres, unit quaternions (Hamilton; orientation takes joint axes to Space axes).
+// Spaces: right-handed, +y up.  The space is part of the type, so a sensor-space skeleton
+//         cannot reach fusion unregistered.  See docs/terminology.md.
+// Value type: copied and compared freely, never mutated once another thread can see it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include <Eigen/Geometry>
+
+namespace chorus {
+
+struct SensorSpace;  ///< Origin at the depth camera's focal point, +z into the scene.
+struct WorldSpace;   ///< Master sensor levelled to its floor plane: y = 0 is the floor.
+
+/// Joints in Kinect v2 order (Otto et al., Fig. 2); the value is its VRPN and DTrack number.
+// clang-format off
+enum class JointId : std::uint8_t {
+  SpineBase, SpineMid, Neck, Head,
+  ShoulderLeft, ElbowLeft, WristLeft, HandLeft,
+  ShoulderRight, ElbowRight, WristRight, HandRight,
+  HipLeft, KneeLeft, AnkleLeft, FootLeft,
+  HipRight, KneeRight, AnkleRight, FootRight,
+  SpineShoulder, HandTipLeft, ThumbLeft, HandTipRight, ThumbRight,
+};
+// clang-format on
+inline constexpr std::size_t kJointCount = 25;
+
+[[nodiscard]] constexpr std::size_t index_of(JointId id) noexcept {
+  return static_cast<std::size_t>(id);
+}
+
+/// What the sensor claims about a joint.  Inferred joints are guesses behind an occlusion.
+enum class JointState : std::uint8_t { NotTracked, Inferred, Tracked };
+
+struct Joint {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Quaterniond orientation = Eigen::Quaterniond(0, 0, 0, 0);  ///< All zero: not given.
+  JointState state = JointState::NotTracked;
+
+  /// Usable: tracked or inferred, with a finite position.
+  [[nodiscard]] bool seen() const {
+    return state != JointState::NotTracked && position.allFinite();
+  }
+};
+
+template <class Space>
+struct Skeleton {
+  std::array<Joint, kJointCount> joints;
+
+  [[nodiscard]] const Joint& operator[](JointId id) const { return joints[index_of(id)]; }
+  [[nodiscard]] Joint& operator[](JointId id) { return joints[index_of(id)]; }
+};
+
+/// The same body seen from the world.  The only door from sensor space to world space.
+[[nodiscard]] Skeleton<WorldSpace> to_world(const Eigen::Isometry3d& world_from_sensor,
+                                            const Skeleton<SensorSpace>& body);
+
+/// The way back, for simulated sensors and tests.
+[[nodiscard]] Skeleton<SensorSpace> to_sensor(const Eigen::Isometry3d& sensor_from_world,
+                                              const Skeleton<WorldSpace>& body);
+
+}  // namespace chorus

@@ -1,0 +1,70 @@
+// One version of one resource: its representations, their validators, and the bytes that answer.
+//
+// Immutable once built and shared between threads.  A representation is rendered at most once, when the
+// first client asks for it; after that every answer is one write of the same bytes.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/time/timestamp.h"
+
+namespace chorus::http {
+
+using Header = std::pair<std::string, std::string>;
+
+/// One way to write the resource down; the order in Document is the server's preference.
+struct Variant {
+  std::string media_type;              ///< "text/turtle", without parameters.
+  std::function<std::string()> render; ///< Pure and thread-safe; called at most once.
+  std::string profile = {};            ///< Chosen only by ?profile=NAME; empty is the default.
+};
+
+struct DocumentOptions {
+  std::string version;            ///< The ETag is "<version>-<variant>", strong.
+  std::string cache_control = "no-cache";
+  std::string content_location = {};  ///< Relative IRI of the immutable version, "frames/42".
+  bool container = false;             ///< An LDP basic container (else an RDF source; images: neither).
+  bool rdf_source = true;
+  std::vector<Header> headers = {};   ///< Further headers, Link among them.
+  std::optional<Timestamp> captured = {};  ///< Adds Server-Timing: age at sending, on the cold path only.
+};
+
+struct Rendered {
+  std::string media_type;
+  std::string etag;                        ///< Quoted.
+  std::shared_ptr<const std::string> body;
+  std::shared_ptr<const std::string> wire;  ///< Whole 200 answer to a keep-alive HTTP/1.1 GET.
+};
+
+class Document {
+ public:
+  Document(std::vector<Variant> variants, DocumentOptions options);
+  ~Document();
+
+  /// RFC 9110 12.5.1 over this document's variants; absent or empty Accept takes the first variant of the
+  /// profile.  NotAcceptable lists what there is; an unknown profile is NotFound.
+  [[nodiscard]] Result<const Rendered*> choose(std::string_view accept,
+                                               std::string_view profile) const;
+
+  [[nodiscard]] const DocumentOptions& options() const noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+using DocumentPtr = std::shared_ptr<const Document>;
+
+/// A document with one fixed representation (an image, a static page, the vocabulary).
+[[nodiscard]] DocumentPtr make_document(std::string media_type, std::string body,
+                                        DocumentOptions options);
+
+}  // namespace chorus::http

@@ -1,0 +1,29 @@
+// A resource that changes: the current Document, and everybody who waits for the next.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "common/http/document.h"
+
+namespace chorus::http {
+
+/// Thread-safe.  Publishers replace the document; servers subscribe once and wake their long polls.
+class LiveDocument {
+ public:
+  /// Null until the first publish: the resource answers 503 with Retry-After.
+  [[nodiscard]] DocumentPtr current() const;
+  void publish(DocumentPtr next);
+
+  /// Called after each publish, on the publisher's thread; must only post.
+  void subscribe(std::function<void()> on_change);
+
+ private:
+  mutable std::mutex mutex_;
+  DocumentPtr current_;
+  std::vector<std::function<void()>> subscribers_;
+};
+
+}  // namespace chorus::http

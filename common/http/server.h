@@ -1,0 +1,67 @@
+// An HTTP/1.1 server for polled resources: keep-alive, conditional, long poll, hostile clients.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "common/base/result.h"
+#include "common/http/router.h"
+
+namespace chorus::http {
+
+struct ServerLimits {
+  std::size_t max_connections = 2000;
+  std::size_t max_connections_per_peer = 1000;
+  std::size_t max_header_bytes = 8192;
+  std::size_t max_body_bytes = 65536;  ///< Only for routes with an action; GET takes no body.
+  std::chrono::seconds idle_timeout{60};
+  std::chrono::seconds header_timeout{5};
+  std::chrono::seconds body_timeout{10};
+  std::chrono::seconds write_timeout{10};
+  std::chrono::seconds max_wait{30};  ///< Cap on Prefer: wait=N.
+};
+
+struct ServerConfig {
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 0;       ///< 0: any free port; ask port() after start.
+  std::string bearer_token = {};  ///< Empty: writing methods are refused except from loopback.
+  std::string allowed_origin = "*";
+  ServerLimits limits = {};
+};
+
+/// What /metrics tells; each counter only grows.
+struct ServerCounters {
+  std::uint64_t requests = 0;
+  std::uint64_t refused = 0;  ///< Malformed or over a limit.
+  std::uint64_t not_modified = 0;
+  std::uint64_t connections_total = 0;
+  std::uint64_t connections_open = 0;
+  std::uint64_t long_polls_waiting = 0;
+  std::uint64_t event_streams_open = 0;
+  std::uint64_t events_skipped = 0;  ///< Frames a slow event-stream reader did not get.
+  std::uint64_t bytes_sent = 0;
+};
+
+/// Owns one thread that runs all sockets.
+class Server {
+ public:
+  Server(ServerConfig config, std::shared_ptr<const Router> router);
+  ~Server();  ///< stop()s.
+
+  /// Binds and starts to serve; Io names address, port and reason ("address in use: ...").
+  [[nodiscard]] Result<void> start();
+  [[nodiscard]] std::uint16_t port() const;
+  [[nodiscard]] ServerCounters counters() const;
+
+  /// Stops accepting, answers waiting long polls with 503, lets writes finish (2 s), joins.
+  void stop();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace chorus::http

@@ -1,0 +1,34 @@
+// Recordings of one sensor: its frames on topic /frame as the JSON of common/resource.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/record/recording.h"
+#include "common/sensor/camera_image.h"
+#include "common/sensor/sensor_frame.h"
+
+namespace chorus::record {
+
+/// Everything about one sensor's stay, in capture order.
+struct FrameRecording {
+  SensorId sensor;
+  std::string device;                  ///< "Kinect v2 (LabanotationSuite csv)", "MediaPipe Pose", ...
+  std::optional<Intrinsics> intrinsics;
+  std::optional<FloorPlane> floor;
+  std::map<std::string, std::string> notes;  ///< Origin, licence, conversions made.
+  std::vector<SensorFrame> frames;
+};
+
+[[nodiscard]] Result<void> write_frame_recording(const std::filesystem::path& path,
+                                                 const FrameRecording& recording);
+
+/// Refuses frames that go back in time or repeat a capture time, saying where.
+[[nodiscard]] Result<FrameRecording> read_frame_recording(const std::filesystem::path& path,
+                                                          const ReadLimits& limits = {});
+
+}  // namespace chorus::record

@@ -1,0 +1,81 @@
+// Recordings: MCAP files (chunked, zstd, indexed), JSON messages.  Append-only, readable after a crash.
+//
+// Bytes in, bytes out: this room knows topics and times, not skeletons.  frame_recording.h adds frames.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/time/timestamp.h"
+
+namespace chorus::record {
+
+struct Channel {
+  std::string topic;          ///< "/frame", "/floor-plane", "/registration"
+  std::string schema_name;    ///< "chorus.Frame"
+  std::string schema_json;    ///< JSON Schema text; may be empty.
+  std::map<std::string, std::string> metadata = {};
+};
+
+struct Message {
+  std::string topic;
+  std::uint32_t sequence = 0;
+  Timestamp log_time;      ///< When it was written down.
+  Timestamp publish_time;  ///< Capture time.
+  std::string data;
+};
+
+struct WriterOptions {
+  std::size_t chunk_bytes = 1u << 20;          ///< A chunk is closed at this size or
+  Duration chunk_duration = std::chrono::seconds(1);  ///< at this span of log time: what a crash can lose.
+  std::string library = "chorus";
+};
+
+class RecordingWriter {
+ public:
+  [[nodiscard]] static Result<RecordingWriter> create(const std::filesystem::path& path,
+                                                      const WriterOptions& options = {});
+  RecordingWriter(RecordingWriter&&) noexcept;
+  RecordingWriter& operator=(RecordingWriter&&) noexcept;
+  ~RecordingWriter();  ///< close()s; use close() to learn of errors.
+
+  [[nodiscard]] Result<std::uint16_t> add_channel(const Channel& channel);
+  [[nodiscard]] Result<void> write(std::uint16_t channel, const Message& message);
+  /// A named set of strings about the whole recording ("chorus": sensor id, device, intrinsics).
+  [[nodiscard]] Result<void> write_metadata(const std::string& name,
+                                            const std::map<std::string, std::string>& values);
+  /// Writes the last chunk, the summary and the footer.
+  [[nodiscard]] Result<void> close();
+
+ private:
+  struct Impl;
+  explicit RecordingWriter(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A whole recording, read.  A file cut off by a crash is read up to its last complete chunk.
+struct Recording {
+  std::vector<Channel> channels;
+  std::map<std::string, std::map<std::string, std::string>> metadata;
+  std::vector<Message> messages;  ///< In log-time order.
+  bool truncated = false;         ///< No footer, or the tail was unreadable.
+};
+
+struct ReadLimits {
+  std::uintmax_t max_file_bytes = 4ull << 30;
+  std::size_t max_chunk_bytes = 64u << 20;  ///< Uncompressed; zip bombs are refused.
+};
+
+[[nodiscard]] Result<Recording> read_recording(const std::filesystem::path& path,
+                                               const ReadLimits& limits = {});
+/// The same from bytes, for tests and fuzzing.
+[[nodiscard]] Result<Recording> read_recording_bytes(std::string_view bytes,
+                                                     const ReadLimits& limits = {});
+
+}  // namespace chorus::record

@@ -1,0 +1,63 @@
+// `/frame`: all bodies at one instant, of a sensor or of the fusion server, as one document.
+//
+// The same value on both sides, so that a fusion server is a valid sensor for another one.  Metres,
+// Hamilton quaternions x y z w, UTC capture time.  proto/README.md is the specification.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/body/skeleton.h"
+#include "common/resource/media_type.h"
+#include "common/sensor/sensor_frame.h"
+
+namespace chorus::resource {
+
+enum class SpaceKind { Sensor, World };
+
+struct JointResource {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond orientation = Eigen::Quaterniond(0, 0, 0, 0);  ///< All zero: not given.
+  JointState state = JointState::NotTracked;
+  std::optional<double> variance;  ///< Fused: mean variance per axis [m^2].
+  std::uint64_t contributors = 0;  ///< Fused: bit i = FrameResource::sensors[i] contributed.
+};
+
+struct BodyResource {
+  std::uint64_t id = 0;
+  Timestamp captured;
+  std::array<JointResource, kJointCount> joints;
+};
+
+struct FrameResource {
+  std::uint64_t sequence = 0;
+  Timestamp captured;
+  std::string source;                 ///< Sensor id, or "fusion".
+  SpaceKind space = SpaceKind::Sensor;
+  std::vector<std::string> sensors;   ///< Fused: names behind the contributor bits (at most 64).
+  std::vector<BodyResource> bodies;   ///< Distinct ids, at most kMaxBodies.
+};
+
+/// Writes the default (compact) profile.  Non-finite numbers are never written: the joint is written as
+/// not tracked without position.  Turtle comes from a template, proven isomorphic to the Serd writer.
+[[nodiscard]] std::string write(const FrameResource& frame, Format format);
+
+/// The full ARVIDA pattern (proto/README.md, profile "arvida"), Turtle.
+[[nodiscard]] std::string write_arvida(const FrameResource& frame);
+
+/// Reads Turtle (compact profile), JSON-LD or JSON as written above, in any equivalent spelling for
+/// Turtle.  Refuses, naming subject and property: duplicate ids, missing times, more than kMaxBodies,
+/// non-finite or absurd numbers (|v| > 1e4 m), unknown states.  Bounded in size and nesting.
+[[nodiscard]] Result<FrameResource> read_frame(std::string_view bytes, Format format);
+
+/// A sensor's frame as resource, and back.  `received` is not on the wire; reading sets it.
+[[nodiscard]] FrameResource to_resource(const SensorFrame& frame);
+[[nodiscard]] SensorFrame to_sensor_frame(const FrameResource& frame, SensorId sensor,
+                                          Timestamp received);
+
+}  // namespace chorus::resource

@@ -1,0 +1,31 @@
+// Camera images as encoded bytes with the intrinsics that make them measurable.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "common/time/timestamp.h"
+
+namespace chorus {
+
+/// Pinhole with Brown distortion, OpenCV order; pixels.
+struct Intrinsics {
+  int width = 512;
+  int height = 424;
+  double fx = 366.3;  ///< Kinect v2 depth camera, measured (algorithms notes, section 0).
+  double fy = 366.3;
+  double cx = 259.8;
+  double cy = 205.6;
+  std::array<double, 5> distortion{};  ///< k1 k2 p1 p2 k3
+
+  bool operator==(const Intrinsics&) const = default;
+};
+
+struct CameraImage {
+  Timestamp captured;
+  Intrinsics intrinsics;
+  std::string media_type;  ///< "image/jpeg" (colour) or "image/png" (depth: 16 bit, millimetres, 0 = none)
+  std::string bytes;
+};
+
+}  // namespace chorus

@@ -1,0 +1,43 @@
+// The device seam: whatever yields SensorFrames.  A simulator, a recording or hardware look the same.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "common/base/result.h"
+#include "common/sensor/camera_image.h"
+#include "common/sensor/sensor_frame.h"
+
+namespace chorus {
+
+/// What the service says about its device at `/`.
+struct DeviceDescription {
+  std::string kind;   ///< "simulated", "replay", "bridge", ...
+  std::string label;  ///< For people: "simulated Kinect v2", "replay of cam01.mcap".
+  Intrinsics depth_camera;
+  double nominal_rate_hz = 30.0;
+};
+
+/// One capture.  Images are encoded only on demand, so they are functions, called at most once, from
+/// another thread; empty when the device has none or privacy settings forbid them.
+struct Capture {
+  SensorFrame frame;
+  std::function<Result<CameraImage>()> color;
+  std::function<Result<CameraImage>()> depth;
+};
+
+class FrameSource {
+ public:
+  using Sink = std::function<void(Capture)>;
+
+  virtual ~FrameSource() = default;
+  [[nodiscard]] virtual DeviceDescription describe() const = 0;
+
+  /// Delivers captures in time order from the calling thread until stopped or at its end.  An error is
+  /// final; a stop or the end of a recording is success.
+  [[nodiscard]] virtual Result<void> run(std::stop_token stop, const Sink& sink) = 0;
+};
+
+}  // namespace chorus

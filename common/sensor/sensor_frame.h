@@ -1,0 +1,30 @@
+// What one poll of one sensor yields: all bodies it saw at one instant.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/base/strong_id.h"
+#include "common/body/body_frame.h"
+#include "common/geometry/plane.h"
+#include "common/time/timestamp.h"
+
+namespace chorus {
+
+/// Sensor space: unit normal n (up), offset d [m], n.x + d = 0; d is the sensor's height over the floor.
+using FloorPlane = Plane;
+
+struct SensorFrame {
+  SensorId sensor;
+  std::uint64_t sequence = 0;  ///< Counts the sensor's frames; gaps are lost frames.
+  Timestamp captured;          ///< When light hit the sensor, by the sensor host's clock.
+  Timestamp received;          ///< When this process got it, by its own clock.
+  std::vector<BodyFrame> bodies;
+  std::optional<FloorPlane> floor;
+};
+
+/// At most this many bodies in one frame; more are refused as malformed (Kinect v2 gives six).
+inline constexpr std::size_t kMaxBodies = 64;
+
+}  // namespace chorus
