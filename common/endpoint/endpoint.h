@@ -1,0 +1,28 @@
+// What every Chorus service says about itself, the same on each of them:
+// /clock /healthz /openapi.json /ns /shapes /context.jsonld /.well-known/void
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "common/http/router.h"
+#include "common/time/clock.h"
+
+namespace chorus::endpoint {
+
+/// Health for a load balancer: 200 when ready, 503 with the reason when not.
+struct Health {
+  bool ready = true;
+  std::string reason;
+};
+
+struct EndpointOptions {
+  std::shared_ptr<const Clock> clock;
+  std::function<Health()> health;
+  std::function<std::string()> metrics;  ///< Prometheus text (metrics.h), complete.
+};
+
+void add_routes(http::Router& router, const EndpointOptions& options);
+
+}  // namespace chorus::endpoint

@@ -1,0 +1,42 @@
+// Otto et al., Figure 10, as one pure step: histories in, snapshot out.  No clock, no socket, no lock.
+#pragma once
+
+#include <map>
+
+#include "fusion-server/align/aligner.h"
+#include "fusion-server/associate/person_association.h"
+#include "fusion-server/flow.h"
+#include "fusion-server/fusion/fuse.h"
+#include "fusion-server/fusion/quality.h"
+
+namespace chorus::pipeline {
+
+struct PipelineConfig {
+  align::AlignConfig align;
+  fusion::QualityLimits quality;
+  associate::AssociationConfig association;
+  fusion::FusionConfig fusion;
+};
+
+using Histories = std::map<SensorId, align::History>;
+
+struct Inputs {
+  Timestamp instant;  ///< The common instant to answer for.
+  Timestamp now;      ///< The server's time at which this is computed.
+  std::uint64_t sequence = 0;
+};
+
+struct Step {
+  Snapshot snapshot;
+  associate::Tracks tracks;
+};
+
+/// True when no sensor's answer for the instant is still pending: waiting longer cannot improve it.
+[[nodiscard]] bool ready(const Inputs& in, const Histories& histories,
+                         const Registration& registration, const PipelineConfig& config);
+
+[[nodiscard]] Step step(const Inputs& in, const Histories& histories,
+                        const Registration& registration, const associate::Tracks& tracks,
+                        const PipelineConfig& config);
+
+}  // namespace chorus::pipeline

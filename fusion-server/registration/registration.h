@@ -1,0 +1,58 @@
+// From a walk to extrinsics (Otto 5.2.1, 5.2.3): tracks -> pairs -> graph -> Registration.
+//
+// Pure and deterministic; may take a second, so the server runs it on a worker thread.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "common/base/units.h"
+#include "fusion-server/flow.h"
+
+namespace chorus::registration {
+
+/// Everything one sensor saw during the walk, in capture order.
+struct WalkTrack {
+  SensorId sensor;
+  std::vector<SensorFrame> frames;
+};
+
+enum class PairMethod {
+  TimedRobust,  ///< Time-paired correspondences, closed form, robust re-weighting, ICP refinement.
+  IcpOnly,      ///< Baseline: neck clouds, PCL ICP, no time (algorithms notes 1.1).
+};
+
+enum class JointChoice {
+  Neck,   ///< Otto: the neck alone.
+  Core,   ///< Neck, SpineShoulder, Head, SpineMid and the flip-invariant shoulder and hip mid-points.
+  All,    ///< Every joint: for sensors that label left and right themselves, and walks that are none.
+};
+
+struct RegistrationConfig {
+  PairMethod method = PairMethod::TimedRobust;
+  JointChoice joints = JointChoice::Core;
+  bool use_floor = true;              ///< Pitch, roll and height from the floor plane where there is one.
+  Duration max_gap = std::chrono::milliseconds(60);  ///< Widest bracket for a correspondence.
+  double min_distance = 0.5;          ///< [m]
+  double max_distance = 6.0;          ///< [m]
+  double max_speed = 2.5;             ///< Person faster than this is not paired [m/s].
+  std::size_t min_pairs = 60;         ///< Fewer correspondences make no edge.
+  double min_spread = 0.25;           ///< Narrower walks are refused [m].
+  double max_edge_rms = 0.15;         ///< Wider residuals make no edge [m].
+  double good_rms = 0.08;             ///< Above this the verdict is provisional [m].
+  Duration good_duration = std::chrono::seconds(20);  ///< Shorter walks stay provisional.
+  std::optional<SensorId> master;     ///< Default: the sensor with the best connection to all others.
+};
+
+/// One pair of tracks to one edge; an Error says in a full sentence why there is none.
+[[nodiscard]] Result<PairwiseRegistration> register_pair(const WalkTrack& target,
+                                                         const WalkTrack& source,
+                                                         const RegistrationConfig& config);
+
+/// All tracks to one registration.  Verdict and reasons are always filled; sensors that could not be linked
+/// are missing from `sensors` and named in `reasons` ("sensors s3 and s4 never saw the person together").
+[[nodiscard]] Registration solve(const std::vector<WalkTrack>& walk, Timestamp now,
+                                 const RegistrationConfig& config);
+
+}  // namespace chorus::registration
