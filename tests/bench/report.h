@@ -1,0 +1,71 @@
+// What a benchmark found: rows of numbers, printed as one aligned table and written as JSON.
+//
+// A subcommand is one function `Result<void> run_NAME(Report&)` in NAME_bench.cpp, listed in
+// CMakeLists.txt. It asks the report for the seed and for how long it may take, and adds rows; it
+// prints nothing itself.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <ostream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/result.h"
+
+namespace chorus::bench {
+
+inline constexpr double kNoRatio = std::numeric_limits<double>::quiet_NaN();
+
+struct Row {
+  std::string case_name;  ///< "ring6-30s-gauss"
+  std::string metric;     ///< "position_mm"
+  double value = 0.0;     ///< Not finite: shown as "-", written as null.
+  std::string unit;
+  std::string baseline;     ///< What stands beside it; empty: nothing.
+  double ratio = kNoRatio;  ///< Ours / baseline, from the same run; not finite: not given.
+};
+
+struct Options {
+  std::string name;        ///< The subcommand.
+  std::uint64_t seed = 1;  ///< The first seed; runs use seed, seed + 1, ...
+  bool quick = false;      ///< Fewer runs, for a smoke test; the numbers are then only indicative.
+};
+
+class Report {
+ public:
+  explicit Report(Options options) : options_(std::move(options)) {}
+
+  [[nodiscard]] std::uint64_t seed() const noexcept { return options_.seed; }
+  [[nodiscard]] bool quick() const noexcept { return options_.quick; }
+
+  void row(std::string case_name, std::string metric, double value, std::string unit,
+           std::string baseline = "", double ratio = kNoRatio);
+  /// The sensor profile that the numbers come from ("gauss"); empty where none is involved.
+  void profile(std::string name) { profile_ = std::move(name); }
+  /// A sentence under the table: what the numbers are and are not.
+  void note(std::string sentence) { notes_.push_back(std::move(sentence)); }
+  /// A condition that must hold; a broken one makes chorus-bench exit with 1.
+  void condition(std::string sentence, bool holds);
+
+  [[nodiscard]] const std::vector<Row>& rows() const noexcept { return rows_; }
+  [[nodiscard]] bool all_conditions_hold() const noexcept { return broken_ == 0; }
+
+  void print(std::ostream& out) const;
+  /// {"name", "seed", "profile", "git", "rows": [...], "notes": [...]} as product.md fixes it.
+  [[nodiscard]] std::string json() const;
+
+ private:
+  Options options_;
+  std::string profile_;
+  std::vector<Row> rows_;
+  std::vector<std::string> notes_;
+  std::size_t broken_ = 0;
+};
+
+/// The revision this program was built from, "-dirty" when the work tree differed; "unknown"
+/// without git.
+[[nodiscard]] std::string_view built_from();
+
+}  // namespace chorus::bench
