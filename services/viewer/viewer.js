@@ -1,0 +1,140 @@
+// The room as the fusion server knows it: raw skeletons per sensor (faint), the fused one (strong), frusta, floor.
+// Polls only public resources: /frame, /sensors/, /sensors/{id}/frame, /registration.
+import * as THREE from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+
+import { Resource, follow } from './poll.js';
+import { FusedView, RawView, frustum } from './skeleton_view.js';
+import { showFused, showLink, showRegistration, showSensors } from './panel.js';
+
+const COLORS = [0x4cc9f0, 0xf2b84b, 0x80ed99, 0xf28482, 0xb892ff, 0xffd6a5, 0x2ec4b6, 0xff9f1c, 0xa0c4ff, 0xcaffbf];
+const RAW_EVERY_MS = 66;
+const base = new URL(new URLSearchParams(location.search).get('server') ?? '../', location.href);
+const resource = (path, wait) => new Resource(new URL(path, base).href, wait);
+
+/// What the page has shown so far; tests and curious people read it.
+const shown = { fusedFrames: 0, fusedJoints: 0, rawBones: {}, sensors: 0, errors: 0 };
+window.chorusViewer = shown;
+
+// ---- the scene -----------------------------------------------------------------------------------------------
+const canvas = document.getElementById('scene');
+const renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
+renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+const scene = new THREE.Scene();
+scene.background = new THREE.Color(0x0d1117);
+scene.fog = new THREE.Fog(0x0d1117, 9, 22);
+const camera = new THREE.PerspectiveCamera(45, 1, 0.05, 60);
+const controls = new OrbitControls(camera, canvas);
+controls.enableDamping = true;
+
+scene.add(new THREE.HemisphereLight(0xffffff, 0x30363d, 1.6));
+const sun = new THREE.DirectionalLight(0xffffff, 1.8);
+sun.position.set(2, 5, 3);
+scene.add(sun);
+const grid = new THREE.GridHelper(12, 12, 0x55606e, 0x262d36);
+scene.add(grid, new THREE.AxesHelper(0.4));
+
+const fused = new FusedView();
+scene.add(fused.object);
+
+/// Looks at the middle of the sensors once they are known; people may turn the view afterwards.
+function frameRoom(positions) {
+  const centre = new THREE.Vector3();
+  positions.forEach((p) => centre.add(p));
+  if (positions.length > 0) centre.divideScalar(positions.length);
+  const reach = Math.max(2.2, ...positions.map((p) => p.distanceTo(centre)));
+  controls.target.set(centre.x, 0.9, centre.z);
+  camera.position.set(centre.x + reach * 1.15, 2.3 + reach * 0.45, centre.z + reach * 1.65);
+  grid.position.set(Math.round(centre.x), 0, Math.round(centre.z));
+}
+frameRoom([]);
+
+// ---- sensors -------------------------------------------------------------------------------------------------
+const sensors = new Map();
+
+function sensorView(id) {
+  if (sensors.has(id)) return sensors.get(id);
+  const color = COLORS[sensors.size % COLORS.length];
+  const view = { id, color, raw: new RawView(color), place: new THREE.Group(), wedge: frustum(color), live: false };
+  view.place.visible = false;
+  view.place.add(view.wedge, view.raw.object);
+  scene.add(view.place);
+  sensors.set(id, view);
+  follow(resource(`sensors/${id}/frame`), RAW_EVERY_MS, (frame) => showRaw(view, frame), () => view.raw.show([]));
+  return view;
+}
+
+function showRaw(view, frame) {
+  shown.rawBones[view.id] = view.raw.show(view.live ? frame.bodies ?? [] : []);
+}
+
+let framedVersion = null;
+function placeSensors(registration) {
+  const places = Object.entries(registration.sensors ?? {});
+  for (const [id, pose] of places) {
+    const view = sensorView(id);
+    view.place.position.set(pose.x, pose.y, pose.z);
+    view.place.quaternion.set(pose.qx, pose.qy, pose.qz, pose.qw);
+    view.place.visible = true;
+  }
+  if (places.length > 0 && framedVersion === null) {
+    framedVersion = registration.version;
+    frameRoom(places.map(([, pose]) => new THREE.Vector3(pose.x, pose.y, pose.z)));
+  }
+}
+
+// ---- following the server ------------------------------------------------------------------------------------
+function failed(error) {
+  shown.errors += 1;
+  showLink(false, error.message);
+}
+
+follow(resource('frame', 10), 0, (frame) => {
+  shown.fusedJoints = fused.show(frame.bodies ?? []);
+  shown.fusedFrames += 1;
+  showFused(frame);
+  showLink(true);
+}, failed);
+
+follow(resource('sensors/'), 1000, ({ sensors: all }) => {
+  for (const [id, state] of Object.entries(all ?? {})) {
+    const view = sensorView(id);
+    view.live = state.state === 'live';
+    if (!view.live) view.raw.show([]);
+  }
+  shown.sensors = sensors.size;
+  showSensors(all ?? {}, (id) => sensorView(id).color);
+}, failed);
+
+follow(resource('registration'), 1000, (registration) => {
+  placeSensors(registration);
+  showRegistration(registration);
+}, failed);
+
+// ---- drawing -------------------------------------------------------------------------------------------------
+const switches = {
+  raw: document.getElementById('show-raw'),
+  frusta: document.getElementById('show-frusta'),
+  fused: document.getElementById('show-fused'),
+};
+
+function fit() {
+  renderer.setSize(window.innerWidth, window.innerHeight, false);
+  camera.aspect = window.innerWidth / window.innerHeight;
+  // The panel covers the left edge: shift the picture so that the room stands in what is left of it.
+  const covered = window.innerWidth > 900 ? 360 : 0;
+  camera.setViewOffset(window.innerWidth, window.innerHeight, -covered / 2, 0, window.innerWidth, window.innerHeight);
+  camera.updateProjectionMatrix();
+}
+window.addEventListener('resize', fit);
+fit();
+
+renderer.setAnimationLoop(() => {
+  for (const view of sensors.values()) {
+    view.raw.object.visible = switches.raw.checked;
+    view.wedge.visible = switches.frusta.checked;
+  }
+  fused.object.visible = switches.fused.checked;
+  controls.update();
+  renderer.render(scene, camera);
+});
