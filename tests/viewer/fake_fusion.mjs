@@ -1,0 +1,70 @@
+// A fusion server's public JSON, made up: one standing person who sways, two sensors.  For looking at the viewer
+// alone; the system test shows it the real server.
+import { createServer } from 'node:http';
+import { readFile } from 'node:fs/promises';
+import { extname, join, normalize } from 'node:path';
+
+const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css' };
+// Left is +x: the person looks along +z, away from sensor s1 and towards s2.
+const STANDING = {
+  SpineBase: [0, 0.95, 0], SpineMid: [0, 1.2, 0], SpineShoulder: [0, 1.42, 0], Neck: [0, 1.5, 0], Head: [0, 1.66, 0],
+  ShoulderLeft: [0.18, 1.4, 0], ElbowLeft: [0.24, 1.12, 0], WristLeft: [0.26, 0.88, 0.05], HandLeft: [0.26, 0.82, 0.06],
+  HandTipLeft: [0.26, 0.76, 0.07], ThumbLeft: [0.23, 0.82, 0.1], ShoulderRight: [-0.18, 1.4, 0],
+  ElbowRight: [-0.24, 1.12, 0], WristRight: [-0.26, 0.88, 0.05], HandRight: [-0.26, 0.82, 0.06],
+  HandTipRight: [-0.26, 0.76, 0.07], ThumbRight: [-0.23, 0.82, 0.1], HipLeft: [0.09, 0.92, 0], KneeLeft: [0.1, 0.5, 0.02],
+  AnkleLeft: [0.1, 0.09, 0], FootLeft: [0.1, 0.03, 0.12], HipRight: [-0.09, 0.92, 0], KneeRight: [-0.1, 0.5, 0.02],
+  AnkleRight: [-0.1, 0.09, 0], FootRight: [-0.1, 0.03, 0.12],
+};
+
+export const SENSORS = {
+  s1: { x: 0, y: 1.2, z: -2.5, qx: 0, qy: 0, qz: 0, qw: 1 },
+  s2: { x: 0, y: 1.2, z: 2.5, qx: 0, qy: 1, qz: 0, qw: 0 },
+};
+
+function toSensor(place, [x, y, z]) {
+  const [dx, dy, dz] = [x - place.x, y - place.y, z - place.z];
+  return place.qy === 1 ? [-dx, dy, -dz] : [dx, dy, dz];
+}
+
+function frame(sequence, place) {
+  const now = Date.now();
+  const sway = 0.4 * Math.sin(sequence / 20);
+  const joints = Object.fromEntries(Object.entries(STANDING).map(([name, [x, y, z]]) => {
+    const [jx, jy, jz] = place ? toSensor(place, [x + sway, y, z]) : [x + sway, y, z];
+    return [name, { '@id': `skeletons/1#${name}`, x: jx, y: jy, z: jz, state: name === 'FootLeft' ? 'Inferred' : 'Tracked' }];
+  }));
+  joints.ThumbRight = { '@id': 'skeletons/1#ThumbRight', state: 'NotTracked' };
+  const times = { captured: new Date(now).toISOString(), capturedNanoseconds: `${now}000000` };
+  return { '@id': 'frame', sequence, ...times, bodies: [{ '@id': 'skeletons/1', bodyId: 1, ...times, joints }] };
+}
+
+/// Starts on a free port; `files` is the viewer's folder.
+export async function startFakeFusion(files) {
+  let sequence = 1;
+  const timer = setInterval(() => { sequence += 1; }, 33);
+  const answers = {
+    '/frame': () => frame(sequence),
+    '/sensors/': () => ({ sensors: Object.fromEntries(Object.keys(SENSORS).map((id) =>
+      [id, { url: `http://127.0.0.1/${id}`, state: id === 's1' ? 'live' : 'lost', ageMilliseconds: 12, rateHz: 30, bodies: 1, weight: 0.8 }])) }),
+    '/sensors/s1/frame': () => frame(sequence, SENSORS.s1),
+    '/sensors/s2/frame': () => frame(sequence, SENSORS.s2),
+    '/registration': () => ({ version: 1, verdict: 'Good', reasons: ['a reason with <b>markup</b>'], sensors: SENSORS }),
+  };
+  const server = createServer(async (request, response) => {
+    const { pathname } = new URL(request.url, 'http://localhost');
+    if (answers[pathname]) {
+      response.writeHead(200, { 'Content-Type': 'application/json', ETag: `"${sequence}"` });
+      return response.end(JSON.stringify(answers[pathname]()));
+    }
+    const inside = normalize(pathname.replace(/^\/viewer\//, '') || 'index.html');
+    try {
+      const body = await readFile(join(files, inside));
+      response.writeHead(200, { 'Content-Type': TYPES[extname(inside)] ?? 'application/octet-stream' });
+      response.end(body);
+    } catch {
+      response.writeHead(404).end();
+    }
+  });
+  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+  return { port: server.address().port, stop: () => { clearInterval(timer); server.closeAllConnections(); server.close(); } };
+}
