@@ -6,8 +6,9 @@
 //   quality.read("best_distance_m", config.quality.best_distance);
 //   if (auto ok = root->finish(); !ok) return pass(ok);   // unknown keys, wrong types, ranges
 //
-// A key that is absent leaves the default.  finish() reports every problem at once: unknown keys with their
-// full path and the nearest known key, wrong types, values out of range.  Keys carry their unit as suffix.
+// A key that is absent leaves the default.  finish() reports every problem at once: unknown keys
+// with their full path and the nearest known key, wrong types, values out of range.  Keys carry
+// their unit as suffix.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +17,8 @@
 #include <string_view>
 #include <vector>
 
-#include "common/base/result.h"
 #include "common/base/duration.h"
+#include "common/base/result.h"
 
 namespace chorus {
 
@@ -54,7 +55,8 @@ class ConfigReader {
   /// Adds a problem found by the caller at this key ("must be below ...").
   void complain(std::string_view key, std::string message);
 
-  /// All problems in one Error (Malformed/InvalidArgument), or success.  Call on the root, once, last.
+  /// All problems in one Error (Malformed/InvalidArgument), or success.  Call on the root, once,
+  /// last.
   [[nodiscard]] Result<void> finish() const;
 
   struct Node;  ///< Private: the parsed tree and the problem list.

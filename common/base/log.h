@@ -16,16 +16,22 @@ namespace chorus::log {
 enum class Level { Debug, Info, Warn, Error };
 enum class Format { Text, Json };
 
+/// The shortest decimal that reads back as the same double; "nan" and "inf" as they are.
+[[nodiscard]] std::string number_text(double value);
+
 struct Field {
   std::string_view key;
   std::string value;
+  bool bare = false;  ///< A number or a truth value: unquoted in JSON.
 
   Field(std::string_view k, std::string_view v) : key(k), value(v) {}
   Field(std::string_view k, const std::string& v) : key(k), value(v) {}
   Field(std::string_view k, const char* v) : key(k), value(v) {}
-  template <class T>
-    requires std::integral<T> || std::floating_point<T>
-  Field(std::string_view k, T v) : key(k), value(std::to_string(v)) {}
+  Field(std::string_view k, bool v) : key(k), value(v ? "true" : "false"), bare(true) {}
+  template <std::integral T>
+  Field(std::string_view k, T v) : key(k), value(std::to_string(v)), bare(true) {}
+  template <std::floating_point T>
+  Field(std::string_view k, T v) : key(k), value(number_text(static_cast<double>(v))), bare(true) {}
 };
 using Fields = std::initializer_list<Field>;
 

@@ -1,7 +1,8 @@
 // Counts events that repeat and lets one line a second through per event.
 //
-// Thread-safe.  `RateReport dropped("frame dropped"); dropped.hit("queue full");` logs the first hit at once
-// and then at most one summary line a second with the count since the last line.
+// Thread-safe.  `RateReport dropped("frame dropped"); dropped.hit("queue full");` logs the first
+// hit at once and then at most one summary line a second with the count since the last line.  What
+// is still unreported when it is destroyed is reported then, so no event goes uncounted.
 #pragma once
 
 #include <chrono>
@@ -17,6 +18,9 @@ namespace chorus {
 class RateReport {
  public:
   explicit RateReport(std::string event, log::Level level = log::Level::Warn);
+  ~RateReport();
+  RateReport(const RateReport&) = delete;
+  RateReport& operator=(const RateReport&) = delete;
 
   /// Counts one event; `detail` of the latest one is shown in the line.
   void hit(std::string_view detail = {});
@@ -25,6 +29,8 @@ class RateReport {
   [[nodiscard]] std::uint64_t total() const;
 
  private:
+  void write_line(std::string_view detail);
+
   const std::string event_;
   const log::Level level_;
   mutable std::mutex mutex_;

@@ -1,0 +1,129 @@
+#include "common/base/log.h"
+
+#include <array>
+#include <atomic>
+#include <charconv>
+#include <memory>
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
+
+namespace chorus::log {
+namespace {
+
+struct LevelName {
+  std::string_view name;
+  Level level;
+  spdlog::level::level_enum in_spdlog;
+};
+
+constexpr std::array kLevels{
+    LevelName{"debug", Level::Debug, spdlog::level::debug},
+    LevelName{"info", Level::Info, spdlog::level::info},
+    LevelName{"warn", Level::Warn, spdlog::level::warn},
+    LevelName{"error", Level::Error, spdlog::level::err},
+};
+
+constexpr const char* kTextPattern = "%Y-%m-%dT%H:%M:%S.%eZ %v";
+constexpr const char* kJsonPattern = R"({"time":"%Y-%m-%dT%H:%M:%S.%eZ",%v})";
+
+struct Sink {
+  spdlog::logger logger{"chorus", std::make_shared<spdlog::sinks::stderr_sink_mt>()};
+  std::atomic<Format> format{Format::Text};
+
+  Sink() { logger.set_pattern(kTextPattern, spdlog::pattern_time_type::utc); }
+};
+
+/// Never destroyed: objects that outlive main may still want to log.
+Sink& sink() {
+  static Sink& instance = *new Sink;
+  return instance;
+}
+
+const LevelName& row_of(Level level) {
+  for (const LevelName& row : kLevels) {
+    if (row.level == level) return row;
+  }
+  return kLevels.back();
+}
+
+/// A JSON string; bytes that are no UTF-8 become U+FFFD, so a line can always be written.
+std::string json_text(std::string_view text) {
+  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+bool plain(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+         std::string_view("_-./:+@%,").find(c) != std::string_view::npos;
+}
+
+/// Words stay bare; anything that could be mistaken for the next field, or for a next line, is
+/// quoted.
+std::string as_word(std::string_view text) {
+  for (const char c : text) {
+    if (!plain(c)) return json_text(text);
+  }
+  return text.empty() ? "\"\"" : std::string(text);
+}
+
+std::string text_line(const LevelName& level, std::string_view name, Fields fields) {
+  std::string line(level.name);
+  line.resize(6, ' ');  // aligned: the longest level name and a space
+  // An event name is ours and may hold spaces, but never a line break.
+  for (const char c : name) line += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+  for (const Field& field : fields) {
+    line.append(" ").append(field.key).append("=").append(as_word(field.value));
+  }
+  return line;
+}
+
+std::string json_members(const LevelName& level, std::string_view name, Fields fields) {
+  std::string line = R"("level":)" + json_text(level.name) + R"(,"event":)" + json_text(name);
+  for (const Field& field : fields) {
+    const bool bare = field.bare && nlohmann::json::accept(field.value);  // not "nan"
+    line.append(",").append(json_text(field.key)).append(":");
+    line.append(bare ? field.value : json_text(field.value));
+  }
+  return line;
+}
+
+}  // namespace
+
+std::string number_text(double value) {
+  std::array<char, 32> text{};  // the longest shortest double has 24 characters
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} ? std::string(text.data(), end) : std::string("nan");
+}
+
+void configure(Level least, Format format) {
+  const bool json = format == Format::Json;
+  sink().format.store(format);
+  sink().logger.set_level(row_of(least).in_spdlog);
+  sink().logger.set_pattern(json ? kJsonPattern : kTextPattern, spdlog::pattern_time_type::utc);
+}
+
+Result<Level> parse_level(std::string_view text) {
+  for (const LevelName& row : kLevels) {
+    if (row.name == text) return row.level;
+  }
+  return fail(ErrorCode::InvalidArgument, "log level '" + std::string(text.substr(0, 32)) + "'",
+              "use debug, info, warn or error");
+}
+
+Result<Format> parse_format(std::string_view text) {
+  if (text == "text") return Format::Text;
+  if (text == "json") return Format::Json;
+  return fail(ErrorCode::InvalidArgument, "log format '" + std::string(text.substr(0, 32)) + "'",
+              "use text or json");
+}
+
+void event(Level level, std::string_view name, Fields fields) {
+  const LevelName& row = row_of(level);
+  if (!sink().logger.should_log(row.in_spdlog)) return;
+  const bool json = sink().format.load() == Format::Json;
+  const std::string line = json ? json_members(row, name, fields) : text_line(row, name, fields);
+  sink().logger.log(row.in_spdlog, spdlog::string_view_t(line.data(), line.size()));
+}
+
+}  // namespace chorus::log

@@ -1,0 +1,18 @@
+// Spelling help: the known word nearest to an unknown one.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace chorus {
+
+/// Least number of inserted, deleted and replaced characters between two words.
+[[nodiscard]] std::size_t levenshtein(std::string_view a, std::string_view b);
+
+/// The word of `known` that `word` was most likely meant to be; empty when none is close (a third
+/// of the longer word wrong at most, two characters always allowed for words of four and more).
+[[nodiscard]] std::string nearest(std::string_view word, std::span<const std::string> known);
+
+}  // namespace chorus
