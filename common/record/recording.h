@@ -1,5 +1,6 @@
 // Recordings: MCAP files (chunked, zstd, indexed), JSON messages.  Append-only, readable after a crash.
 //
+// MCAP version 0, https://mcap.dev/spec, written by hand (docs/decisions/0003-mcap-by-hand.md).
 // Bytes in, bytes out: this room knows topics and times, not skeletons.  frame_recording.h adds frames.
 #pragma once
 
@@ -35,10 +36,12 @@ struct WriterOptions {
   std::size_t chunk_bytes = 1u << 20;          ///< A chunk is closed at this size or
   Duration chunk_duration = std::chrono::seconds(1);  ///< at this span of log time: what a crash can lose.
   std::string library = "chorus";
+  bool sync = false;  ///< Also wait for the disk after each chunk: survives a power cut, not only a crash.
 };
 
 class RecordingWriter {
  public:
+  /// A new file; an existing one is a Conflict, never overwritten.
   [[nodiscard]] static Result<RecordingWriter> create(const std::filesystem::path& path,
                                                       const WriterOptions& options = {});
   RecordingWriter(RecordingWriter&&) noexcept;
@@ -46,6 +49,7 @@ class RecordingWriter {
   ~RecordingWriter();  ///< close()s; use close() to learn of errors.
 
   [[nodiscard]] Result<std::uint16_t> add_channel(const Channel& channel);
+  /// `message.topic` is not looked at; the channel says it.  After an IO error every call repeats it.
   [[nodiscard]] Result<void> write(std::uint16_t channel, const Message& message);
   /// A named set of strings about the whole recording ("chorus": sensor id, device, intrinsics).
   [[nodiscard]] Result<void> write_metadata(const std::string& name,
@@ -59,17 +63,22 @@ class RecordingWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-/// A whole recording, read.  A file cut off by a crash is read up to its last complete chunk.
+inline constexpr std::size_t kMaxNotes = 20;
+
+/// A whole recording, read.  A file cut off by a crash is read up to its last complete chunk; a damaged
+/// chunk is left out as a whole and named in the notes; records of unknown kinds are skipped.
 struct Recording {
   std::vector<Channel> channels;
   std::map<std::string, std::map<std::string, std::string>> metadata;
-  std::vector<Message> messages;  ///< In log-time order.
-  bool truncated = false;         ///< No footer, or the tail was unreadable.
+  std::vector<Message> messages;   ///< In log-time order; equal times in file order.
+  bool truncated = false;          ///< No footer, or the tail was unreadable.
+  std::vector<std::string> notes;  ///< What was left out and why, for people; at most kMaxNotes.
 };
 
 struct ReadLimits {
   std::uintmax_t max_file_bytes = 4ull << 30;
   std::size_t max_chunk_bytes = 64u << 20;  ///< Uncompressed; zip bombs are refused.
+  std::uintmax_t max_total_bytes = 4ull << 30;  ///< Memory of all messages; beyond it the file is refused.
 };
 
 [[nodiscard]] Result<Recording> read_recording(const std::filesystem::path& path,

@@ -1,0 +1,19 @@
+// Any bytes at all as a recording: no crash, no endless loop, no unbounded memory.
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "common/record/recording.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  const chorus::record::ReadLimits limits{
+      .max_file_bytes = 1u << 20, .max_chunk_bytes = 1u << 20, .max_total_bytes = 16u << 20};
+  const auto read = chorus::record::read_recording_bytes(
+      std::string_view(reinterpret_cast<const char*>(bytes), size), limits);
+  if (!read) return 0;
+  for (std::size_t i = 1; i < read->messages.size(); ++i) {
+    if (read->messages[i].log_time < read->messages[i - 1].log_time) __builtin_trap();
+  }
+  if (read->notes.size() > chorus::record::kMaxNotes) __builtin_trap();
+  return 0;
+}
