@@ -1,4 +1,5 @@
-// The values handed from stage to stage of the pipeline.  Values only: no clock, no socket, no lock.
+// The values handed from stage to stage of the pipeline.  Values only: no clock, no socket, no
+// lock.
 #pragma once
 
 #include <array>
@@ -23,7 +24,7 @@ enum class Basis {
   Exact,         ///< A capture at that very instant.
   Interpolated,  ///< Between two captures.
   Pending,       ///< Not yet: a later capture may still arrive.  Ask again.
-  Lost,          ///< Never: the sensor has passed the instant without seeing it, or the gap is too wide.
+  Lost,  ///< Never: the sensor has passed the instant without seeing it, or the gap is too wide.
 };
 
 template <class T>
@@ -36,17 +37,19 @@ struct Aligned {
 struct AlignedSensor {
   SensorId sensor;
   Basis basis = Basis::Lost;
-  std::vector<BodyFrame> bodies;  ///< `captured` is the common instant; empty unless Exact/Interpolated.
+  std::vector<BodyFrame>
+      bodies;  ///< `captured` is the common instant; empty unless Exact/Interpolated.
   std::optional<FloorPlane> floor;
 };
 
 /// Where a sensor stands: points x_in_world = world_from_sensor * x_in_sensor.
 struct Extrinsics {
   Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
-  std::vector<SensorId> chain;     ///< Master first, this sensor last (Otto 5.2.3).
-  double error = 0.0;              ///< Summed edge error along the chain [m].
+  std::vector<SensorId> chain;  ///< Master first, this sensor last (Otto 5.2.3).
+  double error = 0.0;           ///< Summed edge error along the chain [m].
   Eigen::Matrix<double, 6, 6> covariance =
-      Eigen::Matrix<double, 6, 6>::Zero();  ///< (rotation vector, translation) in world [rad^2, m^2]
+      Eigen::Matrix<double, 6,
+                    6>::Zero();  ///< (rotation vector, translation) in world [rad^2, m^2]
 };
 
 /// One overlapping pair: client seen from master side.  An edge; never silently inverted.
@@ -54,11 +57,11 @@ struct PairwiseRegistration {
   SensorId target;
   SensorId source;
   Eigen::Isometry3d target_from_source = Eigen::Isometry3d::Identity();
-  double rms = 0.0;        ///< Residual over the inliers [m].
-  double icp_rms = 0.0;    ///< Residual after ICP refinement [m].
-  std::size_t pairs = 0;   ///< Time-paired correspondences.
+  double rms = 0.0;       ///< Residual over the inliers [m].
+  double icp_rms = 0.0;   ///< Residual after ICP refinement [m].
+  std::size_t pairs = 0;  ///< Time-paired correspondences.
   std::size_t inliers = 0;
-  double spread = 0.0;     ///< rms radius of the walk about its centroid, horizontally [m].
+  double spread = 0.0;  ///< rms radius of the walk about its centroid, horizontally [m].
 };
 
 enum class Verdict { None, Provisional, Good, Refused };
@@ -74,16 +77,18 @@ struct Registration {
   std::vector<PairwiseRegistration> edges;
 };
 
-/// One sensor's sight of one person at the common instant, with all that fusion wants to know of it.
+/// One sensor's sight of one person at the common instant, with all that fusion wants to know of
+/// it.
 struct SensorView {
   SensorId sensor;
   BodyId body;
   Basis basis = Basis::Exact;
-  double distance = std::numeric_limits<double>::quiet_NaN();  ///< Sensor to neck [m]; NaN: unknown.
-  double facing = std::numeric_limits<double>::quiet_NaN();    ///< Otto Eq. (2) phi [rad].
-  double bearing = std::numeric_limits<double>::quiet_NaN();   ///< Otto Eq. (3) alpha [rad].
-  double weight = 0.0;                                         ///< Product of Eqs. (1)-(3), in [0, 1].
-  Eigen::Vector3d eye = Eigen::Vector3d::Zero();               ///< Sensor position in world [m].
+  double distance =
+      std::numeric_limits<double>::quiet_NaN();               ///< Sensor to neck [m]; NaN: unknown.
+  double facing = std::numeric_limits<double>::quiet_NaN();   ///< Otto Eq. (2) phi [rad].
+  double bearing = std::numeric_limits<double>::quiet_NaN();  ///< Otto Eq. (3) alpha [rad].
+  double weight = 0.0;                            ///< Product of Eqs. (1)-(3), in [0, 1].
+  Eigen::Vector3d eye = Eigen::Vector3d::Zero();  ///< Sensor position in world [m].
   Skeleton<WorldSpace> skeleton;
 };
 
@@ -96,8 +101,8 @@ struct Person {
 struct FusedBody {
   PersonId id;
   Skeleton<WorldSpace> skeleton;
-  std::array<double, kJointCount> variance{};            ///< Mean per-axis variance [m^2].
-  std::array<std::uint64_t, kJointCount> contributors{}; ///< Bit i: Snapshot::sensors[i].
+  std::array<double, kJointCount> variance{};             ///< Mean per-axis variance [m^2].
+  std::array<std::uint64_t, kJointCount> contributors{};  ///< Bit i: Snapshot::sensors[i].
 };
 
 /// What one sensor did at this instant, for /sensors/ and the viewer.

@@ -1,8 +1,8 @@
 // Moves one sensor's bodies to a common instant by linear interpolation (Otto 5.2.4).
 //
-// Positions linearly, orientations by sign-aligned normalised LERP.  A joint is interpolated only when both
-// ends saw it; its state is the worse of the two.  Bodies are matched by id; a body present at one end only
-// is lost.  Nothing is ever extrapolated.
+// Positions linearly, orientations by sign-aligned normalised LERP.  A joint is interpolated only
+// when both ends saw it; its state is the worse of the two.  Bodies are matched by id; a body
+// present at one end only is lost.  Nothing is ever extrapolated.
 #pragma once
 
 #include "fusion-server/align/history.h"
@@ -11,13 +11,18 @@
 namespace chorus::align {
 
 struct AlignConfig {
-  Duration max_gap = std::chrono::milliseconds(120);  ///< Widest bracket that is interpolated across.
-  Duration patience = std::chrono::milliseconds(100); ///< Age at which Pending turns into Lost.
+  Duration max_gap =
+      std::chrono::milliseconds(120);  ///< Widest bracket that is interpolated across.
+  Duration patience = std::chrono::milliseconds(100);  ///< Age at which Pending turns into Lost.
 };
 
 /// The sensor's bodies at `instant`, as known `now` (both by the server's clock).
 [[nodiscard]] AlignedSensor at(Timestamp instant, Timestamp now, const SensorId& sensor,
                                const History& history, const AlignConfig& config);
+
+/// How `at` would answer, without building the bodies.
+[[nodiscard]] Basis basis_at(Timestamp instant, Timestamp now, const History& history,
+                             const AlignConfig& config);
 
 /// One body between two captures; s in [0, 1].  Exposed for registration and tests.
 [[nodiscard]] Skeleton<SensorSpace> interpolate(const Skeleton<SensorSpace>& a,

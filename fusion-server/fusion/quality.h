@@ -21,14 +21,15 @@ struct QualityLimits {
 /// Eq. (1): 1 - (d - 2.5 m)^2 for 1.5 m < d <= 3.5 m, else 0.  Continuous at both ends.
 [[nodiscard]] Weight distance_weight(double distance, const QualityLimits& = {}) noexcept;
 
-/// Eq. (2): 1 - |phi| / 30 deg for |phi| <= 30 deg, else 0.  A rear view (|phi| > 90 deg) is zero too.
+/// Eq. (2): 1 - |phi| / 30 deg for |phi| <= 30 deg, else 0.  A rear view (|phi| > 90 deg) is zero
+/// too.
 [[nodiscard]] Weight facing_weight(double facing, const QualityLimits& = {}) noexcept;
 
 /// Eq. (3): 1 - |alpha| / 25 deg for |alpha| <= 25 deg, else 0.
 [[nodiscard]] Weight bearing_weight(double bearing, const QualityLimits& = {}) noexcept;
 
-/// Product of Eqs. (1)-(3).  The paper says only that the weights "can be integrated"; taking the product is
-/// our decision (docs/decisions).  Any unknown angle or distance (NaN) gives zero.
+/// Product of Eqs. (1)-(3).  The paper says only that the weights "can be integrated"; taking the
+/// product is our decision (docs/decisions).  Any unknown angle or distance (NaN) gives zero.
 [[nodiscard]] Weight view_weight(double distance, double facing, double bearing,
                                  const QualityLimits& = {}) noexcept;
 

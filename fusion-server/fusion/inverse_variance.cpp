@@ -1,0 +1,93 @@
+#include "fusion-server/fusion/inverse_variance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+#include "common/geometry/rotation.h"
+
+namespace chorus::fusion {
+namespace {
+
+constexpr int kIterations = 8;         // Huber settles in 4-6 (algorithms notes 2.1 H)
+constexpr double kSettled = 1e-6;      // [m]
+constexpr double kShortestRay = 1e-3;  // [m] a joint in the eye has no line of sight
+constexpr double kAxes = 3.0;
+
+/// Sigma_i^-1 of the header comment.
+Eigen::Matrix3d information_of(const Sighting& sighting) {
+  const NoiseModel noise = noise_of(sighting);
+  const double sharp = 1.0 / (noise.across * noise.across);
+  Eigen::Matrix3d information = sharp * Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d ray = sighting.joint.position - sighting.eye;
+  const double length = ray.norm();
+  if (!(length > kShortestRay) || !std::isfinite(length)) return information;
+  const Eigen::Vector3d r = ray / length;
+  return information + (1.0 / (noise.along * noise.along) - sharp) * r * r.transpose();
+}
+
+struct Estimate {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+};
+
+Estimate solve(std::span<const Sighting> sightings, std::span<const Eigen::Matrix3d> information,
+               std::span<const double> trust) {
+  Estimate estimate;
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    estimate.information += trust[i] * information[i];
+    right += trust[i] * information[i] * sightings[i].joint.position;
+  }
+  estimate.position = estimate.information.llt().solve(right);
+  return estimate;
+}
+
+double huber_weight(double distance, double huber) {
+  return distance <= huber || !(huber > 0) ? 1.0 : huber / distance;
+}
+
+FusedJoint finish(std::span<const Sighting> sightings, std::span<const double> trust,
+                  const Estimate& estimate) {
+  FusedJoint fused;
+  fused.joint.position = estimate.position;
+  fused.joint.state = JointState::Inferred;
+  fused.variance = estimate.information.inverse().trace() / kAxes;
+  std::vector<Eigen::Quaterniond> rotations;
+  std::vector<double> weights;
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    fused.joint.state = std::max(fused.joint.state, sightings[i].joint.state);
+    fused.contributors |= sightings[i].contributor;
+    if (!is_unit(sightings[i].joint.orientation)) continue;
+    const double across = noise_of(sightings[i]).across;
+    rotations.push_back(sightings[i].joint.orientation);
+    weights.push_back(trust[i] / (across * across));
+  }
+  if (!rotations.empty()) fused.joint.orientation = weighted_lerp(rotations, weights);
+  return fused;
+}
+
+}  // namespace
+
+FusedJoint inverse_variance(std::span<const Sighting> sightings, double huber) {
+  if (sightings.empty()) return {};
+  std::vector<Eigen::Matrix3d> information;
+  for (const Sighting& s : sightings) information.push_back(information_of(s));
+  std::vector<double> trust(sightings.size(), 1.0);
+  Estimate estimate = solve(sightings, information, trust);
+  for (int i = 0; i < kIterations; ++i) {
+    for (std::size_t k = 0; k < sightings.size(); ++k) {
+      const Eigen::Vector3d off = sightings[k].joint.position - estimate.position;
+      trust[k] = huber_weight(std::sqrt(off.dot(information[k] * off)), huber);
+    }
+    const Estimate next = solve(sightings, information, trust);
+    const bool settled = (next.position - estimate.position).norm() < kSettled;
+    estimate = next;
+    if (settled) break;
+  }
+  return finish(sightings, trust, estimate);
+}
+
+}  // namespace chorus::fusion

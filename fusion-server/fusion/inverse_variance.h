@@ -1,0 +1,18 @@
+// Robust inverse-variance fusion of one joint (algorithms notes 2.1 H).
+//
+// Each sensor is sharp across its line of sight and blunt along it:
+//   Sigma_i = across^2 I + (along^2 - across^2) r r^T,   r = unit ray eye -> joint
+//   p = argmin sum_i rho(|p_i - p|_Sigma_i),             rho = Huber, solved by re-weighting
+// Two sensors at right angles thus replace each other's depth.  Convex: the start does not matter.
+#pragma once
+
+#include <span>
+
+#include "fusion-server/fusion/sighting.h"
+
+namespace chorus::fusion {
+
+/// `huber` in standard deviations.
+[[nodiscard]] FusedJoint inverse_variance(std::span<const Sighting> sightings, double huber);
+
+}  // namespace chorus::fusion

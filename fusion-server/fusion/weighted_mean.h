@@ -1,0 +1,16 @@
+// Otto 5.2.5: "joint-wise, weighted mean for the position and the orientation ... using the LERP
+// algorithm".
+#pragma once
+
+#include <span>
+
+#include "fusion-server/fusion/sighting.h"
+
+namespace chorus::fusion {
+
+/// Positions by sum w p / sum w, orientation by sign-aligned LERP.  Sightings with zero weight
+/// contribute nothing; when every weight is zero there is no answer (the caller decides, decision
+/// 0007).
+[[nodiscard]] FusedJoint weighted_mean(std::span<const Sighting> sightings);
+
+}  // namespace chorus::fusion

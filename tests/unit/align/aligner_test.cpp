@@ -1,0 +1,143 @@
+#include "fusion-server/align/aligner.h"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "common/base/units.h"
+#include "common/geometry/rotation.h"
+
+namespace chorus::align {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr Timestamp kStart = from_unix_ns(1'790'000'000'000'000'000);
+const SensorId kSensor = SensorId::parse("s1").value();
+
+BodyFrame body_at(Timestamp captured, double x, std::uint64_t id = 1) {
+  BodyFrame body{BodyId{id}, captured, {}};
+  Joint& neck = body.skeleton[JointId::Neck];
+  neck.position = {x, 1.4, 2.5};
+  neck.orientation = Eigen::Quaterniond::Identity();
+  neck.state = JointState::Tracked;
+  return body;
+}
+
+SensorFrame frame_at(Duration after, double x) {
+  SensorFrame frame;
+  frame.captured = kStart + after;
+  frame.bodies = {body_at(frame.captured, x)};
+  return frame;
+}
+
+History two_frames(Duration gap) {
+  History history;
+  history.push(frame_at(milliseconds(0), 0.0));
+  history.push(frame_at(gap, 0.3));
+  return history;
+}
+
+AlignedSensor ask(const History& history, Duration after, Duration age = milliseconds(50)) {
+  return at(kStart + after, kStart + after + age, kSensor, history, {});
+}
+
+double neck_x(const AlignedSensor& aligned) {
+  return aligned.bodies.at(0).skeleton[JointId::Neck].position.x();
+}
+
+TEST(Align, ACaptureAtTheInstantIsExact) {
+  const AlignedSensor aligned = ask(two_frames(milliseconds(30)), milliseconds(30));
+  EXPECT_EQ(aligned.basis, Basis::Exact);
+  EXPECT_DOUBLE_EQ(neck_x(aligned), 0.3);
+}
+
+TEST(Align, BetweenTwoCapturesPositionsAreLinear) {
+  const AlignedSensor aligned = ask(two_frames(milliseconds(30)), milliseconds(10));
+  EXPECT_EQ(aligned.basis, Basis::Interpolated);
+  EXPECT_NEAR(neck_x(aligned), 0.1, 1e-12);
+  EXPECT_EQ(aligned.bodies[0].captured, kStart + milliseconds(10));
+}
+
+TEST(Align, BeyondTheNewestCaptureIsPendingThenLost) {
+  const History history = two_frames(milliseconds(30));
+  EXPECT_EQ(ask(history, milliseconds(40), milliseconds(50)).basis, Basis::Pending);
+  EXPECT_EQ(ask(history, milliseconds(40), milliseconds(101)).basis, Basis::Lost);
+}
+
+TEST(Align, ASilentSensorIsGivenUpAsSoonAsNoBracketCouldClose) {
+  EXPECT_EQ(ask(two_frames(milliseconds(30)), milliseconds(151), milliseconds(0)).basis,
+            Basis::Lost);
+}
+
+TEST(Align, AnEmptyHistoryIsPendingThenLost) {
+  EXPECT_EQ(ask(History(), milliseconds(0), milliseconds(10)).basis, Basis::Pending);
+  EXPECT_EQ(ask(History(), milliseconds(0), milliseconds(500)).basis, Basis::Lost);
+}
+
+TEST(Align, BeforeTheOldestCaptureIsLost) {
+  EXPECT_EQ(ask(two_frames(milliseconds(30)), milliseconds(-1)).basis, Basis::Lost);
+}
+
+TEST(Align, AWideGapIsNotBridged) {
+  EXPECT_EQ(ask(two_frames(milliseconds(120)), milliseconds(60)).basis, Basis::Interpolated);
+  EXPECT_EQ(ask(two_frames(milliseconds(121)), milliseconds(60)).basis, Basis::Lost);
+}
+
+TEST(Align, ABodyAtOneEndOnlyIsNotShown) {
+  History history = two_frames(milliseconds(30));
+  SensorFrame third = frame_at(milliseconds(60), 0.6);
+  third.bodies.push_back(body_at(third.captured, 2.0, 2));
+  history.push(third);
+  const AlignedSensor aligned = ask(history, milliseconds(45));
+  ASSERT_EQ(aligned.bodies.size(), 1u);
+  EXPECT_EQ(aligned.bodies[0].id, BodyId{1});
+  EXPECT_NEAR(neck_x(aligned), 0.45, 1e-12);
+}
+
+TEST(Align, BasisAtAgreesWithTheFullAnswer) {
+  const History history = two_frames(milliseconds(30));
+  for (int ms = -10; ms < 200; ms += 5) {
+    const Timestamp instant = kStart + milliseconds(ms);
+    EXPECT_EQ(basis_at(instant, instant + milliseconds(50), history, {}),
+              ask(history, milliseconds(ms)).basis);
+  }
+}
+
+TEST(Interpolate, TheWorseStateAndTheNearerSignWin) {
+  Skeleton<SensorSpace> a = body_at(kStart, 0).skeleton;
+  Skeleton<SensorSpace> b = body_at(kStart, 1).skeleton;
+  b[JointId::Neck].state = JointState::Inferred;
+  b[JointId::Neck].orientation.coeffs() = -about_y(deg(20)).coeffs();
+  const Joint neck = interpolate(a, b, 0.5)[JointId::Neck];
+  EXPECT_EQ(neck.state, JointState::Inferred);
+  EXPECT_NEAR(angular_distance(neck.orientation, about_y(deg(10))), 0.0, 1e-9);
+}
+
+TEST(Interpolate, AJointUnseenAtOneEndIsNotTracked) {
+  const Skeleton<SensorSpace> a = body_at(kStart, 0).skeleton;
+  Skeleton<SensorSpace> b = a;
+  b[JointId::Neck].position.x() = std::numeric_limits<double>::quiet_NaN();
+  const Joint neck = interpolate(a, b, 0.5)[JointId::Neck];
+  EXPECT_EQ(neck.state, JointState::NotTracked);
+  EXPECT_EQ(neck.position, Eigen::Vector3d::Zero());
+}
+
+TEST(Interpolate, AMissingOrientationStaysMissing) {
+  const Skeleton<SensorSpace> a = body_at(kStart, 0).skeleton;
+  Skeleton<SensorSpace> b = a;
+  b[JointId::Neck].orientation = Eigen::Quaterniond(0, 0, 0, 0);
+  EXPECT_EQ(interpolate(a, b, 0.5)[JointId::Neck].orientation.coeffs().norm(), 0.0);
+}
+
+TEST(Interpolate, NeverExtrapolates) {
+  const Skeleton<SensorSpace> a = body_at(kStart, 0).skeleton;
+  const Skeleton<SensorSpace> b = body_at(kStart, 1).skeleton;
+  EXPECT_DOUBLE_EQ(interpolate(a, b, 2.0)[JointId::Neck].position.x(), 1.0);
+  EXPECT_DOUBLE_EQ(interpolate(a, b, -1.0)[JointId::Neck].position.x(), 0.0);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_DOUBLE_EQ(interpolate(a, b, nan)[JointId::Neck].position.x(), 0.0);
+}
+
+}  // namespace
+}  // namespace chorus::align

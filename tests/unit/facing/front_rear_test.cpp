@@ -1,0 +1,54 @@
+#include "fusion-server/facing/front_rear.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "common/base/units.h"
+#include "common/geometry/rotation.h"
+
+namespace chorus::facing {
+namespace {
+
+/// A person at `neck` whose chest points back along -z of the sensor, turned by `yaw` about +y.
+BodyFrame person(const Eigen::Vector3d& neck, double yaw) {
+  BodyFrame body;
+  const auto place = [&](JointId id, const Eigen::Vector3d& offset) {
+    body.skeleton[id].position = neck + about_y(yaw) * offset;
+    body.skeleton[id].state = JointState::Tracked;
+  };
+  place(JointId::Neck, {0, 0, 0});
+  place(JointId::ShoulderLeft, {-0.2, -0.1, 0});  // facing the sensor, one's left is at -x
+  place(JointId::ShoulderRight, {0.2, -0.1, 0});
+  return body;
+}
+
+TEST(ViewOf, APersonSquarelyBeforeTheSensor) {
+  const Sight sight = view_of(person({0, 0, 2.5}, 0));
+  EXPECT_NEAR(sight.distance, 2.5, 1e-9);
+  EXPECT_NEAR(sight.facing, 0.0, 1e-9);
+  EXPECT_NEAR(sight.bearing, 0.0, 1e-9);
+  EXPECT_FALSE(from_behind(sight));
+}
+
+TEST(ViewOf, TurningIsFacing) {
+  EXPECT_NEAR(std::abs(view_of(person({0, 0, 2.5}, deg(30))).facing), deg(30), 1e-9);
+  EXPECT_TRUE(from_behind(view_of(person({0, 0, 2.5}, deg(120)))));
+}
+
+TEST(ViewOf, StandingAsideIsBearing) {
+  const Sight sight = view_of(person({1.0, 0, 1.0}, 0));
+  EXPECT_NEAR(std::abs(sight.bearing), deg(45), 1e-9);
+  EXPECT_NEAR(std::abs(sight.facing), deg(45), 1e-9);
+}
+
+TEST(ViewOf, WhatCannotBeToldIsNaN) {
+  const Sight sight = view_of(BodyFrame{});
+  EXPECT_TRUE(std::isnan(sight.distance));
+  EXPECT_TRUE(std::isnan(sight.facing));
+  EXPECT_TRUE(std::isnan(sight.bearing));
+  EXPECT_FALSE(from_behind(sight));
+}
+
+}  // namespace
+}  // namespace chorus::facing

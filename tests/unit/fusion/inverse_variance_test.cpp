@@ -1,0 +1,60 @@
+#include "fusion-server/fusion/inverse_variance.h"
+
+#include <gtest/gtest.h>
+
+namespace chorus::fusion {
+namespace {
+
+constexpr double kHuber = 1.5;
+
+Sighting from(const Eigen::Vector3d& eye, const Eigen::Vector3d& position, NoiseModel noise = {}) {
+  Sighting sighting;
+  sighting.eye = eye;
+  sighting.noise = noise;
+  sighting.joint.position = position;
+  sighting.joint.state = JointState::Tracked;
+  return sighting;
+}
+
+TEST(InverseVariance, SensorsAtRightAnglesReplaceEachOthersDepth) {
+  const NoiseModel blunt{.along = 0.2, .across = 0.01};
+  const std::vector sightings{from({0, 0, 100}, {0.00, 0, 0.05}, blunt),
+                              from({100, 0, 0}, {0.05, 0, 0.00}, blunt)};
+  const FusedJoint fused = inverse_variance(sightings, kHuber);
+  // By hand, per axis: 0.05 (1/0.2^2) / (1/0.2^2 + 1/0.01^2) = 0.000125.
+  EXPECT_NEAR(fused.joint.position.x(), 0.000125, 1e-5);
+  EXPECT_NEAR(fused.joint.position.z(), 0.000125, 1e-5);
+}
+
+TEST(InverseVariance, OneViewIsItselfWithItsOwnVariance) {
+  const FusedJoint fused = inverse_variance(std::vector{from({0, 0, 5}, {0.1, 0.2, 0.3})}, kHuber);
+  EXPECT_TRUE(fused.joint.position.isApprox(Eigen::Vector3d(0.1, 0.2, 0.3)));
+  EXPECT_NEAR(fused.variance, (0.03 * 0.03 + 2 * 0.015 * 0.015) / 3, 1e-12);
+}
+
+TEST(InverseVariance, OneGrossOutlierAmongFourBarelyPulls) {
+  std::vector<Sighting> sightings;
+  for (const double x : {0.0, 0.004, -0.004}) sightings.push_back(from({0, 0, 100}, {x, 0, 0}));
+  sightings.push_back(from({0, 0, 100}, {1.0, 0, 0}));
+  EXPECT_LT(inverse_variance(sightings, kHuber).joint.position.norm(), 0.03);
+  EXPECT_NEAR(inverse_variance(sightings, 0).joint.position.x(), 0.25, 1e-3);  // no robust loss
+}
+
+TEST(InverseVariance, InferredCountsLess) {
+  std::vector<Sighting> sightings{from({0, 0, 5}, {0, 0, 0}), from({0, 0, 5}, {0.01, 0, 0})};
+  sightings[1].joint.state = JointState::Inferred;
+  // Factor 3 in sigma is 9 in weight: 0.01 / (1 + 9).
+  EXPECT_NEAR(inverse_variance(sightings, kHuber).joint.position.x(), 0.001, 1e-5);
+}
+
+TEST(InverseVariance, IsTotal) {
+  EXPECT_EQ(inverse_variance({}, kHuber).joint.state, JointState::NotTracked);
+  const NoiseModel broken{.along = 0, .across = -1, .inferred_factor = 0};
+  const FusedJoint fused =
+      inverse_variance(std::vector{from({0, 0, 0}, {0, 0, 0}, broken)}, kHuber);
+  EXPECT_TRUE(fused.joint.position.allFinite());
+  EXPECT_GT(fused.variance, 0);
+}
+
+}  // namespace
+}  // namespace chorus::fusion
