@@ -1,0 +1,238 @@
+// The polling loop, without a socket and without a sleep.
+#include "fusion-server/poll/poll_fsm.h"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace chorus::poll {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr double kFull = 0.999999999;  // jitter that keeps the whole back-off
+constexpr double kHalf = 0.0;
+
+const Timestamp kT0 = from_unix_ns(1'790'000'000'000'000'000);
+
+Timestamp at_ms(int ms) { return kT0 + milliseconds(ms); }
+
+FrameAnswered frame(int ms, std::string etag) { return {200, std::move(etag), at_ms(ms)}; }
+
+Failed reset() { return {Error{ErrorCode::Io, "127.0.0.1:8081", "connection reset"}}; }
+
+const Send& send_of(const Step& step) { return std::get<Send>(step.action); }
+Duration sleep_of(const Step& step) { return std::get<Sleep>(step.action).duration; }
+
+/// Past the floor plane, with the first request for a frame under way since `now`.
+PollFsm at_first_frame(Duration now) {
+  PollFsm fsm;
+  (void)fsm.resume(Started{}, now, kFull);
+  (void)fsm.resume(FloorAnswered{}, now, kFull);
+  return fsm;
+}
+
+/// Live: one frame delivered, and the long poll for the second under way since `now`.
+PollFsm live(Duration now) {
+  PollFsm fsm = at_first_frame(now - milliseconds(20));
+  (void)fsm.resume(frame(0, "\"1\""), now, kFull);
+  return fsm;
+}
+
+TEST(PollFsm, AsksForTheFloorFirstAndThenForAFrameWithoutCondition) {
+  PollFsm fsm;
+  const Step first = fsm.resume(Started{}, milliseconds(0), kFull);
+  EXPECT_EQ(send_of(first).resource, Resource::FloorPlane);
+  EXPECT_GT(send_of(first).deadline, Duration{0});
+  const Step second = fsm.resume(FloorAnswered{}, milliseconds(1), kFull);
+  EXPECT_EQ(send_of(second).resource, Resource::Frame);
+  EXPECT_EQ(send_of(second).etag, "");
+  EXPECT_EQ(send_of(second).wait, Duration{0});
+  EXPECT_EQ(fsm.state(), SensorState::Connecting);
+}
+
+TEST(PollFsm, ANewFrameIsDeliveredAndTheNextOneIsLongPolledAtOnce) {
+  PollFsm fsm = at_first_frame(milliseconds(0));
+  const Step step = fsm.resume(frame(0, "\"7-ttl\""), milliseconds(30), kFull);
+  EXPECT_TRUE(step.deliver);
+  EXPECT_EQ(send_of(step).etag, "\"7-ttl\"");
+  EXPECT_EQ(send_of(step).wait, PollTimings{}.wait);
+  EXPECT_EQ(send_of(step).deadline, PollTimings{}.wait + PollTimings{}.answer_slack);
+  EXPECT_EQ(fsm.state(), SensorState::Live);
+  ASSERT_TRUE(step.notice);
+  EXPECT_EQ(step.notice->event, "sensor live");
+  EXPECT_FALSE(step.notice->warning);
+}
+
+TEST(PollFsm, FramesFasterThanTheMinimumIntervalAreSlowedDown) {
+  PollFsm fsm = live(milliseconds(1000));
+  const Step step = fsm.resume(frame(1, "\"2\""), milliseconds(1001), kFull);
+  EXPECT_TRUE(step.deliver);
+  EXPECT_EQ(sleep_of(step), milliseconds(3));
+  EXPECT_EQ(send_of(fsm.resume(Woke{}, milliseconds(1004), kFull)).etag, "\"2\"");
+}
+
+TEST(PollFsm, AServerThatIgnoresPreferIsAskedAtTheIdleInterval) {
+  PollFsm fsm = live(milliseconds(1000));
+  const Step step = fsm.resume(FrameAnswered{304, "\"1\""}, milliseconds(1001), kFull);
+  EXPECT_FALSE(step.deliver);
+  EXPECT_EQ(sleep_of(step), milliseconds(9));
+  EXPECT_EQ(fsm.repeats(), 1u);
+  EXPECT_EQ(fsm.state(), SensorState::Live);
+}
+
+TEST(PollFsm, AServerWithoutEtagNeverSpinsAndRepeatsAreNotDelivered) {
+  PollFsm fsm = at_first_frame(milliseconds(0));
+  EXPECT_TRUE(fsm.resume(frame(0, ""), milliseconds(5), kFull).deliver);
+  const Step again = fsm.resume(frame(0, ""), milliseconds(6), kFull);
+  EXPECT_FALSE(again.deliver);
+  EXPECT_EQ(sleep_of(again), milliseconds(9));
+  const Step next = fsm.resume(Woke{}, milliseconds(15), kFull);
+  EXPECT_EQ(send_of(next).etag, "");
+  EXPECT_EQ(send_of(next).wait, Duration{0});
+}
+
+TEST(PollFsm, A304AfterTheWholeWaitMeansTheDeviceIsSilent) {
+  PollFsm fsm = live(milliseconds(1000));
+  const Step step = fsm.resume(FrameAnswered{304, "\"1\""}, milliseconds(3001), kFull);
+  EXPECT_EQ(send_of(step).etag, "\"1\"");
+  EXPECT_EQ(fsm.state(), SensorState::Lost);
+  ASSERT_TRUE(step.notice);
+  EXPECT_EQ(step.notice->event, "sensor lost");
+  EXPECT_EQ(step.notice->reason, "the sensor service answers, but has no new frame");
+}
+
+TEST(PollFsm, TimeGoingBackwardsIsNewsForTheHistoryToJudge) {
+  PollFsm fsm = live(milliseconds(1000));
+  EXPECT_TRUE(fsm.resume(frame(-500, "\"2\""), milliseconds(1033), kFull).deliver);
+}
+
+TEST(PollFsm, BackOffDoublesFromATenthOfASecondToFiveSeconds) {
+  PollFsm fsm = live(milliseconds(0));
+  const int expected_ms[] = {100, 200, 400, 800, 1600, 3200, 5000, 5000, 5000};
+  Duration now{0};
+  for (const int ms : expected_ms) {
+    const Step step = fsm.resume(reset(), now, kFull);
+    EXPECT_NEAR(chorus::seconds(sleep_of(step)), ms / 1000.0, 1e-6);
+    now += sleep_of(step);
+    (void)fsm.resume(Woke{}, now, kFull);
+  }
+  EXPECT_EQ(fsm.failures(), 9u);
+}
+
+TEST(PollFsm, JitterHalvesAtMostAndNonsenseJitterIsZero) {
+  for (const double jitter : {kHalf, -3.0, 7.0, std::numeric_limits<double>::quiet_NaN()}) {
+    PollFsm fsm = live(milliseconds(0));
+    EXPECT_EQ(sleep_of(fsm.resume(reset(), milliseconds(1), jitter)), milliseconds(50)) << jitter;
+  }
+}
+
+TEST(PollFsm, AGoodAnswerResetsTheBackOff) {
+  PollFsm fsm = live(milliseconds(0));
+  for (int i = 0; i < 6; ++i) (void)fsm.resume(reset(), milliseconds(i), kFull);
+  (void)fsm.resume(Woke{}, milliseconds(10), kFull);
+  EXPECT_TRUE(fsm.resume(frame(99, "\"9\""), milliseconds(40), kFull).deliver);
+  EXPECT_EQ(sleep_of(fsm.resume(reset(), milliseconds(50), kHalf)), milliseconds(50));
+}
+
+TEST(PollFsm, AFailureNeverFollowsWithoutAPauseHoweverManyThereAre) {
+  PollFsm fsm;
+  (void)fsm.resume(Started{}, milliseconds(0), kHalf);
+  for (int i = 0; i < 1000; ++i) {
+    const Step step = fsm.resume(reset(), milliseconds(i), kHalf);
+    EXPECT_GE(sleep_of(step), milliseconds(50));
+    EXPECT_LE(sleep_of(step), seconds(5));
+  }
+}
+
+TEST(PollFsm, AnUnreachableSensorIsConnectingAndALiveOneIsLost) {
+  PollFsm never = at_first_frame(milliseconds(0));
+  const Step first = never.resume(reset(), milliseconds(1), kFull);
+  EXPECT_EQ(never.state(), SensorState::Connecting);
+  ASSERT_TRUE(first.notice);
+  EXPECT_EQ(first.notice->event, "sensor not reached");
+  EXPECT_EQ(first.notice->reason, "127.0.0.1:8081: connection reset");
+
+  PollFsm once = live(milliseconds(0));
+  const Step lost = once.resume(reset(), seconds(2), kFull);
+  EXPECT_EQ(once.state(), SensorState::Lost);
+  ASSERT_TRUE(lost.notice);
+  EXPECT_EQ(lost.notice->event, "sensor lost");
+  EXPECT_TRUE(lost.notice->warning);
+}
+
+TEST(PollFsm, StatusesThatNoSensorGivesAreRefusedWithAdvice) {
+  for (const int status : {301, 400, 401, 404, 406, 500, 204, 0}) {
+    PollFsm fsm = at_first_frame(milliseconds(0));
+    const Step step = fsm.resume(FrameAnswered{status}, milliseconds(1), kFull);
+    EXPECT_FALSE(step.deliver);
+    EXPECT_EQ(fsm.state(), SensorState::Refused);
+    EXPECT_EQ(fsm.last_error(), "GET frame answers " + std::to_string(status) +
+                                    "; check that the url is that of a sensor service");
+    EXPECT_NEAR(chorus::seconds(sleep_of(step)), 0.1, 1e-6);
+  }
+}
+
+TEST(PollFsm, A503IsADeviceThatIsNotReadyYet) {
+  PollFsm fsm = at_first_frame(milliseconds(0));
+  (void)fsm.resume(FrameAnswered{503}, milliseconds(1), kFull);
+  EXPECT_EQ(fsm.state(), SensorState::Connecting);
+  EXPECT_EQ(fsm.last_error(), "the sensor service answers 503: its device delivers no frames");
+}
+
+TEST(PollFsm, AnUnreadableBodyIsRefusedAndItsTagForgotten) {
+  PollFsm fsm = live(milliseconds(0));
+  const Step step =
+      fsm.resume(Unreadable{Error{ErrorCode::Malformed, "skeletons/7#Head", "x is not a number"}},
+                 seconds(1), kFull);
+  EXPECT_FALSE(step.deliver);
+  EXPECT_EQ(fsm.state(), SensorState::Refused);
+  EXPECT_EQ(fsm.last_error(), "skeletons/7#Head: x is not a number");
+  EXPECT_EQ(send_of(fsm.resume(Woke{}, seconds(2), kFull)).etag, "");
+  const Step good = fsm.resume(frame(5, "\"5\""), seconds(3), kFull);
+  EXPECT_TRUE(good.deliver);
+  EXPECT_EQ(fsm.state(), SensorState::Live);
+}
+
+TEST(PollFsm, TheFloorIsAskedForAgainLaterBetweenFrames) {
+  PollFsm fsm = live(milliseconds(100));
+  const Step before = fsm.resume(frame(1, "\"2\""), seconds(9), kFull);
+  EXPECT_EQ(send_of(before).resource, Resource::Frame);
+  const Step due = fsm.resume(frame(2, "\"3\""), seconds(11), kFull);
+  EXPECT_TRUE(due.deliver);
+  EXPECT_EQ(send_of(due).resource, Resource::FloorPlane);
+  const Step after = fsm.resume(FloorAnswered{}, seconds(11), kFull);
+  EXPECT_EQ(send_of(after).resource, Resource::Frame);
+  EXPECT_EQ(send_of(after).etag, "\"3\"");
+}
+
+TEST(PollFsm, AFloorThatNeverAnswersDoesNotKeepTheFramesAway) {
+  PollFsm fsm;
+  (void)fsm.resume(Started{}, milliseconds(0), kFull);
+  (void)fsm.resume(reset(), seconds(1), kFull);
+  EXPECT_EQ(send_of(fsm.resume(Woke{}, seconds(2), kFull)).resource, Resource::Frame);
+}
+
+TEST(PollFsm, NoticesComeOnceAndAtMostOnceASecond) {
+  PollFsm fsm = live(milliseconds(0));                                 // noticed "live" at 0
+  EXPECT_FALSE(fsm.resume(reset(), milliseconds(500), kFull).notice);  // held back
+  const Step later = fsm.resume(reset(), milliseconds(1200), kFull);
+  ASSERT_TRUE(later.notice);
+  EXPECT_EQ(later.notice->event, "sensor lost");
+  EXPECT_FALSE(fsm.resume(reset(), seconds(10), kFull).notice);  // the same reason again
+  const Error other{ErrorCode::Timeout, "127.0.0.1:8081", "no answer"};
+  const Step changed = fsm.resume(Failed{other}, seconds(20), kFull);
+  ASSERT_TRUE(changed.notice);
+  EXPECT_EQ(changed.notice->reason, "127.0.0.1:8081: no answer");
+}
+
+TEST(PollFsm, EveryStateHasAName) {
+  EXPECT_EQ(name_of(SensorState::Connecting), "connecting");
+  EXPECT_EQ(name_of(SensorState::Live), "live");
+  EXPECT_EQ(name_of(SensorState::Lost), "lost");
+  EXPECT_EQ(name_of(SensorState::Refused), "refused");
+}
+
+}  // namespace
+}  // namespace chorus::poll
