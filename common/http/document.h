@@ -1,7 +1,7 @@
 // One version of one resource: its representations, their validators, and the bytes that answer.
 //
-// Immutable once built and shared between threads.  A representation is rendered at most once, when the
-// first client asks for it; after that every answer is one write of the same bytes.
+// Immutable once built and shared between threads.  A representation is rendered at most once, when
+// the first client asks for it; after that every answer is one write of the same bytes.
 #pragma once
 
 #include <cstdint>
@@ -22,38 +22,55 @@ using Header = std::pair<std::string, std::string>;
 
 /// One way to write the resource down; the order in Document is the server's preference.
 struct Variant {
-  std::string media_type;              ///< "text/turtle", without parameters.
-  std::function<std::string()> render; ///< Pure and thread-safe; called at most once.
-  std::string profile = {};            ///< Chosen only by ?profile=NAME; empty is the default.
+  std::string media_type;               ///< "text/turtle"; may carry parameters to send along.
+  std::function<std::string()> render;  ///< Pure and thread-safe; called at most once.
+  std::string profile = {};             ///< Chosen only by ?profile=NAME; empty is the default.
 };
 
 struct DocumentOptions {
-  std::string version;            ///< The ETag is "<version>-<variant>", strong.
+  std::string version;  ///< The ETag is "<version>-<variant>", strong.
   std::string cache_control = "no-cache";
-  std::string content_location = {};  ///< Relative IRI of the immutable version, "frames/42".
-  bool container = false;             ///< An LDP basic container (else an RDF source; images: neither).
-  bool rdf_source = true;
-  std::vector<Header> headers = {};   ///< Further headers, Link among them.
-  std::optional<Timestamp> captured = {};  ///< Adds Server-Timing: age at sending, on the cold path only.
+  std::string content_location = {};       ///< Relative IRI of the immutable version, "frames/42".
+  bool container = false;                  ///< An LDP basic container (else an RDF source).
+  bool rdf_source = true;                  ///< False: LDP non-RDF source (image, page, script).
+  std::vector<Header> headers = {};        ///< Further headers, Link among them.
+  std::optional<Timestamp> captured = {};  ///< Adds Server-Timing: age of what was captured.
 };
 
+/// The bytes of one representation.  The server writes a status line and the headers of the single
+/// request before them; everything else is shared by all answers.
 struct Rendered {
   std::string media_type;
-  std::string etag;                        ///< Quoted.
-  std::shared_ptr<const std::string> body;
-  std::shared_ptr<const std::string> wire;  ///< Whole 200 answer to a keep-alive HTTP/1.1 GET.
+  std::string etag;  ///< Quoted.
+  /// Header lines of the representation, the blank line, the body.
+  std::shared_ptr<const std::string> wire;
+  std::size_t head_size = 0;      ///< Of wire: where the body begins.
+  std::string not_modified = {};  ///< Header lines of a 304, with the blank line.
+
+  [[nodiscard]] std::string_view head() const {
+    return std::string_view(*wire).substr(0, head_size);
+  }
+  [[nodiscard]] std::string_view body() const { return std::string_view(*wire).substr(head_size); }
 };
 
 class Document {
  public:
   Document(std::vector<Variant> variants, DocumentOptions options);
   ~Document();
+  Document(const Document&) = delete;
+  Document& operator=(const Document&) = delete;
 
-  /// RFC 9110 12.5.1 over this document's variants; absent or empty Accept takes the first variant of the
-  /// profile.  NotAcceptable lists what there is; an unknown profile is NotFound.
+  /// RFC 9110 12.5.1 over this document's variants; absent or empty Accept takes the first variant
+  /// of the profile.  NotAcceptable lists what there is; an unknown profile is NotFound.
   [[nodiscard]] Result<const Rendered*> choose(std::string_view accept,
-                                               std::string_view profile) const;
+                                               std::string_view profile = {}) const;
 
+  /// The default representation in JSON as one server-sent event (id = version, one data line);
+  /// null when there is none.
+  [[nodiscard]] std::shared_ptr<const std::string> event() const;
+
+  /// Media types of a profile, best first, without parameters.
+  [[nodiscard]] std::vector<std::string_view> media_types(std::string_view profile = {}) const;
   [[nodiscard]] const DocumentOptions& options() const noexcept;
 
  private:

@@ -6,7 +6,6 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "common/base/result.h"
@@ -20,8 +19,9 @@ enum class Method { Get, Head, Options, Post, Put, Patch, Delete };
 /// A request that passed every check.  Views live as long as the call.
 struct Request {
   Method method = Method::Get;
-  std::string_view path;                                ///< Percent-decoded, without query.
-  std::map<std::string, std::string, std::less<>> query;  ///< Decoded; a repeated key keeps the last.
+  std::string_view path;  ///< Percent-decoded, without query.
+  std::map<std::string, std::string, std::less<>>
+      query;  ///< Decoded; a repeated key keeps the last.
   std::map<std::string, std::string, std::less<>> headers;  ///< Lower-case names.
   std::string_view body;
   bool from_loopback = false;
@@ -30,13 +30,14 @@ struct Request {
 /// The {name} parts of the pattern.
 using PathParams = std::map<std::string, std::string, std::less<>>;
 
-/// A GET/HEAD handler: the resource as it is now.  Errors become RFC 9457 problem documents.
+/// A GET/HEAD handler: the resource as it is now.  Runs on the server's thread, so it must be
+/// quick. Errors become RFC 9457 problem documents.
 using Getter = std::function<Result<DocumentPtr>(const Request&, const PathParams&)>;
 
 /// What a writing method did: status 200, 201 (with Location), 202 or 204, and the resource.
 struct ActionResult {
   int status = 200;
-  DocumentPtr document;   ///< May be null with 204.
+  DocumentPtr document = {};  ///< May be null with 204.
   std::string location = {};
 };
 using Action = std::function<Result<ActionResult>(const Request&, const PathParams&)>;
@@ -45,23 +46,31 @@ using Action = std::function<Result<ActionResult>(const Request&, const PathPara
 /// significant (slash = container).  Filling the same pattern and method twice asserts.
 class Router {
  public:
+  Router();
+  ~Router();
+  Router(Router&&) noexcept;
+  Router& operator=(Router&&) noexcept;
+
   void get(std::string pattern, Getter getter);
   /// GET/HEAD of a live document, with Prefer: wait long polling and Accept: text/event-stream.
   void live(std::string pattern, std::shared_ptr<LiveDocument> document);
   /// A writing method; needs a bearer token unless the request comes from loopback.
   void action(Method method, std::string pattern, Action action);
-  /// GET/HEAD of the files below `folder`, never outside it; types by extension.
+  /// GET/HEAD of the files below `folder`, never outside it; types by extension.  Prefix ends in
+  /// '/'.
   void files(std::string prefix, std::string folder);
 
   struct Match;
   struct Entry;
-  /// NotFound when no pattern fits the path.
+  /// NotFound when no pattern fits the (decoded) path.
   [[nodiscard]] Result<Match> match(std::string_view path) const;
-  [[nodiscard]] const std::vector<std::shared_ptr<LiveDocument>>& live_documents() const;
+  [[nodiscard]] const std::vector<std::unique_ptr<Entry>>& entries() const { return entries_; }
 
  private:
-  std::vector<std::shared_ptr<Entry>> entries_;
-  std::vector<std::shared_ptr<LiveDocument>> live_;
+  Entry& entry_of(const std::string& pattern);
+
+  std::vector<std::unique_ptr<Entry>> entries_;
+  std::map<std::string, Entry*, std::less<>> literal_;  ///< Patterns without {name}.
 };
 
 }  // namespace chorus::http

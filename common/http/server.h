@@ -9,6 +9,7 @@
 
 #include "common/base/result.h"
 #include "common/http/router.h"
+#include "common/time/clock.h"
 
 namespace chorus::http {
 
@@ -29,6 +30,7 @@ struct ServerConfig {
   std::uint16_t port = 0;       ///< 0: any free port; ask port() after start.
   std::string bearer_token = {};  ///< Empty: writing methods are refused except from loopback.
   std::string allowed_origin = "*";
+  std::shared_ptr<const Clock> clock = {};  ///< Stamps Chorus-Clock and Date; null: the host's.
   ServerLimits limits = {};
 };
 

@@ -1,0 +1,199 @@
+#include "common/http/document.h"
+
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <mutex>
+
+#include "common/http/media_range.h"
+#include "common/http/text.h"
+
+namespace chorus::http {
+namespace {
+
+struct TypeRow {
+  std::string_view media_type;
+  std::string_view tag;         ///< Ends the ETag.
+  std::string_view parameters;  ///< Sent after the type.
+};
+
+constexpr std::array kTypes{
+    TypeRow{"text/turtle", "ttl", ""},
+    TypeRow{"application/ld+json", "jsonld", ""},
+    TypeRow{"application/json", "json", ""},
+    TypeRow{"application/n-triples", "nt", ""},
+    TypeRow{"text/html", "html", "; charset=utf-8"},
+    TypeRow{"text/plain", "txt", "; charset=utf-8"},
+    TypeRow{"text/css", "css", "; charset=utf-8"},
+    TypeRow{"text/javascript", "js", "; charset=utf-8"},
+};
+
+const TypeRow* row_of(std::string_view media_type) {
+  const auto row = std::find_if(kTypes.begin(), kTypes.end(), [&](const TypeRow& candidate) {
+    return candidate.media_type == without_parameters(media_type);
+  });
+  return row == kTypes.end() ? nullptr : &*row;
+}
+
+std::string content_type(const std::string& media_type) {
+  const TypeRow* row = row_of(media_type);
+  if (row == nullptr || media_type.find(';') != std::string::npos) return media_type;
+  return media_type + std::string(row->parameters);
+}
+
+/// Strong and quoted; characters that an entity tag cannot hold become '_' (RFC 9110 8.8.3).
+std::string entity_tag(const DocumentOptions& options, const Variant& variant, std::size_t index) {
+  const TypeRow* row = row_of(variant.media_type);
+  std::string text = options.version + "-";
+  if (!variant.profile.empty()) text += variant.profile + "-";
+  text += row != nullptr ? std::string(row->tag) : "v" + std::to_string(index);
+  for (char& c : text) {
+    if (c <= ' ' || c == '"' || c == '\x7f') c = '_';
+  }
+  return '"' + text + '"';
+}
+
+void add_line(std::string& out, std::string_view name, std::string_view value) {
+  out.append(name).append(": ").append(value).append("\r\n");
+}
+
+constexpr std::string_view kLdp = "<http://www.w3.org/ns/ldp#";
+
+void add_type_links(std::string& out, const DocumentOptions& options) {
+  const auto add_type = [&](std::string_view type) {
+    add_line(out, "Link", std::string(kLdp).append(type).append(">; rel=\"type\""));
+  };
+  if (options.container) add_type("BasicContainer");
+  add_type(options.rdf_source || options.container ? "RDFSource" : "NonRDFSource");
+  if (options.rdf_source) add_line(out, "Link", "</shapes>; rel=\"describedby\"");
+}
+
+}  // namespace
+
+struct Document::Impl {
+  std::vector<Variant> variants;
+  DocumentOptions options;
+  std::vector<std::string_view> offers;  ///< Bare media types, by variant.
+  std::vector<Rendered> rendered;
+  std::unique_ptr<std::once_flag[]> once;
+  std::once_flag event_once;
+  std::shared_ptr<const std::string> event;
+  bool has_json_ld = false;
+
+  /// The lines that a 200 and a 304 share.
+  [[nodiscard]] std::string shared_lines(const Rendered& out) const {
+    std::string lines;
+    add_line(lines, "ETag", out.etag);
+    add_line(lines, "Cache-Control", options.cache_control);
+    if (!options.content_location.empty())
+      add_line(lines, "Content-Location", options.content_location);
+    add_type_links(lines, options);
+    // JSON-LD 1.1 6.1: plain JSON is JSON-LD when this link says with which context.
+    if (has_json_ld && out.media_type == "application/json")
+      add_line(lines, "Link",
+               "</context.jsonld>; rel=\"http://www.w3.org/ns/json-ld#context\"; "
+               "type=\"application/ld+json\"");
+    for (const auto& [name, value] : options.headers) add_line(lines, name, value);
+    return lines;
+  }
+
+  void render(std::size_t index) {
+    const std::string body = variants[index].render();
+    Rendered& out = rendered[index];
+    out.media_type = offers[index];
+    out.etag = entity_tag(options, variants[index], index);
+    const std::string shared = shared_lines(out);
+    std::string wire;
+    wire.reserve(shared.size() + body.size() + 128);  // Type and length lines fit in 128 bytes.
+    add_line(wire, "Content-Type", content_type(variants[index].media_type));
+    add_line(wire, "Content-Length", std::to_string(body.size()));
+    wire.append(shared).append("\r\n");
+    out.head_size = wire.size();
+    out.wire = std::make_shared<const std::string>(wire.append(body));
+    out.not_modified = shared + "\r\n";
+  }
+
+  Result<const Rendered*> rendered_at(std::size_t index) {
+    try {
+      std::call_once(once[index], [&] { render(index); });
+      return &rendered[index];
+    } catch (const std::exception& failure) {
+      return fail(ErrorCode::Internal, std::string(offers[index]),
+                  std::string("the representation cannot be written: ") + failure.what());
+    }
+  }
+
+  void make_event() {
+    const auto json = std::find_if(variants.begin(), variants.end(), [](const Variant& variant) {
+      return variant.profile.empty() && variant.media_type == "application/json";
+    });
+    if (json == variants.end()) return;
+    const auto chosen = rendered_at(static_cast<std::size_t>(json - variants.begin()));
+    if (!chosen) return;
+    std::string text = "id: " + options.version + "\ndata: ";
+    // A line break in JSON is only white space; in an event it would end the field.
+    for (const char c : (*chosen)->body()) text += c == '\n' || c == '\r' ? ' ' : c;
+    event = std::make_shared<const std::string>(text + "\n\n");
+  }
+};
+
+Document::Document(std::vector<Variant> variants, DocumentOptions options)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->variants = std::move(variants);
+  impl_->options = std::move(options);
+  const std::size_t count = impl_->variants.size();
+  impl_->rendered.resize(count);
+  impl_->once = std::make_unique<std::once_flag[]>(count);
+  for (const Variant& variant : impl_->variants) {
+    impl_->offers.push_back(without_parameters(variant.media_type));
+    impl_->has_json_ld |= impl_->offers.back() == "application/ld+json";
+  }
+}
+
+Document::~Document() = default;
+
+Result<const Rendered*> Document::choose(std::string_view accept, std::string_view profile) const {
+  // The usual request: no preference, no profile.
+  const auto& variants = impl_->variants;
+  if (accept.empty() && profile.empty() && !variants.empty() && variants[0].profile.empty())
+    return impl_->rendered_at(0);
+
+  std::vector<std::string_view> offers;
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < variants.size(); ++i) {
+    if (variants[i].profile != profile) continue;
+    offers.push_back(impl_->offers[i]);
+    indices.push_back(i);
+  }
+  if (offers.empty())
+    return fail(ErrorCode::NotFound, "profile",
+                "this resource has no profile \"" + std::string(profile) + "\"");
+  if (const auto best = negotiate(offers, accept)) return impl_->rendered_at(indices[*best]);
+  std::string list;
+  for (const auto offer : offers) list.append(list.empty() ? "" : ", ").append(offer);
+  return fail(ErrorCode::NotAcceptable, "Accept",
+              "none of the accepted media types is available; ask for one of: " + list);
+}
+
+std::shared_ptr<const std::string> Document::event() const {
+  std::call_once(impl_->event_once, [&] { impl_->make_event(); });
+  return impl_->event;
+}
+
+std::vector<std::string_view> Document::media_types(std::string_view profile) const {
+  std::vector<std::string_view> types;
+  for (std::size_t i = 0; i < impl_->variants.size(); ++i) {
+    if (impl_->variants[i].profile == profile) types.push_back(impl_->offers[i]);
+  }
+  return types;
+}
+
+const DocumentOptions& Document::options() const noexcept { return impl_->options; }
+
+DocumentPtr make_document(std::string media_type, std::string body, DocumentOptions options) {
+  std::vector<Variant> variants;
+  variants.push_back({std::move(media_type), [text = std::move(body)] { return text; }});
+  return std::make_shared<const Document>(std::move(variants), std::move(options));
+}
+
+}  // namespace chorus::http

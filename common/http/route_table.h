@@ -1,0 +1,40 @@
+// What the router holds: one entry per pattern.  Read by the server only.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/http/router.h"
+#include "common/http/static_files.h"
+
+namespace chorus::http {
+
+/// Everything one pattern answers.
+struct Router::Entry {
+  std::string pattern;
+  std::vector<std::string> segments;  ///< Between the slashes; "{name}" kept with its braces.
+  std::size_t index = 0;              ///< Of this entry in the router.
+
+  Getter getter;
+  std::shared_ptr<LiveDocument> live;
+  std::map<Method, Action> actions;
+  std::unique_ptr<StaticFiles> files;  ///< The pattern is a prefix then.
+
+  [[nodiscard]] bool readable() const { return getter || live || files; }
+};
+
+struct Router::Match {
+  const Entry* entry = nullptr;
+  PathParams params = {};
+  std::string_view rest = {};  ///< What follows the prefix of files(); points into the path.
+};
+
+/// "GET, HEAD, OPTIONS, POST": what an entry answers, for the Allow header.
+[[nodiscard]] std::string allowed_methods(const Router::Entry& entry);
+
+[[nodiscard]] std::string_view name_of(Method method) noexcept;
+
+}  // namespace chorus::http

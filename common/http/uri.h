@@ -1,0 +1,23 @@
+// The parts of a request target, decoded strictly.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "common/base/result.h"
+
+namespace chorus::http {
+
+using Query = std::map<std::string, std::string, std::less<>>;
+
+/// Decodes a path.  Refuses broken escapes, escaped control characters, '/' and '\', and "." or
+/// ".." segments, so that a decoded path means to everyone what it means to us.  The answer points
+/// into `raw` or, when there was something to decode, into `storage`.
+[[nodiscard]] Result<std::string_view> decode_path(std::string_view raw, std::string& storage);
+
+/// "a=1&b=%20" without '?'; a repeated key keeps the last value, a key without '=' has an empty
+/// one.  '+' is itself, not a space: time zones are written "+01:00".
+[[nodiscard]] Result<Query> decode_query(std::string_view raw);
+
+}  // namespace chorus::http
