@@ -1,7 +1,10 @@
 // Which bodies of which sensors are the same person, now and over time.
 //
-// Per instant: predicted tracks against world bodies by core-joint distance, one-to-one per sensor (Hungarian
-// for small numbers), leftovers clustered across sensors into new people.  Ids are never reused.
+// Per instant: predicted tracks against world bodies by the horizontal distance of their core
+// joints (people do not stand on one another, and an occluded hip must not lift a body away from
+// its track), one-to-one per sensor, leftovers clustered across sensors into new people.  Two
+// tracks on one spot that never share a sensor are one person and become the older one.  Ids are
+// never reused.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +15,22 @@
 namespace chorus::associate {
 
 struct AssociationConfig {
-  double gate = 0.6;     ///< Core-joint distance beyond which a body is not this person [m].
-  double cluster = 0.4;  ///< New bodies of different sensors closer than this are one person [m].
-  int confirm_frames = 3;               ///< A new person is published after so many instants.
+  double gate = 0.6;       ///< Core-joint distance beyond which a body is not this person [m].
+  double cluster = 0.4;    ///< New bodies of different sensors closer than this are one person [m].
+  int confirm_frames = 3;  ///< A new person is published after so many instants.
   Duration coast = std::chrono::seconds(1);  ///< How long a track survives without any view.
+  int merge_frames =
+      15;  ///< Instants two confirmed tracks share a spot, but no sensor, before they merge.
 };
 
 /// Memory of one person between instants.
 struct Track {
   PersonId id;
-  Timestamp seen;                                    ///< Last instant with a view.
-  int hits = 0;                                      ///< Instants with a view.
-  Eigen::Vector3d core = Eigen::Vector3d::Zero();    ///< Mean of the core joints, world [m].
+  Timestamp seen;                                      ///< Last instant with a view.
+  int hits = 0;                                        ///< Instants with a view.
+  Eigen::Vector3d core = Eigen::Vector3d::Zero();      ///< Mean of the core joints, world [m].
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
+  int shadowed = 0;  ///< Consecutive instants on an older track's spot without a common sensor.
 };
 
 struct Tracks {

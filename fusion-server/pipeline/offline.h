@@ -1,4 +1,5 @@
-// Recordings of several sensors through the same pipeline: offline, deterministic, registration included.
+// Recordings of several sensors through the same pipeline: offline, deterministic, registration
+// included.
 #pragma once
 
 #include <functional>
@@ -21,7 +22,8 @@ struct OfflineResult {
   std::vector<Snapshot> snapshots;
 };
 
-/// Registers from the walk unless extrinsics are given, then fuses every instant that any sensor covers.
+/// Registers from the walk unless extrinsics are given, then fuses every instant that any sensor
+/// covers.
 [[nodiscard]] Result<OfflineResult> fuse_offline(
     const std::vector<registration::WalkTrack>& sensors,
     const std::optional<Registration>& extrinsics, const OfflineConfig& config);

@@ -1,4 +1,5 @@
-// Otto et al., Figure 10, as one pure step: histories in, snapshot out.  No clock, no socket, no lock.
+// Otto et al., Figure 10, as one pure step: histories in, snapshot out.  No clock, no socket, no
+// lock.
 #pragma once
 
 #include <map>

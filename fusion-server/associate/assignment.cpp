@@ -1,0 +1,102 @@
+#include "fusion-server/associate/assignment.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace chorus::associate {
+namespace {
+
+constexpr std::size_t kFree = 0;  // rows and columns are counted from one inside the method
+
+/// Shortest augmenting paths with potentials, on a square table padded with forbidden pairs.
+class Hungarian {
+ public:
+  explicit Hungarian(const CostTable& table)
+      : table_(table),
+        size_(std::max(table.rows, table.columns)),
+        forbidden_((table.gate + 1.0) * static_cast<double>(size_ + 1)),
+        row_potential_(size_ + 1, 0.0),
+        column_potential_(size_ + 1, 0.0),
+        row_of_(size_ + 1, kFree) {
+    for (std::size_t row = 1; row <= size_; ++row) add(row);
+  }
+
+  [[nodiscard]] std::size_t row_of(std::size_t column) const { return row_of_[column]; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+
+ private:
+  [[nodiscard]] double cost(std::size_t row, std::size_t column) const {
+    if (row > table_.rows || column > table_.columns) return forbidden_;
+    const double c = table_.at(row - 1, column - 1);
+    return c <= table_.gate ? c : forbidden_;
+  }
+
+  void add(std::size_t row) {
+    slack_.assign(size_ + 1, std::numeric_limits<double>::infinity());
+    came_from_.assign(size_ + 1, kFree);
+    visited_.assign(size_ + 1, false);
+    row_of_[kFree] = row;
+    std::size_t column = kFree;
+    while (row_of_[column] != kFree) column = step(column);
+    while (column != kFree) {
+      const std::size_t previous = came_from_[column];
+      row_of_[column] = row_of_[previous];
+      column = previous;
+    }
+  }
+
+  /// Visits `column`, relaxes the others, and returns the nearest one not yet visited.
+  std::size_t step(std::size_t column) {
+    visited_[column] = true;
+    const std::size_t row = row_of_[column];
+    std::size_t nearest = kFree;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t j = 1; j <= size_; ++j) {
+      if (visited_[j]) continue;
+      const double reduced = cost(row, j) - row_potential_[row] - column_potential_[j];
+      if (reduced < slack_[j]) {
+        slack_[j] = reduced;
+        came_from_[j] = column;
+      }
+      if (slack_[j] < least) {
+        least = slack_[j];
+        nearest = j;
+      }
+    }
+    for (std::size_t j = 0; j <= size_; ++j) {
+      if (visited_[j]) {
+        row_potential_[row_of_[j]] += least;
+        column_potential_[j] -= least;
+      } else {
+        slack_[j] -= least;
+      }
+    }
+    return nearest;
+  }
+
+  const CostTable& table_;
+  std::size_t size_;
+  double forbidden_;
+  std::vector<double> row_potential_;
+  std::vector<double> column_potential_;
+  std::vector<std::size_t> row_of_;
+  std::vector<double> slack_;
+  std::vector<std::size_t> came_from_;
+  std::vector<bool> visited_;
+};
+
+}  // namespace
+
+std::vector<std::optional<std::size_t>> assign(const CostTable& table) {
+  std::vector<std::optional<std::size_t>> column_of(table.rows);
+  if (table.rows == 0 || table.columns == 0) return column_of;
+  const Hungarian solved(table);
+  for (std::size_t column = 1; column <= table.columns; ++column) {
+    const std::size_t row = solved.row_of(column);
+    if (row == kFree || row > table.rows) continue;
+    if (table.at(row - 1, column - 1) <= table.gate) column_of[row - 1] = column - 1;
+  }
+  return column_of;
+}
+
+}  // namespace chorus::associate

@@ -1,0 +1,24 @@
+// One-to-one assignment of rows to columns at least total cost (Hungarian method, O(n^3)).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+namespace chorus::associate {
+
+/// Row-major costs; a pair costing more than `gate` (or NaN) is never made.
+struct CostTable {
+  std::size_t rows = 0;
+  std::size_t columns = 0;
+  std::vector<double> cost;
+  double gate = 0.0;
+
+  [[nodiscard]] double at(std::size_t row, std::size_t column) const {
+    return cost[row * columns + column];
+  }
+};
+
+/// For each row its column, or none.  As many allowed pairs as possible, then the cheapest.
+[[nodiscard]] std::vector<std::optional<std::size_t>> assign(const CostTable& table);
+
+}  // namespace chorus::associate

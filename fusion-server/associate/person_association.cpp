@@ -1,0 +1,232 @@
+#include "fusion-server/associate/person_association.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "common/body/bones.h"
+#include "fusion-server/associate/assignment.h"
+
+namespace chorus::associate {
+namespace {
+
+constexpr double kVelocityBlend = 0.2;  // share of the newest difference; smooths 30 Hz to ~0.15 s
+constexpr double kFastest = 4.0;  // [m/s] a sprint; keeps one wild view from throwing the track
+
+/// A body with its core point; bodies without any seen joint have none and are left out.
+struct Sight {
+  SensorView view;
+  Eigen::Vector3d core = Eigen::Vector3d::Zero();
+};
+
+template <class Joints>
+std::optional<Eigen::Vector3d> mean_of(const Joints& joints) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  int seen = 0;
+  for (const Joint* joint : joints) {
+    if (!joint->seen()) continue;
+    sum += joint->position;
+    ++seen;
+  }
+  if (seen == 0) return std::nullopt;
+  return sum / seen;
+}
+
+std::optional<Eigen::Vector3d> core_of(const Skeleton<WorldSpace>& body) {
+  std::vector<const Joint*> core;
+  for (const JointId id : kCoreJoints) core.push_back(&body[id]);
+  if (auto mean = mean_of(core)) return mean;
+  std::vector<const Joint*> all;
+  for (const Joint& joint : body.joints) all.push_back(&joint);
+  return mean_of(all);
+}
+
+double horizontal_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::hypot(a.x() - b.x(), a.z() - b.z());
+}
+
+/// In sensor and body order, so that the result does not depend on how the views arrived.
+std::vector<Sight> sights_of(std::vector<SensorView> views) {
+  std::vector<Sight> sights;
+  for (SensorView& view : views) {
+    const auto core = core_of(view.skeleton);
+    if (core) sights.push_back({std::move(view), *core});
+  }
+  std::sort(sights.begin(), sights.end(), [](const Sight& a, const Sight& b) {
+    return std::tie(a.view.sensor, a.view.body) < std::tie(b.view.sensor, b.view.body);
+  });
+  return sights;
+}
+
+/// A track while its instant is being worked on.
+struct Candidate {
+  Track track;
+  Eigen::Vector3d predicted = Eigen::Vector3d::Zero();
+  std::vector<Sight> sights;
+};
+
+std::vector<Candidate> predict(const Tracks& tracks, Timestamp instant,
+                               const AssociationConfig& config) {
+  std::vector<Candidate> candidates;
+  for (const Track& track : tracks.people) {
+    const Duration age = instant - track.seen;
+    if (age > config.coast || age < -config.coast) continue;
+    candidates.push_back({track, track.core + seconds(age) * track.velocity, {}});
+  }
+  return candidates;
+}
+
+/// One sensor's bodies to the tracks; what found no track is handed back.
+std::vector<Sight> match_sensor(std::vector<Sight> bodies, std::vector<Candidate>& candidates,
+                                double gate) {
+  CostTable table{bodies.size(), candidates.size(), {}, gate};
+  for (const Sight& body : bodies) {
+    for (const Candidate& c : candidates) {
+      table.cost.push_back(horizontal_distance(body.core, c.predicted));
+    }
+  }
+  const auto chosen = assign(table);
+  std::vector<Sight> leftovers;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    auto& home = chosen[i] ? candidates[*chosen[i]].sights : leftovers;
+    home.push_back(std::move(bodies[i]));
+  }
+  return leftovers;
+}
+
+std::vector<Sight> match(std::vector<Sight> sights, std::vector<Candidate>& candidates,
+                         double gate) {
+  std::map<SensorId, std::vector<Sight>> by_sensor;
+  for (Sight& sight : sights) by_sensor[sight.view.sensor].push_back(std::move(sight));
+  std::vector<Sight> leftovers;
+  for (auto& [sensor, bodies] : by_sensor) {
+    for (Sight& left : match_sensor(std::move(bodies), candidates, gate)) {
+      leftovers.push_back(std::move(left));
+    }
+  }
+  return leftovers;
+}
+
+bool has_sensor(const std::vector<Sight>& sights, const SensorId& sensor) {
+  return std::any_of(sights.begin(), sights.end(),
+                     [&](const Sight& s) { return s.view.sensor == sensor; });
+}
+
+/// Complete linkage: farthest member; none when the sensor is in already.
+std::optional<double> linkage(const std::vector<Sight>& cluster, const Sight& sight) {
+  if (has_sensor(cluster, sight.view.sensor)) return std::nullopt;
+  double farthest = 0.0;
+  for (const Sight& member : cluster) {
+    farthest = std::max(farthest, horizontal_distance(member.core, sight.core));
+  }
+  return farthest;
+}
+
+std::vector<std::vector<Sight>> cluster(std::vector<Sight> sights, double limit) {
+  std::vector<std::vector<Sight>> clusters;
+  for (Sight& sight : sights) {
+    std::vector<Sight>* nearest = nullptr;
+    double least = limit;
+    for (auto& members : clusters) {
+      const auto distance = linkage(members, sight);
+      if (!distance || *distance > least) continue;
+      nearest = &members;
+      least = *distance;
+    }
+    if (nearest) {
+      nearest->push_back(std::move(sight));
+    } else {
+      clusters.emplace_back().push_back(std::move(sight));
+    }
+  }
+  return clusters;
+}
+
+bool share_a_sensor(const Candidate& a, const Candidate& b) {
+  return std::any_of(a.sights.begin(), a.sights.end(),
+                     [&](const Sight& s) { return has_sensor(b.sights, s.view.sensor); });
+}
+
+Eigen::Vector3d centre_of(const std::vector<Sight>& sights) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Sight& s : sights) sum += s.core;
+  return sum / static_cast<double>(sights.size());
+}
+
+void update(Candidate& candidate, Timestamp instant) {
+  if (candidate.sights.empty()) return;
+  Track& track = candidate.track;
+  const Eigen::Vector3d centre = centre_of(candidate.sights);
+  const double elapsed = seconds(instant - track.seen);
+  if (track.hits > 0 && elapsed > 0) {
+    const Eigen::Vector3d step = (centre - track.core) / elapsed;
+    track.velocity += kVelocityBlend * (step - track.velocity);
+    const double speed = track.velocity.norm();
+    if (speed > kFastest) track.velocity *= kFastest / speed;
+  }
+  track.core = centre;
+  track.seen = instant;
+  ++track.hits;
+}
+
+/// Seen on one spot at this instant, but by different sensors.
+bool on_one_spot(const Candidate& a, const Candidate& b, double limit) {
+  return !a.sights.empty() && !b.sights.empty() && !share_a_sensor(a, b) &&
+         horizontal_distance(a.track.core, b.track.core) <= limit;
+}
+
+/// Candidates are in order of age, because ids only grow; the older one keeps the person.
+void merge_doubles(std::vector<Candidate>& candidates, const AssociationConfig& config) {
+  for (std::size_t i = 1; i < candidates.size(); ++i) {
+    Candidate& young = candidates[i];
+    const auto end = candidates.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto old = std::find_if(candidates.begin(), end, [&](const Candidate& older) {
+      return on_one_spot(older, young, config.cluster);
+    });
+    young.track.shadowed = old == end ? 0 : young.track.shadowed + 1;
+    const bool same_person = old != end && (young.track.hits < config.confirm_frames ||
+                                            young.track.shadowed >= config.merge_frames);
+    if (!same_person) continue;
+    std::move(young.sights.begin(), young.sights.end(), std::back_inserter(old->sights));
+    candidates.erase(end);
+    --i;
+  }
+}
+
+Grouping publish(std::vector<Candidate> candidates, std::uint64_t next_id,
+                 const AssociationConfig& config) {
+  Grouping grouping;
+  grouping.tracks.next_id = next_id;
+  for (Candidate& candidate : candidates) {
+    grouping.tracks.people.push_back(candidate.track);
+    if (candidate.sights.empty() || candidate.track.hits < config.confirm_frames) continue;
+    Person person{candidate.track.id, {}};
+    for (Sight& sight : candidate.sights) person.views.push_back(std::move(sight.view));
+    grouping.people.push_back(std::move(person));
+  }
+  return grouping;
+}
+
+}  // namespace
+
+Grouping group(std::vector<SensorView> views, Timestamp instant, const Tracks& tracks,
+               const AssociationConfig& config) {
+  std::vector<Candidate> candidates = predict(tracks, instant, config);
+  std::vector<Sight> leftovers = match(sights_of(std::move(views)), candidates, config.gate);
+  std::uint64_t next_id = std::max<std::uint64_t>(tracks.next_id, 1);
+  for (auto& members : cluster(std::move(leftovers), config.cluster)) {
+    Candidate fresh;
+    fresh.track.id = PersonId{next_id++};
+    fresh.sights = std::move(members);
+    candidates.push_back(std::move(fresh));
+  }
+  for (Candidate& candidate : candidates) update(candidate, instant);
+  merge_doubles(candidates, config);
+  return publish(std::move(candidates), next_id, config);
+}
+
+}  // namespace chorus::associate

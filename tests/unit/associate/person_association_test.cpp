@@ -1,0 +1,160 @@
+#include "fusion-server/associate/person_association.h"
+
+#include <algorithm>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace chorus::associate {
+namespace {
+
+constexpr Duration kFrame = std::chrono::milliseconds(33);
+constexpr Timestamp kStart = from_unix_ns(1'790'000'000'000'000'000);
+
+SensorView view(int sensor, double x, double z, std::uint64_t body = 1) {
+  SensorView sight;
+  sight.sensor = SensorId::parse("s" + std::to_string(sensor)).value();
+  sight.body = BodyId{body};
+  for (const JointId id : {JointId::SpineBase, JointId::Neck, JointId::Head}) {
+    sight.skeleton[id].position = {x, 1.0 + 0.2 * static_cast<double>(id), z};
+    sight.skeleton[id].state = JointState::Tracked;
+  }
+  return sight;
+}
+
+/// Feeds instants one frame apart and remembers the tracks.
+struct Room {
+  Tracks tracks;
+  Timestamp instant = kStart;
+  AssociationConfig config;
+
+  std::vector<Person> see(std::vector<SensorView> views) {
+    instant += kFrame;
+    Grouping grouping = group(std::move(views), instant, tracks, config);
+    tracks = grouping.tracks;
+    return grouping.people;
+  }
+  std::vector<Person> see_often(const std::vector<SensorView>& views, int times) {
+    std::vector<Person> people;
+    for (int i = 0; i < times; ++i) people = see(views);
+    return people;
+  }
+};
+
+TEST(Group, ViewsOfManySensorsBecomeOnePersonOnceConfirmed) {
+  Room room;
+  const std::vector views{view(1, 0, 0), view(2, 0.1, 0), view(3, 0, 0.1)};
+  EXPECT_TRUE(room.see_often(views, 2).empty());
+  const auto people = room.see(views);
+  ASSERT_EQ(people.size(), 1u);
+  EXPECT_EQ(people[0].id, PersonId{1});
+  EXPECT_EQ(people[0].views.size(), 3u);
+}
+
+TEST(Group, TwoBodiesOfOneSensorAreNeverOnePerson) {
+  Room room;
+  const auto people = room.see_often({view(1, 0, 0, 1), view(1, 0.1, 0, 2)}, 3);
+  EXPECT_EQ(people.size(), 2u);
+}
+
+TEST(Group, TheIdStaysWhileThePersonWalksAndBodiesSwapIds) {
+  Room room;
+  for (int i = 0; i < 100; ++i) {
+    const double x = 0.04 * i;  // 1.2 m/s
+    const auto body = static_cast<std::uint64_t>(i % 7);
+    const auto people = room.see({view(1, x, 0, body), view(2, x, 0.05, body + 1)});
+    if (i < 3) continue;
+    ASSERT_EQ(people.size(), 1u);
+    EXPECT_EQ(people[0].id, PersonId{1});
+  }
+}
+
+TEST(Group, TwoPeopleKeepTheirIdsWhenTheyPass) {
+  Room room;
+  for (int i = 0; i < 100; ++i) {
+    const double x = -2.0 + 0.04 * i;
+    const auto people = room.see({view(1, x, 0, 1), view(1, -x, 0.5, 2)});
+    if (i < 3) continue;
+    ASSERT_EQ(people.size(), 2u);
+    const auto core_x = [&](std::size_t k) {
+      return people[k].views.at(0).skeleton[JointId::Neck].position.x();
+    };
+    EXPECT_EQ(people[0].id, PersonId{1});
+    EXPECT_NEAR(core_x(0), x, 1e-9);
+    EXPECT_NEAR(core_x(1), -x, 1e-9);
+  }
+}
+
+TEST(Group, ATrackOutlivesAShortGapAndIdsAreNeverReused) {
+  Room room;
+  room.see_often({view(1, 0, 0)}, 3);
+  room.see_often({}, 20);  // 0.66 s
+  auto people = room.see({view(1, 0, 0)});
+  ASSERT_EQ(people.size(), 1u);
+  EXPECT_EQ(people[0].id, PersonId{1});
+  room.see_often({}, 40);  // 1.3 s
+  EXPECT_TRUE(room.tracks.people.empty());
+  people = room.see_often({view(1, 0, 0)}, 3);
+  ASSERT_EQ(people.size(), 1u);
+  EXPECT_EQ(people[0].id, PersonId{2});
+}
+
+TEST(Group, OnePersonSeenByDifferentSensorsInTwoTracksBecomesOne) {
+  Room room;
+  room.see_often({view(1, 0, 0), view(2, 0.9, 0)}, 5);  // two tracks: 0.9 m apart
+  EXPECT_EQ(room.tracks.people.size(), 2u);
+  const auto people = room.see_often({view(1, 0.3, 0), view(2, 0.6, 0)}, 40);
+  ASSERT_EQ(people.size(), 1u);
+  EXPECT_EQ(people[0].id, PersonId{1});
+  EXPECT_EQ(people[0].views.size(), 2u);
+}
+
+TEST(Group, TimeGoingBackwardsStartsAnewWithoutACrash) {
+  Room room;
+  room.see_often({view(1, 0, 0)}, 3);
+  room.instant -= std::chrono::hours(1);
+  const auto people = room.see_often({view(1, 0, 0)}, 3);
+  ASSERT_EQ(people.size(), 1u);
+  EXPECT_EQ(people[0].id, PersonId{2});
+}
+
+TEST(Group, ABodyWithoutAnySeenJointIsLeftOut) {
+  Room room;
+  SensorView nothing;
+  nothing.sensor = SensorId::parse("s1").value();
+  EXPECT_TRUE(room.see_often({nothing}, 5).empty());
+  EXPECT_TRUE(room.tracks.people.empty());
+}
+
+TEST(Group, AnOccludedLowerBodyStaysWithItsTrack) {
+  Room room;
+  room.see_often({view(1, 0, 0), view(2, 0, 0)}, 3);
+  SensorView head_only = view(2, 0, 0);
+  head_only.skeleton[JointId::SpineBase].state = JointState::NotTracked;
+  head_only.skeleton[JointId::Neck].state = JointState::NotTracked;
+  const auto people = room.see({view(1, 0, 0), head_only});
+  ASSERT_EQ(people.size(), 1u);
+  EXPECT_EQ(people[0].views.size(), 2u);
+}
+
+TEST(GroupProperty, TheOrderOfViewsDoesNotMatter) {
+  std::vector views{view(1, 0, 0, 1), view(1, 1.5, 0, 2), view(2, 0.1, 0, 4), view(3, 1.4, 0, 9)};
+  std::sort(views.begin(), views.end(),
+            [](const auto& a, const auto& b) { return a.body < b.body; });
+  Room first;
+  const auto expected = first.see_often(views, 3);
+  do {
+    Room room;
+    const auto people = room.see_often(views, 3);
+    ASSERT_EQ(people.size(), expected.size());
+    for (std::size_t i = 0; i < people.size(); ++i) {
+      EXPECT_EQ(people[i].id, expected[i].id);
+      ASSERT_EQ(people[i].views.size(), expected[i].views.size());
+      EXPECT_EQ(people[i].views[0].body, expected[i].views[0].body);
+    }
+  } while (std::next_permutation(views.begin(), views.end(),
+                                 [](const auto& a, const auto& b) { return a.body < b.body; }));
+}
+
+}  // namespace
+}  // namespace chorus::associate

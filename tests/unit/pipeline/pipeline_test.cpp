@@ -1,0 +1,143 @@
+#include "fusion-server/pipeline/pipeline.h"
+
+#include <chrono>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/pipeline/ring.h"
+
+namespace chorus::pipeline {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// Steps at 30 Hz from 0.2 s on; returns the last step.
+Step run(const Histories& histories, const Registration& registration, int steps,
+         const PipelineConfig& config = {}) {
+  Step result;
+  for (int i = 0; i < steps; ++i) {
+    const Timestamp instant = kStart + milliseconds(200 + 33 * i);
+    result = step({instant, instant + milliseconds(80), static_cast<std::uint64_t>(i)}, histories,
+                  registration, result.tracks, config);
+  }
+  return result;
+}
+
+double worst_error(const FusedBody& body, const Skeleton<WorldSpace>& truth) {
+  double worst = 0;
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    const double off = (body.skeleton.joints[i].position - truth.joints[i].position).norm();
+    worst = std::max(worst, off);
+  }
+  return worst;
+}
+
+TEST(Step, PerfectViewsOfOneWalkerGiveTheWalkerBack) {
+  const Step last = run(ring_histories({}), ring_registration(6), 20);
+  ASSERT_EQ(last.snapshot.bodies.size(), 1u);
+  const double t = seconds(last.snapshot.instant - kStart);
+  // 0.8 m circle at 0.7 rad/s, linear between frames: sagitta 0.4 m/s^2 (1/30 s)^2 / 8 = 0.05 mm.
+  EXPECT_LT(worst_error(last.snapshot.bodies[0], walker(0, t)), mm(0.1));
+  EXPECT_EQ(last.snapshot.bodies[0].contributors[0], 0b111111u);
+  EXPECT_EQ(last.snapshot.sensors.size(), 6u);
+}
+
+TEST(Step, EveryMethodAnswersForThePersonInTheMiddle) {
+  for (const auto method : {fusion::Method::Otto, fusion::Method::Mean, fusion::Method::BestView,
+                            fusion::Method::InverseVariance}) {
+    PipelineConfig config;
+    config.fusion.method = method;
+    const Step last = run(ring_histories({}), ring_registration(6), 10, config);
+    ASSERT_EQ(last.snapshot.bodies.size(), 1u) << fusion::name_of(method);
+    const double t = seconds(last.snapshot.instant - kStart);
+    EXPECT_LT(worst_error(last.snapshot.bodies[0], walker(0, t)), mm(0.1));
+  }
+}
+
+TEST(Step, ThreePeopleSeenByTenSensorsAreThreePeople) {
+  const Step last = run(ring_histories({.sensors = 10, .people = 3}), ring_registration(10), 20);
+  EXPECT_EQ(last.snapshot.bodies.size(), 3u);
+}
+
+TEST(Step, FramesOfUnregisteredSensorsAreReportedButNotUsed) {
+  Registration registration = ring_registration(6);
+  registration.sensors.erase(sensor(2));
+  const Step last = run(ring_histories({}), registration, 10);
+  ASSERT_EQ(last.snapshot.bodies.size(), 1u);
+  EXPECT_EQ(last.snapshot.sensors.size(), 5u);
+  EXPECT_EQ(last.snapshot.bodies[0].contributors[0], 0b11111u);
+  ASSERT_EQ(last.snapshot.reports.size(), 6u);
+  EXPECT_EQ(last.snapshot.reports[2].sensor, sensor(2));
+  EXPECT_EQ(last.snapshot.reports[2].bodies, 1u);
+}
+
+TEST(Step, ADeadSensorChangesNothingButItsReport) {
+  Histories histories = ring_histories({});
+  histories[sensor(3)] = align::History();
+  const Step last = run(histories, ring_registration(6), 10);
+  ASSERT_EQ(last.snapshot.bodies.size(), 1u);
+  EXPECT_EQ(last.snapshot.reports[3].basis, Basis::Pending);
+  const double t = seconds(last.snapshot.instant - kStart);
+  EXPECT_LT(worst_error(last.snapshot.bodies[0], walker(0, t)), mm(0.1));
+}
+
+TEST(Step, WithoutARegistrationThereIsNobodyButReports) {
+  const Step last = run(ring_histories({}), Registration{}, 5);
+  EXPECT_TRUE(last.snapshot.bodies.empty());
+  EXPECT_EQ(last.snapshot.reports.size(), 6u);
+}
+
+TEST(Step, TwoBodiesWithOneIdInAFrameAreOnePerson) {
+  Histories histories;
+  for (auto [id, history] : ring_histories({})) {
+    for (SensorFrame frame : history.frames()) {
+      frame.bodies.push_back(frame.bodies[0]);
+      histories[id].push(std::move(frame));
+    }
+  }
+  EXPECT_EQ(run(histories, ring_registration(6), 10).snapshot.bodies.size(), 1u);
+}
+
+TEST(StepProperty, MovingAllSensorsByOneTransformMovesTheResult) {
+  Eigen::Isometry3d moved_from_world = Eigen::Isometry3d::Identity();
+  moved_from_world.linear() = about_y(deg(70)).toRotationMatrix();
+  moved_from_world.translation() = Eigen::Vector3d(3, 0.5, -4);
+  Registration moved = ring_registration(6);
+  for (auto& [id, place] : moved.sensors) {
+    place.world_from_sensor = moved_from_world * place.world_from_sensor;
+  }
+  const Histories histories = ring_histories({});
+  const FusedBody before = run(histories, ring_registration(6), 10).snapshot.bodies.at(0);
+  const FusedBody after = run(histories, moved, 10).snapshot.bodies.at(0);
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    const Eigen::Vector3d expected = moved_from_world * before.skeleton.joints[i].position;
+    EXPECT_LT((expected - after.skeleton.joints[i].position).norm(), 1e-9);
+  }
+}
+
+TEST(Ready, WaitsForRegisteredSensorsOnlyAndOnlySoLong) {
+  Histories histories = ring_histories({});
+  const Registration registration = ring_registration(6);
+  const Timestamp inside = kStart + milliseconds(500);
+  EXPECT_TRUE(ready({inside, inside, 0}, histories, registration, {}));
+  const Timestamp beyond = kStart + milliseconds(2010);
+  EXPECT_FALSE(ready({beyond, beyond, 0}, histories, registration, {}));
+  EXPECT_TRUE(ready({beyond, beyond + milliseconds(101), 0}, histories, registration, {}));
+  histories[sensor(77)] = align::History();
+  EXPECT_TRUE(ready({inside, inside, 0}, histories, registration, {}));
+}
+
+TEST(StepCost, TenSensorsAndSixPeopleFitManyTimesIntoAFrame) {
+  const Histories histories = ring_histories({.sensors = 10, .people = 6});
+  const Registration registration = ring_registration(10);
+  const auto start = std::chrono::steady_clock::now();
+  constexpr int kSteps = 20;
+  const Step last = run(histories, registration, kSteps);
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+  RecordProperty("step_microseconds", static_cast<int>(1e6 * spent.count() / kSteps));
+  EXPECT_FALSE(last.snapshot.bodies.empty());
+  EXPECT_LT(spent.count() / kSteps, 0.033);  // generous: also under sanitizers on a busy machine
+}
+
+}  // namespace
+}  // namespace chorus::pipeline
