@@ -1,0 +1,33 @@
+// Real camera views as recordings: landmarks + calibration -> 25 joints in each camera's own space.
+//
+// The folder holds cameras.json (camera_set.h), one landmark file per camera (landmarks.h) and,
+// where there is a truth, triangulated.json.  The published extrinsics and the truth come along, in
+// our world.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "common/importers/camera_set.h"
+#include "common/importers/import_options.h"
+#include "common/importers/landmark_fit.h"
+#include "common/record/frame_recording.h"
+
+namespace chorus::importers {
+
+/// One view; frames in which nobody was found, or that fit no body, have none.
+[[nodiscard]] Result<record::FrameRecording> read_camera_view(
+    const std::filesystem::path& file, const std::vector<CalibratedCamera>& cameras,
+    const ImportOptions& options = {}, Lateral lateral = Lateral::PixelRay);
+
+/// The person as triangulated from all views, at the instant of frame `index` of the views.
+struct TruthFrame {
+  std::uint64_t index = 0;
+  Skeleton<WorldSpace> skeleton;
+};
+
+/// {"frames": [frame][33] x [x, y, z] or null}, metres, world z up -> our joints in our world.
+[[nodiscard]] Result<std::vector<TruthFrame>> read_triangulation(const std::filesystem::path& file,
+                                                                 const ImportLimits& limits = {});
+
+}  // namespace chorus::importers

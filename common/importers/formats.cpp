@@ -1,0 +1,134 @@
+#include "common/importers/formats.h"
+
+#include <algorithm>
+#include <set>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "common/importers/keraal_text.h"
+#include "common/importers/labanotation_csv.h"
+#include "common/importers/ntu_skeleton.h"
+#include "common/importers/nw_ucla_json.h"
+
+namespace chorus::importers {
+namespace {
+
+using FileReader = Result<record::FrameRecording> (*)(const std::filesystem::path&,
+                                                      const ImportOptions&);
+
+FileReader reader_of(FileFormat format) {
+  switch (format) {
+    case FileFormat::Labanotation:
+      return &read_labanotation_csv;
+    case FileFormat::Ntu:
+      return &read_ntu_skeleton;
+    case FileFormat::NwUcla:
+      return &read_nw_ucla_json;
+    case FileFormat::Keraal:
+      return &read_keraal_text;
+    case FileFormat::Pose2Sim:
+      return nullptr;  // a folder, not a file: import_cameras
+  }
+  return nullptr;
+}
+
+constexpr std::string_view kCamerasFile = "cameras.json";
+constexpr std::string_view kTruthFile = "triangulated.json";
+
+/// The landmark files of a folder in name order: one per calibrated camera, named after it.
+Result<ImportedSet> import_cameras(const std::filesystem::path& folder,
+                                   const ImportOptions& options) {
+  const auto cameras = read_cameras(folder / kCamerasFile, options.limits);
+  if (!cameras) return pass(cameras);
+  ImportedSet set;
+  for (const CalibratedCamera& camera : *cameras) {
+    const auto view = read_camera_view(folder / (camera.sensor.str() + ".json"), *cameras, options);
+    if (!view) return pass(view);
+    set.recordings.push_back(*view);
+    set.world_from_sensor.emplace(camera.sensor, camera.world_from_sensor);
+  }
+  std::error_code ignored;
+  if (!std::filesystem::exists(folder / kTruthFile, ignored)) return set;
+  auto truth = read_triangulation(folder / kTruthFile, options.limits);
+  if (!truth) return pass(truth);
+  set.truth = std::move(*truth);
+  return set;
+}
+
+Result<ImportedSet> import_each(FileReader read, const std::vector<std::filesystem::path>& inputs,
+                                const ImportOptions& options) {
+  ImportedSet set;
+  for (const auto& input : inputs) {
+    auto recording = read(input, options);
+    if (!recording) return pass(recording);
+    set.recordings.push_back(std::move(*recording));
+  }
+  return set;
+}
+
+Result<void> refuse_repeated_sensors(const std::vector<record::FrameRecording>& recordings) {
+  std::set<SensorId> seen;
+  for (const auto& recording : recordings) {
+    if (!seen.insert(recording.sensor).second)
+      return fail(
+          ErrorCode::InvalidArgument, recording.sensor.str(),
+          "is the sensor of two inputs. Import one take at a time, each into its own folder.");
+  }
+  return {};
+}
+
+/// The usual step between frames; one second where there is only one frame.
+Duration median_step(const std::vector<SensorFrame>& frames) {
+  std::vector<Duration> steps;
+  for (std::size_t i = 1; i < frames.size(); ++i)
+    steps.push_back(frames[i].captured - frames[i - 1].captured);
+  if (steps.empty()) return std::chrono::seconds(1);
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+void note_set_times(std::vector<record::FrameRecording>& recordings) {
+  Timestamp origin = recordings.front().frames.front().captured;
+  Timestamp end = origin;
+  for (const auto& recording : recordings) {
+    origin = std::min(origin, recording.frames.front().captured);
+    end = std::max(end, recording.frames.back().captured + median_step(recording.frames));
+  }
+  for (auto& recording : recordings) {
+    recording.notes["set_origin"] = to_iso8601(origin);
+    recording.notes["set_period_ns"] = std::to_string((end - origin).count());
+  }
+}
+
+}  // namespace
+
+std::optional<FileFormat> format_named(std::string_view name) {
+  for (const FormatRow& row : kFormats) {
+    if (row.name == name) return row.format;
+  }
+  return std::nullopt;
+}
+
+Result<ImportedSet> import_files(FileFormat format,
+                                 const std::vector<std::filesystem::path>& inputs,
+                                 const ImportOptions& options) {
+  if (inputs.empty())
+    return fail(ErrorCode::InvalidArgument, "import", "needs at least one input.");
+  const FileReader read = reader_of(format);
+  if (read == nullptr && inputs.size() != 1)
+    return fail(ErrorCode::InvalidArgument, "import",
+                "takes one folder of camera views at a time.");
+  if (options.sensor && inputs.size() != 1)
+    return fail(ErrorCode::InvalidArgument, "import", "can name the sensor of one input only.");
+  auto set = read != nullptr ? import_each(read, inputs, options)
+                             : import_cameras(inputs.front(), options);
+  if (!set) return pass(set);
+  if (const auto distinct = refuse_copies(set->recordings); !distinct) return pass(distinct);
+  if (const auto named = refuse_repeated_sensors(set->recordings); !named) return pass(named);
+  note_set_times(set->recordings);
+  return set;
+}
+
+}  // namespace chorus::importers

@@ -1,0 +1,52 @@
+// Every format by name, and whole sets of files: what `chorus import` calls.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "common/importers/camera_views.h"
+#include "common/importers/import_options.h"
+#include "common/record/frame_recording.h"
+
+namespace chorus::importers {
+
+enum class FileFormat { Labanotation, Ntu, NwUcla, Keraal, Pose2Sim };
+
+struct FormatRow {
+  FileFormat format;
+  std::string_view name;   ///< As on the command line.
+  std::string_view reads;  ///< One line for --help.
+};
+
+inline constexpr std::array<FormatRow, 5> kFormats{{
+    {FileFormat::Labanotation, "labanotation",
+     "LabanotationSuite csv, Kinect v2 with capture times"},
+    {FileFormat::Ntu, "ntu", "NTU RGB+D .skeleton, Kinect v2, 30 Hz assumed"},
+    {FileFormat::NwUcla, "nw-ucla", "Northwestern-UCLA json, Kinect v1, 30 Hz assumed"},
+    {FileFormat::Keraal, "keraal", "KERAAL Kinect text, Kinect v2, 30 Hz assumed"},
+    {FileFormat::Pose2Sim, "pose2sim", "a folder of camera landmarks with cameras.json"},
+}};
+
+[[nodiscard]] std::optional<FileFormat> format_named(std::string_view name);
+
+struct ImportedSet {
+  std::vector<record::FrameRecording>
+      recordings;  ///< Distinct sensors, in the order of the inputs.
+  std::map<SensorId, Eigen::Isometry3d> world_from_sensor;  ///< Published extrinsics, if any.
+  std::vector<TruthFrame> truth;                            ///< Published truth, if any.
+};
+
+/// One input is one sensor; for pose2sim one input is the folder.  Refuses sets in which two inputs
+/// would be the same sensor, or hold the same numbers.  Every recording's notes say when the set
+/// begins and how long it lasts (set_origin, set_period_ns), so that several replays loop in step.
+[[nodiscard]] Result<ImportedSet> import_files(FileFormat format,
+                                               const std::vector<std::filesystem::path>& inputs,
+                                               const ImportOptions& options = {});
+
+}  // namespace chorus::importers

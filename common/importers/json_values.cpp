@@ -1,0 +1,48 @@
+#include "common/importers/json_values.h"
+
+#include <cmath>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "common/importers/text_rows.h"
+
+namespace chorus::importers {
+
+Result<nlohmann::json> read_json(const std::filesystem::path& file, std::uintmax_t max_bytes) {
+  const auto text = read_bounded(file, max_bytes);
+  if (!text) return pass(text);
+  try {
+    return nlohmann::json::parse(*text);
+  } catch (const nlohmann::json::exception& broken) {
+    // "[json.exception.parse_error.101] parse error at line 1, column 7: ..."
+    const std::string what = broken.what();
+    const auto bracket = what.find("] ");
+    return fail(ErrorCode::Malformed, file.string(),
+                bracket == std::string::npos ? what : what.substr(bracket + 2));
+  }
+}
+
+Result<const nlohmann::json*> member(const nlohmann::json& object, const char* key,
+                                     const std::string& at) {
+  if (object.is_object()) {
+    if (const auto found = object.find(key); found != object.end()) return &*found;
+  }
+  return fail(ErrorCode::Malformed, at, fmt::format("has no \"{}\".", key));
+}
+
+Result<void> read_numbers(const nlohmann::json& array, std::span<double> out, double bound,
+                          const std::string& at) {
+  if (!array.is_array() || array.size() != out.size())
+    return fail(ErrorCode::Malformed, at, fmt::format("must be {} numbers.", out.size()));
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (!array[i].is_number())
+      return fail(ErrorCode::Malformed, at, fmt::format("value {} is not a number.", i + 1));
+    out[i] = array[i].get<double>();
+    if (!std::isfinite(out[i]) || std::abs(out[i]) > bound)
+      return fail(ErrorCode::Malformed, at, fmt::format("value {} is beyond +-{}.", i + 1, bound));
+  }
+  return {};
+}
+
+}  // namespace chorus::importers

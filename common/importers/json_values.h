@@ -1,0 +1,28 @@
+// JSON formats: bounded reading, and numbers that are numbers.  Private to this folder's .cpp
+// files.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "common/base/result.h"
+
+namespace chorus::importers {
+
+/// A whole document; errors name the file and, for broken syntax, line and column.
+[[nodiscard]] Result<nlohmann::json> read_json(const std::filesystem::path& file,
+                                               std::uintmax_t max_bytes);
+
+/// The value under a key of an object; `at` names the object in the message.
+[[nodiscard]] Result<const nlohmann::json*> member(const nlohmann::json& object, const char* key,
+                                                   const std::string& at);
+
+/// Exactly `out.size()` finite numbers within +-bound from an array.
+[[nodiscard]] Result<void> read_numbers(const nlohmann::json& array, std::span<double> out,
+                                        double bound, const std::string& at);
+
+}  // namespace chorus::importers

@@ -1,0 +1,91 @@
+#include "common/importers/landmark_fit.h"
+
+#include <cmath>
+#include <vector>
+
+#include <opencv2/calib3d.hpp>
+
+namespace chorus::importers {
+namespace {
+
+/// Nearer than this to the camera's plane a pixel ray says nothing [m].
+constexpr double kLeastDepth = 0.1;
+
+cv::Matx33d camera_matrix(const Intrinsics& k) {
+  return {k.fx, 0.0, k.cx, 0.0, k.fy, k.cy, 0.0, 0.0, 1.0};
+}
+
+struct PixelsAndBody {
+  std::vector<cv::Point3d> in_body;
+  std::vector<cv::Point2d> pixel;
+};
+
+PixelsAndBody for_opencv(const LandmarkSight& sight) {
+  PixelsAndBody points;
+  for (std::size_t i = 0; i < kLandmarkCount; ++i) {
+    points.in_body.emplace_back(sight.in_body[i].x(), sight.in_body[i].y(), sight.in_body[i].z());
+    points.pixel.emplace_back(sight.pixel[i].x(), sight.pixel[i].y());
+  }
+  return points;
+}
+
+struct CameraFit {
+  std::array<Eigen::Vector3d, kLandmarkCount> in_camera;  ///< OpenCV axes.
+  std::vector<cv::Point2d> ray;                           ///< x/z, y/z of each undistorted pixel.
+};
+
+/// SQPnP, then Levenberg-Marquardt: the plain iterative start falls into mirrored poses on views
+/// from behind (whole metres off on one of the four bundled cameras).  May throw cv::Exception.
+std::optional<CameraFit> fit_camera(const PixelsAndBody& points, const Intrinsics& intrinsics) {
+  const cv::Matx33d k = camera_matrix(intrinsics);
+  const std::vector<double> distortion(intrinsics.distortion.begin(), intrinsics.distortion.end());
+  cv::Vec3d turn;
+  cv::Vec3d shift;
+  if (!cv::solvePnP(points.in_body, points.pixel, k, distortion, turn, shift, false,
+                    cv::SOLVEPNP_SQPNP))
+    return std::nullopt;
+  cv::solvePnPRefineLM(points.in_body, points.pixel, k, distortion, turn, shift);
+  cv::Matx33d rotation;
+  cv::Rodrigues(turn, rotation);
+  CameraFit fit;
+  for (std::size_t i = 0; i < kLandmarkCount; ++i) {
+    const cv::Vec3d x = rotation * cv::Vec3d(points.in_body[i]) + shift;
+    fit.in_camera[i] = {x[0], x[1], x[2]};
+  }
+  cv::undistortPoints(points.pixel, fit.ray, k, distortion);
+  return fit;
+}
+
+Landmark landmark_of(const CameraFit& fit, std::size_t i, double visibility, Lateral lateral) {
+  Eigen::Vector3d x_in_camera = fit.in_camera[i];
+  const double depth = x_in_camera.z();
+  if (!x_in_camera.allFinite() || depth < kLeastDepth) return {};
+  if (lateral == Lateral::PixelRay)
+    x_in_camera = Eigen::Vector3d(fit.ray[i].x * depth, fit.ray[i].y * depth, depth);
+  const bool tracked = visibility >= kTrackedVisibility;
+  return {sensor_from_opencv() * x_in_camera, tracked ? JointState::Tracked : JointState::Inferred};
+}
+
+}  // namespace
+
+Result<Landmarks> fit_landmarks(const LandmarkSight& sight, const Intrinsics& intrinsics,
+                                Lateral lateral) {
+  std::optional<CameraFit> fit;
+  try {
+    fit = fit_camera(for_opencv(sight), intrinsics);
+  } catch (const cv::Exception& refused) {
+    return fail(ErrorCode::InvalidArgument, "landmarks", refused.err);
+  }
+  Landmarks landmarks;
+  std::size_t in_front = 0;
+  for (std::size_t i = 0; fit && i < kLandmarkCount; ++i) {
+    landmarks[i] = landmark_of(*fit, i, sight.visibility[i], lateral);
+    in_front += landmarks[i].state != JointState::NotTracked ? 1 : 0;
+  }
+  if (in_front < kLandmarkCount / 2)
+    return fail(ErrorCode::InvalidArgument, "landmarks",
+                "the pixels fit no body before the camera.");
+  return landmarks;
+}
+
+}  // namespace chorus::importers

@@ -1,0 +1,135 @@
+#include "common/importers/text_rows.h"
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace chorus::importers {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r";
+constexpr std::size_t kShownFieldBytes = 24;  // a wrong field is quoted no longer than this
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+/// Cuts the next field off `rest`; none when nothing is left.
+std::optional<std::string_view> cut_field(std::string_view& rest, char separator, bool first) {
+  if (separator == ' ') {
+    const auto begin = rest.find_first_not_of(kBlanks);
+    if (begin == std::string_view::npos) return std::nullopt;
+    rest.remove_prefix(begin);
+    const auto field = rest.substr(0, rest.find_first_of(kBlanks));
+    rest.remove_prefix(field.size());
+    return field;
+  }
+  if (!first) {
+    if (rest.empty()) return std::nullopt;
+    rest.remove_prefix(1);  // the separator itself
+  }
+  const auto field = rest.substr(0, rest.find(separator));
+  rest.remove_prefix(field.size());
+  return trimmed(field);
+}
+
+template <class Number>
+std::optional<Number> parsed(std::string_view field) {
+  Number value{};
+  const char* end = field.data() + field.size();
+  const auto [stop, failed] = std::from_chars(field.data(), end, value);
+  if (failed != std::errc{} || stop != end) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+Result<std::string> read_bounded(const std::filesystem::path& file, std::uintmax_t max_bytes) {
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(file, failed))
+    return fail(ErrorCode::NotFound, file.string(), "there is no such file.");
+  const auto size = std::filesystem::file_size(file, failed);
+  if (failed) return fail(ErrorCode::Io, file.string(), failed.message());
+  if (size > max_bytes)
+    return fail(ErrorCode::TooLarge, file.string(),
+                fmt::format("has {} bytes; at most {} are read. Cut the recording into parts.",
+                            size, max_bytes));
+  std::ifstream in(file, std::ios::binary);
+  std::string text(size, '\0');
+  if (!in.read(text.data(), static_cast<std::streamsize>(size)))
+    return fail(ErrorCode::Io, file.string(), "cannot be read.");
+  return text;
+}
+
+std::optional<std::string_view> LineReader::next() {
+  if (rest_.empty()) return std::nullopt;
+  const auto line = rest_.substr(0, rest_.find('\n'));
+  rest_.remove_prefix(std::min(rest_.size(), line.size() + 1));
+  ++line_;
+  return line;
+}
+
+std::optional<std::string_view> LineReader::next_filled() {
+  while (const auto line = next()) {
+    if (!trimmed(*line).empty()) return line;
+  }
+  return std::nullopt;
+}
+
+tl::unexpected<Error> LineReader::malformed(std::string message) const {
+  return fail(ErrorCode::Malformed, fmt::format("{}:{}", origin_, line_), std::move(message));
+}
+
+Result<Row> Row::split(const LineReader& at, std::string_view line, char separator,
+                       std::size_t expected) {
+  Row row;
+  row.at_ = &at;
+  std::string_view rest = trimmed(line);
+  while (row.fields_.size() <= expected) {
+    const auto field = cut_field(rest, separator, row.fields_.empty());
+    if (!field) break;
+    row.fields_.push_back(*field);
+  }
+  if (row.fields_.size() > expected)
+    return at.malformed(fmt::format("holds more than the {} values of a row.", expected));
+  if (row.fields_.size() < expected)
+    return at.malformed(fmt::format("holds {} values where {} are needed; is the file cut off?",
+                                    row.fields_.size(), expected));
+  return row;
+}
+
+Result<std::int64_t> Row::integer(std::size_t column) const {
+  const auto value = parsed<std::int64_t>(fields_[column]);
+  if (!value) return wrong(column, "is not a whole number");
+  return *value;
+}
+
+Result<std::uint64_t> Row::natural(std::size_t column) const {
+  const auto value = parsed<std::uint64_t>(fields_[column]);
+  if (!value) return wrong(column, "is not a whole number of 0 or more");
+  return *value;
+}
+
+Result<void> Row::numbers(std::size_t first, std::span<double> out, double bound) const {
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const auto value = parsed<double>(fields_[first + i]);
+    if (!value) return wrong(first + i, "is not a number");
+    if (!std::isfinite(*value)) return wrong(first + i, "is not finite");
+    if (std::abs(*value) > bound)
+      return wrong(first + i, fmt::format("is beyond +-{}; are these metres?", bound));
+    out[i] = *value;
+  }
+  return {};
+}
+
+tl::unexpected<Error> Row::wrong(std::size_t column, std::string_view what) const {
+  return at_->malformed(fmt::format("value {} (\"{}\") {}.", column + 1,
+                                    fields_[column].substr(0, kShownFieldBytes), what));
+}
+
+}  // namespace chorus::importers

@@ -1,0 +1,58 @@
+// Text formats, row by row: bounded reading, and mistakes named by file, line and column.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/result.h"
+
+namespace chorus::importers {
+
+/// A whole file; refuses what is larger than max_bytes, missing, or not a plain file.
+[[nodiscard]] Result<std::string> read_bounded(const std::filesystem::path& file,
+                                               std::uintmax_t max_bytes);
+
+/// Walks the lines of a text that outlives it; "\r\n" and a missing last line end are fine.
+class LineReader {
+ public:
+  LineReader(std::string_view text, std::string origin) : rest_(text), origin_(std::move(origin)) {}
+
+  /// The next line without its end; none at the end of the text.
+  [[nodiscard]] std::optional<std::string_view> next();
+  /// The next line that is not blank.
+  [[nodiscard]] std::optional<std::string_view> next_filled();
+  /// Malformed at "file:line" of the line given last.
+  [[nodiscard]] tl::unexpected<Error> malformed(std::string message) const;
+
+ private:
+  std::string_view rest_;
+  std::string origin_;
+  std::size_t line_ = 0;
+};
+
+/// The fields of one row.  Separator ',' is exact, ' ' stands for any run of blanks.
+class Row {
+ public:
+  /// Refuses a row that does not have exactly `expected` fields ("truncated" comes out here).
+  [[nodiscard]] static Result<Row> split(const LineReader& at, std::string_view line,
+                                         char separator, std::size_t expected);
+
+  [[nodiscard]] Result<std::int64_t> integer(std::size_t column) const;
+  [[nodiscard]] Result<std::uint64_t> natural(std::size_t column) const;
+  /// Finite numbers from `first` on, as many as `out` holds, each within +-bound.
+  [[nodiscard]] Result<void> numbers(std::size_t first, std::span<double> out, double bound) const;
+
+ private:
+  [[nodiscard]] tl::unexpected<Error> wrong(std::size_t column, std::string_view what) const;
+
+  const LineReader* at_ = nullptr;
+  std::vector<std::string_view> fields_;
+};
+
+}  // namespace chorus::importers

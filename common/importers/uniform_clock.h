@@ -1,0 +1,22 @@
+// Capture times for formats that count frames and keep no time.
+#pragma once
+
+#include <cstddef>
+
+#include "common/time/timestamp.h"
+
+namespace chorus::importers {
+
+inline constexpr int kKinectHz = 30;  ///< Nominal rate of Kinect v1 and v2; real ones drop frames.
+
+/// The note that goes with such times.
+inline constexpr const char* kUniformTimeNote =
+    "no times in the file; an exact 30 Hz is assumed, dropped frames are invisible";
+
+/// Instant of frame `index`, rounded down to the nanosecond without accumulating error.
+[[nodiscard]] constexpr Timestamp uniform_instant(Timestamp start, std::size_t index, int hz) {
+  constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
+  return start + Duration(static_cast<std::int64_t>(index) * kNanosecondsPerSecond / hz);
+}
+
+}  // namespace chorus::importers
