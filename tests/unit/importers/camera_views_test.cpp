@@ -1,0 +1,222 @@
+#include "common/importers/camera_views.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "common/importers/formats.h"
+#include "tests/support/matchers.h"
+#include "tests/unit/importers/import_files.h"
+
+namespace chorus::importers {
+namespace {
+
+using testing::FailsWith;
+using ::testing::HasSubstr;
+using testing::IsOk;
+
+const std::filesystem::path kFolder = kShippedRecordings / "pose2sim_mediapipe";
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Distance of each joint to the truth, split along and across the sensor's line of sight.
+struct Errors {
+  std::vector<double> whole;
+  std::vector<double> across;
+};
+
+Errors errors_of(const record::FrameRecording& view, const Eigen::Isometry3d& world_from_sensor,
+                 const std::vector<TruthFrame>& truth) {
+  Errors errors;
+  for (std::size_t i = 0; i < view.frames.size(); ++i) {
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      const Eigen::Vector3d x = view.frames[i].bodies.at(0).skeleton.joints[j].position;
+      const Eigen::Vector3d wanted =
+          world_from_sensor.inverse() * truth[i].skeleton.joints[j].position;
+      const Eigen::Vector3d off = x - wanted;
+      errors.whole.push_back(off.norm());
+      errors.across.push_back((off - wanted.normalized() * off.dot(wanted.normalized())).norm());
+    }
+  }
+  return errors;
+}
+
+TEST(CameraViews, ImportTheShippedFolderInStep) {
+  const auto set = import_files(FileFormat::Pose2Sim, {kFolder});
+  ASSERT_THAT(set, IsOk());
+  ASSERT_EQ(set->recordings.size(), 4u);
+  EXPECT_EQ(set->truth.size(), 100u);
+  for (const auto& view : set->recordings) {
+    EXPECT_EQ(view.frames.size(), 100u);
+    EXPECT_EQ(view.frames.front().captured, kDefaultStart);
+    EXPECT_EQ(view.frames[30].captured, kDefaultStart + std::chrono::milliseconds(500));
+    EXPECT_EQ(view.notes.at("set_origin"), "2020-01-01T00:00:00.000000000Z");
+    EXPECT_NEAR(std::stod(view.notes.at("set_period_ns")), 100e9 / 60, 1e3);
+    EXPECT_EQ(view.intrinsics->width, 1080);
+  }
+}
+
+/// Ceilings of the committed measurement (tests/bench/real_four_cameras_bench.cpp) plus a tenth.
+TEST(CameraViews, LieNearTheTriangulationAndBestAcrossTheLineOfSight) {
+  const auto set = import_files(FileFormat::Pose2Sim, {kFolder});
+  ASSERT_THAT(set, IsOk());
+  const double ceilings[] = {0.125, 0.21, 0.25, 0.17};
+  for (std::size_t c = 0; c < 4; ++c) {
+    const auto& view = set->recordings[c];
+    const Errors errors = errors_of(view, set->world_from_sensor.at(view.sensor), set->truth);
+    EXPECT_LT(median(errors.whole), ceilings[c]) << view.sensor.str();
+    EXPECT_LT(median(errors.across), 0.04) << view.sensor.str();
+  }
+}
+
+TEST(CameraViews, PixelRaysBeatTheRigidBodyAcrossTheLineOfSight) {
+  const auto cameras = read_cameras(kFolder / "cameras.json");
+  const auto truth = read_triangulation(kFolder / "triangulated.json");
+  ASSERT_THAT(cameras, IsOk());
+  ASSERT_THAT(truth, IsOk());
+  for (const CalibratedCamera& camera : *cameras) {
+    const auto file = kFolder / (camera.sensor.str() + ".json");
+    const auto on_rays = read_camera_view(file, *cameras);
+    const auto rigid = read_camera_view(file, *cameras, {}, Lateral::RigidBody);
+    ASSERT_THAT(on_rays, IsOk());
+    ASSERT_THAT(rigid, IsOk());
+    const auto& pose = camera.world_from_sensor;
+    EXPECT_LT(median(errors_of(*on_rays, pose, *truth).across),
+              median(errors_of(*rigid, pose, *truth).across));
+  }
+}
+
+/// Ours: x to the sensor's left, y up, z ahead.  All four cameras stand upright above the floor.
+TEST(CameraViews, SpeakOurAxes) {
+  const auto set = import_files(FileFormat::Pose2Sim, {kFolder});
+  ASSERT_THAT(set, IsOk());
+  for (const auto& view : set->recordings) {
+    const Eigen::Isometry3d pose = set->world_from_sensor.at(view.sensor);
+    EXPECT_NEAR(pose.linear().determinant(), 1.0, 1e-9);
+    EXPECT_GT(pose.linear()(1, 1), 0.8) << "the sensor's up is the world's up";
+    EXPECT_GT(pose.translation().y(), 0.5);
+    EXPECT_LT(pose.translation().y(), 3.0);
+    const auto& body = view.frames[0].bodies.at(0).skeleton;
+    EXPECT_GT(body[JointId::Head].position.y(), body[JointId::SpineBase].position.y() + 0.4);
+    EXPECT_GT(body[JointId::SpineBase].position.z(), 2.0);
+  }
+  const auto& truth = set->truth[0].skeleton;
+  EXPECT_NEAR(truth[JointId::Head].position.y(), 1.55, 0.05);
+  EXPECT_LT(truth[JointId::FootRight].position.y(), 0.2);
+}
+
+/// A synthetic body before a synthetic camera comes back exactly, distortion included.
+TEST(LandmarkFit, RecoversAKnownPose) {
+  Intrinsics camera;
+  camera.fx = camera.fy = 900.0;
+  camera.cx = 640.0;
+  camera.cy = 360.0;
+  LandmarkSight sight;
+  const Eigen::Isometry3d camera_from_body =
+      Eigen::Translation3d(0.4, -0.2, 3.1) *
+      Eigen::AngleAxisd(0.5, Eigen::Vector3d(0.2, 1.0, 0.1).normalized());
+  for (std::size_t i = 0; i < kLandmarkCount; ++i) {
+    const double t = static_cast<double>(i);
+    sight.in_body[i] = {0.3 * std::sin(t), 0.8 * std::cos(1.7 * t), 0.25 * std::sin(2.3 * t)};
+    const Eigen::Vector3d x = camera_from_body * sight.in_body[i];
+    sight.pixel[i] = {camera.fx * x.x() / x.z() + camera.cx, camera.fy * x.y() / x.z() + camera.cy};
+    sight.visibility[i] = i == 16 ? 0.3 : 0.9;
+  }
+  for (const Lateral lateral : {Lateral::PixelRay, Lateral::RigidBody}) {
+    const auto landmarks = fit_landmarks(sight, camera, lateral);
+    ASSERT_THAT(landmarks, IsOk());
+    for (std::size_t i = 0; i < kLandmarkCount; ++i) {
+      const Eigen::Vector3d x = camera_from_body * sight.in_body[i];
+      EXPECT_THAT((*landmarks)[i].position,
+                  testing::VectorNear(Eigen::Vector3d(-x.x(), -x.y(), x.z()), 1e-4));
+    }
+    EXPECT_EQ((*landmarks)[16].state, JointState::Inferred);
+    EXPECT_EQ((*landmarks)[15].state, JointState::Tracked);
+  }
+}
+
+TEST(LandmarkFit, RefusesSightsThatFitNoBody) {
+  LandmarkSight sight;
+  for (std::size_t i = 0; i < kLandmarkCount; ++i) {
+    sight.in_body[i].setZero();
+    sight.pixel[i].setConstant(100.0);
+  }
+  EXPECT_FALSE(fit_landmarks(sight, Intrinsics{}).has_value());
+  for (auto& pixel : sight.pixel) pixel.setConstant(std::nan(""));
+  EXPECT_FALSE(fit_landmarks(sight, Intrinsics{}).has_value());
+}
+
+TEST(LandmarkJoints, AreMeansAsSureAsTheirLeastSureLandmark) {
+  Landmarks landmarks;
+  for (std::size_t i = 0; i < kLandmarkCount; ++i)
+    landmarks[i] = {Eigen::Vector3d(double(i), 1.0, 2.0), JointState::Tracked};
+  landmarks[24].state = JointState::Inferred;
+  landmarks[31].state = JointState::NotTracked;
+  const auto joints = joints_of(landmarks);
+  const Joint& base = joints[index_of(JointId::SpineBase)];
+  EXPECT_DOUBLE_EQ(base.position.x(), 23.5);
+  EXPECT_EQ(base.state, JointState::Inferred);
+  EXPECT_EQ(joints[index_of(JointId::FootLeft)].state, JointState::NotTracked);
+  for (const Joint& joint : joints) {
+    if (joint.state == JointState::NotTracked) continue;
+    EXPECT_NEAR(joint.position.y(), 1.0, 1e-9) << "weights sum to one";
+  }
+}
+
+TEST(CameraViews, RefuseBadCalibrations) {
+  const ScratchFolder folder;
+  const auto good = nlohmann::json::parse(text_of(kFolder / "cameras.json"));
+  const auto refused = [&](auto change, const char* says) {
+    nlohmann::json cameras = good;
+    change(cameras);
+    const auto read = read_cameras(folder.write("cameras.json", cameras.dump()));
+    ASSERT_THAT(read, FailsWith(ErrorCode::Malformed)) << says;
+    EXPECT_THAT(to_string(read.error()), HasSubstr(says));
+  };
+  refused([](auto& c) { c[1]["camera_from_world"]["R"][0][0] = 0.9; }, "[1].R: is not a rotation");
+  refused([](auto& c) { c[1]["camera"] = "cam01"; }, "a second time");
+  refused([](auto& c) { c[2].erase("K"); }, "[2]: has no \"K\"");
+  refused([](auto& c) { c[0]["K"][0][0] = -1.0; }, "focal lengths");
+  refused([](auto& c) { c[0]["width"] = "wide"; }, "not a number");
+  refused([](auto& c) { c = nlohmann::json::array(); }, "array of 1 to 64");
+  refused([](auto& c) { c = nlohmann::json::object(); }, "array of 1 to 64");
+}
+
+TEST(CameraViews, RefuseBadLandmarksAndMissingFiles) {
+  const ScratchFolder folder;
+  const auto cameras = read_cameras(kFolder / "cameras.json").value();
+  const auto good = nlohmann::json::parse(text_of(kFolder / "cam01.json"));
+  const auto refused = [&](auto change, const char* says) {
+    nlohmann::json view = good;
+    change(view);
+    const auto read = read_camera_view(folder.write("cam01.json", view.dump()), cameras);
+    ASSERT_FALSE(read.has_value()) << says;
+    EXPECT_THAT(to_string(read.error()), HasSubstr(says));
+  };
+  refused([](auto& v) { v["camera"] = "cam09"; }, "no camera \"cam09\"");
+  refused([](auto& v) { v["fps"] = 0; }, "\"fps\" must be");
+  refused([](auto& v) { v["frames"][3]["t_s"] = 0.0; }, "frames[3]: \"t_s\" must grow");
+  refused([](auto& v) { v["frames"][2]["t_s"] = -1.0; }, "frames[2]: \"t_s\"");
+  refused([](auto& v) { v["frames"][5]["image"].erase(0); }, "frames[5].image: must hold 33");
+  refused([](auto& v) { v["frames"][5]["world"][7][1] = nullptr; }, "frames[5].world[7]: value 2");
+  EXPECT_THAT(import_files(FileFormat::Pose2Sim, {folder.path()}), FailsWith(ErrorCode::NotFound));
+}
+
+TEST(CameraViews, KeepFramesInWhichNobodyWasFound) {
+  const ScratchFolder folder;
+  auto view = nlohmann::json::parse(text_of(kFolder / "cam01.json"));
+  view["frames"][4]["image"] = nullptr;
+  const auto read = read_camera_view(folder.write("cam01.json", view.dump()),
+                                     read_cameras(kFolder / "cameras.json").value());
+  ASSERT_THAT(read, IsOk());
+  EXPECT_EQ(read->frames.size(), 100u);
+  EXPECT_TRUE(read->frames[4].bodies.empty());
+}
+
+}  // namespace
+}  // namespace chorus::importers
