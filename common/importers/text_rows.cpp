@@ -90,6 +90,7 @@ Result<Row> Row::split(const LineReader& at, std::string_view line, char separat
   Row row;
   row.at_ = &at;
   std::string_view rest = trimmed(line);
+  if (separator != ' ' && rest.ends_with(separator)) rest.remove_suffix(1);
   while (row.fields_.size() <= expected) {
     const auto field = cut_field(rest, separator, row.fields_.empty());
     if (!field) break;

@@ -36,7 +36,8 @@ class LineReader {
   std::size_t line_ = 0;
 };
 
-/// The fields of one row.  Separator ',' is exact, ' ' stands for any run of blanks.
+/// The fields of one row.  Separator ',' is exact but may also end the row (LabanotationSuite
+/// writes it so); ' ' stands for any run of blanks.
 class Row {
  public:
   /// Refuses a row that does not have exactly `expected` fields ("truncated" comes out here).
