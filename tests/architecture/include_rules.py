@@ -1,0 +1,168 @@
+"""The house rules that a machine can check: who may include whom, what stages may not touch, how long a
+file may be.  docs/architecture.md shows the same table as a picture."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+# A room includes only rooms of earlier rows, never one of its own row.
+ROWS = [
+    ["common/base"],
+    ["common/time", "common/geometry"],
+    ["common/rdf", "common/http"],
+    ["common/body"],
+    ["common/sensor"],
+    ["common/motion", "common/resource"],
+    ["common/record"],
+    ["common/synthetic", "common/endpoint", "common/importers"],
+    ["fusion-server/flow.h"],
+    ["fusion-server/align", "fusion-server/facing", "fusion-server/associate", "fusion-server/fusion"],
+    ["fusion-server/registration"],
+    ["fusion-server/pipeline", "fusion-server/poll"],
+    ["fusion-server/publish", "services/sensor"],
+    ["fusion-server/server"],
+    ["services/ctl"],
+]
+ROW_OF = {room: row for row, rooms in enumerate(ROWS) for room in rooms}
+
+STAGES = {f"fusion-server/{stage}" for stage in ("align", "facing", "associate", "fusion", "registration")}
+FUSION_SERVER = {room for room in ROW_OF if room.startswith("fusion-server/")}
+
+# (who, what they may not include, why)
+FORBIDDEN_ROOMS = [
+    (FUSION_SERVER, {"common/synthetic"}, "what judges an algorithm must not feed it"),
+    (STAGES, {"common/http", "common/resource", "common/record", "common/endpoint", "common/rdf"},
+     "stages know values, not their wire forms"),
+    (STAGES - {"fusion-server/registration"}, STAGES, "stages meet in flow.h only"),
+    ({"fusion-server/registration"}, STAGES - {"fusion-server/align"}, "registration may use align only"),
+    ({"services/sensor"}, FUSION_SERVER, "running services meet over HTTP"),
+    (FUSION_SERVER, {"services/sensor"}, "running services meet over HTTP"),
+]
+
+STAGE_HEADERS = re.compile(
+    r"<(boost/(asio|beast)|serd|nlohmann/|thread>|mutex>|shared_mutex>|condition_variable>|iostream>|fstream>)")
+STAGE_CLOCKS = re.compile(r"common/time/clock\.h|(system|steady|high_resolution)_clock::now")
+ASIO = re.compile(r"<boost/(asio|beast)")
+POINT_CLOUDS_AND_IMAGES = re.compile(r"<(pcl|opencv2)/")
+ASIO_DOOR = "common/http/asio.h"
+
+MAX_LINES = 400
+SOURCE_ENDINGS = {".h", ".cpp", ".py", ".mjs", ".js", ".sh"}
+LIBRARY = re.compile(r"(?:chorus_library\(NAME\s+|target_link_libraries\(chorus_)(\w+)([^)]*)\)")
+LINKED = re.compile(r"chorus::(\w+)")
+BANNED_NAMES = re.compile(r"(^|_)(data|info|manager|helper|helpers|util|utils)(_|\.)")
+INCLUDE = re.compile(r'^\s*#\s*include\s+(<[^>]+>|"[^"]+")', re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Violation:
+    file: str
+    message: str
+
+    def __str__(self):
+        return f"{self.file}: {self.message}"
+
+
+def room_of(path):
+    """'common/body/bones.h' -> 'common/body'; None for what is no room of ours."""
+    if path == "fusion-server/flow.h":
+        return path
+    parts = path.split("/")
+    if len(parts) < 2 or parts[0] not in ("common", "fusion-server", "services"):
+        return None
+    return "/".join(parts[:2])
+
+
+def layer_violations(file, text):
+    own = room_of(file)
+    if own not in ROW_OF:
+        yield Violation(file, f"the room {own} is in no row of the layer table")
+        return
+    for included in INCLUDE.findall(text):
+        other = room_of(included.strip('<>"'))
+        if other is None or other == own:
+            continue
+        if other not in ROW_OF:
+            yield Violation(file, f"includes {included}, whose room is in no row of the layer table")
+        elif ROW_OF[other] >= ROW_OF[own]:
+            yield Violation(file, f"includes {included}: {own} stands below or beside {other}")
+        for who, what, why in FORBIDDEN_ROOMS:
+            if own in who and other in what:
+                yield Violation(file, f"includes {included}: {why}")
+
+
+def header_violations(file, text):
+    own = room_of(file)
+    includes = INCLUDE.findall(text)
+    for included in includes:
+        if own in STAGES and STAGE_HEADERS.match(included):
+            yield Violation(file, f"includes {included}: stages are pure")
+        if ASIO.match(included) and file != ASIO_DOOR:
+            yield Violation(file, f"includes {included}: only {ASIO_DOOR} does")
+        if POINT_CLOUDS_AND_IMAGES.match(included) and file.endswith(".h"):
+            yield Violation(file, f"includes {included}: in .cpp files only")
+    if own in STAGES and STAGE_CLOCKS.search(text):
+        yield Violation(file, "reads a clock: time is an argument of a stage")
+    if file.endswith(".h") and "#pragma once" not in text:
+        yield Violation(file, "has no #pragma once")
+
+
+def form_violations(file, text):
+    lines = text.count("\n")
+    if lines > MAX_LINES:
+        yield Violation(file, f"has {lines} lines; at most {MAX_LINES}")
+    if BANNED_NAMES.search(file.rsplit("/", 1)[-1]):
+        yield Violation(file, "its name says nothing (data, info, manager, helper, util)")
+
+
+def linked_rooms(root):
+    """Room -> the rooms its library links, directly or through others, by what the CMakeLists say."""
+    direct, room_by_name = {}, {}
+    for file in sorted(root.glob("*/**/CMakeLists.txt")):
+        relative = file.parent.relative_to(root).as_posix()
+        for name, arguments in LIBRARY.findall(file.read_text(encoding="utf-8")):
+            room = "fusion-server/flow.h" if name == "flow" else room_of(relative + "/CMakeLists.txt")
+            if room is None:
+                continue
+            room_by_name[name] = room
+            direct.setdefault(room, set()).update(LINKED.findall(arguments))
+    reach = {room: {room_by_name[name] for name in names if name in room_by_name} for room, names in direct.items()}
+    changed = True
+    while changed:
+        changed = False
+        for room, others in reach.items():
+            wider = others.union(*(reach.get(other, set()) for other in others))
+            changed = changed or wider != others
+            reach[room] = wider
+    return reach
+
+
+def link_violations(file, text, reach):
+    """A room links what it includes, so that the link graph is the layer table."""
+    own = room_of(file)
+    if own not in reach:
+        return
+    for included in INCLUDE.findall(text):
+        other = room_of(included.strip('<>"'))
+        if other in (None, own) or other in reach[own] or other not in reach:
+            continue
+        yield Violation(file, f"includes {included}, but its library does not link {other}")
+
+
+def violations(root):
+    """Every broken rule below `root`, in order of files."""
+    root = Path(root)
+    found = []
+    reach = linked_rooms(root)
+    for top in ("common", "fusion-server", "services", "tests", "proto", "deploy"):
+        for path in sorted((root / top).rglob("*")):
+            relative = path.relative_to(root).as_posix()
+            if path.suffix not in SOURCE_ENDINGS or "node_modules" in path.parts or not path.is_file():
+                continue
+            text = path.read_text(encoding="utf-8")
+            found += form_violations(relative, text)
+            if top in ("common", "fusion-server", "services") and path.suffix in (".h", ".cpp"):
+                found += layer_violations(relative, text)
+                found += header_violations(relative, text)
+                found += link_violations(relative, text, reach)
+    return found
