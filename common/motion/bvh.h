@@ -1,0 +1,39 @@
+// Biovision BVH: a hierarchy of joints with offsets and channels, then one line of numbers per frame.
+//
+// parent_from_joint = translate(offset or position channels) * R(first channel) * R(second) * R(third), in the
+// order the file lists the channels.  Lengths are the file's (centimetres by custom); `metres_per_unit` says.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "common/base/result.h"
+
+namespace chorus::motion {
+
+struct BvhJoint {
+  std::string name;        ///< End sites are called "<parent> End".
+  std::size_t parent = 0;  ///< Index; parents come first; 0 is the root.
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< From the parent [m]
+  std::vector<std::uint8_t> channels;  ///< 0-2: x y z position, 3-5: x y z rotation.
+  std::size_t first_channel = 0;
+};
+
+struct Bvh {
+  std::vector<BvhJoint> joints;
+  std::size_t channel_count = 0;
+  double frame_time = 0.0;                  ///< [s]
+  std::vector<std::vector<double>> frames;  ///< Positions [m], rotations [rad], as `channels` say.
+};
+
+[[nodiscard]] Result<Bvh> parse_bvh(std::string_view text, std::string_view origin,
+                                    double metres_per_unit = 0.01);
+
+/// Where every joint is in one frame, world space of the file [m].
+[[nodiscard]] std::vector<Eigen::Vector3d> joint_positions(const Bvh& bvh, std::size_t frame);
+
+}  // namespace chorus::motion

@@ -1,0 +1,94 @@
+#include "common/motion/motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/body/bones.h"
+#include "common/geometry/rotation.h"
+
+namespace chorus::motion {
+namespace {
+
+constexpr double kTiny = 1e-6;
+
+/// Kinect v2 gives these no orientation.
+constexpr std::array kLeaves{JointId::Head,          JointId::HandTipLeft, JointId::ThumbLeft,
+                             JointId::HandTipRight,  JointId::ThumbRight,  JointId::FootLeft,
+                             JointId::FootRight};
+
+Eigen::Vector3d forward_of(const Skeleton<WorldSpace>& body) {
+  const Eigen::Vector3d to_left =
+      body[JointId::HipLeft].position - body[JointId::HipRight].position;
+  return to_left.cross(Eigen::Vector3d::UnitY()).stableNormalized();
+}
+
+Eigen::Quaterniond segment_frame(const Eigen::Vector3d& along, const Eigen::Vector3d& forward) {
+  const Eigen::Vector3d y = along.stableNormalized();
+  Eigen::Vector3d x = y.cross(forward);
+  // A bone that points forward has no forward of its own; its back faces up instead.
+  if (x.norm() < 0.1) x = y.cross(Eigen::Vector3d::UnitY());
+  if (x.norm() < kTiny || y.norm() < kTiny) return Eigen::Quaterniond::Identity();
+  Eigen::Matrix3d world_from_segment;
+  world_from_segment.col(0) = x.normalized();
+  world_from_segment.col(1) = y;
+  world_from_segment.col(2) = x.normalized().cross(y);
+  return Eigen::Quaterniond(world_from_segment);
+}
+
+}  // namespace
+
+void orient_segments(Skeleton<WorldSpace>& body) {
+  const Eigen::Vector3d forward = forward_of(body);
+  for (const Bone& bone : kBones) {
+    Joint& child = body[bone.child];
+    if (!child.seen() || !body[bone.parent].seen()) continue;
+    child.orientation = segment_frame(child.position - body[bone.parent].position, forward);
+  }
+  if (body[JointId::SpineBase].seen() && body[JointId::SpineMid].seen()) {
+    body[JointId::SpineBase].orientation = segment_frame(
+        body[JointId::SpineMid].position - body[JointId::SpineBase].position, forward);
+  }
+  for (const JointId leaf : kLeaves) body[leaf].orientation = Eigen::Quaterniond(0, 0, 0, 0);
+}
+
+Skeleton<WorldSpace> between(const Skeleton<WorldSpace>& a, const Skeleton<WorldSpace>& b,
+                             double s) {
+  Skeleton<WorldSpace> body;
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    const Joint& from = a.joints[i];
+    const Joint& to = b.joints[i];
+    if (!from.seen() || !to.seen()) continue;
+    Joint& joint = body.joints[i];
+    joint.position = (1 - s) * from.position + s * to.position;
+    if (is_unit(from.orientation) && is_unit(to.orientation)) {
+      joint.orientation = lerp(from.orientation, to.orientation, s);
+    }
+    joint.state = std::min(from.state, to.state);
+  }
+  return body;
+}
+
+Skeleton<WorldSpace> at(const Motion& motion, double time) {
+  if (motion.frames.empty()) return {};
+  const double last = static_cast<double>(motion.frames.size() - 1);
+  const double place = std::isfinite(time) ? std::clamp(time * motion.rate_hz, 0.0, last) : 0.0;
+  const auto before = static_cast<std::size_t>(place);
+  const std::size_t after = std::min(before + 1, motion.frames.size() - 1);
+  return between(motion.frames[before], motion.frames[after],
+                 place - static_cast<double>(before));
+}
+
+Motion resampled(const Motion& motion, double rate_hz) {
+  Motion out;
+  out.rate_hz = rate_hz;
+  if (motion.frames.empty() || !(rate_hz > 0) || !(motion.rate_hz > 0)) return out;
+  const double duration = static_cast<double>(motion.frames.size() - 1) / motion.rate_hz;
+  const auto count = static_cast<std::size_t>(duration * rate_hz + kTiny) + 1;
+  out.frames.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    out.frames.push_back(at(motion, static_cast<double>(i) / rate_hz));
+  }
+  return out;
+}
+
+}  // namespace chorus::motion
