@@ -111,9 +111,8 @@ Result<void> AsfReader::read_units() {
 Result<void> AsfReader::read_root() {
   while (next()) {
     if (lines_.word(0).starts_with(':')) return held_ = true, Result<void>();
-    if (lines_.word(0) == "order" &&
-        !std::equal(kRootOrder.begin(), kRootOrder.end(), lines_.words().begin(),
-                    lines_.words().end())) {
+    if (lines_.word(0) == "order" && !std::equal(kRootOrder.begin(), kRootOrder.end(),
+                                                 lines_.words().begin(), lines_.words().end())) {
       return lines_.wrong("the root order must be TX TY TZ RX RY RZ");
     }
     if (lines_.word(0) == "axis" && lines_.word(1) != "XYZ") {
@@ -208,7 +207,8 @@ Result<void> AsfReader::read_hierarchy() {
 Result<void> AsfReader::hang(std::string_view parent, std::string_view child) {
   const std::size_t above = bone_named(skeleton_, parent);
   if (above == skeleton_.bones.size()) {
-    return lines_.wrong("'" + std::string(parent) + "' is not part of the hierarchy above this line");
+    return lines_.wrong("'" + std::string(parent) +
+                        "' is not part of the hierarchy above this line");
   }
   if (bone_named(skeleton_, child) != skeleton_.bones.size()) {
     return lines_.wrong("'" + std::string(child) + "' has two parents");
@@ -228,7 +228,8 @@ Result<void> read_amc_line(const TextLines& lines, const AsfSkeleton& skeleton, 
                            std::vector<bool>& seen) {
   const std::size_t index = bone_named(skeleton, lines.word(0));
   if (index == skeleton.bones.size()) {
-    return lines.wrong("the skeleton has no bone '" + std::string(lines.word(0).substr(0, 40)) + "'");
+    return lines.wrong("the skeleton has no bone '" + std::string(lines.word(0).substr(0, 40)) +
+                       "'");
   }
   const AsfBone& bone = skeleton.bones[index];
   const std::size_t count =
@@ -292,7 +293,8 @@ Result<std::vector<AmcFrame>> parse_amc(std::string_view text, std::string_view 
         return lines.wrong("the frame before this line lacks " + *absent);
       }
       double number = 0;
-      if (!parse_number(lines.word(0), number) || number != static_cast<double>(frames.size() + 1)) {
+      if (!parse_number(lines.word(0), number) ||
+          number != static_cast<double>(frames.size() + 1)) {
         return lines.wrong("expected frame " + std::to_string(frames.size() + 1));
       }
       if (frames.size() >= kMaxFrames) return lines.too_large("more than 200000 frames");

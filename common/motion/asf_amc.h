@@ -1,10 +1,13 @@
 // Acclaim ASF (skeleton) and AMC (motion), as the CMU motion capture library uses them.
 //
-// A bone hangs at its parent's end; its own end is where its name's point lies.  With C the rotation of the
-// bone's `axis` and R that of its channels (both about fixed axes, x first: Rz Ry Rx),
-//   world_from_bone = world_from_parent * C * R * C^-1,   end = parent end + length * world_from_bone * direction
-// (Lander, "Working with motion capture file formats"; checked against a second reader and by tests: feet on
-// the floor, left on the left).  CMU writes lengths in inches times the unit `length` of the header.
+// A bone hangs at its parent's end; its own end is where its name's point lies.  With C the
+// rotation of the bone's `axis` and R that of its channels (both about fixed axes, x first: Rz Ry
+// Rx),
+//   world_from_bone = world_from_parent * C * R * C^-1,   end = parent end + length *
+//   world_from_bone * direction
+// (Lander, "Working with motion capture file formats"; checked against a second reader and by
+// tests: feet on the floor, left on the left).  CMU writes lengths in inches times the unit
+// `length` of the header.
 #pragma once
 
 #include <array>
@@ -22,14 +25,14 @@ namespace chorus::motion {
 struct AsfBone {
   std::string name;
   std::size_t parent = 0;  ///< Index into AsfSkeleton::bones; parents come first; 0 is the root.
-  Eigen::Vector3d reach = Eigen::Vector3d::Zero();  ///< length * direction [m]
+  Eigen::Vector3d reach = Eigen::Vector3d::Zero();           ///< length * direction [m]
   Eigen::Quaterniond axis = Eigen::Quaterniond::Identity();  ///< C
-  std::array<bool, 3> turns{};   ///< Which of rx, ry, rz it has channels for, in this order.
+  std::array<bool, 3> turns{};    ///< Which of rx, ry, rz it has channels for, in this order.
   std::size_t first_channel = 0;  ///< Its place in AmcFrame.
 };
 
 struct AsfSkeleton {
-  std::vector<AsfBone> bones;      ///< bones[0] is the root: no reach, channels tx ty tz rx ry rz.
+  std::vector<AsfBone> bones;  ///< bones[0] is the root: no reach, channels tx ty tz rx ry rz.
   std::size_t channel_count = 0;
   double metres_per_unit = 0.0;
 };

@@ -57,7 +57,8 @@ Result<void> BvhReader::read_hierarchy() {
 
 Result<void> BvhReader::read_hierarchy_line() {
   const std::string_view key = lines_.word(0);
-  if (awaiting_brace_ != (key == "{")) return lines_.wrong("expected '{' after the name of a joint");
+  if (awaiting_brace_ != (key == "{"))
+    return lines_.wrong("expected '{' after the name of a joint");
   if (key == "{") {
     awaiting_brace_ = false;
     return {};
@@ -135,7 +136,8 @@ Result<void> BvhReader::read_motion() {
     bvh_.frames.push_back(std::move(*frame));
   }
   if (static_cast<double>(bvh_.frames.size()) != count || bvh_.frames.empty()) {
-    return lines_.wrong("found " + std::to_string(bvh_.frames.size()) + " frames, not as announced");
+    return lines_.wrong("found " + std::to_string(bvh_.frames.size()) +
+                        " frames, not as announced");
   }
   return {};
 }

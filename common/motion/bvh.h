@@ -1,7 +1,9 @@
-// Biovision BVH: a hierarchy of joints with offsets and channels, then one line of numbers per frame.
+// Biovision BVH: a hierarchy of joints with offsets and channels, then one line of numbers per
+// frame.
 //
-// parent_from_joint = translate(offset or position channels) * R(first channel) * R(second) * R(third), in the
-// order the file lists the channels.  Lengths are the file's (centimetres by custom); `metres_per_unit` says.
+// parent_from_joint = translate(offset or position channels) * R(first channel) * R(second) *
+// R(third), in the order the file lists the channels.  Lengths are the file's (centimetres by
+// custom); `metres_per_unit` says.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +18,10 @@
 namespace chorus::motion {
 
 struct BvhJoint {
-  std::string name;        ///< End sites are called "<parent> End".
-  std::size_t parent = 0;  ///< Index; parents come first; 0 is the root.
+  std::string name;                                  ///< End sites are called "<parent> End".
+  std::size_t parent = 0;                            ///< Index; parents come first; 0 is the root.
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< From the parent [m]
-  std::vector<std::uint8_t> channels;  ///< 0-2: x y z position, 3-5: x y z rotation.
+  std::vector<std::uint8_t> channels;                ///< 0-2: x y z position, 3-5: x y z rotation.
   std::size_t first_channel = 0;
 };
 

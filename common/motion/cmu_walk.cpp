@@ -2,8 +2,8 @@
 
 #include <cstdlib>
 
-#include "common/base/log.h"
 #include "cmu_assets.h"
+#include "common/base/log.h"
 
 namespace chorus::motion {
 namespace {

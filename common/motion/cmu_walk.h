@@ -1,5 +1,5 @@
-// The walking that ships with Chorus: subject 2 of the CMU motion capture library (credit in NOTICE), built
-// into the program so that no path is needed at run time.
+// The walking that ships with Chorus: subject 2 of the CMU motion capture library (credit in
+// NOTICE), built into the program so that no path is needed at run time.
 #pragma once
 
 #include <vector>

@@ -18,14 +18,16 @@ struct Share {
   double weight;
 };
 
-/// A joint is a weighted sum of bone ends; the weights sum to one, and may leave [0, 1] to extend a bone.
+/// A joint is a weighted sum of bone ends; the weights sum to one, and may leave [0, 1] to extend a
+/// bone.
 struct CmuRow {
   JointId joint;
   std::array<Share, 3> shares;
 };
 
-// Placement follows where Kinect v2 reports joints: SpineBase a little above the hip line, Head at the middle
-// of the head, Hand in the palm, HandTip at the finger tips.  The CMU forearm is "radius" plus "wrist".
+// Placement follows where Kinect v2 reports joints: SpineBase a little above the hip line, Head at
+// the middle of the head, Hand in the palm, HandTip at the finger tips.  The CMU forearm is
+// "radius" plus "wrist".
 constexpr Share kNone{"", 0};
 constexpr CmuRow kCmuRows[] = {
     {JointId::SpineBase, {{{"root", 0.3}, {"lhipjoint", 0.35}, {"rhipjoint", 0.35}}}},
@@ -55,9 +57,10 @@ constexpr CmuRow kCmuRows[] = {
     {JointId::FootRight, {{{"rfoot", 1}, kNone, kNone}}},
 };
 
-/// Names a BVH joint may go by, best first, in the form `plain` gives; "<" stands for left or right.
+/// Names a BVH joint may go by, best first, in the form `plain` gives; "<" stands for left or
+/// right.
 struct BvhRow {
-  JointId left;   ///< The centre joint itself when there are no sides.
+  JointId left;  ///< The centre joint itself when there are no sides.
   JointId right;
   bool required;
   std::array<std::string_view, 6> names;
@@ -65,16 +68,25 @@ struct BvhRow {
 
 constexpr BvhRow kBvhRows[] = {
     {JointId::SpineBase, JointId::SpineBase, true, {"hips", "pelvis", "hip"}},
-    {JointId::SpineMid, JointId::SpineMid, false, {"spine1", "spine01", "chest2", "chest", "spine"}},
+    {JointId::SpineMid,
+     JointId::SpineMid,
+     false,
+     {"spine1", "spine01", "chest2", "chest", "spine"}},
     {JointId::Neck, JointId::Neck, false, {"neck", "necktwist01"}},
     {JointId::Head, JointId::Head, true, {"head"}},
-    {JointId::ShoulderLeft, JointId::ShoulderRight, true, {"<arm", "upperarm<", "<upperarm", "<shoulder"}},
+    {JointId::ShoulderLeft,
+     JointId::ShoulderRight,
+     true,
+     {"<arm", "upperarm<", "<upperarm", "<shoulder"}},
     {JointId::ElbowLeft, JointId::ElbowRight, true, {"<forearm", "lowerarm<", "<elbow"}},
     {JointId::WristLeft, JointId::WristRight, true, {"<hand", "hand<", "<wrist"}},
     {JointId::HipLeft, JointId::HipRight, true, {"<upleg", "upperleg<", "<thigh", "<hip"}},
     {JointId::KneeLeft, JointId::KneeRight, true, {"<leg", "lowerleg<", "<calf", "<knee"}},
     {JointId::AnkleLeft, JointId::AnkleRight, true, {"<foot", "foot<", "<ankle"}},
-    {JointId::FootLeft, JointId::FootRight, false, {"<toebase", "toes<", "<toe", "<footend", "<ankleend"}},
+    {JointId::FootLeft,
+     JointId::FootRight,
+     false,
+     {"<toebase", "toes<", "<toe", "<footend", "<ankleend"}},
 };
 
 /// "mixamorig:LeftUpLeg" -> "leftupleg", "Hand_L" -> "handleft", "CC_Base_L_Thigh" -> "leftthigh".
@@ -99,7 +111,8 @@ std::string plain(std::string_view name) {
 
 using Names = std::map<std::string, std::size_t>;
 
-std::optional<std::size_t> find_named(const Names& names, const BvhRow& row, std::string_view side) {
+std::optional<std::size_t> find_named(const Names& names, const BvhRow& row,
+                                      std::string_view side) {
   for (const std::string_view each : row.names) {
     if (each.empty()) break;
     std::string wanted(each);

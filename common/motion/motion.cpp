@@ -12,8 +12,8 @@ namespace {
 constexpr double kTiny = 1e-6;
 
 /// Kinect v2 gives these no orientation.
-constexpr std::array kLeaves{JointId::Head,          JointId::HandTipLeft, JointId::ThumbLeft,
-                             JointId::HandTipRight,  JointId::ThumbRight,  JointId::FootLeft,
+constexpr std::array kLeaves{JointId::Head,         JointId::HandTipLeft, JointId::ThumbLeft,
+                             JointId::HandTipRight, JointId::ThumbRight,  JointId::FootLeft,
                              JointId::FootRight};
 
 Eigen::Vector3d forward_of(const Skeleton<WorldSpace>& body) {
@@ -74,8 +74,7 @@ Skeleton<WorldSpace> at(const Motion& motion, double time) {
   const double place = std::isfinite(time) ? std::clamp(time * motion.rate_hz, 0.0, last) : 0.0;
   const auto before = static_cast<std::size_t>(place);
   const std::size_t after = std::min(before + 1, motion.frames.size() - 1);
-  return between(motion.frames[before], motion.frames[after],
-                 place - static_cast<double>(before));
+  return between(motion.frames[before], motion.frames[after], place - static_cast<double>(before));
 }
 
 Motion resampled(const Motion& motion, double rate_hz) {

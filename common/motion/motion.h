@@ -19,8 +19,8 @@ struct Motion {
 /// The CMU library records at this rate; AMC files do not say.
 inline constexpr double kCmuRateHz = 120.0;
 
-/// One frame of a CMU skeleton as Kinect joints.  All 25; hands, tips and thumbs are extended along the bones
-/// the skeleton has.  The skeleton must have the CMU bones (see has_cmu_bones).
+/// One frame of a CMU skeleton as Kinect joints.  All 25; hands, tips and thumbs are extended along
+/// the bones the skeleton has.  The skeleton must have the CMU bones (see has_cmu_bones).
 [[nodiscard]] Skeleton<WorldSpace> kinect_skeleton(const AsfSkeleton& skeleton,
                                                    const AmcFrame& frame);
 [[nodiscard]] Result<void> has_cmu_bones(const AsfSkeleton& skeleton);
@@ -29,12 +29,12 @@ inline constexpr double kCmuRateHz = 120.0;
                                              const std::vector<AmcFrame>& frames,
                                              double rate_hz = kCmuRateHz);
 
-/// Knows the joint names of the usual BVH dialects.  A joint the file has no counterpart for is not tracked;
-/// a file without hips, knees, shoulders, elbows or a neck is refused.
+/// Knows the joint names of the usual BVH dialects.  A joint the file has no counterpart for is not
+/// tracked; a file without hips, knees, shoulders, elbows or a neck is refused.
 [[nodiscard]] Result<Motion> motion_from_bvh(const Bvh& bvh);
 
-/// The skeleton at `time` [s] after the first frame: positions linear, orientations sign-aligned LERP; held at
-/// both ends.  A motion without frames gives a skeleton that is not tracked.
+/// The skeleton at `time` [s] after the first frame: positions linear, orientations sign-aligned
+/// LERP; held at both ends.  A motion without frames gives a skeleton that is not tracked.
 [[nodiscard]] Skeleton<WorldSpace> at(const Motion& motion, double time);
 
 /// The same motion at another rate, first frame to last.
@@ -44,8 +44,9 @@ inline constexpr double kCmuRateHz = 120.0;
 [[nodiscard]] Skeleton<WorldSpace> between(const Skeleton<WorldSpace>& a,
                                            const Skeleton<WorldSpace>& b, double s);
 
-/// Gives each joint the orientation of its segment: +y along the bone that ends there, +z as near to the
-/// body's forward as that allows.  Head, hand tips, thumbs and feet stay all-zero, as Kinect v2 leaves them.
+/// Gives each joint the orientation of its segment: +y along the bone that ends there, +z as near
+/// to the body's forward as that allows.  Head, hand tips, thumbs and feet stay all-zero, as Kinect
+/// v2 leaves them.
 void orient_segments(Skeleton<WorldSpace>& body);
 
 }  // namespace chorus::motion

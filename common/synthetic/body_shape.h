@@ -1,0 +1,24 @@
+// A body as capsules around its bones: what depth and colour images show.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "common/body/skeleton.h"
+
+namespace chorus::synthetic {
+
+struct Capsule {
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Vector3d to = Eigen::Vector3d::Zero();    ///< [m]
+  double radius = 0.0;                             ///< [m]
+};
+
+/// One capsule per bone whose ends are both seen, and a ball for the head.
+[[nodiscard]] std::vector<Capsule> capsules_of(const Skeleton<SensorSpace>& body);
+
+/// Distance along the unit ray from the origin to the capsule's surface; none when it misses or the
+/// surface lies behind.
+[[nodiscard]] std::optional<double> hit(const Capsule& capsule, const Eigen::Vector3d& ray);
+
+}  // namespace chorus::synthetic

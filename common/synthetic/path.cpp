@@ -1,0 +1,178 @@
+#include "common/synthetic/path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/base/units.h"
+#include "common/geometry/rotation.h"
+#include "common/synthetic/draw.h"
+
+namespace chorus::synthetic {
+namespace {
+
+// Everyday figures; nothing depends on their exact values.
+constexpr double kAcceleration = 1.2;      // mean, when starting and stopping [m/s^2]
+constexpr double kTurnRate = deg(110);     // mean, turning on the spot [rad/s]
+constexpr double kTurnSettling = 0.3;      // extra time of every turn [s]
+constexpr double kTurnStep = 0.35;         // stride amplitude while turning on the spot
+constexpr double kPauseShare = 0.35;       // of the way-points of a random walk
+constexpr double kShortestPause = 0.5;     // [s]
+constexpr double kLongestPause = 3.0;      // [s]
+constexpr double kRandomLoop = 240.0;      // a random walk repeats after at least so long [s]
+constexpr double kStandLoop = 60.0;        // [s]
+constexpr double kLinePause = 0.4;         // before turning at the ends [s]
+constexpr double kShortestLegShare = 0.5;  // of the reach; shorter way-points are redrawn
+constexpr double kLeastAmplitude = 0.3;
+constexpr double kMostAmplitude = 1.4;
+constexpr int kRedraws = 20;
+
+constexpr std::uint64_t kDrawWander = 101;
+constexpr std::uint64_t kDrawDirection = 102;
+
+double smooth(double x) { return x * x * (3 - 2 * x); }
+/// Integral of smooth from 0.
+double smooth_way(double x) { return x * x * x * (1 - 0.5 * x); }
+
+double heading_towards(const Eigen::Vector2d& way) { return std::atan2(way.x(), way.y()); }
+
+}  // namespace
+
+Path::Path(const PathScript& script) : script_(script) {
+  script_.speed = std::clamp(script_.speed, 0.1, 2.0);
+  const double recorded = script_.stride / script_.period;
+  // Slower people take both shorter and fewer strides.
+  amplitude_ = std::clamp(std::sqrt(script_.speed / recorded), kLeastAmplitude, kMostAmplitude);
+  cadence_ = script_.speed / (amplitude_ * script_.stride);
+  place_ = script_.centre;
+  heading_ = Draw{script_.seed, kDrawDirection}.uniform(-std::numbers::pi, std::numbers::pi);
+  if (script_.kind == PathKind::Random) wander();
+  if (script_.kind == PathKind::Line) line();
+  if (script_.kind == PathKind::Circle) circle();
+  if (script_.kind == PathKind::Stand) pause(kStandLoop);
+}
+
+void Path::add(Leg leg) {
+  leg.start = loop_;
+  loop_ += leg.duration;
+  legs_.push_back(leg);
+}
+
+void Path::pause(double duration) {
+  add({.move = Move::Pause,
+       .duration = duration,
+       .from = place_,
+       .to = place_,
+       .heading = heading_});
+}
+
+void Path::turn_to(double heading) {
+  const double turn = wrap_angle(heading - heading_);
+  add({.move = Move::Turn,
+       .duration = std::abs(turn) / kTurnRate + kTurnSettling,
+       .from = place_,
+       .to = place_,
+       .heading = heading_,
+       .turn = turn});
+  heading_ = wrap_angle(heading);
+}
+
+void Path::walk_to(const Eigen::Vector2d& target) {
+  const Eigen::Vector2d way = target - place_;
+  if (way.norm() < 1e-3) return;
+  turn_to(heading_towards(way));
+  Leg leg{.move = Move::Walk, .from = place_, .to = target, .heading = heading_};
+  leg.ramp = script_.speed / kAcceleration;
+  leg.speed = std::min(script_.speed, way.norm() / leg.ramp);
+  leg.duration = way.norm() / leg.speed + leg.ramp;
+  add(leg);
+  place_ = target;
+}
+
+void Path::wander() {
+  Draw draw{script_.seed, kDrawWander};
+  const auto way_point = [&] {
+    const double radius = script_.reach * std::sqrt(draw.uniform());
+    const double angle = draw.uniform(-std::numbers::pi, std::numbers::pi);
+    return Eigen::Vector2d(script_.centre +
+                           radius * Eigen::Vector2d(std::sin(angle), std::cos(angle)));
+  };
+  const double first_heading = heading_;
+  place_ = way_point();
+  const Eigen::Vector2d first = place_;
+  while (loop_ < kRandomLoop) {
+    Eigen::Vector2d target = way_point();
+    for (int i = 0; i < kRedraws && (target - place_).norm() < kShortestLegShare * script_.reach;
+         ++i) {
+      target = way_point();
+    }
+    walk_to(target);
+    if (draw.uniform() < kPauseShare || script_.reach <= 0) {
+      pause(draw.uniform(kShortestPause, kLongestPause));
+    }
+  }
+  walk_to(first);
+  turn_to(first_heading);
+}
+
+void Path::line() {
+  const Eigen::Vector2d along(std::sin(heading_), std::cos(heading_));
+  place_ = script_.centre - script_.reach * along;
+  const Eigen::Vector2d start = place_;
+  walk_to(script_.centre + script_.reach * along);
+  pause(kLinePause);
+  walk_to(start);
+  pause(kLinePause);
+  turn_to(heading_towards(along));
+}
+
+void Path::circle() {
+  const double lap = 2 * std::numbers::pi * std::max(script_.reach, 0.1);
+  Leg leg{.move = Move::Orbit, .from = script_.centre, .to = script_.centre, .heading = heading_};
+  leg.turn = 2 * std::numbers::pi;
+  leg.speed = script_.speed;
+  leg.duration = lap / script_.speed;
+  // A whole number of gait cycles per lap, so that the loop closes.
+  const double cycles = std::max(1.0, std::round(cadence_ * leg.duration));
+  cadence_ = cycles / leg.duration;
+  amplitude_ =
+      std::clamp(script_.speed / (cadence_ * script_.stride), kLeastAmplitude, kMostAmplitude);
+  add(leg);
+}
+
+PathPoint Path::along(const Leg& leg, double time) const {
+  PathPoint point{leg.from, leg.heading, cadence_ * time, 0.0};
+  const double share = leg.duration > 0 ? std::clamp(time / leg.duration, 0.0, 1.0) : 1.0;
+  if (leg.move == Move::Turn) {
+    point.heading = leg.heading + leg.turn * smooth(share);
+    point.amplitude = kTurnStep * amplitude_ * std::sin(std::numbers::pi * share);
+  } else if (leg.move == Move::Orbit) {
+    const double angle = leg.heading + leg.turn * share;
+    const double radius = std::max(script_.reach, 0.1);
+    point.place = leg.from + radius * Eigen::Vector2d(std::sin(angle), std::cos(angle));
+    point.heading = wrap_angle(angle + std::numbers::pi / 2);
+    point.amplitude = amplitude_;
+  } else if (leg.move == Move::Walk) {
+    const double begin = std::clamp(time / leg.ramp, 0.0, 1.0);
+    const double end = std::clamp((leg.duration - time) / leg.ramp, 0.0, 1.0);
+    const double cruise = std::clamp(time, leg.ramp, leg.duration - leg.ramp) - leg.ramp;
+    const double way =
+        leg.speed * (leg.ramp * (smooth_way(begin) + 0.5 - smooth_way(end)) + cruise);
+    point.place = leg.from + way * (leg.to - leg.from).normalized();
+    point.amplitude =
+        amplitude_ * (leg.speed / script_.speed) * std::min(smooth(begin), smooth(end));
+  }
+  return point;
+}
+
+PathPoint Path::at(Duration since_epoch) const {
+  Duration in_loop = since_epoch % loop();
+  if (in_loop < Duration::zero()) in_loop += loop();
+  const double time = seconds(in_loop);
+  const auto after = std::upper_bound(legs_.begin(), legs_.end(), time,
+                                      [](double t, const Leg& leg) { return t < leg.start; });
+  const Leg& leg = after == legs_.begin() ? legs_.front() : *std::prev(after);
+  return along(leg, time - leg.start);
+}
+
+}  // namespace chorus::synthetic

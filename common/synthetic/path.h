@@ -1,0 +1,75 @@
+// Where a person walks: a scripted, closed loop of legs, turns and pauses, as a pure function of
+// time.
+//
+// The loop repeats for ever, so that the person is somewhere at every UTC instant and every process
+// that knows the script agrees where.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "common/base/duration.h"
+
+namespace chorus::synthetic {
+
+enum class PathKind { Random, Circle, Line, Stand };
+
+struct PathScript {
+  PathKind kind = PathKind::Random;
+  std::uint64_t seed = 1;
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< World x, z [m]
+  double reach = 1.2;   ///< Radius of the area, or of the circle, or half the line [m]
+  double speed = 0.9;   ///< Cruising [m/s]
+  double stride = 1.3;  ///< Way per gait cycle at amplitude 1 [m]
+  double period = 1.1;  ///< Duration of a gait cycle as recorded [s]
+};
+
+struct PathPoint {
+  Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< World x, z [m]
+  double heading = 0.0;    ///< Walking direction as yaw about +y; 0 is +z [rad]
+  double phase = 0.0;      ///< Of the gait, in cycles.
+  double amplitude = 0.0;  ///< Of the strides: 0 standing, 1 as recorded.
+};
+
+class Path {
+ public:
+  explicit Path(const PathScript& script);
+
+  [[nodiscard]] PathPoint at(Duration since_epoch) const;
+  [[nodiscard]] Duration loop() const noexcept { return from_seconds(loop_); }
+
+ private:
+  enum class Move { Walk, Turn, Pause, Orbit };
+  struct Leg {
+    Move move = Move::Pause;
+    double start = 0.0;     ///< [s] in the loop
+    double duration = 0.0;  ///< [s]
+    Eigen::Vector2d from = Eigen::Vector2d::Zero();
+    Eigen::Vector2d to = Eigen::Vector2d::Zero();
+    double heading = 0.0;  ///< At the start.
+    double turn = 0.0;     ///< Total turn [rad].
+    double speed = 0.0;    ///< Cruising speed of this leg [m/s].
+    double ramp = 0.0;     ///< Time to reach it and to stop [s].
+  };
+
+  void walk_to(const Eigen::Vector2d& target);
+  void turn_to(double heading);
+  void pause(double duration);
+  void add(Leg leg);
+  void wander();
+  void line();
+  void circle();
+  [[nodiscard]] PathPoint along(const Leg& leg, double time) const;
+
+  PathScript script_;
+  double amplitude_ = 1.0;                           ///< Of the strides at cruising speed.
+  double cadence_ = 1.0;                             ///< Cycles per second.
+  double loop_ = 0.0;                                ///< [s]
+  Eigen::Vector2d place_ = Eigen::Vector2d::Zero();  ///< While building: where the last leg ended.
+  double heading_ = 0.0;
+  std::vector<Leg> legs_;
+};
+
+}  // namespace chorus::synthetic

@@ -1,0 +1,176 @@
+#include "common/synthetic/render.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <opencv2/imgcodecs.hpp>
+
+#include "common/synthetic/body_shape.h"
+
+namespace chorus::synthetic {
+namespace {
+
+constexpr std::uint64_t kDrawDepth = 401;
+constexpr double kMostDepthCode = 65535;  // 16 bit
+constexpr int kJpegQuality = 85;
+constexpr double kTileSize = 0.5;  // of the floor pattern [m]
+constexpr std::uint16_t kNobody = 0;
+constexpr int kMostPixels = 4'000'000;
+
+/// What each pixel sees: distance along its ray, and whose body (0: the floor or nothing).
+struct Sight {
+  int width = 0;
+  int height = 0;
+  std::vector<float> range;  ///< [m], infinity: nothing
+  std::vector<std::uint16_t> person;
+  std::vector<Eigen::Vector3f> rays;  ///< Unit.
+};
+
+/// Sensor x runs to the sensor's left, image columns to its right.
+Eigen::Vector3d ray_of(const Intrinsics& camera, int column, int row) {
+  return Eigen::Vector3d(-(column - camera.cx) / camera.fx, -(row - camera.cy) / camera.fy, 1)
+      .normalized();
+}
+
+struct Box {
+  int left, right, top, bottom;  ///< Pixels, right and bottom exclusive.
+};
+
+/// Pixels that may see the capsule: the square around each end's ball, everything when it is too
+/// near.
+Box box_of(const Capsule& capsule, const Intrinsics& camera) {
+  Box box{camera.width, 0, camera.height, 0};
+  for (const Eigen::Vector3d& end : {capsule.from, capsule.to}) {
+    const double depth = end.z() - capsule.radius;
+    if (depth < capsule.radius) return {0, camera.width, 0, camera.height};
+    const double reach = 2 + capsule.radius * std::max(camera.fx, camera.fy) / depth *
+                                 (1 + end.head<2>().norm() / depth);
+    const double column = camera.cx - camera.fx * end.x() / end.z();
+    const double row = camera.cy - camera.fy * end.y() / end.z();
+    const auto clip = [](double v, int most) {
+      return static_cast<int>(std::clamp(v, 0.0, double(most)));
+    };
+    box.left = std::min(box.left, clip(column - reach, camera.width));
+    box.right = std::max(box.right, clip(column + reach, camera.width));
+    box.top = std::min(box.top, clip(row - reach, camera.height));
+    box.bottom = std::max(box.bottom, clip(row + reach, camera.height));
+  }
+  return box;
+}
+
+void see_floor(Sight& sight, const Plane& floor) {
+  for (std::size_t i = 0; i < sight.rays.size(); ++i) {
+    const double down = floor.normal.dot(sight.rays[i].cast<double>());
+    if (down < 0) sight.range[i] = static_cast<float>(-floor.offset / down);
+  }
+}
+
+void see_capsule(Sight& sight, const Capsule& capsule, const Intrinsics& camera,
+                 std::uint16_t person) {
+  const Box box = box_of(capsule, camera);
+  for (int row = box.top; row < box.bottom; ++row) {
+    for (int column = box.left; column < box.right; ++column) {
+      const auto i = static_cast<std::size_t>(row * sight.width + column);
+      const auto distance = hit(capsule, sight.rays[i].cast<double>());
+      if (!distance || *distance >= static_cast<double>(sight.range[i])) continue;
+      sight.range[i] = static_cast<float>(*distance);
+      sight.person[i] = person;
+    }
+  }
+}
+
+Result<Sight> look(const Scene& scene, std::size_t sensor, Timestamp instant,
+                   const Intrinsics& camera) {
+  if (sensor >= scene.world_from_sensor.size() || camera.width <= 0 || camera.height <= 0 ||
+      camera.width > kMostPixels / camera.height || !(camera.fx > 0) || !(camera.fy > 0)) {
+    return fail(ErrorCode::InvalidArgument, "render", "there is no such sensor or no such camera");
+  }
+  const auto pixels =
+      static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+  Sight sight{camera.width, camera.height,
+              std::vector<float>(pixels, std::numeric_limits<float>::infinity()),
+              std::vector<std::uint16_t>(pixels, kNobody), std::vector<Eigen::Vector3f>(pixels)};
+  for (int row = 0; row < camera.height; ++row) {
+    for (int column = 0; column < camera.width; ++column) {
+      sight.rays[static_cast<std::size_t>(row * camera.width + column)] =
+          ray_of(camera, column, row).cast<float>();
+    }
+  }
+  const Eigen::Isometry3d sensor_from_world = scene.world_from_sensor[sensor].inverse();
+  see_floor(sight, floor_in_sensor(scene.world_from_sensor[sensor]));
+  for (std::size_t person = 0; person < scene.people.size(); ++person) {
+    const auto body = to_sensor(sensor_from_world, truth(scene, person, instant));
+    for (const Capsule& capsule : capsules_of(body)) {
+      see_capsule(sight, capsule, camera, static_cast<std::uint16_t>(person + 1));
+    }
+  }
+  return sight;
+}
+
+/// Blue, green, red; a person's colour, a chequered floor or the wall.
+cv::Vec3b shade(const Sight& sight, std::size_t i, const Eigen::Isometry3d& world_from_sensor) {
+  const double range = static_cast<double>(sight.range[i]);
+  if (!std::isfinite(range)) return {196, 190, 184};
+  const double light = std::clamp(1.15 - 0.13 * range, 0.35, 1.0);
+  Eigen::Vector3d colour(96, 120, 210);
+  if (sight.person[i] == kNobody) {
+    const Eigen::Vector3d x = world_from_sensor * (range * sight.rays[i].cast<double>());
+    const double tile = std::floor(x.x() / kTileSize) + std::floor(x.z() / kTileSize);
+    colour = std::fmod(std::abs(tile), 2.0) < 0.5 ? Eigen::Vector3d(150, 160, 165)
+                                                  : Eigen::Vector3d(120, 128, 132);
+  } else if (sight.person[i] % 2 == 0) {
+    colour = Eigen::Vector3d(110, 170, 90);
+  }
+  const Eigen::Vector3d lit = light * colour;
+  return {static_cast<uchar>(lit.x()), static_cast<uchar>(lit.y()), static_cast<uchar>(lit.z())};
+}
+
+Result<CameraImage> encode(const cv::Mat& pixels, Timestamp instant, const Intrinsics& camera,
+                           bool jpeg) {
+  try {
+    std::vector<uchar> bytes;
+    const std::vector<int> options =
+        jpeg ? std::vector<int>{cv::IMWRITE_JPEG_QUALITY, kJpegQuality} : std::vector<int>{};
+    if (cv::imencode(jpeg ? ".jpg" : ".png", pixels, bytes, options)) {
+      return CameraImage{instant, camera, jpeg ? "image/jpeg" : "image/png",
+                         std::string(bytes.begin(), bytes.end())};
+    }
+  } catch (const cv::Exception& problem) {
+    return fail(ErrorCode::Internal, "render", problem.what());
+  }
+  return fail(ErrorCode::Internal, "render", "the image could not be encoded");
+}
+
+}  // namespace
+
+Result<CameraImage> render_depth(const Scene& scene, std::size_t sensor, Timestamp instant,
+                                 const CameraModel& camera) {
+  const Result<Sight> sight = look(scene, sensor, instant, camera.intrinsics);
+  if (!sight) return pass(sight);
+  Draw draw{camera.seed, kDrawDepth, sensor, static_cast<std::uint64_t>(to_unix_ns(instant))};
+  cv::Mat pixels(sight->height, sight->width, CV_16UC1, cv::Scalar(0));
+  for (std::size_t i = 0; i < sight->rays.size(); ++i) {
+    const double exact =
+        static_cast<double>(sight->range[i]) * static_cast<double>(sight->rays[i].z());
+    if (!(exact <= camera.most_depth)) continue;
+    const double measured = std::round(to_mm(exact + camera.depth_noise * draw.gauss()));
+    pixels.at<std::uint16_t>(static_cast<int>(i) / sight->width,
+                             static_cast<int>(i) % sight->width) =
+        static_cast<std::uint16_t>(std::clamp(measured, 0.0, kMostDepthCode));
+  }
+  return encode(pixels, instant, camera.intrinsics, false);
+}
+
+Result<CameraImage> render_color(const Scene& scene, std::size_t sensor, Timestamp instant,
+                                 const CameraModel& camera) {
+  const Result<Sight> sight = look(scene, sensor, instant, camera.intrinsics);
+  if (!sight) return pass(sight);
+  cv::Mat pixels(sight->height, sight->width, CV_8UC3);
+  for (std::size_t i = 0; i < sight->rays.size(); ++i) {
+    pixels.at<cv::Vec3b>(static_cast<int>(i) / sight->width, static_cast<int>(i) % sight->width) =
+        shade(*sight, i, scene.world_from_sensor[sensor]);
+  }
+  return encode(pixels, instant, camera.intrinsics, true);
+}
+
+}  // namespace chorus::synthetic

@@ -1,0 +1,48 @@
+// People and sensors in one room: the whole truth of a simulation.
+//
+// World space: y up, y = 0 the floor.  Sensor space: +z into the scene, +y up, +x to the sensor's
+// left.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "common/base/units.h"
+#include "common/geometry/plane.h"
+#include "common/synthetic/walker.h"
+#include "common/time/timestamp.h"
+
+namespace chorus::synthetic {
+
+struct Scene {
+  Timestamp epoch;  ///< People's time counts from here.
+  std::vector<Walker> people;
+  std::vector<Eigen::Isometry3d> world_from_sensor;
+};
+
+/// Sensors evenly on a circle, all looking at its centre.
+struct Ring {
+  std::size_t count = 6;
+  double radius = 3.0;     ///< [m]
+  double height = 1.6;     ///< [m]
+  double pitch = deg(13);  ///< Looking down [rad]
+};
+
+/// A sensor at `eye` that looks along yaw (about +y, 0 = along +z), `pitch` downwards.
+[[nodiscard]] Eigen::Isometry3d stand_sensor(const Eigen::Vector3d& eye, double yaw, double pitch);
+
+/// Place number `index` of the ring, going around +y from world +z.
+[[nodiscard]] Eigen::Isometry3d ring_place(const Ring& ring, std::size_t index);
+
+[[nodiscard]] std::vector<Eigen::Isometry3d> ring_places(const Ring& ring);
+
+/// `count` people with different seeds, paths and builds out of one script.
+[[nodiscard]] std::vector<Walker> make_people(const WalkerScript& script, std::size_t count);
+
+/// Where a person truly is.
+[[nodiscard]] Skeleton<WorldSpace> truth(const Scene& scene, std::size_t person, Timestamp instant);
+
+/// The floor as an exact sensor at this place would report it.
+[[nodiscard]] Plane floor_in_sensor(const Eigen::Isometry3d& world_from_sensor);
+
+}  // namespace chorus::synthetic

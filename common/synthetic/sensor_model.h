@@ -1,0 +1,88 @@
+// What one simulated sensor reports of a scene: a list of small layers, applied in order.
+//
+// This is the plain profile, "gauss": limited view, white Gaussian noise, jittered time, frame
+// drops.  A real Kinect's error is coloured and depends on the view, and it swaps left and right
+// from behind; none of that is here, so accuracy figures from this profile flatter every method.
+// Everything is a pure function of (scene, sensor, frame number).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/base/units.h"
+#include "common/sensor/sensor_frame.h"
+#include "common/synthetic/draw.h"
+#include "common/synthetic/scene.h"
+
+namespace chorus::synthetic {
+
+inline constexpr std::string_view kGaussProfile = "gauss";
+
+/// When frames are taken.  Source: real logs step 32.6-33.0 ms, a few per cent of frames lost.
+struct Sampling {
+  Duration period{33'333'333};                     ///< 30 Hz
+  Duration jitter = std::chrono::milliseconds(2);  ///< Uniform, +-
+  double drop_share = 0.0;                         ///< Of the frames, lost independently.
+};
+
+/// Which joints are in view.  Source: Kinect v2, 70 x 60 deg, 0.5-4.5 m.
+struct FieldOfView {
+  double half_width = deg(35);   ///< [rad]
+  double half_height = deg(30);  ///< [rad]
+  double margin = deg(8);    ///< Joints so far outside are guessed (Inferred); beyond, not tracked.
+  double least_range = 0.5;  ///< [m]
+  double most_range = 4.5;   ///< [m]
+};
+
+/// White noise along and across the line of sight.
+struct GaussianNoise {
+  double along = 0.030;          ///< Standard deviation [m]
+  double across = 0.015;         ///< Per axis [m]
+  double inferred_factor = 3.0;  ///< Inferred joints are this much worse.
+  double turn = deg(4);          ///< Of orientations, per axis [rad]
+};
+
+/// The floor plane the sensor estimates: a fixed error per sensor and a little per frame.
+struct FloorNoise {
+  double fixed_tilt = deg(0.15);  ///< Standard deviation per axis [rad]
+  double fixed_offset = 0.003;    ///< [m]
+  double tilt = deg(0.1);         ///< Per frame [rad]
+  double offset = 0.003;          ///< [m]
+};
+
+struct SensorModel {
+  std::uint64_t seed = 1;
+  Sampling sampling;
+  FieldOfView view;
+  GaussianNoise noise;
+  FloorNoise floor;
+};
+
+/// Sensor `index` of the scene; also the key of its random numbers.
+struct SimulatedSensor {
+  SensorId id;
+  std::size_t index = 0;
+  SensorModel model;
+};
+
+/// When frame `number` is captured (phase and jitter included).  Numbers count periods since 1970.
+[[nodiscard]] Timestamp capture_time(const SimulatedSensor& sensor, std::uint64_t number);
+
+/// The first frame captured at or after `instant`.
+[[nodiscard]] std::uint64_t first_frame_from(const SimulatedSensor& sensor, Timestamp instant);
+
+/// Frame `number`; none when it is dropped.  `sequence` is the number; `received` equals
+/// `captured`.
+[[nodiscard]] std::optional<SensorFrame> observe(const Scene& scene, const SimulatedSensor& sensor,
+                                                 std::uint64_t number);
+
+/// All frames from `begin` to `end`, in order.
+[[nodiscard]] std::vector<SensorFrame> observe_all(const Scene& scene,
+                                                   const SimulatedSensor& sensor, Timestamp begin,
+                                                   Timestamp end);
+
+/// One layer each, for tests and other profiles.
+void limit_view(Skeleton<SensorSpace>& body, const FieldOfView& view);
+void add_noise(Skeleton<SensorSpace>& body, const GaussianNoise& noise, Draw draw);
+
+}  // namespace chorus::synthetic

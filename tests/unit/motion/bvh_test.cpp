@@ -1,0 +1,138 @@
+#include "common/motion/bvh.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "common/body/bones.h"
+#include "common/motion/motion.h"
+
+namespace chorus::motion {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::string_view kArm = R"(HIERARCHY
+ROOT Hips
+{
+	OFFSET 0 0 0
+	CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+	JOINT Arm {
+		OFFSET 0 10 0
+		CHANNELS 3 Zrotation Xrotation Yrotation
+		End Site
+		{
+			OFFSET 0 20 0
+		}
+	}
+}
+MOTION
+Frames: 2
+Frame Time: 0.05
+0 100 0 0 0 0 0 0 0
+50 100 0 90 90 0 0 0 0
+)";
+
+std::string replaced(std::string text, std::string_view from, std::string_view to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(Bvh, ReadsHierarchyAndFramesInMetres) {
+  const auto bvh = parse_bvh(kArm, "arm.bvh");
+  ASSERT_TRUE(bvh) << to_string(bvh.error());
+  ASSERT_EQ(bvh->joints.size(), 3u);
+  EXPECT_EQ(bvh->joints[2].name, "Arm End");
+  EXPECT_EQ(bvh->frames.size(), 2u);
+  EXPECT_DOUBLE_EQ(bvh->frame_time, 0.05);
+  const auto rest = joint_positions(*bvh, 0);
+  EXPECT_TRUE(rest[2].isApprox(Eigen::Vector3d(0, 1.3, 0), 1e-12));
+}
+
+TEST(Bvh, TurnsInTheListedOrder) {
+  const auto bvh = parse_bvh(kArm, "arm.bvh").value();
+  // R = Rz(90) Rx(90): +y goes to +z by x, and z leaves it there.
+  const auto posed = joint_positions(bvh, 1);
+  EXPECT_TRUE(posed[1].isApprox(Eigen::Vector3d(0.5, 1.0, 0.1), 1e-9)) << posed[1].transpose();
+}
+
+TEST(Bvh, RefusesBrokenFilesAndSaysWhere) {
+  const std::array<std::string_view, 4> cases[] = {
+      {"HIERARCHY", "HIERARCHIE", "b:1", "expected HIERARCHY"},
+      {"OFFSET 0 10 0", "OFFSET 0 10", "b:7", "expected 3 numbers"},
+      {"CHANNELS 3 Z", "CHANNELS 4 Z", "b:8", "does not match"},
+      {"CHANNELS 3 Zrotation", "CHANNELS 3 Wrotation", "b:8", "unknown channel"},
+      {"Frames: 2", "Frames: 3", "b:19", "found 2 frames"},
+      {"Frames: 2", "Frames: 1", "b:19", "more frames than announced"},
+      {"Frames: 2", "Frames: 9999999", "b:16", "more than 200000"},
+      {"Frame Time: 0.05", "Frame Time: 0", "b:17", "above zero"},
+      {"0 100 0 0 0 0 0 0 0", "0 100 0 0 0 0 0 0", "b:18", "expected 9 numbers, found 8"},
+      {"50 100", "nan 100", "b:19", "not a finite number"},
+      {"}\nMOTION", "MOTION", "b:14", "not closed"},
+      {"JOINT Arm", "LIMB Arm", "b:6", "unknown keyword"},
+  };
+  for (const auto& [from, to, line, why] : cases) {
+    const auto parsed = parse_bvh(replaced(std::string(kArm), from, to), "b");
+    ASSERT_FALSE(parsed) << why;
+    EXPECT_EQ(parsed.error().context, line) << parsed.error().message;
+    EXPECT_THAT(parsed.error().message, HasSubstr(std::string(why)));
+  }
+}
+
+TEST(Bvh, NestingIsBounded) {
+  std::string deep = "HIERARCHY\nROOT a\n{\n";
+  for (int i = 0; i < 20000; ++i) deep += "JOINT b\n{\n";
+  const auto parsed = parse_bvh(deep, "deep.bvh");
+  ASSERT_FALSE(parsed);
+  EXPECT_EQ(parsed.error().code, ErrorCode::TooLarge);
+}
+
+TEST(Bvh, AnyCutOrFlippedByteIsHandled) {
+  for (std::size_t i = 0; i < kArm.size(); ++i) {
+    std::string text(kArm);
+    text[i] = static_cast<char>(text[i] ^ 0x15);
+    (void)parse_bvh(text, "flipped.bvh");
+    (void)parse_bvh(kArm.substr(0, i), "cut.bvh");
+  }
+}
+
+TEST(BvhMotion, AFileWithoutABodyIsRefused) {
+  const auto motion = motion_from_bvh(parse_bvh(kArm, "arm.bvh").value());
+  ASSERT_FALSE(motion);
+  EXPECT_EQ(motion.error().code, ErrorCode::Unsupported);
+}
+
+/// Real files of several dialects; they may not be shipped, so they are read where they are.
+class RealBvh : public testing::TestWithParam<const char*> {};
+
+TEST_P(RealBvh, LooksLikeAPerson) {
+  const auto path = std::filesystem::path("../shared/data") / GetParam();
+  std::ifstream file(path);
+  if (!file) GTEST_SKIP() << path << " is not here";
+  std::stringstream text;
+  text << file.rdbuf();
+  const auto bvh = parse_bvh(text.str(), path.filename().string());
+  ASSERT_TRUE(bvh) << to_string(bvh.error());
+  const auto motion = motion_from_bvh(*bvh);
+  ASSERT_TRUE(motion) << to_string(motion.error());
+  const auto& middle = motion->frames[motion->frames.size() / 2];
+  const auto y = [&](JointId id) { return middle[id].position.y(); };
+  EXPECT_GT(y(JointId::Head) - y(JointId::AnkleLeft), 1.1);
+  EXPECT_LT(y(JointId::Head) - y(JointId::AnkleLeft), 1.9);
+  EXPECT_GT(y(JointId::Neck), y(JointId::SpineMid));
+  EXPECT_GT(y(JointId::SpineMid), y(JointId::SpineBase));
+  EXPECT_GT(y(JointId::KneeRight), y(JointId::AnkleRight));
+}
+
+INSTANTIATE_TEST_SUITE_P(Dialects, RealBvh,
+                         testing::Values("bvh_misc/tests/test_freebvh.bvh",
+                                         "bvh_misc/tests/test_mocapbank.bvh",
+                                         "bvh_misc/demos/data/AV_8Walk_Meredith_HVHA_Rep1.bvh",
+                                         "bandai_bvh/dataset-1_walk_normal_001.bvh",
+                                         "xsens_mvnx_bvh/test_mocap.bvh"));
+
+}  // namespace
+}  // namespace chorus::motion

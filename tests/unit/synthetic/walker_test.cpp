@@ -1,0 +1,137 @@
+#include "common/synthetic/walker.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "common/body/bones.h"
+#include "common/geometry/rotation.h"
+
+namespace chorus::synthetic {
+namespace {
+
+constexpr Duration kStep = std::chrono::milliseconds(10);
+
+class EveryPath : public testing::TestWithParam<std::tuple<PathKind, std::uint64_t>> {
+ protected:
+  WalkerScript script() const {
+    WalkerScript script;
+    script.path = std::get<0>(GetParam());
+    script.seed = std::get<1>(GetParam());
+    return script;
+  }
+};
+
+TEST_P(EveryPath, NothingJumpsAlsoWhereTheLoopCloses) {
+  const Walker walker(script());
+  const Duration loop = walker.path().loop();
+  auto before = walker.at(Duration::zero());
+  for (Duration t = kStep; t < loop + std::chrono::seconds(2); t += kStep) {
+    const auto now = walker.at(t);
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      const double step = (now.joints[j].position - before.joints[j].position).norm();
+      ASSERT_LT(step / seconds(kStep), 8.0) << kJointNames[j] << " at " << seconds(t) << " s";
+    }
+    before = now;
+  }
+}
+
+TEST_P(EveryPath, BonesKeepTheirLengthAndFeetStayOnTheFloor) {
+  const Walker walker(script());
+  const auto first = walker.at(Duration::zero());
+  for (Duration t{}; t < std::chrono::seconds(60); t += 7 * kStep) {
+    const auto body = walker.at(t);
+    for (const Bone& bone : kBones) {
+      const double length = (body[bone.child].position - body[bone.parent].position).norm();
+      const double was = (first[bone.child].position - first[bone.parent].position).norm();
+      ASSERT_NEAR(length, was, 0.003) << name_of(bone.child);
+    }
+    const double lowest =
+        std::min(body[JointId::FootLeft].position.y(), body[JointId::FootRight].position.y());
+    ASSERT_NEAR(lowest, 0.04, 0.04) << seconds(t);
+    ASSERT_LT(
+        std::hypot(body[JointId::SpineBase].position.x(), body[JointId::SpineBase].position.z()),
+        1.2 + 0.15)
+        << "stays in its area";
+  }
+}
+
+TEST_P(EveryPath, IsAFunctionOfTimeAlone) {
+  const Walker one(script());
+  const Walker other(script());
+  const Duration late = std::chrono::hours(24 * 365 * 56) + std::chrono::milliseconds(1234);
+  EXPECT_EQ(one.at(late)[JointId::HandLeft].position, other.at(late)[JointId::HandLeft].position);
+  EXPECT_TRUE(one.at(late)[JointId::HandLeft].position.allFinite());
+  const auto a = one.at(std::chrono::seconds(3))[JointId::HandLeft].position;
+  const auto b = one.at(std::chrono::seconds(3) + one.path().loop())[JointId::HandLeft].position;
+  EXPECT_TRUE(a.isApprox(b, 1e-6)) << "repeats after one loop";
+  EXPECT_TRUE(one.at(std::chrono::seconds(-5))[JointId::HandLeft].position.allFinite());
+}
+
+INSTANTIATE_TEST_SUITE_P(Paths, EveryPath,
+                         testing::Combine(testing::Values(PathKind::Random, PathKind::Circle,
+                                                          PathKind::Line, PathKind::Stand),
+                                          testing::Values(1, 2)));
+
+TEST(Walker, WalksForward) {
+  WalkerScript script;
+  script.path = PathKind::Circle;
+  const Walker walker(script);
+  for (int i = 0; i < 50; ++i) {
+    const Duration t = i * std::chrono::milliseconds(97);
+    const auto body = walker.at(t);
+    const Eigen::Vector3d way =
+        walker.at(t + kStep)[JointId::SpineBase].position - body[JointId::SpineBase].position;
+    const Eigen::Vector3d to_left =
+        body[JointId::ShoulderLeft].position - body[JointId::ShoulderRight].position;
+    EXPECT_GT(to_left.cross(Eigen::Vector3d::UnitY()).dot(way), 0.0);
+  }
+}
+
+TEST(Walker, StandingFeetDoNotSlideFar) {
+  // Speed-matched steps: while a foot stands (low and for a while), it hardly moves over the floor.
+  WalkerScript script;
+  script.path = PathKind::Circle;
+  script.reach = 3.0;
+  const Walker walker(script);
+  double slid = 0, walked = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const auto now = walker.at(i * kStep);
+    const auto next = walker.at((i + 1) * kStep);
+    const auto step_of = [&](JointId id) { return (next[id].position - now[id].position).norm(); };
+    slid += std::min(step_of(JointId::FootLeft), step_of(JointId::FootRight));
+    walked += step_of(JointId::SpineBase);
+  }
+  EXPECT_LT(slid, 0.25 * walked);
+}
+
+TEST(Walker, RandomWalkCoversItsAreaAndTurnsEverywhere) {
+  const Walker walker(WalkerScript{});
+  Eigen::Vector2d least(9, 9), most(-9, -9);
+  std::array<bool, 8> headings{};
+  for (Duration t{}; t < std::chrono::seconds(60); t += 10 * kStep) {
+    const PathPoint point = walker.path().at(t);
+    least = least.cwiseMin(point.place);
+    most = most.cwiseMax(point.place);
+    const double turned = (wrap_angle(point.heading) + std::numbers::pi) / (2 * std::numbers::pi);
+    headings[std::min<std::size_t>(7, static_cast<std::size_t>(8 * turned))] = true;
+  }
+  EXPECT_GT((most - least).minCoeff(), 1.2);
+  for (const bool seen : headings) EXPECT_TRUE(seen);
+}
+
+TEST(Walker, AnyScriptIsSurvived) {
+  for (const double odd : {0.0, -1.0, 1e9, std::nan("")}) {
+    WalkerScript script;
+    script.speed = odd;
+    script.body_scale = odd;
+    EXPECT_NO_FATAL_FAILURE((void)Walker(script).at(std::chrono::seconds(1)));
+  }
+  WalkerScript nowhere;
+  nowhere.reach = 0;
+  EXPECT_TRUE(Walker(nowhere).at(std::chrono::seconds(1))[JointId::Neck].position.allFinite());
+}
+
+}  // namespace
+}  // namespace chorus::synthetic
