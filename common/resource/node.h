@@ -1,8 +1,13 @@
-// Rare documents as a small tree that writes itself in every format: /, /clock, /registration, /sensors/ ...
+// Rare documents as a small tree that writes itself in every format: /, /clock, /registration,
+// /sensors/ ...
 //
-// Keys are the terms of proto/context.jsonld ("captured", "verdict"); the term table maps each to its IRI and
-// datatype.  An unknown key asserts in tests and is written under our own namespace.  Frames do not go
-// through here (frame_resource.h has their template).
+// Keys are the terms of proto/context.jsonld ("captured", "verdict"); the context maps each to its
+// IRI and datatype.  A key that is not there is written under our own namespace; undeclared_terms()
+// finds those, and every builder has a test that there are none.  Frames do not go through here
+// (frame_resource.h has their template).
+//
+// JSON: keys that end in "Nanoseconds" are strings.  A term with an index ("sensors", keyed by
+// "sensorId") becomes an object, and each node's index property its key.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +18,9 @@
 #include <vector>
 
 #include "common/http/document.h"
+#include "common/rdf/term.h"
 #include "common/resource/media_type.h"
+#include "common/resource/place.h"
 #include "common/time/timestamp.h"
 
 namespace chorus::resource {
@@ -31,19 +38,30 @@ struct Decimal {
   int digits = 4;
 };
 
-using Value = std::variant<bool, std::int64_t, Decimal, std::string, Timestamp, Ref, Node,
-                           std::vector<Node>, std::vector<Ref>, std::vector<std::string>>;
+/// A string under a term of type @vocab ("verdict": "Good") names one of our individuals.
+using Value =
+    std::variant<bool, std::int64_t, Decimal, std::string, Timestamp, Ref, Node, std::vector<Node>,
+                 std::vector<Ref>, std::vector<std::string>, std::vector<Decimal>>;
 
 /// One subject: id "" is the document itself, "_" a blank node, else a relative or absolute IRI.
 struct Node {
   std::string id;
-  std::vector<std::string> types;  ///< Terms ("Registration") or prefixed names ("ldp:BasicContainer").
+  std::vector<std::string>
+      types;  ///< Terms ("Registration") or prefixed names ("ldp:BasicContainer").
   std::vector<std::pair<std::string, Value>> properties;
 };
 
-[[nodiscard]] std::string write(const Node& node, Format format);
+/// The document as it stands at `place`.  Text is made UTF-8 where it is not.
+[[nodiscard]] std::string write(const Node& node, Format format, const Place& place = {});
 
 /// The document with all four formats, rendered on demand.
-[[nodiscard]] http::DocumentPtr document_of(Node node, http::DocumentOptions options);
+[[nodiscard]] http::DocumentPtr document_of(Node node, http::DocumentOptions options,
+                                            Place place = {});
+
+/// Its triples; relative IRIs stay relative.
+[[nodiscard]] rdf::Graph graph_of(const Node& node);
+
+/// Keys that proto/context.jsonld does not declare, in any depth.
+[[nodiscard]] std::vector<std::string> undeclared_terms(const Node& node);
 
 }  // namespace chorus::resource

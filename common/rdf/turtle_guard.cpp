@@ -1,0 +1,132 @@
+#include "common/rdf/turtle_guard.h"
+
+#include <string>
+
+namespace chorus::rdf {
+namespace {
+
+/// One pass over the text; every skip_ function starts behind the opening character.
+class Scan {
+ public:
+  Scan(std::string_view text, const Limits& limits) : text_(text), limits_(limits) {}
+
+  Result<void> run() {
+    while (at_ < text_.size()) {
+      if (auto ok = step(text_[at_++]); !ok) return ok;
+    }
+    return {};
+  }
+
+ private:
+  Result<void> step(char c) {
+    switch (c) {
+      case '\0':
+        return refuse("a zero byte is no part of a text");
+      case '\n':
+        ++line_;
+        return {};
+      case '\\':
+        ++at_;
+        return {};  // an escaped character in a local name opens nothing
+      case '#':
+        skip_comment();
+        return {};
+      case '<':
+        return skip_iri();
+      case '"':
+      case '\'':
+        return skip_string(c);
+      case '[':
+      case '(':
+        return open();
+      case ']':
+      case ')':
+        --depth_;
+        return {};
+      default:
+        return {};
+    }
+  }
+
+  Result<void> open() {
+    if (++depth_ <= limits_.nesting) return {};
+    return fail(ErrorCode::TooLarge, where(),
+                "brackets are nested deeper than " + std::to_string(limits_.nesting));
+  }
+
+  void skip_comment() {
+    while (at_ < text_.size() && text_[at_] != '\n' && text_[at_] != '\r' && text_[at_] != '\0')
+      ++at_;
+  }
+
+  Result<void> skip_iri() {
+    constexpr std::string_view kNever = "<\"{}|^`";
+    while (at_ < text_.size()) {
+      const char c = text_[at_++];
+      if (c == '>') return {};
+      if (static_cast<unsigned char>(c) <= 0x20 || kNever.find(c) != std::string_view::npos) {
+        return refuse("an IRI holds a character it must not hold, or lacks its '>'");
+      }
+    }
+    return refuse("the document ends inside an IRI");
+  }
+
+  Result<void> skip_string(char quote) {
+    if (text_.substr(at_, 2) == std::string(2, quote)) {
+      at_ += 2;
+      return skip_long_string(quote);
+    }
+    while (at_ < text_.size()) {
+      const char c = text_[at_++];
+      if (c == quote) return {};
+      if (c == '\\') ++at_;
+      if (c == '\n' || c == '\r' || c == '\0') return refuse("a string lacks its closing quote");
+    }
+    return refuse("the document ends inside a string");
+  }
+
+  Result<void> skip_long_string(char quote) {
+    const std::string closing(3, quote);
+    while (at_ < text_.size()) {
+      if (text_.substr(at_, 3) == closing) {
+        at_ += 3;
+        return {};
+      }
+      const char c = text_[at_++];
+      // Serd 0.30 takes the backslash in '"\n' for a character, and so another quote for the
+      // closing one.
+      if (c == quote && at_ < text_.size() && text_[at_] == '\\') {
+        return refuse(
+            "a quote directly before an escape in a long string is not read; escape the quote");
+      }
+      if (c == '\\') ++at_;
+      if (c == '\n') ++line_;
+      if (c == '\0') return refuse("a zero byte is no part of a text");
+    }
+    return refuse("the document ends inside a string");
+  }
+
+  [[nodiscard]] std::string where() const { return "line " + std::to_string(line_); }
+  [[nodiscard]] Result<void> refuse(std::string message) const {
+    return fail(ErrorCode::Malformed, where(), std::move(message));
+  }
+
+  std::string_view text_;
+  const Limits& limits_;
+  std::size_t at_ = 0;
+  int line_ = 1;
+  int depth_ = 0;
+};
+
+}  // namespace
+
+Result<void> check_bytes(std::string_view text, const Limits& limits) {
+  if (text.size() > limits.bytes) {
+    return fail(ErrorCode::TooLarge, {},
+                "the document has " + std::to_string(text.size()) + " bytes; at most " +
+                    std::to_string(limits.bytes) + " are read");
+  }
+  return Scan(text, limits).run();
+}
+
+}  // namespace chorus::rdf

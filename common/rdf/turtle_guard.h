@@ -1,0 +1,24 @@
+// Looks at Turtle or N-Triples bytes before a parser does: size, nesting, and bytes no document
+// has.
+//
+// Serd 0.30 reads nested brackets by recursion; 20 000 of them overflow its stack.  So depth is
+// counted here first, in one pass that knows strings, IRIs and comments and refuses whatever would
+// let the two readers disagree on where those end.
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+#include "common/base/result.h"
+
+namespace chorus::rdf {
+
+struct Limits {
+  std::size_t bytes = 2'000'000;  ///< Far above any frame (64 bodies are about 350 kB).
+  int nesting = 32;               ///< Open '[' and '(' at one place.
+};
+
+/// Success, or why the document is refused, with the line ("line 12").
+[[nodiscard]] Result<void> check_bytes(std::string_view text, const Limits& limits = {});
+
+}  // namespace chorus::rdf

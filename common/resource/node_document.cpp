@@ -1,0 +1,17 @@
+#include <memory>
+
+#include "common/resource/node.h"
+
+namespace chorus::resource {
+
+http::DocumentPtr document_of(Node node, http::DocumentOptions options, Place place) {
+  const auto shared = std::make_shared<const Node>(std::move(node));
+  std::vector<http::Variant> variants;
+  for (const Format format : kFormats) {
+    variants.push_back({std::string(media_type(format)),
+                        [shared, place, format] { return write(*shared, format, place); }});
+  }
+  return std::make_shared<const http::Document>(std::move(variants), std::move(options));
+}
+
+}  // namespace chorus::resource

@@ -1,0 +1,39 @@
+// The words of our documents and the IRIs they stand for, as proto/context.jsonld has them.
+//
+// There is one table, the context; it is compiled in and read once.  To add a word: one line there,
+// one paragraph in proto/vocab/chorus.ttl (a test compares the two).
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/rdf/turtle_writer.h"
+
+namespace chorus::resource {
+
+inline constexpr std::string_view kChorus = "https://w3id.org/chorus-tracking/ns#";
+
+enum class Container { None, Set, List, Index };
+
+/// What one key means.
+struct TermUse {
+  std::string iri;
+  std::string type = {};  ///< "@id", "@vocab", a datatype IRI, or empty: as the value is.
+  Container container = Container::None;
+  std::string index = {};  ///< Container::Index: IRI of the property whose value is the key.
+  bool declared =
+      true;  ///< False: not in the context; the word stands for itself in our namespace.
+};
+
+/// The meaning of `key` in a node of these types (a type may give a key a meaning of its own).
+[[nodiscard]] TermUse term(std::string_view key, const std::vector<std::string>& types = {});
+
+/// The IRI of a class or individual: "Frame", "ldp:BasicContainer" or an absolute IRI.
+[[nodiscard]] std::string class_iri(std::string_view name);
+
+/// Every declared key with its IRI, and every prefix: for the writers and for tests.
+[[nodiscard]] const std::vector<std::pair<std::string, TermUse>>& all_terms();
+[[nodiscard]] const std::vector<rdf::Prefix>& all_prefixes();
+
+}  // namespace chorus::resource

@@ -1,0 +1,13 @@
+// The contract's files as compiled in from proto/ (proto/CMakeLists.txt).
+#pragma once
+
+#include <string_view>
+
+namespace chorus::proto {
+
+[[nodiscard]] std::string_view vocabulary();    ///< proto/vocab/chorus.ttl, served at /ns
+[[nodiscard]] std::string_view shapes();        ///< proto/shapes.ttl
+[[nodiscard]] std::string_view context();       ///< proto/context.jsonld
+[[nodiscard]] std::string_view openapi_json();  ///< proto/openapi.json
+
+}  // namespace chorus::proto
