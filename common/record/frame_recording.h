@@ -17,13 +17,16 @@ namespace chorus::record {
 /// Everything about one sensor's stay, in capture order.
 struct FrameRecording {
   SensorId sensor;
-  std::string device;                  ///< "Kinect v2 (LabanotationSuite csv)", "MediaPipe Pose", ...
+  std::string device;  ///< "Kinect v2 (LabanotationSuite csv)", "MediaPipe Pose", ...
   std::optional<Intrinsics> intrinsics;
   std::optional<FloorPlane> floor;
-  std::map<std::string, std::string> notes;  ///< Origin, licence, conversions made.
+  std::map<std::string, std::string>
+      notes;  ///< Origin, licence, conversions made; "damage.1": lost parts.
   std::vector<SensorFrame> frames;
 };
 
+/// Replaces `path` only when the whole file is written.  A frame without a floor plane of its own
+/// keeps the one before it (the recording's, at first).
 [[nodiscard]] Result<void> write_frame_recording(const std::filesystem::path& path,
                                                  const FrameRecording& recording);
 

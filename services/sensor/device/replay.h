@@ -1,0 +1,50 @@
+// The device `replay`: a recording played again in real time, stamped anew.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "common/base/config_reader.h"
+#include "common/record/frame_recording.h"
+#include "common/sensor/frame_source.h"
+#include "common/time/clock.h"
+
+namespace chorus::sensor_service {
+
+/// Where the replay begins on the clock.
+enum class ReplayEpoch {
+  Now,         ///< The first capture of the set happens as the service starts.
+  AsRecorded,  ///< Captures keep their recorded times; they are delivered from now on.
+};
+
+struct ReplayOptions {
+  std::filesystem::path recording = {};
+  bool loop = true;
+  double speed = 1.0;
+  ReplayEpoch epoch = ReplayEpoch::Now;
+  std::optional<Timestamp> epoch_at = {};  ///< Instead of `epoch`, for several processes.
+  std::optional<Timestamp> origin = {};    ///< First capture of the set; else as noted.
+  std::optional<Duration> period = {};     ///< Length of the set; likewise.
+};
+
+/// Reads device.replay; mistakes are complained about at their keys.
+[[nodiscard]] ReplayOptions read_replay_options(ConfigReader& config);
+
+/// Waits until the clock shows an instant; false when asked to stop before.
+using WaitUntil = std::function<bool(std::stop_token, Timestamp)>;
+
+/// Where the replay's time comes from.
+struct ReplayClock {
+  std::shared_ptr<const Clock> clock;
+  WaitUntil wait;  ///< Empty: really waits.
+};
+
+/// The device; frames carry the id `sensor` whatever the recording says.
+[[nodiscard]] Result<std::unique_ptr<FrameSource>> make_replay(record::FrameRecording recording,
+                                                               const ReplayOptions& options,
+                                                               const SensorId& sensor,
+                                                               ReplayClock time);
+
+}  // namespace chorus::sensor_service
