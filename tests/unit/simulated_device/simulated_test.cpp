@@ -1,0 +1,155 @@
+#include "services/sensor/device/simulated.h"
+
+#include <gmock/gmock.h>
+
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+namespace chorus::sensor_service {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr Timestamp kStart = from_unix_ns(1'795'000'000'000'000'000);
+
+Result<std::unique_ptr<FrameSource>> device(std::string_view json, std::string_view id,
+                                            std::shared_ptr<const Clock> clock) {
+  ConfigReader config = ConfigReader::parse(json, "test").value();
+  auto made = make_simulated(config, SensorId::parse(id).value(), std::move(clock));
+  if (const auto ok = config.finish(); !ok) return pass(ok);
+  return made;
+}
+
+/// A clock that is always a little later than when last asked: time flies without anybody waiting.
+class HastyClock final : public Clock {
+ public:
+  [[nodiscard]] Timestamp now() const override {
+    return kStart + std::chrono::microseconds(200) * ++asked_;
+  }
+
+ private:
+  mutable std::atomic<int> asked_{0};
+};
+
+std::vector<Capture> first_captures(FrameSource& source, std::size_t count) {
+  std::vector<Capture> captures;
+  std::stop_source stop;
+  const auto done = source.run(stop.get_token(), [&](Capture capture) {
+    captures.push_back(std::move(capture));
+    if (captures.size() >= count) stop.request_stop();
+  });
+  EXPECT_TRUE(done);
+  return captures;
+}
+
+TEST(Simulated, TwoProcessesSeeTheSamePersonWhereverTheyStand) {
+  const auto run = [](std::string_view json, std::string_view id) {
+    auto source = device(json, id, std::make_shared<HastyClock>());
+    return first_captures(**source, 10);
+  };
+  const auto front =
+      run(R"({"ring": {"index": 0}, "noise": {"along_mm": 0, "across_mm": 0}})", "s1");
+  const auto side =
+      run(R"({"ring": {"index": 1}, "noise": {"along_mm": 0, "across_mm": 0}})", "s2");
+  ASSERT_EQ(front.size(), 10u);
+  ASSERT_EQ(side.size(), 10u);
+  const synthetic::Ring ring;
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    const auto in_world = [&](const Capture& capture, std::size_t place) {
+      const auto& body = capture.frame.bodies.at(0).skeleton;
+      return Eigen::Vector3d(ring_place(ring, place) * body[JointId::Neck].position);
+    };
+    // Captured up to a frame apart, of a person who walks at 0.9 m/s.
+    EXPECT_LT((in_world(front[i], 0) - in_world(side[i], 1)).norm(), 0.06);
+    EXPECT_NE(front[i].frame.captured, side[i].frame.captured);
+  }
+}
+
+TEST(Simulated, DeliversInOrderAfterCaptureWithoutGaps) {
+  auto source = device(R"({"latency_ms": 20})", "s1", std::make_shared<HastyClock>());
+  const auto captures = first_captures(**source, 30);
+  ASSERT_EQ(captures.size(), 30u);
+  for (std::size_t i = 0; i < captures.size(); ++i) {
+    const SensorFrame& frame = captures[i].frame;
+    EXPECT_EQ(frame.sequence, i + 1);
+    EXPECT_EQ(frame.sensor.str(), "s1");
+    EXPECT_GE(frame.received - frame.captured, std::chrono::milliseconds(20));
+    if (i > 0) EXPECT_GT(frame.captured, captures[i - 1].frame.captured);
+    ASSERT_TRUE(frame.floor);
+    EXPECT_NEAR(frame.floor->offset, 1.6, 0.05);
+  }
+}
+
+TEST(Simulated, SequenceCountsDroppedFramesToo) {
+  auto source = device(R"({"noise": {"drop_percent": 50}})", "s1", std::make_shared<HastyClock>());
+  const auto captures = first_captures(**source, 40);
+  EXPECT_GT(captures.back().frame.sequence, 55u);
+  EXPECT_LT(captures.back().frame.sequence, 120u);
+}
+
+TEST(Simulated, ImagesAreRenderedOnDemand) {
+  auto source = device("{}", "s1", std::make_shared<HastyClock>());
+  const auto captures = first_captures(**source, 1);
+  source->reset();  // an image may be asked for after the device is gone
+  const auto depth = captures[0].depth();
+  ASSERT_TRUE(depth) << to_string(depth.error());
+  EXPECT_EQ(depth->captured, captures[0].frame.captured);
+  EXPECT_EQ(depth->media_type, "image/png");
+  EXPECT_EQ(captures[0].color()->media_type, "image/jpeg");
+}
+
+TEST(Simulated, AClockThatStepsNeitherFreezesNorFloodsIt) {
+  const auto clock = std::make_shared<FakeClock>(kStart);
+  auto source = device("{}", "s1", clock);
+  std::mutex mutex;
+  std::condition_variable arrived;
+  std::vector<Timestamp> captured;
+  std::jthread runner([&](std::stop_token stop) {
+    (void)(*source)->run(stop, [&](Capture capture) {
+      const std::lock_guard lock(mutex);
+      captured.push_back(capture.frame.captured);
+      arrived.notify_one();
+    });
+  });
+  const auto newest_after = [&](Timestamp now) {
+    clock->set(now);
+    std::unique_lock lock(mutex);
+    const auto near = [&] {
+      return !captured.empty() && captured.back() > now - std::chrono::milliseconds(80) &&
+             captured.back() <= now;
+    };
+    return arrived.wait_for(lock, std::chrono::seconds(20), near);
+  };
+  EXPECT_TRUE(newest_after(kStart + std::chrono::milliseconds(100)));
+  // A jump lands between frames, so the next frame needs a little more time to pass.
+  clock->set(kStart + std::chrono::hours(1));
+  EXPECT_TRUE(newest_after(kStart + std::chrono::hours(1) + std::chrono::milliseconds(70)));
+  clock->set(kStart - std::chrono::hours(1));
+  EXPECT_TRUE(newest_after(kStart - std::chrono::hours(1) + std::chrono::milliseconds(70)));
+  runner.request_stop();
+  runner.join();
+  EXPECT_LT(captured.size(), 20u) << "two hours were jumped, not played";
+}
+
+TEST(Simulated, WrongConfigIsNamed) {
+  const auto clock = std::make_shared<FakeClock>(kStart);
+  const std::pair<std::string_view, std::string_view> cases[] = {
+      {R"({"ring": {"index": 6}})", "ring.count"},
+      {R"({"ring": {}, "pose": {}})", "either ring or pose"},
+      {R"({"scene": {"path": "zigzag"}})", "scene.path"},
+      {R"({"scene": {"sped_m_per_s": 1}})", "speed_m_per_s"},
+      {R"({"noise": {"along_mm": -1}})", "noise.along_mm"},
+      {R"({"latency_ms": 1e9})", "latency_ms"},
+  };
+  for (const auto& [json, named] : cases) {
+    const auto made = device(json, "s1", clock);
+    ASSERT_FALSE(made) << json;
+    EXPECT_THAT(to_string(made.error()), HasSubstr(std::string(named)));
+  }
+  ConfigReader empty = ConfigReader::parse("{}", "test").value();
+  EXPECT_FALSE(make_simulated(empty, SensorId::parse("s1").value(), nullptr));
+}
+
+}  // namespace
+}  // namespace chorus::sensor_service
