@@ -25,7 +25,7 @@ Result<std::unique_ptr<FrameSource>> device(std::string_view json, std::string_v
 class HastyClock final : public Clock {
  public:
   [[nodiscard]] Timestamp now() const override {
-    return kStart + std::chrono::microseconds(200) * ++asked_;
+    return kStart + std::chrono::milliseconds(20) * ++asked_;
   }
 
  private:
@@ -75,7 +75,7 @@ TEST(Simulated, DeliversInOrderAfterCaptureWithoutGaps) {
     EXPECT_EQ(frame.sequence, i + 1);
     EXPECT_EQ(frame.sensor.str(), "s1");
     EXPECT_GE(frame.received - frame.captured, std::chrono::milliseconds(20));
-    if (i > 0) EXPECT_GT(frame.captured, captures[i - 1].frame.captured);
+    EXPECT_TRUE(i == 0 || frame.captured > captures[i - 1].frame.captured);
     ASSERT_TRUE(frame.floor);
     EXPECT_NEAR(frame.floor->offset, 1.6, 0.05);
   }
@@ -83,9 +83,9 @@ TEST(Simulated, DeliversInOrderAfterCaptureWithoutGaps) {
 
 TEST(Simulated, SequenceCountsDroppedFramesToo) {
   auto source = device(R"({"noise": {"drop_percent": 50}})", "s1", std::make_shared<HastyClock>());
-  const auto captures = first_captures(**source, 40);
-  EXPECT_GT(captures.back().frame.sequence, 55u);
-  EXPECT_LT(captures.back().frame.sequence, 120u);
+  const auto captures = first_captures(**source, 20);
+  EXPECT_GT(captures.back().frame.sequence, 25u);
+  EXPECT_LT(captures.back().frame.sequence, 80u);
 }
 
 TEST(Simulated, ImagesAreRenderedOnDemand) {
@@ -112,24 +112,24 @@ TEST(Simulated, AClockThatStepsNeitherFreezesNorFloodsIt) {
       arrived.notify_one();
     });
   });
-  const auto newest_after = [&](Timestamp now) {
+  // Sets the clock and lets it run on until a frame of about now has come.
+  const auto delivers_from = [&](Timestamp now) {
     clock->set(now);
-    std::unique_lock lock(mutex);
-    const auto near = [&] {
-      return !captured.empty() && captured.back() > now - std::chrono::milliseconds(80) &&
-             captured.back() <= now;
-    };
-    return arrived.wait_for(lock, std::chrono::seconds(20), near);
+    for (int i = 0; i < 2000; ++i) {
+      clock->advance(std::chrono::milliseconds(1));
+      std::unique_lock lock(mutex);
+      arrived.wait_for(lock, std::chrono::milliseconds(5));
+      if (!captured.empty() && captured.back() >= now && captured.back() <= clock->now())
+        return true;
+    }
+    return false;
   };
-  EXPECT_TRUE(newest_after(kStart + std::chrono::milliseconds(100)));
-  // A jump lands between frames, so the next frame needs a little more time to pass.
-  clock->set(kStart + std::chrono::hours(1));
-  EXPECT_TRUE(newest_after(kStart + std::chrono::hours(1) + std::chrono::milliseconds(70)));
-  clock->set(kStart - std::chrono::hours(1));
-  EXPECT_TRUE(newest_after(kStart - std::chrono::hours(1) + std::chrono::milliseconds(70)));
+  EXPECT_TRUE(delivers_from(kStart));
+  EXPECT_TRUE(delivers_from(kStart + std::chrono::hours(1)));
+  EXPECT_TRUE(delivers_from(kStart - std::chrono::hours(1)));
   runner.request_stop();
   runner.join();
-  EXPECT_LT(captured.size(), 20u) << "two hours were jumped, not played";
+  EXPECT_LT(captured.size(), 200u) << "two hours were jumped, not played";
 }
 
 TEST(Simulated, WrongConfigIsNamed) {
