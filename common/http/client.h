@@ -30,7 +30,7 @@ struct Url {
 
 struct ClientRequest {
   std::string method = "GET";
-  std::string target = "/";
+  std::string target = {};  ///< Empty: that of the Url in fetch(), else "/".
   std::vector<Header> headers = {};
   std::string body = {};
 };
@@ -53,8 +53,10 @@ struct ClientLimits {
 [[nodiscard]] Result<ClientResponse> fetch(const Url& url, const ClientRequest& request,
                                            const ClientLimits& limits = {});
 
-/// One kept-alive connection on somebody's io_context; one request at a time, callbacks on its thread.
-/// Reconnects on demand.  Destroying it, or close(), cancels; the callback then never fires.
+/// One kept-alive connection on somebody's io_context; one request at a time, callbacks on its
+/// thread. Reconnects on demand; a GET that meets a connection closed meanwhile is asked again on a
+/// new one. Destroying it, or close(), cancels; the callback then never fires.  All calls, the
+/// destructor too, belong on the io_context's thread (or before it runs, or after).
 class AsyncClient {
  public:
   using Callback = std::function<void(Result<ClientResponse>)>;

@@ -27,7 +27,7 @@ struct ServerLimits {
 
 struct ServerConfig {
   std::string address = "127.0.0.1";
-  std::uint16_t port = 0;       ///< 0: any free port; ask port() after start.
+  std::uint16_t port = 0;         ///< 0: any free port; ask port() after start.
   std::string bearer_token = {};  ///< Empty: writing methods are refused except from loopback.
   std::string allowed_origin = "*";
   std::shared_ptr<const Clock> clock = {};  ///< Stamps Chorus-Clock and Date; null: the host's.

@@ -1,0 +1,42 @@
+// One answer, ready to be written: its own few header lines, then shared bytes.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "common/http/document.h"
+#include "common/time/timestamp.h"
+
+namespace chorus::http {
+
+struct Answer {
+  int status = 200;
+  std::string extra = {};       ///< Header lines of this answer alone.
+  std::string_view route = {};  ///< Header lines of the route; the responder owns them.
+  std::string_view own = {};    ///< The other header lines and the blank line.
+  std::string_view body = {};
+  std::shared_ptr<const void> owner = {};  ///< Keeps `own` and `body` alive.
+  std::optional<Timestamp> captured = {};  ///< Server-Timing tells the age at sending.
+  bool close = false;                      ///< Framing is lost: close after this answer.
+};
+
+/// What the first lines say beside the answer itself.
+struct AnswerStamp {
+  Timestamp received;  ///< Chorus-Clock t1: the request was complete.
+  Timestamp sent;      ///< t2, and Date.
+  bool close = false;
+  bool keep_alive_http10 = false;  ///< HTTP/1.0 has to be told.
+};
+
+/// Appends the status line and the header lines of this answer alone, up to `route`.
+void write_first_lines(std::string& out, const Answer& answer, const AnswerStamp& stamp);
+
+/// "Sat, 21 Nov 2026 07:47:45 GMT" (RFC 9110 5.6.7).
+[[nodiscard]] std::string http_date(Timestamp t);
+
+/// "Not Found"; "Status" for codes without a name.
+[[nodiscard]] std::string_view reason_phrase(int status) noexcept;
+
+}  // namespace chorus::http

@@ -1,0 +1,274 @@
+#include <algorithm>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <cassert>
+#include <optional>
+
+#include "common/http/asio.h"
+#include "common/http/client.h"
+#include "common/http/text.h"
+#include "common/time/clock.h"
+
+namespace chorus::http {
+namespace {
+
+namespace beast = boost::beast;
+using Parser = beast::http::response_parser<beast::http::string_body>;
+
+constexpr std::uint32_t kMaxHeadBytes = 16384;
+
+std::string request_text(const ClientRequest& request, const std::string& authority) {
+  const std::string target = request.target.empty() ? "/" : request.target;
+  std::string text = request.method + " " + target + " HTTP/1.1\r\nHost: " + authority;
+  for (const auto& [name, value] : request.headers) text.append("\r\n" + name + ": " + value);
+  if (!request.body.empty() || request.method == "POST" || request.method == "PUT")
+    text.append("\r\nContent-Length: " + std::to_string(request.body.size()));
+  return text.append("\r\n\r\n").append(request.body);
+}
+
+/// Nobody may smuggle a second header or request in through a value.
+bool is_one_line(std::string_view text) {
+  return std::none_of(text.begin(), text.end(),
+                      [](char c) { return c == '\r' || c == '\n' || c == '\0'; });
+}
+
+bool is_writable(const ClientRequest& request) {
+  const bool lines = std::all_of(request.headers.begin(), request.headers.end(), [](const auto& h) {
+    return is_one_line(h.first) && is_one_line(h.second);
+  });
+  return lines && is_one_line(request.method) && is_one_line(request.target) &&
+         request.target.find(' ') == std::string::npos;
+}
+
+ClientResponse response_of(const Parser::value_type& message) {
+  ClientResponse response;
+  response.status = static_cast<int>(message.result_int());
+  for (const auto& field : message) {
+    const std::string name =
+        to_lower(std::string_view(field.name_string().data(), field.name_string().size()));
+    const std::string_view value(field.value().data(), field.value().size());
+    auto [known, added] = response.headers.try_emplace(name, value);
+    if (!added) known->second.append(", ").append(value);
+  }
+  return response;
+}
+
+}  // namespace
+
+struct AsyncClient::Impl : std::enable_shared_from_this<AsyncClient::Impl> {
+  Impl(net::io_context& io, std::string to_host, std::uint16_t to_port, ClientLimits with)
+      : host(std::move(to_host)),
+        port(to_port),
+        limits(with),
+        executor(io.get_executor()),
+        resolver(executor),
+        socket(executor),
+        timer(executor) {
+    const bool v6 = host.find(':') != std::string::npos;
+    authority = (v6 ? "[" + host + "]" : host) + ":" + std::to_string(port);
+  }
+
+  void begin(ClientRequest request, std::chrono::milliseconds answer_timeout, Callback on_done);
+  void connect();
+  void connect_to(std::vector<tcp::endpoint> endpoints);
+  void write();
+  void read();
+  void on_read(error_code failed);
+  void retry_or_fail(error_code failed, std::string_view doing);
+  void finish(Result<ClientResponse> result);
+  void finish_later(Error error);
+  void arm(std::chrono::milliseconds time, std::string_view doing);
+  void drop();
+
+  const std::string host;
+  const std::uint16_t port;
+  const ClientLimits limits;
+  std::string authority;
+  Executor executor;
+  Resolver resolver;
+  Socket socket;
+  Timer timer;
+
+  Callback callback;          ///< Set while a request is under way.
+  std::uint64_t attempt = 0;  ///< Handlers of an older attempt are void.
+  bool connected = false;
+  bool reused = false;  ///< The connection has answered before.
+  bool closed = false;
+  bool repeatable = false;
+  bool head_only = false;
+  std::string out;
+  std::chrono::milliseconds answer_time{0};
+  beast::flat_buffer in;
+  std::optional<Parser> parser;
+  std::int64_t sent_ns = 0;
+};
+
+void AsyncClient::Impl::begin(ClientRequest request, std::chrono::milliseconds answer_timeout,
+                              Callback on_done) {
+  if (closed) return;
+  if (callback) {
+    net::post(executor, [self = shared_from_this(), on_done] {
+      if (!self->closed)
+        on_done(fail(ErrorCode::Conflict, self->authority, "a request is under way already"));
+    });
+    return;
+  }
+  callback = std::move(on_done);
+  ++attempt;
+  if (!is_writable(request))
+    return finish_later({ErrorCode::InvalidArgument, authority,
+                         "the request has a line break in its target or a header field"});
+  head_only = request.method == "HEAD";
+  repeatable = request.method == "GET" || head_only;
+  answer_time = answer_timeout;
+  out = request_text(request, authority);
+  reused = connected;
+  if (connected) return write();
+  connect();
+}
+
+void AsyncClient::Impl::connect() {
+  drop();
+  reused = false;
+  arm(limits.connect_timeout, "connect");
+  error_code no_literal;
+  const auto address = net::ip::make_address(host, no_literal);
+  if (!no_literal) return connect_to({tcp::endpoint(address, port)});
+  resolver.async_resolve(
+      host, std::to_string(port),
+      [self = shared_from_this(), mine = attempt](error_code failed, const auto& results) {
+        if (self->attempt != mine) return;
+        if (failed) return self->retry_or_fail(failed, "find the host");
+        std::vector<tcp::endpoint> endpoints;
+        for (const auto& entry : results) endpoints.push_back(entry.endpoint());
+        self->connect_to(std::move(endpoints));
+      });
+}
+
+void AsyncClient::Impl::connect_to(std::vector<tcp::endpoint> endpoints) {
+  if (endpoints.empty()) return retry_or_fail(net::error::host_not_found, "find the host");
+  const tcp::endpoint endpoint = endpoints.front();
+  endpoints.erase(endpoints.begin());
+  error_code ignored;
+  socket.close(ignored);
+  socket.async_connect(endpoint, [self = shared_from_this(), mine = attempt,
+                                  others = std::move(endpoints)](error_code failed) {
+    if (self->attempt != mine) return;
+    if (failed && !others.empty()) return self->connect_to(others);
+    if (failed) return self->retry_or_fail(failed, "connect");
+    error_code unimportant;
+    self->socket.set_option(tcp::no_delay(true), unimportant);
+    self->connected = true;
+    self->write();
+  });
+}
+
+void AsyncClient::Impl::write() {
+  arm(answer_time, "answer");
+  sent_ns = to_unix_ns(SystemClock().now());
+  net::async_write(socket, net::buffer(out),
+                   [self = shared_from_this(), mine = attempt](error_code failed, std::size_t) {
+                     if (self->attempt != mine) return;
+                     if (failed) return self->retry_or_fail(failed, "send");
+                     self->read();
+                   });
+}
+
+void AsyncClient::Impl::read() {
+  parser.emplace();
+  parser->header_limit(kMaxHeadBytes);
+  parser->body_limit(limits.max_body_bytes);
+  parser->skip(head_only);
+  beast::http::async_read(
+      socket, in, *parser,
+      [self = shared_from_this(), mine = attempt](error_code failed, std::size_t) {
+        if (self->attempt == mine) self->on_read(failed);
+      });
+}
+
+void AsyncClient::Impl::on_read(error_code failed) {
+  if (failed == beast::http::error::body_limit)
+    return finish(
+        fail(ErrorCode::TooLarge, authority,
+             "the answer is larger than " + std::to_string(limits.max_body_bytes) + " bytes"));
+  if (failed && parser->got_some()) {
+    const bool broken = failed != beast::http::error::partial_message && failed != net::error::eof;
+    return finish(fail(broken ? ErrorCode::Malformed : ErrorCode::Unavailable, authority,
+                       "the answer is broken or cut off: " + failed.message()));
+  }
+  if (failed) return retry_or_fail(failed, "read the answer");
+  constexpr unsigned kFirstFinalStatus = 200;
+  if (parser->get().result_int() < kFirstFinalStatus) return read();  // 100 Continue
+  ClientResponse response = response_of(parser->get());
+  response.body = std::move(parser->get().body());
+  response.sent_ns = sent_ns;
+  response.received_ns = to_unix_ns(SystemClock().now());
+  // Bytes after the answer belong to nothing we asked for.
+  if (!parser->keep_alive() || in.size() > 0) drop();
+  finish(std::move(response));
+}
+
+/// A kept connection that the server has closed meanwhile is no failure: ask again on a new one.
+void AsyncClient::Impl::retry_or_fail(error_code failed, std::string_view doing) {
+  if (reused && repeatable) return connect();
+  finish(fail(ErrorCode::Unavailable, authority,
+              "cannot " + std::string(doing) + ": " + failed.message()));
+}
+
+void AsyncClient::Impl::arm(std::chrono::milliseconds time, std::string_view doing) {
+  timer.expires_after(time);
+  timer.async_wait([self = shared_from_this(), mine = attempt, doing, time](error_code cancelled) {
+    if (cancelled || self->attempt != mine || !self->callback) return;
+    // Expired and re-armed in the same instant: a later one is under way.
+    if (self->timer.expiry() > std::chrono::steady_clock::now()) return;
+    self->finish(
+        fail(ErrorCode::Timeout, self->authority,
+             "no " + std::string(doing) + " within " + std::to_string(time.count()) + " ms"));
+  });
+}
+
+void AsyncClient::Impl::finish(Result<ClientResponse> result) {
+  ++attempt;
+  if (!result) drop();
+  timer.cancel();
+  // The callback may send again, close, or destroy the client.
+  const Callback done = std::exchange(callback, nullptr);
+  if (done) done(std::move(result));
+}
+
+void AsyncClient::Impl::finish_later(Error error) {
+  net::post(executor, [self = shared_from_this(), mine = attempt, error = std::move(error)] {
+    if (self->attempt == mine) self->finish(tl::unexpected<Error>(error));
+  });
+}
+
+void AsyncClient::Impl::drop() {
+  error_code ignored;
+  resolver.cancel();
+  socket.close(ignored);
+  in.clear();
+  connected = false;
+}
+
+AsyncClient::AsyncClient(boost::asio::io_context& io, std::string host, std::uint16_t port,
+                         ClientLimits limits)
+    : impl_(std::make_shared<Impl>(io, std::move(host), port, limits)) {}
+
+AsyncClient::~AsyncClient() { close(); }
+
+void AsyncClient::send(ClientRequest request, std::chrono::milliseconds answer_timeout,
+                       Callback callback) {
+  impl_->begin(std::move(request), answer_timeout, std::move(callback));
+}
+
+void AsyncClient::close() {
+  impl_->closed = true;
+  ++impl_->attempt;
+  impl_->callback = nullptr;
+  impl_->timer.cancel();
+  impl_->drop();
+}
+
+}  // namespace chorus::http

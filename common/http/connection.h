@@ -1,0 +1,95 @@
+// One client: reads requests one after the other, writes answers in order, waits for publishes.
+//
+// Everything runs on the server's only thread.  At most one read and one write are under way.
+// Deadlines are swept by the server (a timer per request costs 2 us), so they are exact to a
+// quarter of a second.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "common/http/asio.h"
+#include "common/http/responder.h"
+
+namespace chorus::http {
+
+struct ServerCore;
+
+using SteadyTime = std::chrono::steady_clock::time_point;
+
+class Connection : public std::enable_shared_from_this<Connection> {
+ public:
+  Connection(ServerCore& core, Socket socket, const tcp::endpoint& remote);
+
+  void start();
+  /// Answers 503 and closes: there are too many connections.
+  void turn_away();
+  /// The document of the entry this connection waits for or streams has changed.
+  void wake();
+  /// The deadline has passed.
+  void expire();
+  /// The server stops: finish the answer under way, begin no other.
+  void stop();
+  void close();
+
+  [[nodiscard]] SteadyTime deadline() const { return deadline_; }
+  [[nodiscard]] const std::string& peer_address() const { return peer_address_; }
+
+ private:
+  enum class State { Head, Body, Writing, Waiting, Streaming, Lingering, Closed };
+
+  void read();
+  void on_read(error_code failed, std::size_t size);
+  void advance();
+  void make_room();
+  void refuse(int status, std::string detail);
+  void serve(std::size_t head_size);
+  void begin_body();
+  void advance_body();
+  void send(Answer answer);
+  void on_sent(error_code failed, std::size_t size);
+  void next_request();
+  void linger();
+  void begin_wait();
+  void watch();
+  void begin_stream();
+  void push_event();
+  void on_event_sent(error_code failed, std::size_t size);
+  void expire_in(std::chrono::seconds time);
+  [[nodiscard]] std::string_view unread() const { return {buffer_.get() + begin_, end_ - begin_}; }
+
+  ServerCore& core_;
+  Socket socket_;
+  Peer peer_;
+  std::string peer_address_;
+  State state_ = State::Head;
+  SteadyTime deadline_{};
+  bool reading_ = false;
+  bool end_of_input_ = false;
+  bool close_after_ = false;
+
+  std::unique_ptr<char[]> buffer_;  ///< One head at most; what follows it stays in the kernel.
+  std::size_t capacity_ = 0;
+  std::size_t begin_ = 0;
+  std::size_t end_ = 0;
+  std::size_t checked_ = 0;  ///< Of unread(): has no end of a head.
+  std::size_t request_size_ = 0;
+  std::size_t drained_ = 0;
+
+  RequestHead head_;
+  Reaction reaction_;
+  Answer answer_;
+  Timestamp received_;
+  std::string first_lines_;
+  std::string body_;
+
+  DocumentPtr streamed_;  ///< Last document sent as an event.
+  std::shared_ptr<const std::string> event_;
+  bool event_under_way_ = false;
+  bool event_pending_ = false;
+};
+
+}  // namespace chorus::http

@@ -1,0 +1,30 @@
+// Errors as RFC 9457 problem documents.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/error.h"
+#include "common/http/answer.h"
+
+namespace chorus::http {
+
+struct Problem {
+  int status = 500;
+  std::string_view code = {};     ///< name_of(ErrorCode), for programs.
+  std::string_view context = {};  ///< What the error is about: a path, a key, a field.
+  std::string_view detail = {};   ///< What to change, for people.
+  std::vector<std::string_view> available = {};  ///< 406: media types that there are.
+};
+
+[[nodiscard]] Problem problem_of(const Error& error);
+
+/// {"type":"about:blank","title":...,"status":...,"detail":...}; bytes that are no UTF-8 are
+/// replaced.
+[[nodiscard]] std::string problem_json(const Problem& problem);
+
+/// The whole answer; `head_only` leaves the body out and keeps its length.
+[[nodiscard]] Answer problem_answer(const Problem& problem, bool head_only);
+
+}  // namespace chorus::http

@@ -1,0 +1,72 @@
+// Reads the head of a request, strictly: bytes in, fields or a refusal out; no sockets.
+//
+// Whatever two readers of HTTP could understand differently is refused, because that is what
+// request smuggling is made of: bare line feeds, folded lines, spaces before a colon, repeated Host
+// or Content-Length, Transfer-Encoding (a reader that needs a length answers 411), bodies on GET.
+// What is accepted here, Boost.Beast accepts with the same meaning; tests/fuzz/http_request holds
+// both together.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/http/router.h"
+
+namespace chorus::http {
+
+/// Why a request is refused; the connection is closed after the answer.
+struct Refusal {
+  int status = 400;
+  std::string detail;
+};
+
+enum class HeadProgress { Incomplete, Complete, Broken };
+
+struct HeadEnd {
+  HeadProgress progress = HeadProgress::Incomplete;
+  std::size_t size = 0;  ///< Complete: of the head with its blank line.
+};
+
+/// Looks for the blank line; bytes before `checked` have been looked at by an earlier call.  Broken
+/// as soon as a line feed stands without its carriage return.
+[[nodiscard]] HeadEnd find_head_end(std::string_view bytes, std::size_t checked) noexcept;
+
+struct Field {
+  std::string_view name;
+  std::string_view value;
+};
+
+/// All views point into the bytes given to read_head, or into `joined`.
+struct RequestHead {
+  Method method = Method::Get;
+  std::string_view path;       ///< As sent, percent-encoded, without the query.
+  std::string_view query;      ///< Without '?'.
+  std::string_view authority;  ///< Of a target in absolute form; empty otherwise.
+  bool asterisk = false;       ///< OPTIONS *
+  int minor_version = 1;       ///< HTTP/1.x
+  bool keep_alive = true;
+  bool expects_continue = false;
+  std::uint64_t content_length = 0;
+
+  // Fields we act on; data() is null when absent.  Lists are joined with ", ".
+  std::string_view host, accept, if_none_match, prefer, authorization, origin, last_event_id,
+      forwarded, connection, length_text, transfer_encoding, expect;
+
+  std::vector<Field> fields;       ///< All, in order.
+  std::deque<std::string> joined;  ///< Storage of joined lists.
+};
+
+[[nodiscard]] constexpr bool is_present(std::string_view field) noexcept {
+  return field.data() != nullptr;
+}
+
+/// Fills `head` from one complete head; nothing when it is fine.  `head` is reused without
+/// allocating.
+[[nodiscard]] std::optional<Refusal> read_head(std::string_view bytes, RequestHead& head);
+
+}  // namespace chorus::http

@@ -1,0 +1,308 @@
+#include "common/http/responder.h"
+
+#include <algorithm>
+#include <exception>
+
+#include "common/http/conditional.h"
+#include "common/http/media_range.h"
+#include "common/http/problem.h"
+#include "common/http/text.h"
+#include "common/http/uri.h"
+
+namespace chorus::http {
+namespace {
+
+constexpr std::string_view kEventStream = "text/event-stream";
+constexpr std::string_view kWaitApplied = "Preference-Applied: wait\r\n";
+
+/// The lines that all answers of a server share (docs: linked data over HTTP).
+std::string common_lines(const ServerConfig& config) {
+  return "Vary: Accept, Origin\r\n"
+         "Access-Control-Allow-Origin: " +
+         config.allowed_origin +
+         "\r\n"
+         "Access-Control-Expose-Headers: ETag, Link, Location, Content-Location, Allow, "
+         "Preference-Applied, Retry-After, Chorus-Clock, Server-Timing\r\n"
+         "Timing-Allow-Origin: *\r\n"
+         "X-Content-Type-Options: nosniff\r\n"
+         "Link: </openapi.json>; rel=\"service-desc\"\r\n";
+}
+
+std::string lines_of(const ServerConfig& config, const Router::Entry& entry) {
+  return "Allow: " + allowed_methods(entry) +
+         "\r\nLink: <http://www.w3.org/ns/ldp#Resource>; rel=\"type\"\r\n" + common_lines(config);
+}
+
+Reaction to_answer(Answer answer) {
+  Reaction reaction;
+  reaction.answer = std::move(answer);
+  return reaction;
+}
+
+bool is_head(const RequestHead& head) { return head.method == Method::Head; }
+
+/// Event stream or document: the better quality wins, and only a range that names the stream
+/// counts.
+bool wants_events(const RequestHead& head, const Document& document) {
+  const int events = explicit_quality_of(kEventStream, head.accept).value_or(0);
+  if (events == 0) return false;
+  for (const auto type : document.media_types()) {
+    if (quality_of(type, head.accept).value_or(0) >= events) return false;
+  }
+  return true;
+}
+
+Result<std::string> profile_of(const RequestHead& head) {
+  if (head.query.empty()) return std::string();
+  auto query = decode_query(head.query);
+  if (!query) return pass(query);
+  const auto profile = query->find("profile");
+  return profile == query->end() ? std::string() : profile->second;
+}
+
+Result<Request> request_of(const RequestHead& head, const Peer& peer, std::string_view path) {
+  auto query = decode_query(head.query);
+  if (!query) return pass(query);
+  Request request{head.method, path, std::move(*query), {}, {}, peer.loopback};
+  for (const Field& field : head.fields) {
+    auto [known, added] = request.headers.try_emplace(to_lower(field.name), field.value);
+    if (!added) known->second.append(", ").append(field.value);
+  }
+  return request;
+}
+
+/// Runs somebody's handler; nothing it throws gets further.
+template <class T, class Call>
+Result<T> guarded(const RequestHead& head, const Call& call) {
+  try {
+    return call();
+  } catch (const std::exception& thrown) {
+    return fail(ErrorCode::Internal, std::string(head.path), thrown.what());
+  }
+}
+
+/// The resource that an action answers with, or that there is none.
+Result<Answer> answer_of(const ActionResult& done, std::string_view accept) {
+  Answer answer;
+  answer.status = done.status;
+  if (!done.location.empty()) answer.extra = "Location: " + done.location + "\r\n";
+  constexpr int kNoContent = 204;
+  answer.own = done.status == kNoContent ? "\r\n" : "Content-Length: 0\r\n\r\n";
+  if (done.status == kNoContent || !done.document) return answer;
+  // It is done: a client that accepts nothing of ours gets the default rather than an error.
+  auto chosen = done.document->choose(accept);
+  if (!chosen) chosen = done.document->choose("");
+  if (!chosen) return pass(chosen);
+  answer.own = (*chosen)->head();
+  answer.body = (*chosen)->body();
+  answer.owner = done.document;
+  return answer;
+}
+
+}  // namespace
+
+Responder::Responder(const ServerConfig& config, std::shared_ptr<const Router> router)
+    : bearer_token_(config.bearer_token),
+      limits_(config.limits),
+      router_(std::move(router)),
+      any_route_(common_lines(config)),
+      faults_(std::make_unique<RateReport>("request failed", log::Level::Error)) {
+  for (const auto& entry : router_->entries()) route_lines_.push_back(lines_of(config, *entry));
+}
+
+std::string_view Responder::route_lines(const Router::Entry& entry) const {
+  return route_lines_[entry.index];
+}
+
+Reaction Responder::react(const RequestHead& head, const Peer& peer) const {
+  if (!head.authority.empty() && !is_our_authority(head.authority, peer)) {
+    constexpr int kMisdirected = 421;
+    return to_answer(refuse({kMisdirected, "this server is no proxy; ask it by its own address"}));
+  }
+  if (head.asterisk) return options(any_route_, "GET, HEAD, OPTIONS");
+  std::string storage;
+  const auto path = decode_path(head.path, storage);
+  if (!path) return to_answer(fault(path.error(), head, any_route_));
+  auto match = router_->match(*path);
+  if (!match) return to_answer(fault(match.error(), head, any_route_));
+  switch (head.method) {
+    case Method::Options:
+      return options(route_lines_[match->entry->index], allowed_methods(*match->entry));
+    case Method::Get:
+    case Method::Head:
+      if (match->entry->live) return read_live(head, *match->entry);
+      return read(head, *match, peer, *path);
+    default:
+      return write(head, std::move(*match), peer);
+  }
+}
+
+Reaction Responder::options(const std::string& route, std::string_view allowed) const {
+  Answer answer;
+  constexpr int kNoContent = 204;
+  answer.status = kNoContent;
+  answer.route = route;
+  if (&route == &any_route_) answer.extra.append("Allow: ").append(allowed).append("\r\n");
+  answer.extra.append("Access-Control-Allow-Methods: ").append(allowed);
+  answer.extra.append(
+      "\r\nAccess-Control-Allow-Headers: Accept, Authorization, Content-Type, If-None-Match, "
+      "Prefer, Last-Event-ID\r\nAccess-Control-Max-Age: 86400\r\n");
+  answer.own = "\r\n";
+  return to_answer(std::move(answer));
+}
+
+Reaction Responder::read(const RequestHead& head, const Router::Match& match, const Peer& peer,
+                         std::string_view path) const {
+  const Router::Entry& entry = *match.entry;
+  const std::string_view route = route_lines(entry);
+  if (!entry.readable())
+    return write(head, match, peer);  // GET is one more method that the entry does not have.
+  const auto document = guarded<DocumentPtr>(head, [&]() -> Result<DocumentPtr> {
+    if (entry.files) return entry.files->document(match.rest);
+    const auto request = request_of(head, peer, path);
+    if (!request) return pass(request);
+    return entry.getter(*request, match.params);
+  });
+  if (!document) return to_answer(fault(document.error(), head, route));
+  return to_answer(represent(*document, head, route));
+}
+
+Reaction Responder::read_live(const RequestHead& head, const Router::Entry& entry) const {
+  const DocumentPtr document = entry.live->current();
+  if (document == nullptr || head.accept.empty() || !wants_events(head, *document)) {
+    Reaction reaction = to_answer(represent(document, head, route_lines(entry)));
+    constexpr int kNotModified = 304;
+    const auto wait = wait_preference(head.prefer);
+    if (!wait || !is_present(head.if_none_match)) return reaction;
+    reaction.answer.extra.append(kWaitApplied);
+    if (reaction.answer.status != kNotModified || wait->count() == 0) return reaction;
+    reaction.kind = Reaction::Kind::Wait;
+    reaction.entry = &entry;
+    reaction.wait = std::min(*wait, limits_.max_wait);
+    return reaction;
+  }
+  Reaction reaction;
+  reaction.kind = is_head(head) ? Reaction::Kind::Answer : Reaction::Kind::Stream;
+  reaction.entry = &entry;
+  reaction.answer.route = route_lines(entry);
+  reaction.answer.own = "Content-Type: text/event-stream\r\nCache-Control: no-store\r\n\r\n";
+  if (!is_head(head)) reaction.answer.body = "retry: 1000\n\n";  // Browsers come back after 1 s.
+  reaction.answer.close = true;
+  return reaction;
+}
+
+std::optional<Answer> Responder::waited(const Router::Entry& entry, const RequestHead& head) const {
+  Answer answer = represent(entry.live->current(), head, route_lines(entry));
+  constexpr int kNotModified = 304;
+  if (answer.status == kNotModified) return std::nullopt;
+  answer.extra.append(kWaitApplied);
+  return answer;
+}
+
+Answer Responder::given_up(const Router::Entry& entry, const RequestHead& head) const {
+  Answer answer = represent(entry.live->current(), head, route_lines(entry));
+  answer.extra.append(kWaitApplied);
+  return answer;
+}
+
+Reaction Responder::write(const RequestHead& head, Router::Match match, const Peer& peer) const {
+  const std::string_view route = route_lines(*match.entry);
+  const auto action = match.entry->actions.find(head.method);
+  if (action == match.entry->actions.end()) {
+    constexpr int kMethodNotAllowed = 405;
+    const std::string detail =
+        "this resource answers " + allowed_methods(*match.entry) + " and no other method";
+    Answer answer =
+        problem_answer({kMethodNotAllowed, "unsupported", head.path, detail}, is_head(head));
+    answer.route = route;
+    answer.close = head.content_length > 0;
+    return to_answer(std::move(answer));
+  }
+  if (const auto refused = refuse_writing(head, peer, bearer_token_))
+    return to_answer(fault(*refused, head, route));
+  if (head.content_length > limits_.max_body_bytes)
+    return to_answer(fault({ErrorCode::TooLarge, "Content-Length",
+                            "send at most " + std::to_string(limits_.max_body_bytes) + " bytes"},
+                           head, route));
+  Reaction reaction;
+  reaction.kind = Reaction::Kind::ReadBody;
+  reaction.entry = match.entry;
+  reaction.action = &action->second;
+  reaction.params = std::move(match.params);
+  return reaction;
+}
+
+Answer Responder::act(const Reaction& reaction, const RequestHead& head, const Peer& peer,
+                      std::string_view body) const {
+  const std::string_view route = route_lines(*reaction.entry);
+  const auto done = guarded<ActionResult>(head, [&]() -> Result<ActionResult> {
+    std::string storage;
+    const auto path = decode_path(head.path, storage);
+    if (!path) return pass(path);
+    auto request = request_of(head, peer, *path);
+    if (!request) return pass(request);
+    request->body = body;
+    return (*reaction.action)(*request, reaction.params);
+  });
+  if (!done) {
+    Answer answer = fault(done.error(), head, route);
+    answer.close = false;  // The body has been read.
+    return answer;
+  }
+  auto answer = answer_of(*done, head.accept);
+  if (!answer) return fault(answer.error(), head, route);
+  answer->route = route;
+  return std::move(*answer);
+}
+
+Answer Responder::represent(const DocumentPtr& document, const RequestHead& head,
+                            std::string_view route) const {
+  if (document == nullptr)
+    return fault({ErrorCode::Unavailable, std::string(head.path),
+                  "there is nothing to show yet; ask again in a second"},
+                 head, route);
+  const auto profile = profile_of(head);
+  if (!profile) return fault(profile.error(), head, route);
+  const auto chosen = document->choose(head.accept, *profile);
+  if (!chosen && chosen.error().code == ErrorCode::NotAcceptable) {
+    Problem problem = problem_of(chosen.error());
+    problem.available = document->media_types(*profile);
+    Answer answer = problem_answer(problem, is_head(head));
+    answer.route = route;
+    return answer;
+  }
+  if (!chosen) return fault(chosen.error(), head, route);
+  const Rendered& rendered = **chosen;
+  Answer answer;
+  answer.route = route;
+  answer.owner = document;
+  answer.captured = document->options().captured;
+  if (!head.if_none_match.empty() && none_match_lists(head.if_none_match, rendered.etag)) {
+    constexpr int kNotModified = 304;
+    answer.status = kNotModified;
+    answer.own = rendered.not_modified;
+    return answer;
+  }
+  answer.own = rendered.head();
+  if (!is_head(head)) answer.body = rendered.body();
+  return answer;
+}
+
+Answer Responder::fault(const Error& error, const RequestHead& head, std::string_view route) const {
+  if (error.code == ErrorCode::Internal) faults_->hit(to_string(error));
+  Answer answer = problem_answer(problem_of(error), is_head(head));
+  answer.route = route;
+  if (error.code == ErrorCode::Unauthorized)
+    answer.extra = "WWW-Authenticate: Bearer realm=\"chorus\"\r\n";
+  answer.close = head.content_length > 0;  // Its body has not been read.
+  return answer;
+}
+
+Answer Responder::refuse(const Refusal& refusal) const {
+  Answer answer = problem_answer({refusal.status, "malformed", {}, refusal.detail}, false);
+  answer.route = any_route_;
+  answer.close = true;
+  return answer;
+}
+
+}  // namespace chorus::http

@@ -1,0 +1,78 @@
+// What a request gets, decided without a socket: an answer, or what the connection has to do first.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/rate_report.h"
+#include "common/http/access.h"
+#include "common/http/answer.h"
+#include "common/http/request_head.h"
+#include "common/http/route_table.h"
+#include "common/http/server.h"
+
+namespace chorus::http {
+
+/// What the connection does next with a request.
+struct Reaction {
+  enum class Kind {
+    Answer,    ///< Send `answer`.
+    ReadBody,  ///< Read content_length bytes, then ask act().
+    Wait,      ///< Ask waited() after each publish of `entry`, and given_up() after `wait`.
+    Stream,    ///< Send `answer`, then events of `entry` until the client leaves.
+  };
+  Kind kind = Kind::Answer;
+  Answer answer = {};
+  const Router::Entry* entry = nullptr;
+  const Action* action = nullptr;
+  PathParams params = {};
+  std::chrono::seconds wait{0};
+};
+
+class Responder {
+ public:
+  Responder(const ServerConfig& config, std::shared_ptr<const Router> router);
+
+  [[nodiscard]] Reaction react(const RequestHead& head, const Peer& peer) const;
+  [[nodiscard]] Answer act(const Reaction& reaction, const RequestHead& head, const Peer& peer,
+                           std::string_view body) const;
+
+  /// The answer to a long poll if the document has changed since.
+  [[nodiscard]] std::optional<Answer> waited(const Router::Entry& entry,
+                                             const RequestHead& head) const;
+  /// The 304 that ends a long poll in vain.
+  [[nodiscard]] Answer given_up(const Router::Entry& entry, const RequestHead& head) const;
+
+  /// A problem document for a request that never became one.
+  [[nodiscard]] Answer refuse(const Refusal& refusal) const;
+
+  [[nodiscard]] const Router& router() const { return *router_; }
+
+ private:
+  struct Reading;
+
+  [[nodiscard]] Reaction read(const RequestHead& head, const Router::Match& match, const Peer& peer,
+                              std::string_view path) const;
+  [[nodiscard]] Reaction read_live(const RequestHead& head, const Router::Entry& entry) const;
+  [[nodiscard]] Reaction write(const RequestHead& head, Router::Match match,
+                               const Peer& peer) const;
+  [[nodiscard]] Reaction options(const std::string& route, std::string_view allowed) const;
+  [[nodiscard]] Answer represent(const DocumentPtr& document, const RequestHead& head,
+                                 std::string_view route) const;
+  [[nodiscard]] Answer fault(const Error& error, const RequestHead& head,
+                             std::string_view route) const;
+  [[nodiscard]] std::string_view route_lines(const Router::Entry& entry) const;
+
+  std::string bearer_token_;
+  ServerLimits limits_;
+  std::shared_ptr<const Router> router_;
+  std::string any_route_;                 ///< Header lines of answers without a route.
+  std::vector<std::string> route_lines_;  ///< By entry.
+  std::unique_ptr<RateReport> faults_;
+};
+
+}  // namespace chorus::http

@@ -1,0 +1,52 @@
+#include "common/http/server.h"
+
+#include <thread>
+
+#include "common/http/server_core.h"
+
+namespace chorus::http {
+
+struct Server::Impl {
+  std::shared_ptr<ServerCore> core;
+  std::thread thread;
+  std::uint16_t port = 0;
+};
+
+Server::Server(ServerConfig config, std::shared_ptr<const Router> router)
+    : impl_(std::make_unique<Impl>()) {
+  if (!config.clock) config.clock = std::make_shared<SystemClock>();
+  impl_->core = std::make_shared<ServerCore>(std::move(config), std::move(router));
+}
+
+Server::~Server() { stop(); }
+
+Result<void> Server::start() {
+  if (auto listening = impl_->core->listen(); !listening) return listening;
+  error_code failed;
+  impl_->port = impl_->core->acceptor.local_endpoint(failed).port();
+  impl_->core->subscribe();
+  impl_->core->accept();
+  impl_->core->sweep();
+  impl_->thread = std::thread([core = impl_->core] { core->io.run(); });
+  return {};
+}
+
+std::uint16_t Server::port() const { return impl_->port; }
+
+ServerCounters Server::counters() const {
+  const AtomicCounters& now = impl_->core->counters;
+  const auto read = [](const AtomicCounters::Count& c) {
+    return c.load(std::memory_order_relaxed);
+  };
+  return {read(now.requests),           read(now.refused),          read(now.not_modified),
+          read(now.connections_total),  read(now.connections_open), read(now.long_polls_waiting),
+          read(now.event_streams_open), read(now.events_skipped),   read(now.bytes_sent)};
+}
+
+void Server::stop() {
+  if (!impl_->thread.joinable()) return;
+  net::post(impl_->core->io, [core = impl_->core.get()] { core->begin_stop(); });
+  impl_->thread.join();
+}
+
+}  // namespace chorus::http

@@ -1,0 +1,66 @@
+// What a server's connections share.  Lives on the server's thread, except where it says otherwise.
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "common/base/rate_report.h"
+#include "common/http/asio.h"
+#include "common/http/connection.h"
+#include "common/http/responder.h"
+#include "common/http/server.h"
+
+namespace chorus::http {
+
+/// ServerCounters that other threads may read while the server's thread counts.
+struct AtomicCounters {
+  using Count = std::atomic<std::uint64_t>;
+  Count requests = 0, refused = 0, not_modified = 0, connections_total = 0, connections_open = 0,
+        long_polls_waiting = 0, event_streams_open = 0, events_skipped = 0, bytes_sent = 0;
+};
+
+/// One writer: a plain load and store is cheaper than a locked add.
+inline void count(AtomicCounters::Count& counter, std::uint64_t by = 1) {
+  counter.store(counter.load(std::memory_order_relaxed) + by, std::memory_order_relaxed);
+}
+
+struct ServerCore : std::enable_shared_from_this<ServerCore> {
+  ServerCore(ServerConfig server_config, std::shared_ptr<const Router> routes);
+
+  [[nodiscard]] Result<void> listen();
+  void accept();
+  void on_accepted(error_code failed, Socket socket);
+  void welcome(Socket socket, const tcp::endpoint& remote);
+  void sweep();
+  void subscribe();
+  /// From any thread: wakes who waits for the entry, soon; many calls before that count as one.
+  void post_wake(std::size_t entry);
+  void wake(std::size_t entry);
+  void wait_for(std::size_t entry, std::shared_ptr<Connection> connection);
+  void stop_waiting(std::size_t entry, const Connection* connection);
+  void forget(const Connection* connection);
+  void begin_stop();
+
+  net::io_context io{1};  // First member: destroyed last, after everything that uses it.
+  ServerConfig config;
+  Responder responder;
+  AtomicCounters counters;
+  Acceptor acceptor{io.get_executor()};
+  Timer sweep_timer{io.get_executor()};
+  Timer accept_timer{io.get_executor()};
+  RateReport accept_trouble{"accept failed"};
+
+  SteadyTime now;  ///< Coarse: of the last sweep.
+  bool stopping = false;
+  SteadyTime stop_deadline{};
+  std::unordered_map<const Connection*, std::shared_ptr<Connection>> connections;
+  std::map<std::string, std::size_t> per_peer;
+  std::vector<std::vector<std::shared_ptr<Connection>>> waiting;  ///< By entry.
+  std::unique_ptr<std::atomic<bool>[]> wake_posted;               ///< By entry.
+};
+
+}  // namespace chorus::http

@@ -1,0 +1,53 @@
+#include "common/http/client.h"
+#include "common/http/text.h"
+
+namespace chorus::http {
+namespace {
+
+Result<void> read_port(std::string_view text, std::string_view url, std::uint16_t& port) {
+  constexpr std::uint64_t kMostPort = 65535;
+  const auto number = parse_digits(text);
+  if (!number || *number == 0 || *number > kMostPort)
+    return fail(ErrorCode::InvalidArgument, std::string(url), "a port is a number 1 to 65535");
+  port = static_cast<std::uint16_t>(*number);
+  return {};
+}
+
+bool is_plain(std::string_view text) {
+  for (const char c : text) {
+    if (c <= ' ' || c >= '\x7f' || c == '"' || c == '<' || c == '>' || c == '\\') return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Result<Url> parse_url(std::string_view text) {
+  constexpr std::string_view kScheme = "http://";
+  if (text.size() <= kScheme.size() ||
+      !equal_ignoring_case(text.substr(0, kScheme.size()), kScheme) || !is_plain(text))
+    return fail(ErrorCode::InvalidArgument, std::string(text),
+                "write the address as http://host:port/path");
+  std::string_view rest = text.substr(kScheme.size());
+  rest = rest.substr(0, rest.find('#'));
+  const std::size_t end = rest.find_first_of("/?");
+  std::string_view authority = rest.substr(0, end);
+  Url url;
+  if (end != std::string_view::npos) url.target = rest.substr(end);
+  if (url.target.front() == '?') url.target.insert(0, "/");
+  const std::size_t bracket = authority.find(']');
+  const std::size_t colon = authority.find(':', bracket == std::string_view::npos ? 0 : bracket);
+  if (colon != std::string_view::npos) {
+    if (auto ok = read_port(authority.substr(colon + 1), text, url.port); !ok) return pass(ok);
+    authority = authority.substr(0, colon);
+  }
+  if (authority.starts_with('[') && authority.ends_with(']'))
+    authority = authority.substr(1, authority.size() - 2);
+  if (authority.empty() || authority.find_first_of("@[]") != std::string_view::npos)
+    return fail(ErrorCode::InvalidArgument, std::string(text),
+                "write the address as http://host:port/path, without a user name");
+  url.host = authority;
+  return url;
+}
+
+}  // namespace chorus::http
