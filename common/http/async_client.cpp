@@ -1,12 +1,7 @@
 #include <algorithm>
-#include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/http/parser.hpp>
-#include <boost/beast/http/read.hpp>
-#include <boost/beast/http/string_body.hpp>
-#include <cassert>
 #include <optional>
 
-#include "common/http/asio.h"
+#include "common/http/beast.h"
 #include "common/http/client.h"
 #include "common/http/text.h"
 #include "common/time/clock.h"

@@ -1,0 +1,11 @@
+// The only file that includes Boost.Beast: its response parser, for the client.
+//
+// The server reads requests itself (request_head.h), stricter than Beast 1.74 does.
+#pragma once
+
+#include "common/http/asio.h"
+
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/string_body.hpp>
