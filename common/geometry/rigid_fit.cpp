@@ -28,6 +28,9 @@ Result<Centred> centre(std::span<const Eigen::Vector3d> source,
   Centred sum;
   for (std::size_t i = 0; i < source.size(); ++i) {
     const double w = weight_at(weights, i);
+    if (!(w >= 0)) {
+      return fail(ErrorCode::InvalidArgument, "rigid fit", "weights must be finite and not negative");
+    }
     sum.source += w * source[i];
     sum.target += w * target[i];
     sum.weight += w;
