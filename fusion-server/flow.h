@@ -47,9 +47,9 @@ struct Extrinsics {
   Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
   std::vector<SensorId> chain;  ///< Master first, this sensor last (Otto 5.2.3).
   double error = 0.0;           ///< Summed edge error along the chain [m].
-  Eigen::Matrix<double, 6, 6> covariance =
-      Eigen::Matrix<double, 6,
-                    6>::Zero();  ///< (rotation vector, translation) in world [rad^2, m^2]
+  /// Of (rotation vector, sensor position) in world axes, relative to the master [rad^2, rad m,
+  /// m^2].
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
 /// One overlapping pair: client seen from master side.  An edge; never silently inverted.
@@ -62,6 +62,8 @@ struct PairwiseRegistration {
   std::size_t pairs = 0;  ///< Time-paired correspondences.
   std::size_t inliers = 0;
   double spread = 0.0;  ///< rms radius of the walk about its centroid, horizontally [m].
+  /// Of a small motion exp(omega), tau applied on the target side [rad^2, rad m, m^2].
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
 enum class Verdict { None, Provisional, Good, Refused };

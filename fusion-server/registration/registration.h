@@ -24,25 +24,28 @@ enum class PairMethod {
 };
 
 enum class JointChoice {
-  Neck,   ///< Otto: the neck alone.
-  Core,   ///< Neck, SpineShoulder, Head, SpineMid and the flip-invariant shoulder and hip mid-points.
-  All,    ///< Every joint: for sensors that label left and right themselves, and walks that are none.
+  Neck,  ///< Otto: the neck alone.
+  Core,  ///< Neck, SpineShoulder, Head, SpineMid and the flip-invariant shoulder and hip
+         ///< mid-points.
+  All,  ///< Every joint: for sensors that label left and right themselves, and walks that are none.
 };
 
 struct RegistrationConfig {
   PairMethod method = PairMethod::TimedRobust;
   JointChoice joints = JointChoice::Core;
-  bool use_floor = true;              ///< Pitch, roll and height from the floor plane where there is one.
+  bool use_floor = true;  ///< Pitch, roll and height from the floor plane where there is one.
   Duration max_gap = std::chrono::milliseconds(60);  ///< Widest bracket for a correspondence.
-  double min_distance = 0.5;          ///< [m]
-  double max_distance = 6.0;          ///< [m]
-  double max_speed = 2.5;             ///< Person faster than this is not paired [m/s].
-  std::size_t min_pairs = 60;         ///< Fewer correspondences make no edge.
-  double min_spread = 0.25;           ///< Narrower walks are refused [m].
-  double max_edge_rms = 0.15;         ///< Wider residuals make no edge [m].
-  double good_rms = 0.08;             ///< Above this the verdict is provisional [m].
+  double min_distance = 0.5;                         ///< [m]
+  double max_distance = 6.0;                         ///< [m]
+  double max_speed = 2.5;      ///< Person faster than this is not paired [m/s].
+  std::size_t min_pairs = 60;  ///< Fewer correspondences make no edge.
+  double min_spread = 0.25;    ///< Narrower walks are refused [m].
+  double max_edge_rms = 0.15;  ///< Wider residuals make no edge [m].
+  double good_rms = 0.08;      ///< Above this the verdict is provisional [m].
   Duration good_duration = std::chrono::seconds(20);  ///< Shorter walks stay provisional.
-  std::optional<SensorId> master;     ///< Default: the sensor with the best connection to all others.
+  /// Above this 95 % radius of a sensor's place on the floor the verdict is provisional [m].
+  double good_position = 0.05;
+  std::optional<SensorId> master;  ///< Default: the sensor with the best connection to all others.
 };
 
 /// One pair of tracks to one edge; an Error says in a full sentence why there is none.
@@ -50,8 +53,9 @@ struct RegistrationConfig {
                                                          const WalkTrack& source,
                                                          const RegistrationConfig& config);
 
-/// All tracks to one registration.  Verdict and reasons are always filled; sensors that could not be linked
-/// are missing from `sensors` and named in `reasons` ("sensors s3 and s4 never saw the person together").
+/// All tracks to one registration.  Verdict and reasons are always filled; sensors that could not
+/// be linked are missing from `sensors` and named in `reasons` ("sensors s3 and s4 never saw the
+/// person together").
 [[nodiscard]] Registration solve(const std::vector<WalkTrack>& walk, Timestamp now,
                                  const RegistrationConfig& config);
 

@@ -1,0 +1,111 @@
+#include "fusion-server/registration/floor_constraint.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "common/geometry/rotation.h"
+
+namespace chorus::registration {
+namespace {
+
+constexpr double kLeastUp = 0.17;      // cos(80 deg): a sensor tilted further has no sense of up
+constexpr double kLeastHeight = 0.10;  // [m] of the sensor over its floor
+constexpr double kFeetBelow = 0.25;    // [m] feet deeper than this contradict the plane
+constexpr double kFeetAbove = 0.60;    // [m] feet that never come lower than this contradict it too
+constexpr double kLowestShare = 0.10;  // percentile that counts as "touching the floor"
+constexpr double kViewIsVertical =
+    0.05;  // horizontal part of the view below which yaw is left alone
+constexpr double kFootJointHeight = 0.05;  // [m] the lowest foot joint over the sole
+
+constexpr std::array kFeet{JointId::AnkleLeft, JointId::AnkleRight, JointId::FootLeft,
+                           JointId::FootRight};
+
+double quantile(std::vector<double>& values, double share) {
+  const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + rank, values.end());
+  return values[static_cast<std::size_t>(rank)];
+}
+
+std::optional<FloorPlane> median_floor(const WalkTrack& walk) {
+  std::array<std::vector<double>, 4> parts;
+  for (const SensorFrame& frame : walk.frames) {
+    if (!frame.floor || !frame.floor->normal.allFinite()) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      parts[static_cast<std::size_t>(axis)].push_back(frame.floor->normal[axis]);
+    }
+    parts[3].push_back(frame.floor->offset);
+  }
+  if (parts[3].empty()) return std::nullopt;
+  const auto plane = make_plane(quantile(parts[0], 0.5), quantile(parts[1], 0.5),
+                                quantile(parts[2], 0.5), quantile(parts[3], 0.5));
+  if (!plane) return std::nullopt;
+  return *plane;
+}
+
+/// Height over the plane that the lowest tenth of all foot joints stays under.
+std::optional<double> lowest_feet(const WalkTrack& walk, const FloorPlane& floor) {
+  std::vector<double> heights;
+  for (const SensorFrame& frame : walk.frames) {
+    for (const BodyFrame& body : frame.bodies) {
+      for (const JointId foot : kFeet) {
+        const Joint& joint = body.skeleton[foot];
+        if (joint.seen()) heights.push_back(floor.distance(joint.position));
+      }
+    }
+  }
+  if (heights.empty()) return std::nullopt;
+  return quantile(heights, kLowestShare);
+}
+
+std::string objection_to(const FloorPlane& floor, const WalkTrack& walk) {
+  if (floor.normal.y() < kLeastUp) return "its floor plane does not point up";
+  if (floor.offset < kLeastHeight) return "its floor plane is not below it";
+  const auto feet = lowest_feet(walk, floor);
+  if (feet && *feet < -kFeetBelow) {
+    return fmt::format("its floor plane lies {:.2f} m above the person's feet", -*feet);
+  }
+  if (feet && *feet > kFeetAbove) {
+    return fmt::format("its floor plane lies {:.2f} m below the person's feet", *feet);
+  }
+  return {};
+}
+
+}  // namespace
+
+FloorSight floor_of(const WalkTrack& walk) {
+  const std::optional<FloorPlane> floor = median_floor(walk);
+  if (!floor) return {std::nullopt, "it reports no floor plane"};
+  std::string objection = objection_to(*floor, walk);
+  if (!objection.empty()) return {std::nullopt, std::move(objection)};
+  return {floor, {}};
+}
+
+std::optional<FloorPlane> floor_from_body(const WalkTrack& walk) {
+  Eigen::Vector3d up = Eigen::Vector3d::Zero();
+  for (const SensorFrame& frame : walk.frames) {
+    for (const BodyFrame& body : frame.bodies) {
+      const Joint& neck = body.skeleton[JointId::Neck];
+      const Joint& base = body.skeleton[JointId::SpineBase];
+      if (!neck.seen() || !base.seen()) continue;
+      const Eigen::Vector3d spine = neck.position - base.position;
+      if (spine.norm() > 0) up += spine.normalized();
+    }
+  }
+  const auto direction = make_plane(up.x(), up.y(), up.z(), 0.0);
+  if (!direction) return std::nullopt;
+  FloorPlane floor = *direction;
+  const auto feet = lowest_feet(walk, floor);
+  floor.offset = feet ? kFootJointHeight - *feet : 0.0;
+  return floor;
+}
+
+Eigen::Isometry3d world_from_master(const FloorPlane& floor_in_master) {
+  const Eigen::Isometry3d levelled_from_master = level(floor_in_master);
+  const Eigen::Vector3d view = levelled_from_master.linear() * Eigen::Vector3d::UnitZ();
+  if (std::hypot(view.x(), view.z()) < kViewIsVertical) return levelled_from_master;
+  return Eigen::Isometry3d(about_y(-std::atan2(view.x(), view.z()))) * levelled_from_master;
+}
+
+}  // namespace chorus::registration

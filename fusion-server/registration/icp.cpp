@@ -1,0 +1,138 @@
+#include "fusion-server/registration/icp.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <numbers>
+
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+#include <pcl/registration/correspondence_rejection_trimmed.h>
+#include <pcl/registration/icp.h>
+
+#include "common/geometry/rotation.h"
+
+namespace chorus::registration {
+namespace {
+
+using Points = pcl::PointCloud<pcl::PointXYZ>;
+using Icp = pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ, double>;
+
+constexpr int kRefineIterations = 20;
+constexpr int kSeedIterations = 40;
+constexpr int kYawSeeds = 24;             // notes 1.1: 15 deg apart
+constexpr float kKeptShare = 0.9F;        // notes 1.1: trimmed 90 %
+constexpr double kSettled = 1e-9;         // squared metres and 1 - cos of the last step
+constexpr std::size_t kMostPoints = 300;  // a 10 s walk at 30 Hz; more costs time and gives nothing
+constexpr std::size_t kLeastPoints = 10;
+
+/// At most kMostPoints, evenly taken.
+Points::Ptr cloud_of(Cloud points) {
+  Points::Ptr cloud(new Points);
+  const std::size_t step =
+      std::max<std::size_t>(1, (points.size() + kMostPoints - 1) / kMostPoints);
+  for (std::size_t i = 0; i < points.size(); i += step) {
+    const Eigen::Vector3f p = points[i].cast<float>();
+    if (p.allFinite()) cloud->push_back({p.x(), p.y(), p.z()});
+  }
+  return cloud;
+}
+
+Eigen::Vector3d centroid(const Points& cloud) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const auto& p : cloud) sum += p.getVector3fMap().cast<double>();
+  return sum / static_cast<double>(std::max<std::size_t>(1, cloud.size()));
+}
+
+void set_up(Icp& icp, const Points::Ptr& source, const Points::Ptr& target, int iterations) {
+  icp.setInputSource(source);
+  icp.setInputTarget(target);
+  icp.setMaximumIterations(iterations);
+  icp.setTransformationEpsilon(kSettled);
+  icp.setEuclideanFitnessEpsilon(kSettled);
+}
+
+/// Runs from `start`; the residual is the root mean of the kept squared nearest distances.
+std::optional<IcpFit> run(Icp& icp, const Eigen::Isometry3d& start, double kept_share) {
+  Points moved;
+  icp.align(moved, start.matrix());
+  if (!icp.hasConverged() || moved.empty()) return std::nullopt;
+  std::vector<float> squares;
+  std::vector<int> index(1);
+  std::vector<float> square(1);
+  for (const auto& p : moved) {
+    if (icp.getSearchMethodTarget()->nearestKSearch(p, 1, index, square) > 0) {
+      squares.push_back(square[0]);
+    }
+  }
+  std::sort(squares.begin(), squares.end());
+  IcpFit fit;
+  fit.accepted = static_cast<std::size_t>(kept_share * static_cast<double>(squares.size()));
+  double sum = 0.0;
+  for (std::size_t i = 0; i < fit.accepted; ++i) sum += static_cast<double>(squares[i]);
+  if (fit.accepted == 0) return std::nullopt;
+  fit.rms = std::sqrt(sum / static_cast<double>(fit.accepted));
+  const Eigen::Matrix4d matrix = icp.getFinalTransformation();
+  fit.target_from_source.linear() =
+      Eigen::Quaterniond(Eigen::Matrix3d(matrix.topLeftCorner<3, 3>()))
+          .normalized()
+          .toRotationMatrix();
+  fit.target_from_source.translation() = matrix.topRightCorner<3, 1>();
+  return fit;
+}
+
+Eigen::Isometry3d seed(double yaw, const Eigen::Vector3d& target, const Eigen::Vector3d& source) {
+  Eigen::Isometry3d target_from_source = Eigen::Isometry3d::Identity();
+  target_from_source.linear() = about_y(yaw).toRotationMatrix();
+  target_from_source.translation() = target - target_from_source.linear() * source;
+  return target_from_source;
+}
+
+std::optional<IcpFit> best_of_seeds(const Points::Ptr& from, const Points::Ptr& to) {
+  Icp icp;
+  set_up(icp, from, to, kSeedIterations);
+  auto trimmed = std::make_shared<pcl::registration::CorrespondenceRejectorTrimmed>();
+  trimmed->setOverlapRatio(kKeptShare);
+  icp.addCorrespondenceRejector(trimmed);
+  std::optional<IcpFit> best;
+  for (int i = 0; i < kYawSeeds; ++i) {
+    const double yaw = 2.0 * std::numbers::pi * i / kYawSeeds;
+    const auto fit = run(icp, seed(yaw, centroid(*to), centroid(*from)), kKeptShare);
+    if (fit && (!best || fit->rms < best->rms)) best = fit;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::optional<IcpFit> refine_by_icp(Cloud source, Cloud target, const Eigen::Isometry3d& start,
+                                    double reach) {
+  try {
+    const Points::Ptr from = cloud_of(source);
+    const Points::Ptr to = cloud_of(target);
+    if (from->size() < kLeastPoints || to->size() < kLeastPoints) return std::nullopt;
+    Icp icp;
+    set_up(icp, from, to, kRefineIterations);
+    icp.setMaxCorrespondenceDistance(reach);
+    return run(icp, start, 1.0);
+  } catch (const std::exception&) {  // PCL throws on degenerate clouds; the start is kept then
+    return std::nullopt;
+  }
+}
+
+Result<IcpFit> icp_from_yaw_seeds(Cloud source, Cloud target) {
+  try {
+    const Points::Ptr from = cloud_of(source);
+    const Points::Ptr to = cloud_of(target);
+    if (from->size() >= kLeastPoints && to->size() >= kLeastPoints) {
+      if (const auto best = best_of_seeds(from, to)) return *best;
+    }
+  } catch (const std::exception& error) {
+    return fail(ErrorCode::InvalidArgument, "icp", error.what());
+  }
+  return fail(ErrorCode::InvalidArgument, "icp",
+              "the neck clouds are too small or too degenerate to be matched");
+}
+
+}  // namespace chorus::registration

@@ -1,0 +1,30 @@
+// Iterative closest point on neck clouds, by PCL (Otto 5.2, 5.2.1).
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include <Eigen/Geometry>
+
+#include "common/base/result.h"
+
+namespace chorus::registration {
+
+using Cloud = std::span<const Eigen::Vector3d>;
+
+struct IcpFit {
+  Eigen::Isometry3d target_from_source = Eigen::Isometry3d::Identity();
+  double rms = 0.0;  ///< To the nearest target point, over the accepted correspondences [m].
+  std::size_t accepted = 0;
+};
+
+/// Point-to-point refinement of a good start; points farther than `reach` from any target point are
+/// left out.  None when it does not converge.
+[[nodiscard]] std::optional<IcpFit> refine_by_icp(Cloud source, Cloud target,
+                                                  const Eigen::Isometry3d& start, double reach);
+
+/// The published method as far as it is stated: levelled clouds, no time, no start.  Tries 24 yaws
+/// about the centroids, keeps the best 90 % of the correspondences, takes the least residual.
+[[nodiscard]] Result<IcpFit> icp_from_yaw_seeds(Cloud source, Cloud target);
+
+}  // namespace chorus::registration

@@ -1,0 +1,262 @@
+#include "fusion-server/registration/pair_registration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <Eigen/Eigenvalues>
+
+#include "common/geometry/rotation.h"
+#include "fusion-server/registration/icp.h"
+#include "fusion-server/registration/pairs.h"
+#include "fusion-server/registration/refine.h"
+#include "fusion-server/registration/robust_fit.h"
+
+namespace chorus::registration {
+namespace {
+
+constexpr double kFloorTilt = deg(0.4) * std::numbers::sqrt2;  // notes 1.4 step 1, of two floors
+constexpr double kFloorHeight = mm(10) * std::numbers::sqrt2;  // the same
+constexpr double kLeastAgreement = 0.3;  // share of inliers below which nothing is believed
+constexpr double kLeastSlimness =
+    0.01;                         // lambda2 / lambda1 of the walk: a line at 10 % lateral rms
+constexpr double kBias = mm(10);  // view-dependent joint bias at 90 deg and beyond, notes 1.6
+constexpr std::size_t kMostPairs = 6000;  // more cost time; successive frames repeat one another
+constexpr double kIcpReach = 0.10;        // [m] beyond it a neck point has no partner
+
+/// Both sides with the floor at y = 0 where both floors are known, unchanged otherwise.
+struct Levelled {
+  bool both = false;
+  Eigen::Isometry3d level_from_target = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d level_from_source = Eigen::Isometry3d::Identity();
+};
+
+Levelled level_both(const Walker& target, const Walker& source, bool use_floor) {
+  Levelled levelled;
+  levelled.both = use_floor && target.floor.floor && source.floor.floor;
+  if (!levelled.both) return levelled;
+  levelled.level_from_target = level(*target.floor.floor);
+  levelled.level_from_source = level(*source.floor.floor);
+  return levelled;
+}
+
+std::string names(const Walker& target, const Walker& source) {
+  return fmt::format("sensors {} and {}", target.trail.sensor.str(), source.trail.sensor.str());
+}
+
+Result<void> enough(const Pairing& pairing, const std::string& both,
+                    const RegistrationConfig& config) {
+  if (pairing.together == 0) {
+    return fail(ErrorCode::NotFound, both, fmt::format("{} never saw the person together", both));
+  }
+  if (pairing.pairs.size() >= config.min_pairs) return {};
+  std::string why =
+      fmt::format("{} saw the person together only briefly: {} usable pairs of {} needed", both,
+                  pairing.pairs.size(), config.min_pairs);
+  if (pairing.too_fast > pairing.together / 2) why += "; walk more slowly";
+  if (pairing.out_of_range > pairing.together / 2) {
+    why += fmt::format("; stay between {:.1f} m and {:.1f} m from both", config.min_distance,
+                       config.max_distance);
+  }
+  return fail(ErrorCode::Unavailable, both, why);
+}
+
+/// Whole instants are dropped evenly, never single joints.
+std::vector<Pair> thinned(const Pairing& pairing) {
+  const std::size_t keep_every = (pairing.pairs.size() + kMostPairs - 1) / kMostPairs;
+  if (keep_every <= 1) return pairing.pairs;
+  std::vector<Pair> kept;
+  for (const Pair& pair : pairing.pairs) {
+    if (pair.instant % keep_every == 0) kept.push_back(pair);
+  }
+  return kept;
+}
+
+void apply(std::vector<Pair>& pairs, const Levelled& levelled) {
+  for (Pair& pair : pairs) {
+    pair.x_in_target = levelled.level_from_target * pair.x_in_target;
+    pair.x_in_source = levelled.level_from_source * pair.x_in_source;
+  }
+}
+
+/// The extent of the walk: the two largest principal axes, of the slot seen most (or the first of
+/// equals).
+struct Extent {
+  double spread = 0.0;    ///< [m]
+  double slimness = 1.0;  ///< lambda2 / lambda1
+};
+
+Extent extent_of(const std::vector<Pair>& pairs, const std::vector<double>& weights) {
+  std::array<std::size_t, kJointCount> seen{};
+  for (std::size_t i = 0; i < pairs.size(); ++i) seen[pairs[i].slot] += weights[i] > 0 ? 1 : 0;
+  const auto slot =
+      static_cast<std::size_t>(std::max_element(seen.begin(), seen.end()) - seen.begin());
+  if (seen[slot] == 0) return {};
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  const auto each = [&](const auto& use) {
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (pairs[i].slot == slot && weights[i] > 0) use(pairs[i].x_in_target);
+    }
+  };
+  each([&](const Eigen::Vector3d& x) { centre += x / static_cast<double>(seen[slot]); });
+  each([&](const Eigen::Vector3d& x) { scatter += (x - centre) * (x - centre).transpose(); });
+  scatter /= static_cast<double>(seen[slot]);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scatter, Eigen::EigenvaluesOnly);
+  const double major = std::max(0.0, eigen.eigenvalues()[2]);
+  const double minor = std::max(0.0, eigen.eigenvalues()[1]);
+  return {std::sqrt(major + minor), major > 0 ? minor / major : 0.0};
+}
+
+/// The neck clouds of the pairs, or whatever slot comes first.
+void clouds_of(const std::vector<Pair>& pairs, std::vector<Eigen::Vector3d>& target,
+               std::vector<Eigen::Vector3d>& source) {
+  const std::size_t slot = pairs.front().slot;
+  for (const Pair& pair : pairs) {
+    if (pair.slot != slot) continue;
+    target.push_back(pair.x_in_target);
+    source.push_back(pair.x_in_source);
+  }
+}
+
+/// Otto 5.2: ICP on the neck clouds.  Kept only where the timed pairs, which know more, do not
+/// object.
+double refine_with_icp(const std::vector<Pair>& pairs, const RobustFit& fit,
+                       Eigen::Isometry3d& target_from_source) {
+  std::vector<Eigen::Vector3d> target;
+  std::vector<Eigen::Vector3d> source;
+  clouds_of(pairs, target, source);
+  const double before = rms_of(pairs, fit.weights, target_from_source);
+  const auto icp = refine_by_icp(source, target, target_from_source, kIcpReach);
+  if (!icp) return before;
+  const double after = rms_of(pairs, fit.weights, icp->target_from_source);
+  if (after <= before) target_from_source = icp->target_from_source;
+  return after;
+}
+
+/// Bias that no length of walk removes: grows with the angle between the two lines of sight.
+Matrix6 bias_floor(const Eigen::Isometry3d& target_from_source) {
+  const double angle = angular_distance(Eigen::Quaterniond(target_from_source.linear()),
+                                        Eigen::Quaterniond::Identity());
+  const double bias = kBias * std::min(1.0, angle / deg(90));
+  Matrix6 covariance = Matrix6::Zero();
+  covariance.bottomRightCorner<3, 3>() = bias * bias * Eigen::Matrix3d::Identity();
+  return covariance;
+}
+
+Result<void> believable(const PairwiseRegistration& edge, const Extent& extent,
+                        const std::string& both, const RegistrationConfig& config) {
+  if (extent.spread < config.min_spread) {
+    return fail(ErrorCode::Unavailable, both,
+                fmt::format("{}: walk further out, the walk they share spread only {:.2f} m of "
+                            "{:.2f} m needed",
+                            both, extent.spread, config.min_spread));
+  }
+  const double agreement = static_cast<double>(edge.inliers) / static_cast<double>(edge.pairs);
+  if (edge.rms <= config.max_edge_rms && agreement >= kLeastAgreement) return {};
+  return fail(
+      ErrorCode::Conflict, both,
+      fmt::format(
+          "{} disagree about the walk: {:.0f} % of the pairs fit within {:.3f} m rms; check "
+          "their clocks and that one person walks alone",
+          both, 100.0 * agreement, edge.rms));
+}
+
+/// A line tells nothing about the turn around it, unless the floor or the body's height does.
+Result<void> determined(const Extent& extent, bool levelled, const std::string& both,
+                        JointChoice joints) {
+  if (extent.slimness >= kLeastSlimness || levelled || joints != JointChoice::Neck) return {};
+  return fail(
+      ErrorCode::Unavailable, both,
+      fmt::format("{}: the walk was one line; walk across too, or let both see the floor", both));
+}
+
+Result<PairwiseRegistration> timed(const Walker& target, const Walker& source,
+                                   const RegistrationConfig& config) {
+  const std::string both = names(target, source);
+  const Pairing pairing = pair_up(target.trail, source.trail, config);
+  if (const auto ok = enough(pairing, both, config); !ok) return pass(ok);
+  const Levelled levelled = level_both(target, source, config.use_floor);
+  std::vector<Pair> pairs = thinned(pairing);
+  apply(pairs, levelled);
+  const auto fit = fit_robustly(pairs, levelled.both ? Freedom::Yaw : Freedom::Full);
+  if (!fit) return fail(ErrorCode::Unavailable, both, both + ": " + fit.error().message);
+  const Extent extent = extent_of(pairs, fit->weights);
+  if (const auto ok = determined(extent, levelled.both, both, config.joints); !ok) return pass(ok);
+  const FloorPrior prior = levelled.both ? FloorPrior{kFloorTilt, kFloorHeight} : FloorPrior{};
+  const Refined refined = refine(pairs, *fit, prior);
+  Eigen::Isometry3d level_from_level = refined.target_from_source;
+  PairwiseRegistration edge{target.trail.sensor, source.trail.sensor};
+  edge.icp_rms = refine_with_icp(pairs, *fit, level_from_level);
+  edge.rms = rms_of(pairs, fit->weights, level_from_level);
+  edge.pairs = pairs.size();
+  edge.inliers = fit->inliers;
+  edge.spread = extent.spread;
+  if (const auto ok = believable(edge, extent, both, config); !ok) return pass(ok);
+  const Eigen::Isometry3d target_from_level = levelled.level_from_target.inverse();
+  edge.target_from_source = target_from_level * level_from_level * levelled.level_from_source;
+  const Matrix6 turn = adjoint(target_from_level);
+  edge.covariance =
+      turn * (refined.covariance + bias_floor(edge.target_from_source)) * turn.transpose();
+  return edge;
+}
+
+std::vector<Eigen::Vector3d> neck_cloud(const Trail& trail,
+                                        const Eigen::Isometry3d& level_from_sensor) {
+  std::vector<Eigen::Vector3d> cloud;
+  for (const TrailFrame& frame : trail.frames) {
+    if (frame.has(0)) cloud.push_back(level_from_sensor * frame.points[0]);
+  }
+  return cloud;
+}
+
+/// The floor fixes height, pitch and roll after the fact, as the paper's "floor plane estimation
+/// compensates".
+Eigen::Isometry3d on_the_floor(const Eigen::Isometry3d& level_from_level) {
+  Eigen::Isometry3d flat = Eigen::Isometry3d::Identity();
+  flat.linear() = about_y(yaw_of(level_from_level.linear())).toRotationMatrix();
+  flat.translation() = level_from_level.translation();
+  flat.translation().y() = 0;
+  return flat;
+}
+
+Result<PairwiseRegistration> untimed(const Walker& target, const Walker& source,
+                                     const RegistrationConfig& config) {
+  const std::string both = names(target, source);
+  const Levelled levelled = level_both(target, source, config.use_floor);
+  const auto to = neck_cloud(target.trail, levelled.level_from_target);
+  const auto from = neck_cloud(source.trail, levelled.level_from_source);
+  const auto fit = icp_from_yaw_seeds(from, to);
+  if (!fit) return fail(ErrorCode::Unavailable, both, both + ": " + fit.error().message);
+  const Eigen::Isometry3d level_from_level =
+      levelled.both ? on_the_floor(fit->target_from_source) : fit->target_from_source;
+  PairwiseRegistration edge{target.trail.sensor, source.trail.sensor};
+  edge.rms = edge.icp_rms = fit->rms;
+  edge.pairs = from.size();
+  edge.inliers = fit->accepted;
+  edge.spread = config.min_spread;
+  edge.target_from_source =
+      levelled.level_from_target.inverse() * level_from_level * levelled.level_from_source;
+  return edge;
+}
+
+}  // namespace
+
+Walker walker_of(const WalkTrack& walk, const RegistrationConfig& config) {
+  const bool neck_only = config.method == PairMethod::IcpOnly;
+  return {trail_of(walk, neck_only ? JointChoice::Neck : config.joints), floor_of(walk)};
+}
+
+Result<PairwiseRegistration> register_walkers(const Walker& target, const Walker& source,
+                                              const RegistrationConfig& config) {
+  return config.method == PairMethod::IcpOnly ? untimed(target, source, config)
+                                              : timed(target, source, config);
+}
+
+Result<PairwiseRegistration> register_pair(const WalkTrack& target, const WalkTrack& source,
+                                           const RegistrationConfig& config) {
+  return register_walkers(walker_of(target, config), walker_of(source, config), config);
+}
+
+}  // namespace chorus::registration

@@ -1,0 +1,25 @@
+// Two trails to one edge of the graph.
+#pragma once
+
+#include <string>
+
+#include "fusion-server/registration/floor_constraint.h"
+#include "fusion-server/registration/trail.h"
+
+namespace chorus::registration {
+
+/// One sensor's walk with everything that is worked out once per sensor.
+struct Walker {
+  Trail trail;
+  FloorSight floor;
+};
+
+[[nodiscard]] Walker walker_of(const WalkTrack& walk, const RegistrationConfig& config);
+
+/// Error codes: NotFound, the two never saw the person together; Unavailable, too little was seen;
+/// Conflict, what they saw does not fit together.
+[[nodiscard]] Result<PairwiseRegistration> register_walkers(const Walker& target,
+                                                            const Walker& source,
+                                                            const RegistrationConfig& config);
+
+}  // namespace chorus::registration

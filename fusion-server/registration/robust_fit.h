@@ -1,0 +1,33 @@
+// Closed-form rigid fit made robust: graduated non-convexity, then Tukey re-weighting (algorithms
+// notes 1.4).
+//
+// Starts from nothing (no initial guess) and survives more than half of the pairs being wrong in
+// incoherent ways.
+#pragma once
+
+#include <vector>
+
+#include "common/geometry/rigid_fit.h"
+#include "fusion-server/registration/pairs.h"
+
+namespace chorus::registration {
+
+enum class Freedom {
+  Yaw,   ///< Both sides levelled: rotation about +y and translation.
+  Full,  ///< Six degrees of freedom.
+};
+
+struct RobustFit {
+  Eigen::Isometry3d target_from_source = Eigen::Isometry3d::Identity();
+  std::vector<double> weights;  ///< Per pair, in [0, 1]; zero for outliers.
+  double rms = 0.0;             ///< Over the pairs with positive weight [m].
+  double scale = 0.0;           ///< Per-axis standard deviation in units of the pairs' own sigma.
+  std::size_t inliers = 0;
+};
+
+/// `sigma_factor` scales the pairs' own sigmas to the expected ones; it is doubled until half of
+/// the pairs agree, so that noisy sensors are not fitted to a lucky few.
+[[nodiscard]] Result<RobustFit> fit_robustly(const std::vector<Pair>& pairs, Freedom freedom,
+                                             double sigma_factor = 1.0);
+
+}  // namespace chorus::registration

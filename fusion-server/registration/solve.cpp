@@ -1,0 +1,278 @@
+#include "fusion-server/registration/registration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <Eigen/Eigenvalues>
+
+#include "fusion-server/registration/adjoint.h"
+#include "fusion-server/registration/pair_registration.h"
+#include "fusion-server/registration/transform_graph.h"
+
+namespace chorus::registration {
+namespace {
+
+constexpr double kRadius95 = 2.4477;   // sqrt of chi^2 with 2 degrees of freedom at 95 %
+constexpr double kLeastUpright = 0.0;  // cos of the tilt beyond which a sensor would hang head down
+constexpr double kLeastHeight = 0.0;   // [m] a sensor under the floor is a wrong solution
+
+/// Why two sensors have no edge.
+struct Refusal {
+  SensorId target;
+  SensorId source;
+  Error error;
+};
+
+/// Everything between the walk and the verdict.
+struct Work {
+  const std::vector<WalkTrack>& walk;
+  const RegistrationConfig& config;
+  std::map<SensorId, Walker> walkers;
+  std::map<SensorId, const WalkTrack*> tracks;
+  std::vector<Refusal> refusals;
+  Registration result;
+  bool doubtful = false;  ///< Something speaks against "good".
+
+  void doubt(std::string reason) {
+    doubtful = true;
+    if (std::find(result.reasons.begin(), result.reasons.end(), reason) == result.reasons.end()) {
+      result.reasons.push_back(std::move(reason));
+    }
+  }
+};
+
+void reduce_tracks(Work& work) {
+  for (const WalkTrack& track : work.walk) {
+    if (!work.tracks.emplace(track.sensor, &track).second) continue;
+    work.walkers.emplace(track.sensor, walker_of(track, work.config));
+  }
+}
+
+void register_pairs(Work& work) {
+  for (auto target = work.walkers.begin(); target != work.walkers.end(); ++target) {
+    for (auto source = std::next(target); source != work.walkers.end(); ++source) {
+      auto edge = register_walkers(target->second, source->second, work.config);
+      if (edge) {
+        work.result.edges.push_back(std::move(*edge));
+      } else {
+        work.refusals.push_back({target->first, source->first, edge.error()});
+      }
+    }
+  }
+}
+
+/// Reaches most sensors; then least total error; then least id.
+SensorId best_master(const Work& work) {
+  SensorId best;
+  std::size_t most = 0;
+  double least = 0.0;
+  for (const auto& [sensor, walker] : work.walkers) {
+    const auto chains = best_chains(sensor, work.result.edges);
+    double total = 0.0;
+    for (const auto& [other, chain] : chains) total += chain.error;
+    if (chains.size() < most || (chains.size() == most && total >= least)) continue;
+    best = sensor;
+    most = chains.size();
+    least = total;
+  }
+  return best;
+}
+
+void choose_master(Work& work) {
+  const auto& wanted = work.config.master;
+  if (wanted && work.walkers.contains(*wanted)) {
+    work.result.master = *wanted;
+    return;
+  }
+  if (wanted) {
+    work.doubt(fmt::format("the configured master {} took no part in the walk", wanted->str()));
+  }
+  work.result.master = best_master(work);
+}
+
+/// The master's own floor; else the nearest sensor's, brought over; else the upright body's.
+FloorPlane floor_in_master(Work& work, const std::map<SensorId, Chain>& chains) {
+  const SensorId& master = work.result.master;
+  const FloorSight& own = work.walkers.at(master).floor;
+  if (work.config.use_floor && own.floor) return *own.floor;
+  if (work.config.use_floor) {
+    const SensorId* lender = nullptr;
+    for (const auto& [sensor, chain] : chains) {
+      if (!work.walkers.at(sensor).floor.floor) continue;
+      if (!lender || chain.error < chains.at(*lender).error) lender = &sensor;
+    }
+    if (lender) {
+      const Eigen::Isometry3d& master_from_lender = chains.at(*lender).master_from_sensor;
+      const FloorPlane& lent = *work.walkers.at(*lender).floor.floor;
+      const Eigen::Vector3d normal = master_from_lender.linear() * lent.normal;
+      return {normal, lent.offset - normal.dot(master_from_lender.translation())};
+    }
+  }
+  work.doubt("no usable floor plane: the floor was guessed from the upright body and its feet");
+  return floor_from_body(*work.tracks.at(master)).value_or(FloorPlane{});
+}
+
+/// "would hang head down", or nothing when the place is possible.
+std::optional<std::string> impossible(const Eigen::Isometry3d& world_from_sensor) {
+  if (!world_from_sensor.matrix().allFinite()) return "has no finite place";
+  if (world_from_sensor.linear()(1, 1) < kLeastUpright) return "would hang head down";
+  const double height = world_from_sensor.translation().y();
+  if (height < kLeastHeight) return fmt::format("would stand {:.2f} m below the floor", -height);
+  return std::nullopt;
+}
+
+void place_sensors(Work& work) {
+  const auto chains = best_chains(work.result.master, work.result.edges);
+  const Eigen::Isometry3d in_world = world_from_master(floor_in_master(work, chains));
+  const Matrix6 turn = adjoint(in_world);
+  for (const auto& [sensor, chain] : chains) {
+    Extrinsics place;
+    place.world_from_sensor = in_world * chain.master_from_sensor;
+    place.chain = chain.sensors;
+    place.error = chain.error;
+    const Matrix6 shift = at_point(place.world_from_sensor.translation()) * turn;
+    place.covariance = shift * chain.covariance * shift.transpose();
+    const bool is_master = sensor == work.result.master;
+    if (const auto why = impossible(place.world_from_sensor); why && !is_master) {
+      work.doubt(fmt::format("sensor {} {}: its registration was refused", sensor.str(), *why));
+    } else {
+      work.result.sensors.emplace(sensor, std::move(place));
+    }
+  }
+}
+
+bool linked(const Work& work, const SensorId& sensor) {
+  return work.result.sensors.contains(sensor);
+}
+
+/// What keeps this sensor out: the reasons of its pairs with linked sensors, "never together"
+/// summed up.
+void explain_unlinked(Work& work, const SensorId& sensor) {
+  std::vector<std::string> strangers;
+  std::vector<std::string> reasons;
+  for (const Refusal& refusal : work.refusals) {
+    if (refusal.target != sensor && refusal.source != sensor) continue;
+    const SensorId& other = refusal.target == sensor ? refusal.source : refusal.target;
+    if (!linked(work, other)) continue;
+    if (refusal.error.code == ErrorCode::NotFound) {
+      strangers.push_back(other.str());
+    } else {
+      reasons.push_back(refusal.error.message);
+    }
+  }
+  if (work.walkers.at(sensor).trail.frames.empty()) {
+    reasons = {fmt::format("sensor {} saw nobody alone during the walk", sensor.str())};
+  } else if (strangers.size() == 1 && reasons.empty()) {
+    const auto [first, second] = std::minmax(sensor.str(), strangers.front());
+    reasons = {fmt::format("sensors {} and {} never saw the person together", first, second)};
+  } else if (reasons.empty()) {
+    reasons = {fmt::format("sensor {} never saw the person together with any of {}", sensor.str(),
+                           fmt::join(strangers, ", "))};
+  }
+  for (std::string& reason : reasons) work.doubt(std::move(reason));
+}
+
+void explain_floor(Work& work, const SensorId& sensor) {
+  const FloorSight& floor = work.walkers.at(sensor).floor;
+  if (!work.config.use_floor || floor.floor) return;
+  work.doubt(fmt::format("sensor {}: {}, so its pitch, roll and height come from the walk alone",
+                         sensor.str(), floor.objection));
+}
+
+double radius95(const Extrinsics& place) {
+  const Eigen::Matrix2d horizontal = place.covariance.block<3, 3>(3, 3)({0, 2}, {0, 2});
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(horizontal, Eigen::EigenvaluesOnly);
+  return kRadius95 * std::sqrt(std::max(0.0, eigen.eigenvalues()[1]));
+}
+
+/// Longest time any sensor watched the walk.
+Duration duration_of(const Work& work) {
+  Duration longest{};
+  for (const auto& [sensor, walker] : work.walkers) {
+    const auto& frames = walker.trail.frames;
+    if (!frames.empty()) {
+      longest = std::max(longest, frames.back().captured - frames.front().captured);
+    }
+  }
+  return longest;
+}
+
+/// Edges that some chain walks over.
+std::vector<const PairwiseRegistration*> used_edges(const Work& work) {
+  std::set<std::pair<SensorId, SensorId>> hops;
+  for (const auto& [sensor, place] : work.result.sensors) {
+    for (std::size_t i = 1; i < place.chain.size(); ++i) {
+      hops.insert(std::minmax(place.chain[i - 1], place.chain[i]));
+    }
+  }
+  std::vector<const PairwiseRegistration*> used;
+  for (const PairwiseRegistration& edge : work.result.edges) {
+    if (hops.contains(std::minmax(edge.target, edge.source))) used.push_back(&edge);
+  }
+  return used;
+}
+
+void judge_accuracy(Work& work) {
+  for (const PairwiseRegistration* edge : used_edges(work)) {
+    if (edge->rms <= work.config.good_rms) continue;
+    work.doubt(fmt::format(
+        "sensors {} and {} differ by {:.3f} m rms along the walk; {:.3f} m would be good",
+        edge->target.str(), edge->source.str(), edge->rms, work.config.good_rms));
+  }
+  for (const auto& [sensor, place] : work.result.sensors) {
+    const double radius = radius95(place);
+    if (radius <= work.config.good_position) continue;
+    work.doubt(
+        fmt::format("sensor {} is placed only to within {:.3f} m; walk longer or further out",
+                    sensor.str(), radius));
+  }
+  const Duration walked = duration_of(work);
+  if (walked < work.config.good_duration) {
+    work.doubt(fmt::format("the walk lasted only {:.0f} s; {:.0f} s make a good registration",
+                           seconds(walked), seconds(work.config.good_duration)));
+  }
+}
+
+void judge(Work& work) {
+  const std::size_t sensors = work.walkers.size();
+  for (const auto& [sensor, walker] : work.walkers) {
+    if (linked(work, sensor)) {
+      explain_floor(work, sensor);
+    } else {
+      explain_unlinked(work, sensor);
+    }
+  }
+  const bool nothing_linked = sensors > 1 && work.result.sensors.size() < 2;
+  if (nothing_linked) {
+    work.result.verdict = Verdict::Refused;
+    return;
+  }
+  if (sensors > 1) judge_accuracy(work);
+  work.result.verdict = work.doubtful ? Verdict::Provisional : Verdict::Good;
+}
+
+}  // namespace
+
+Registration solve(const std::vector<WalkTrack>& walk, Timestamp now,
+                   const RegistrationConfig& config) {
+  Work work{walk, config, {}, {}, {}, {}, false};
+  work.result.solved = now;
+  reduce_tracks(work);
+  const bool silent = std::all_of(walk.begin(), walk.end(),
+                                  [](const WalkTrack& track) { return track.frames.empty(); });
+  if (silent) {
+    work.result.reasons.push_back("no sensor has delivered a frame yet");
+    return work.result;
+  }
+  register_pairs(work);
+  choose_master(work);
+  place_sensors(work);
+  judge(work);
+  return work.result;
+}
+
+}  // namespace chorus::registration

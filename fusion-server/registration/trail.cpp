@@ -1,0 +1,104 @@
+#include "fusion-server/registration/trail.h"
+
+#include "common/body/bones.h"
+
+namespace chorus::registration {
+namespace {
+
+using enum JointId;
+
+// Per-axis sigma of a tracked joint: coloured noise plus view-dependent bias (algorithms notes 6.1,
+// rows 5 and 6).  Only the ratios matter.
+constexpr std::array kNeckSlots{Slot{Neck, Neck, mm(9)}};
+constexpr std::array kCoreSlots{
+    Slot{Neck, Neck, mm(9)},
+    Slot{SpineShoulder, SpineShoulder, mm(10)},
+    Slot{Head, Head, mm(15)},
+    Slot{SpineMid, SpineMid, mm(14)},
+    Slot{ShoulderLeft, ShoulderRight, mm(12)},
+    Slot{HipLeft, HipRight, mm(14)},
+};
+
+constexpr double limb_sigma(JointId id) {
+  switch (id) {
+    case Neck:
+      return mm(9);
+    case Head:
+      return mm(15);
+    case SpineShoulder:
+      return mm(10);
+    case SpineMid:
+    case SpineBase:
+      return mm(14);
+    case ShoulderLeft:
+    case ShoulderRight:
+      return mm(16);
+    case HipLeft:
+    case HipRight:
+      return mm(18);
+    case ElbowLeft:
+    case ElbowRight:
+      return mm(22);
+    default:
+      return mm(30);
+  }
+}
+
+constexpr std::array<Slot, kJointCount> all_slots() {
+  std::array<Slot, kJointCount> slots{};
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    const auto id = static_cast<JointId>(i);
+    slots[i] = {id, id, limb_sigma(id)};
+  }
+  return slots;
+}
+constexpr std::array<Slot, kJointCount> kAllSlots = all_slots();
+
+const BodyFrame* sole_body(const SensorFrame& frame) {
+  return frame.bodies.size() == 1 ? &frame.bodies.front() : nullptr;
+}
+
+bool usable(const Joint& joint) { return joint.state == JointState::Tracked && joint.seen(); }
+
+TrailFrame reduce(const BodyFrame& body, Timestamp captured, std::span<const Slot> slots) {
+  TrailFrame frame;
+  frame.captured = captured;
+  frame.body = body.id;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const Joint& first = body.skeleton[slots[i].first];
+    const Joint& second = body.skeleton[slots[i].second];
+    if (!usable(first) || !usable(second)) continue;
+    frame.points[i] = 0.5 * (first.position + second.position);
+    frame.seen |= 1U << i;
+  }
+  return frame;
+}
+
+}  // namespace
+
+std::span<const Slot> slots_of(JointChoice choice) {
+  switch (choice) {
+    case JointChoice::Neck:
+      return kNeckSlots;
+    case JointChoice::Core:
+      return kCoreSlots;
+    case JointChoice::All:
+      return kAllSlots;
+  }
+  return kNeckSlots;
+}
+
+Trail trail_of(const WalkTrack& walk, JointChoice choice) {
+  Trail trail;
+  trail.sensor = walk.sensor;
+  for (const SensorFrame& frame : walk.frames) {
+    const BodyFrame* body = sole_body(frame);
+    if (!body) continue;
+    if (!trail.frames.empty() && frame.captured <= trail.frames.back().captured) continue;
+    TrailFrame reduced = reduce(*body, frame.captured, slots_of(choice));
+    if (reduced.seen != 0) trail.frames.push_back(std::move(reduced));
+  }
+  return trail;
+}
+
+}  // namespace chorus::registration

@@ -1,0 +1,42 @@
+// One sensor's walk, reduced to the points that registration uses.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "fusion-server/registration/registration.h"
+
+namespace chorus::registration {
+
+/// A joint, or the middle of two.  The middle of a mirror pair is the same whichever side the
+/// sensor calls left, so it survives front/rear flips (algorithms notes 1.4).
+struct Slot {
+  JointId first;
+  JointId second;
+  double sigma;  ///< Error of one sensor's sight, to weigh the slots against one another [m].
+};
+
+[[nodiscard]] std::span<const Slot> slots_of(JointChoice choice);
+
+/// The slots of the only body in a frame.
+struct TrailFrame {
+  Timestamp captured;
+  BodyId body;
+  std::array<Eigen::Vector3d, kJointCount> points;  ///< By slot; defined where `seen` has the bit.
+  std::uint32_t seen = 0;
+
+  [[nodiscard]] bool has(std::size_t slot) const { return (seen >> slot & 1U) != 0; }
+};
+
+struct Trail {
+  SensorId sensor;
+  std::vector<TrailFrame> frames;  ///< Strictly increasing in time.
+};
+
+/// Frames with exactly one body, tracked joints only.  Frames with several bodies wait for
+/// association across sensors; `sole_body` is the place where it will come in.
+[[nodiscard]] Trail trail_of(const WalkTrack& walk, JointChoice choice);
+
+}  // namespace chorus::registration

@@ -1,0 +1,199 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/registration/walk_builder.h"
+
+namespace chorus::registration {
+namespace {
+
+using testing::HasSubstr;
+
+const Eigen::Isometry3d kTarget = ring_place(0);
+
+Eigen::Isometry3d truth(const Eigen::Isometry3d& source) { return kTarget.inverse() * source; }
+
+TEST(RegisterPair, FindsThePlaceAtEveryAngle) {
+  for (const double angle : {0.0, 45.0, 90.0, 135.0, 180.0}) {  // Otto 7.2
+    const Eigen::Isometry3d source = ring_place(deg(angle) + 0.01);
+    const auto edge = register_pair(watch(1, kTarget, {}), watch(2, source, {}), {});
+    ASSERT_TRUE(edge) << edge.error().message;
+    const PlaceError off = difference(edge->target_from_source, truth(source));
+    EXPECT_LT(off.position, mm(5)) << angle;
+    EXPECT_LT(off.angle, deg(0.2)) << angle;
+    EXPECT_LT(edge->rms, mm(35));
+    EXPECT_GT(edge->inliers, 0.95 * static_cast<double>(edge->pairs));
+    EXPECT_GT(edge->spread, 0.6);
+  }
+}
+
+TEST(RegisterPair, AStraightLineAndACircleAreEnoughWithTime) {
+  const auto line = [](double t) { return Eigen::Vector2d(1.2 * std::sin(0.6 * t), 0.0); };
+  const auto circle = [](double t) {
+    return Eigen::Vector2d(0.8 * std::sin(0.9 * t), 0.8 * std::cos(0.9 * t));
+  };
+  const Eigen::Isometry3d source = ring_place(deg(90));
+  for (const Path& path : {Path(line), Path(circle)}) {
+    const WalkSpec spec{.path = path};
+    const auto edge = register_pair(watch(1, kTarget, spec), watch(2, source, spec), {});
+    ASSERT_TRUE(edge) << edge.error().message;
+    EXPECT_LT(difference(edge->target_from_source, truth(source)).position, mm(10));
+  }
+}
+
+TEST(RegisterPair, OneThirdOfWildFramesDoesNoHarm) {
+  const WalkSpec wild{.outliers = 0.33};
+  const Eigen::Isometry3d source = ring_place(deg(60));
+  const auto edge = register_pair(watch(1, kTarget, {}), watch(2, source, wild), {});
+  ASSERT_TRUE(edge) << edge.error().message;
+  EXPECT_LT(difference(edge->target_from_source, truth(source)).position, mm(8));
+  EXPECT_LT(static_cast<double>(edge->inliers), 0.75 * static_cast<double>(edge->pairs));
+}
+
+TEST(RegisterPair, ASlightlyWrongFloorYieldsToTheWalk) {
+  const FloorPlane tilted{Eigen::Vector3d(std::sin(deg(0.8)), std::cos(deg(0.8)), 0), mm(10)};
+  const Eigen::Isometry3d source = ring_place(deg(90));
+  const WalkSpec wrong{.floor_in_world = tilted};
+  const auto edge = register_pair(watch(1, kTarget, {}), watch(2, source, wrong), {});
+  ASSERT_TRUE(edge) << edge.error().message;
+  const PlaceError off = difference(edge->target_from_source, truth(source));
+  EXPECT_LT(off.angle, deg(0.4));  // half of what trusting the floor would cost
+  EXPECT_LT(off.position, mm(15));
+}
+
+TEST(RegisterPair, WithoutAnyFloorTheWholeBodyGivesPitchAndRoll) {
+  const WalkSpec no_floor{.floor_in_world = std::nullopt};
+  const Eigen::Isometry3d source = ring_place(deg(90));
+  for (const JointChoice joints : {JointChoice::Core, JointChoice::All}) {
+    RegistrationConfig config;
+    config.joints = joints;
+    const auto edge =
+        register_pair(watch(1, kTarget, no_floor), watch(2, source, no_floor), config);
+    ASSERT_TRUE(edge) << edge.error().message;
+    EXPECT_LT(difference(edge->target_from_source, truth(source)).position, mm(15));
+    EXPECT_LT(difference(edge->target_from_source, truth(source)).angle, deg(0.5));
+  }
+}
+
+TEST(RegisterPair, MovingBothSensorsChangesNothing) {
+  Eigen::Isometry3d moved_from_world = place(5, -3, deg(77)) * place(0, 0, 0).inverse();
+  const Eigen::Isometry3d source = ring_place(deg(120));
+  const auto edge = register_pair(watch(1, kTarget, {}), watch(2, source, {}), {});
+  const WalkSpec moved{.path = [&](double t) {
+    const Eigen::Vector2d at = wander(t);
+    const Eigen::Vector3d there = moved_from_world * Eigen::Vector3d(at.x(), 0, at.y());
+    return Eigen::Vector2d(there.x(), there.z());
+  }};
+  const auto other = register_pair(watch(1, moved_from_world * kTarget, moved),
+                                   watch(2, moved_from_world * source, moved), {});
+  ASSERT_TRUE(edge && other);
+  EXPECT_LT(difference(edge->target_from_source, other->target_from_source).position, mm(6));
+}
+
+TEST(RegisterPair, TheStatedCovarianceIsOfTheRightSize) {
+  const Eigen::Isometry3d source = ring_place(deg(10));  // little bias floor, mostly noise
+  double squares = 0.0;
+  double stated = 0.0;
+  constexpr int kRuns = 20;
+  for (unsigned seed = 1; seed <= kRuns; ++seed) {
+    const WalkSpec spec{.length = 10, .noise = 0.02, .seed = seed};
+    const auto edge = register_pair(watch(1, kTarget, spec), watch(2, source, spec), {});
+    ASSERT_TRUE(edge);
+    const Eigen::Vector3d off = (edge->target_from_source * truth(source).inverse()).translation();
+    squares += off.squaredNorm() / kRuns;
+    stated += edge->covariance.bottomRightCorner<3, 3>().trace() / kRuns;
+  }
+  EXPECT_LT(squares, 3.0 * stated);
+  EXPECT_GT(squares, 0.05 * stated);
+}
+
+TEST(RegisterPair, SaysThatTheTwoNeverSawThePersonTogether) {
+  WalkSpec later;
+  later.clock_offset = std::chrono::hours(1);
+  const auto edge = register_pair(watch(3, kTarget, {}), watch(4, ring_place(1), later), {});
+  ASSERT_FALSE(edge);
+  EXPECT_EQ(edge.error().code, ErrorCode::NotFound);
+  EXPECT_EQ(edge.error().message, "sensors s3 and s4 never saw the person together");
+}
+
+TEST(RegisterPair, SaysThatTheWalkIsTooNarrow) {
+  const WalkSpec standing{
+      .path = [](double t) { return Eigen::Vector2d(0.1 * std::sin(t), 0.1 * std::cos(0.7 * t)); }};
+  const auto edge =
+      register_pair(watch(1, kTarget, standing), watch(2, ring_place(1), standing), {});
+  ASSERT_FALSE(edge);
+  EXPECT_EQ(edge.error().code, ErrorCode::Unavailable);
+  EXPECT_THAT(edge.error().message, HasSubstr("walk further out"));
+}
+
+TEST(RegisterPair, SaysThatTheWalkIsTooShortOrTooFast) {
+  const WalkSpec blink{.length = 0.2};
+  const auto brief = register_pair(watch(1, kTarget, blink), watch(2, ring_place(1), blink), {});
+  ASSERT_FALSE(brief);
+  EXPECT_THAT(brief.error().message, HasSubstr("only briefly"));
+  const WalkSpec sprint{.path = [](double t) { return Eigen::Vector2d(1.5 * std::sin(4 * t), 0); },
+                        .length = 2};
+  RegistrationConfig slow;
+  slow.max_speed = 0.5;
+  slow.min_pairs = 300;
+  const auto fast = register_pair(watch(1, kTarget, sprint), watch(2, ring_place(1), sprint), slow);
+  ASSERT_FALSE(fast);
+  EXPECT_THAT(fast.error().message, HasSubstr("walk more slowly"));
+}
+
+TEST(RegisterPair, RefusesAWrongClockRatherThanGuess) {
+  WalkSpec late;
+  late.clock_offset = std::chrono::milliseconds(1500);
+  const auto edge = register_pair(watch(1, kTarget, {}), watch(2, ring_place(2), late), {});
+  ASSERT_FALSE(edge);
+  EXPECT_EQ(edge.error().code, ErrorCode::Conflict);
+  EXPECT_THAT(edge.error().message, HasSubstr("check their clocks"));
+}
+
+TEST(RegisterPair, ALineSeenByItsNecksAloneIsRefusedWithoutAFloor) {
+  const WalkSpec line{
+      .path = [](double t) { return Eigen::Vector2d(1.2 * std::sin(0.6 * t), 0.0); },
+      .noise = 0.001,
+      .floor_in_world = std::nullopt};
+  RegistrationConfig neck;
+  neck.joints = JointChoice::Neck;
+  const auto edge = register_pair(watch(1, kTarget, line), watch(2, ring_place(1), line), neck);
+  ASSERT_FALSE(edge);
+  EXPECT_THAT(edge.error().message, HasSubstr("one line"));
+}
+
+TEST(RegisterPair, FramesWithTwoBodiesAndBrokenCoordinatesAreLeftOut) {
+  WalkTrack target = watch(1, kTarget, {});
+  for (std::size_t i = 0; i < target.frames.size(); i += 3) {
+    target.frames[i].bodies.push_back(target.frames[i].bodies[0]);
+    target.frames[i + 1].bodies[0].skeleton[JointId::Neck].position.x() = std::nan("");
+  }
+  RegistrationConfig config;
+  config.max_gap = std::chrono::milliseconds(100);
+  const Eigen::Isometry3d source = ring_place(deg(90));
+  const auto edge = register_pair(target, watch(2, source, {}), config);
+  ASSERT_TRUE(edge) << edge.error().message;
+  EXPECT_LT(difference(edge->target_from_source, truth(source)).position, mm(10));
+}
+
+TEST(RegisterPair, TheIcpBaselineFindsARichWalkAndUsesNoTime) {
+  RegistrationConfig baseline;
+  baseline.method = PairMethod::IcpOnly;
+  const WalkSpec spec{.length = 10};
+  WalkSpec shifted = spec;
+  shifted.clock_offset = std::chrono::minutes(5);
+  const Eigen::Isometry3d source = ring_place(deg(45));
+  const auto edge = register_pair(watch(1, kTarget, spec), watch(2, source, shifted), baseline);
+  ASSERT_TRUE(edge) << edge.error().message;
+  EXPECT_LT(difference(edge->target_from_source, truth(source)).position, 0.10);
+}
+
+TEST(RegisterPair, EmptyTracksAreAnErrorNotACrash) {
+  for (const PairMethod method : {PairMethod::TimedRobust, PairMethod::IcpOnly}) {
+    RegistrationConfig config;
+    config.method = method;
+    EXPECT_FALSE(register_pair({sensor(1), {}}, {sensor(2), {}}, config));
+  }
+}
+
+}  // namespace
+}  // namespace chorus::registration

@@ -1,0 +1,180 @@
+#include <chrono>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/registration/walk_builder.h"
+
+namespace chorus::registration {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+std::vector<WalkTrack> ring(int count, const WalkSpec& spec) {
+  std::vector<WalkTrack> walk;
+  for (int i = 0; i < count; ++i) {
+    walk.push_back(watch(i, ring_place(2 * std::numbers::pi * i / count), spec));
+  }
+  return walk;
+}
+
+/// Error against the truth once both are expressed relative to the master.
+PlaceError error_of(const Registration& registration, int number, int count) {
+  const int master = std::stoi(registration.master.str().substr(1));
+  const auto true_place = [&](int i) { return ring_place(2 * std::numbers::pi * i / count); };
+  const auto found = [&](int i) { return registration.sensors.at(sensor(i)).world_from_sensor; };
+  return difference(found(master).inverse() * found(number),
+                    true_place(master).inverse() * true_place(number));
+}
+
+TEST(Solve, SixSensorsInARingAfterThirtySeconds) {
+  const Registration registration = solve(ring(6, {.length = 30}), kWalkStart, {});
+  EXPECT_EQ(registration.verdict, Verdict::Good) << testing::PrintToString(registration.reasons);
+  EXPECT_TRUE(registration.reasons.empty());
+  ASSERT_EQ(registration.sensors.size(), 6u);
+  EXPECT_EQ(registration.edges.size(), 15u);  // N (N - 1) / 2
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_LT(error_of(registration, i, 6).position, mm(10));
+    EXPECT_LT(error_of(registration, i, 6).angle, deg(0.3));
+    const Extrinsics& place = registration.sensors.at(sensor(i));
+    EXPECT_EQ(place.chain.front(), registration.master);
+    EXPECT_EQ(place.chain.back(), sensor(i));
+    EXPECT_NEAR(place.world_from_sensor.translation().y(), 1.8, mm(10));
+  }
+}
+
+TEST(Solve, TheWorldIsTheMasterLevelledOnItsFloor) {
+  RegistrationConfig config;
+  config.master = sensor(2);
+  const Registration registration = solve(ring(4, {}), kWalkStart, config);
+  EXPECT_EQ(registration.master, sensor(2));
+  const Eigen::Isometry3d& world_from_master = registration.sensors.at(sensor(2)).world_from_sensor;
+  EXPECT_LT((world_from_master.translation() - Eigen::Vector3d(0, 1.8, 0)).norm(), 1e-6);
+  const Eigen::Vector3d view = world_from_master.linear() * Eigen::Vector3d::UnitZ();
+  EXPECT_NEAR(view.x(), 0.0, 1e-9);
+  EXPECT_NEAR(view.z(), std::cos(deg(15)), 1e-9);
+  EXPECT_EQ(registration.sensors.at(sensor(2)).error, 0.0);
+}
+
+/// Four sensors side by side along a corridor, 1.2 m apart; each sees 3 m far, the person walks
+/// along it.
+std::vector<WalkTrack> corridor(double range) {
+  const WalkSpec spec{.path =
+                          [](double t) {
+                            return Eigen::Vector2d(1.8 + 2.6 * std::sin(0.25 * t),
+                                                   2.2 + 0.4 * std::sin(0.9 * t));
+                          },
+                      .length = 60,
+                      .range = range};
+  std::vector<WalkTrack> walk;
+  for (int i = 0; i < 4; ++i) walk.push_back(watch(i, place(1.2 * i, 0, 0), spec));
+  return walk;
+}
+
+TEST(Solve, ChainsSensorsThatDoNotOverlap) {
+  const Registration registration = solve(corridor(2.4), kWalkStart, {.master = sensor(0)});
+  ASSERT_EQ(registration.sensors.size(), 4u) << testing::PrintToString(registration.reasons);
+  const Extrinsics& last = registration.sensors.at(sensor(3));
+  EXPECT_GT(last.chain.size(), 2u);
+  const Eigen::Isometry3d expected = place(0, 0, 0).inverse() * place(3.6, 0, 0);
+  const Eigen::Isometry3d found =
+      registration.sensors.at(sensor(0)).world_from_sensor.inverse() * last.world_from_sensor;
+  EXPECT_LT(difference(found, expected).position, mm(30));
+  const auto position_trace = [&](int i) {
+    return registration.sensors.at(sensor(i)).covariance.bottomRightCorner<3, 3>().trace();
+  };
+  EXPECT_GT(position_trace(3), position_trace(1));  // uncertainty grows along the chain
+}
+
+TEST(Solve, NamesTheSensorsThatNeverSawThePersonTogether) {
+  std::vector<WalkTrack> walk = ring(2, {});
+  for (SensorFrame& frame : walk[1].frames) frame.captured += std::chrono::hours(1);
+  const Registration registration = solve(walk, kWalkStart, {});
+  EXPECT_EQ(registration.verdict, Verdict::Refused);
+  EXPECT_THAT(registration.reasons, Contains("sensors s0 and s1 never saw the person together"));
+  EXPECT_EQ(registration.sensors.size(), 1u);
+}
+
+TEST(Solve, AnUnlinkedSensorLeavesTheOthersProvisional) {
+  std::vector<WalkTrack> walk = ring(4, {});
+  for (SensorFrame& frame : walk[3].frames) frame.captured += std::chrono::hours(1);
+  const Registration registration = solve(walk, kWalkStart, {});
+  EXPECT_EQ(registration.verdict, Verdict::Provisional);
+  EXPECT_EQ(registration.sensors.size(), 3u);
+  EXPECT_THAT(registration.reasons,
+              Contains("sensor s3 never saw the person together with any of s0, s1, s2"));
+}
+
+TEST(Solve, ShortWalksStayProvisionalAndSaySo) {
+  const Registration registration = solve(ring(3, {.length = 8}), kWalkStart, {});
+  EXPECT_EQ(registration.verdict, Verdict::Provisional);
+  EXPECT_THAT(registration.reasons, Contains(HasSubstr("lasted only 8 s")));
+  EXPECT_EQ(registration.sensors.size(), 3u);
+}
+
+TEST(Solve, OneSensorIsItsOwnWorld) {
+  const Registration registration = solve(ring(1, {}), kWalkStart, {});
+  EXPECT_EQ(registration.verdict, Verdict::Good) << testing::PrintToString(registration.reasons);
+  ASSERT_EQ(registration.sensors.size(), 1u);
+  const Extrinsics& only = registration.sensors.at(sensor(0));
+  EXPECT_EQ(only.chain, std::vector{sensor(0)});
+  EXPECT_NEAR(only.world_from_sensor.translation().y(), 1.8, 1e-6);
+}
+
+TEST(Solve, NothingSeenIsNoVerdict) {
+  EXPECT_EQ(solve({}, kWalkStart, {}).verdict, Verdict::None);
+  const Registration silent = solve({{sensor(1), {}}, {sensor(2), {}}}, kWalkStart, {});
+  EXPECT_EQ(silent.verdict, Verdict::None);
+  EXPECT_THAT(silent.reasons, Contains("no sensor has delivered a frame yet"));
+}
+
+TEST(Solve, ImplausibleFloorsAreNamedAndNotUsed) {
+  const FloorPlane table{Eigen::Vector3d::UnitY(), -0.8};  // 0.8 m above the real floor
+  std::vector<WalkTrack> walk = ring(3, {});
+  walk[1] = watch(1, ring_place(2 * std::numbers::pi / 3), {.floor_in_world = table});
+  const Registration registration = solve(walk, kWalkStart, {.master = sensor(0)});
+  EXPECT_THAT(registration.reasons, Contains(HasSubstr("above the person's feet")));
+  EXPECT_EQ(registration.verdict, Verdict::Provisional);
+  EXPECT_LT(error_of(registration, 1, 3).position, mm(20));
+}
+
+TEST(Solve, WithoutAnyFloorTheUprightBodyLevelsTheWorld) {
+  const Registration registration =
+      solve(ring(3, {.floor_in_world = std::nullopt}), kWalkStart, {});
+  EXPECT_EQ(registration.verdict, Verdict::Provisional);
+  EXPECT_THAT(registration.reasons, Contains(HasSubstr("guessed from the upright body")));
+  for (const auto& [id, found] : registration.sensors) {
+    EXPECT_NEAR(found.world_from_sensor.translation().y(), 1.8, 0.05) << id.str();
+    const double pitch = -std::asin(found.world_from_sensor.linear()(1, 2));
+    EXPECT_NEAR(pitch, deg(15), deg(1)) << id.str();
+  }
+}
+
+TEST(Solve, AnUnknownMasterIsReplacedAndNamed) {
+  const Registration registration = solve(ring(2, {}), kWalkStart, {.master = sensor(9)});
+  EXPECT_THAT(registration.reasons, Contains(HasSubstr("master s9")));
+  EXPECT_EQ(registration.sensors.size(), 2u);
+}
+
+TEST(Solve, SameWalkSameAnswer) {
+  const auto walk = ring(3, {.length = 5});
+  const Registration first = solve(walk, kWalkStart, {});
+  const Registration second = solve(walk, kWalkStart, {});
+  for (const auto& [id, place] : first.sensors) {
+    EXPECT_EQ(place.world_from_sensor.matrix(), second.sensors.at(id).world_from_sensor.matrix());
+  }
+}
+
+TEST(SolveCost, SixSensorsAndThirtySecondsTakeAFewSecondsAtMost) {
+  const auto walk = ring(6, {.length = 30});
+  const auto start = std::chrono::steady_clock::now();
+  const Registration registration = solve(walk, kWalkStart, {});
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+  RecordProperty("solve_milliseconds", static_cast<int>(1e3 * spent.count()));
+  EXPECT_EQ(registration.sensors.size(), 6u);
+  EXPECT_LT(spent.count(), 60.0);  // generous: also under sanitizers on a busy machine
+}
+
+}  // namespace
+}  // namespace chorus::registration
