@@ -1,0 +1,150 @@
+#include "fusion-server/pipeline/offline.h"
+
+#include <cstring>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/registration/walk_builder.h"
+
+namespace chorus::pipeline {
+namespace {
+
+using registration::ring_place;
+using registration::sensor;
+using registration::WalkSpec;
+using registration::WalkTrack;
+using registration::watch;
+using testing::HasSubstr;
+
+constexpr int kSensors = 4;
+
+Eigen::Isometry3d true_place(int number) { return ring_place(deg(90) * number); }
+
+std::vector<WalkTrack> walk(const WalkSpec& spec) {
+  std::vector<WalkTrack> tracks;
+  for (int i = 0; i < kSensors; ++i) tracks.push_back(watch(i, true_place(i), spec));
+  return tracks;
+}
+
+/// Mean joint error against the walk; `truth_from_world` takes the result to the truth's world.
+double mean_error(const std::vector<Snapshot>& snapshots,
+                  const Eigen::Isometry3d& truth_from_world) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const Snapshot& snapshot : snapshots) {
+    const double t = seconds(snapshot.instant - registration::kWalkStart);
+    const auto truth = registration::person_at(registration::wander(t), 0.5 * t, t);
+    for (const FusedBody& body : snapshot.bodies) {
+      for (std::size_t i = 0; i < kJointCount; ++i) {
+        const Eigen::Vector3d found = truth_from_world * body.skeleton.joints[i].position;
+        sum += (found - truth.joints[i].position).norm();
+        ++count;
+      }
+    }
+  }
+  return count > 0 ? sum / static_cast<double>(count) : 1e9;
+}
+
+Registration published() {
+  Registration registration;
+  for (int i = 0; i < kSensors; ++i) {
+    registration.sensors[sensor(i)].world_from_sensor = true_place(i);
+  }
+  return registration;
+}
+
+TEST(FuseOffline, RegistersTheWalkAndBeatsASingleSensor) {
+  const auto tracks = walk({.noise = 0.02});
+  const auto fused = fuse_offline(tracks, std::nullopt, {});
+  ASSERT_TRUE(fused) << fused.error().message;
+  const Registration& found = fused->registration;
+  const int master = std::stoi(found.master.str().substr(1));
+  const Eigen::Isometry3d truth_from_world =
+      true_place(master) * found.sensors.at(found.master).world_from_sensor.inverse();
+  const double error = mean_error(fused->snapshots, truth_from_world);
+  const auto alone = fuse_offline({tracks[0]}, published(), {});
+  ASSERT_TRUE(alone);
+  EXPECT_LT(error, 0.75 * mean_error(alone->snapshots, Eigen::Isometry3d::Identity()));
+}
+
+TEST(FuseOffline, EveryInstantOnceAtTheGrid) {
+  const auto fused = fuse_offline(walk({.length = 10}), published(), {});
+  ASSERT_TRUE(fused);
+  EXPECT_NEAR(static_cast<double>(fused->snapshots.size()), 300.0, 2.0);
+  for (std::size_t i = 0; i < fused->snapshots.size(); ++i) {
+    const Snapshot& snapshot = fused->snapshots[i];
+    EXPECT_EQ(snapshot.sequence, i + 1);
+    EXPECT_LE((to_unix_ns(snapshot.instant) * 3 + 2) % 100'000'000, 4);  // k/30 s, rounded
+  }
+}
+
+TEST(FuseOffline, GivenExtrinsicsAreUsedAsTheyAre) {
+  const auto fused = fuse_offline(walk({.length = 5, .noise = 0.0}), published(), {});
+  ASSERT_TRUE(fused);
+  EXPECT_LT(mean_error(fused->snapshots, Eigen::Isometry3d::Identity()), mm(2));
+}
+
+TEST(FuseOffline, SameInputsSameBytes) {
+  const auto tracks = walk({.length = 5});
+  const auto first = fuse_offline(tracks, std::nullopt, {});
+  const auto second = fuse_offline(tracks, std::nullopt, {});
+  ASSERT_TRUE(first && second);
+  ASSERT_EQ(first->snapshots.size(), second->snapshots.size());
+  for (std::size_t i = 0; i < first->snapshots.size(); ++i) {
+    ASSERT_EQ(first->snapshots[i].bodies.size(), second->snapshots[i].bodies.size());
+    for (std::size_t b = 0; b < first->snapshots[i].bodies.size(); ++b) {
+      const auto& one = first->snapshots[i].bodies[b];
+      const auto& two = second->snapshots[i].bodies[b];
+      for (std::size_t j = 0; j < kJointCount; ++j) {
+        EXPECT_EQ(one.skeleton.joints[j].position, two.skeleton.joints[j].position);
+      }
+      EXPECT_EQ(one.variance, two.variance);
+    }
+  }
+}
+
+TEST(FuseOffline, AGapOfAYearIsSkippedNotCounted) {
+  auto tracks = walk({.length = 4});
+  for (WalkTrack& track : tracks) {
+    for (std::size_t i = track.frames.size() / 2; i < track.frames.size(); ++i) {
+      track.frames[i].captured += std::chrono::hours(24 * 365);
+    }
+  }
+  const auto fused = fuse_offline(tracks, published(), {});
+  ASSERT_TRUE(fused);
+  EXPECT_NEAR(static_cast<double>(fused->snapshots.size()), 120.0, 6.0);
+}
+
+TEST(FuseOffline, TimeGoingBackwardsInARecordingIsSurvived) {
+  auto tracks = walk({.length = 4});
+  std::swap(tracks[0].frames[30], tracks[0].frames[60]);
+  std::reverse(tracks[1].frames.begin(), tracks[1].frames.end());
+  const auto fused = fuse_offline(tracks, published(), {});
+  ASSERT_TRUE(fused);
+  EXPECT_GT(fused->snapshots.size(), 100u);
+}
+
+TEST(FuseOffline, RefusesWhatCannotWork) {
+  const auto tracks = walk({.length = 1});
+  EXPECT_FALSE(fuse_offline({}, published(), {}));
+  EXPECT_FALSE(fuse_offline({{sensor(1), {}}}, published(), {}));
+  EXPECT_FALSE(fuse_offline({tracks[0], tracks[0]}, published(), {}));
+  for (const double rate : {0.0, -30.0, std::nan(""), 1e9}) {
+    OfflineConfig config;
+    config.rate_hz = rate;
+    EXPECT_FALSE(fuse_offline(tracks, published(), config)) << rate;
+  }
+}
+
+TEST(FuseOffline, SaysWhyTheWalkCouldNotBeRegistered) {
+  auto tracks = walk({.length = 4});
+  tracks.resize(2);
+  for (SensorFrame& frame : tracks[1].frames) frame.captured += std::chrono::hours(1);
+  const auto fused = fuse_offline(tracks, std::nullopt, {});
+  ASSERT_FALSE(fused);
+  EXPECT_THAT(fused.error().message, HasSubstr("sensors s0 and s1 never saw the person together"));
+}
+
+}  // namespace
+}  // namespace chorus::pipeline
