@@ -1,0 +1,228 @@
+#!/usr/bin/env bash
+# Six simulated sensors, one fusion server, a person who walks.  Ctrl-C stops everything it started.
+#
+#   deploy/demo.sh                  until Ctrl-C
+#   deploy/demo.sh --seconds 60     stops by itself; exit code 0 only if the fused tracker delivered
+#   deploy/demo.sh --recording [DIR]  plays recordings instead of simulating: the *.mcap of DIR, with the
+#                                   extrinsics of DIR/registration.json if it is there and the settings of
+#                                   DIR/fusion.json if it is there; a folder of camera landmarks is imported
+#                                   first; without DIR, the four real cameras that travel with the tests
+#   --register                      with --recording: find the extrinsics from the person alone
+#   --port N                        the fusion server's port (8080); the sensors take the ports after it
+#   --set PATH=VALUE                handed to chorus-fusion, any number of times
+#   --bin DIR                       use the programs in DIR; install and build nothing
+#
+# Installs what is missing, builds the release preset.  Logs are in var/demo/PORT/.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+readonly sensor_count=6
+readonly start_within_s=15
+readonly bundled_recording=tests/data/pose2sim_mediapipe
+
+usage() { sed -n '2,/^$/s/^# \{0,1\}//p' "$0"; }
+step() { printf '\n== %s\n' "$*"; }
+fail() { printf '\ndemo: %s\n' "$*" >&2; exit 1; }
+
+seconds='' recording='' register='' port=8080 overrides=() bin=build/release/bin build=yes
+read_arguments() {
+  while (( $# > 0 )); do
+    case $1 in
+      --seconds) seconds=${2:?--seconds needs a number}; shift ;;
+      --recording)
+        recording=$bundled_recording
+        if [[ -n "${2:-}" && "${2:0:2}" != -- ]]; then recording=$2; shift; fi ;;
+      --register) register=yes ;;
+      --port) port=${2:?--port needs a number}; shift ;;
+      --set) overrides+=(--set "${2:?--set needs PATH=VALUE}"); shift ;;
+      --bin) bin=${2:?--bin needs a folder}; build=''; shift ;;
+      -h|--help) usage; exit 0 ;;
+      *) usage >&2; fail "unknown option $1" ;;
+    esac
+    shift
+  done
+  [[ -z "$seconds" || "$seconds" =~ ^[0-9]+$ ]] || fail "--seconds needs a whole number, not '$seconds'"
+  [[ "$port" =~ ^[0-9]+$ ]] || fail "--port needs a number, not '$port'"
+  [[ -z "$recording" || -d "$recording" ]] || fail "there is no folder '$recording'"
+}
+
+# --- what we started, and stopping it -------------------------------------------------------------
+
+children=()
+# start NAME COMMAND...: in the background, logging to NAME.log, and dead when this script is.
+start() {
+  local name=$1; shift
+  setpriv --pdeathsig TERM "$@" > "$logs/$name.out" 2> "$logs/$name.log" &
+  children+=($!)
+}
+
+stop_all() {
+  trap - EXIT
+  trap '' INT TERM
+  (( ${#children[@]} > 0 )) || return 0
+  kill -TERM "${children[@]}" 2>/dev/null || true
+  local i
+  for (( i = 0; i < 50; ++i )); do
+    any_alive || break
+    sleep 0.1
+  done
+  kill -KILL "${children[@]}" 2>/dev/null || true
+  wait 2>/dev/null || true
+}
+
+any_alive() {
+  local child
+  for child in "${children[@]}"; do kill -0 "$child" 2>/dev/null && return 0; done
+  return 1
+}
+
+all_alive() {
+  local child
+  for child in "${children[@]}"; do kill -0 "$child" 2>/dev/null || return 1; done
+}
+
+show_logs() {
+  local log
+  for log in "$logs"/*.log; do
+    [[ -s "$log" ]] && printf -- '--- %s\n' "$log" >&2 && tail -n 5 "$log" >&2
+  done
+}
+
+# --- preparation ----------------------------------------------------------------------------------
+
+build() {
+  step "packages"
+  deploy/install-packages.sh build
+  if ! cmp -s services/viewer/package-lock.json services/viewer/node_modules/.chorus-lock; then
+    npm ci --prefix services/viewer --no-progress
+    cp services/viewer/package-lock.json services/viewer/node_modules/.chorus-lock
+  fi
+  step "build"
+  local launcher=()
+  command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  cmake --preset release "${launcher[@]}" --log-level=WARNING > "$logs/configure.out"
+  cmake --build build/release -j "$(build_jobs)" --target chorus-sensor chorus-fusion chorus
+}
+
+# The largest translation units take about 1.5 GB each.
+build_jobs() {
+  local by_memory=$(( $(awk '/^MemAvailable/ {print $2}' /proc/meminfo) / 1500000 ))
+  local cores; cores=$(nproc)
+  local jobs=$(( by_memory < cores ? by_memory : cores ))
+  echo $(( jobs < 1 ? 1 : jobs ))
+}
+
+need_free_ports() {
+  local p
+  for (( p = port; p <= port + $1; ++p )); do
+    if (exec 3<> "/dev/tcp/127.0.0.1/$p") 2>/dev/null; then
+      fail "port $p is in use: stop what listens there (ss -ltnp), or choose others with --port N"
+    fi
+  done
+}
+
+# wait_for URL WHAT: until it answers at all, whatever it says.
+wait_for() {
+  local deadline=$(( SECONDS + start_within_s ))
+  until curl -s -o /dev/null --max-time 2 "$1"; do
+    all_alive || { show_logs; fail "$2 ended; its log is above and in $logs/"; }
+    (( SECONDS < deadline )) || { show_logs; fail "$2 did not answer within $start_within_s s"; }
+    sleep 0.1
+  done
+}
+
+# --- sensors --------------------------------------------------------------------------------------
+
+sensors=()  # as JSON objects for the fusion server
+add_sensor() { sensors+=("{\"id\":\"$1\",\"url\":\"$2\"}"); }
+
+start_simulated() {
+  need_free_ports $sensor_count
+  local i
+  for (( i = 0; i < sensor_count; ++i )); do
+    local id="s$(( i + 1 ))" p=$(( port + 1 + i ))
+    start "$id" "$bin/chorus-sensor" --config deploy/config/sensor.json --set "id=$id" --set "http.port=$p" \
+      --set device.kind=simulated --set "device.ring.index=$i" --set "device.ring.count=$sensor_count"
+    add_sensor "$id" "http://127.0.0.1:$p/"
+  done
+}
+
+start_replays() {
+  if [[ -f "$recording/cameras.json" ]]; then
+    step "import of $recording"
+    rm -rf "$logs/recording"
+    "$bin/chorus" import pose2sim "$recording" --out "$logs/recording"
+    [[ ! -f "$recording/fusion.json" ]] || cp "$recording/fusion.json" "$logs/recording/"
+    recording=$logs/recording
+  fi
+  local files=("$recording"/*.mcap)
+  [[ -f "${files[0]}" ]] || fail "there is no *.mcap in $recording (chorus import makes them)"
+  need_free_ports ${#files[@]}
+  start replay "$bin/chorus" replay "$recording" --port $(( port + 1 )) --loop
+  local deadline=$(( SECONDS + start_within_s )) line
+  until (( $(grep -c ' at http' "$logs/replay.out") == ${#files[@]} )); do
+    all_alive || { show_logs; fail "the replay ended"; }
+    (( SECONDS < deadline )) || { show_logs; fail "the replay did not start within $start_within_s s"; }
+    sleep 0.1
+  done
+  while read -r id _ url _; do add_sensor "$id" "$url"; done < <(grep ' at http' "$logs/replay.out")
+}
+
+start_fusion() {
+  local config=deploy/config/fusion.json list
+  list=$(IFS=,; echo "[${sensors[*]}]")
+  local options=(--set "http.port=$port" --set "sensors=$list")
+  if [[ -n "$recording" ]]; then
+    [[ ! -f "$recording/fusion.json" ]] || config=$recording/fusion.json
+    if [[ -z "$register" && -f "$recording/registration.json" ]]; then
+      options+=(--set "registration.file=$recording/registration.json" --set registration.auto=false)
+    fi
+  fi
+  start fusion "$bin/chorus-fusion" --config "$config" "${options[@]}" "${overrides[@]}"
+}
+
+# --- main -----------------------------------------------------------------------------------------
+
+read_arguments "$@"
+logs=var/demo/$port
+mkdir -p "$logs"
+rm -f "$logs"/*.log "$logs"/*.out
+[[ -z "$build" ]] || build
+
+trap stop_all EXIT
+trap 'exit 130' INT
+trap 'exit 143' TERM
+step "start"
+if [[ -n "$recording" ]]; then start_replays; else start_simulated; fi
+for sensor in "${sensors[@]}"; do
+  url=${sensor##*\"url\":\"}; url=${url%%\"*}
+  wait_for "${url}healthz" "the sensor at $url"
+done
+start_fusion
+wait_for "http://127.0.0.1:$port/healthz" "the fusion server"
+
+base=http://127.0.0.1:$port
+cat <<TEXT
+${#sensors[@]} sensors at $(( port + 1 ))..$(( port + ${#sensors[@]} )), fusion server at $port
+
+  viewer:  $base/viewer/
+  try:     curl -s $base/frame
+           curl -s -H 'Accept: application/json' $base/frame
+           curl -s -H 'Accept: application/json' $base/registration
+
+TEXT
+[[ -n "$seconds" ]] || echo "Ctrl-C stops everything."
+
+watcher=(python3 -B deploy/watch_tracker.py --base "$base")
+[[ -z "$seconds" ]] || watcher+=(--seconds "$seconds")
+setpriv --pdeathsig TERM "${watcher[@]}" &
+watch_pid=$!
+children+=("$watch_pid")
+# Whoever ends first decides: the watcher with its verdict, or a service that should not have ended.
+verdict=0
+wait -n -p ended "${children[@]}" || verdict=$?
+if [[ "$ended" != "$watch_pid" ]]; then
+  show_logs
+  fail "a program ended by itself with code $verdict; logs in $logs/"
+fi
+exit "$verdict"

@@ -1,0 +1,113 @@
+"""deploy/demo.sh with the programs that were just built: delivers, says what is wrong, leaves nothing behind."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[3]
+BIN = Path(os.environ["CHORUS_BIN"])
+PORTS = 8            # the fusion server and up to seven sensors
+RUN_S = 20           # first provisional registration after about 7 s
+START_WITHIN_S = 60  # loaded machines are slow
+
+
+def free_ports():
+    """The first of PORTS neighbouring ports that nobody listens on."""
+    for first in range(20000 + os.getpid() % 20000, 60000, PORTS):
+        try:
+            for port in range(first, first + PORTS):
+                with socket.socket() as probe:
+                    probe.bind(("127.0.0.1", port))
+            return first
+        except OSError:
+            continue
+    raise RuntimeError("no free ports")
+
+
+def listening(port):
+    with socket.socket() as probe:
+        return probe.connect_ex(("127.0.0.1", port)) == 0
+
+
+def demo(port, *arguments):
+    return subprocess.Popen(["deploy/demo.sh", "--bin", str(BIN), "--port", str(port), *arguments], cwd=ROOT,
+                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True)
+
+
+class Demo(unittest.TestCase):
+    def setUp(self):
+        self.port = free_ports()
+
+    def assert_nothing_left(self, process):
+        left = subprocess.run(["ps", "-o", "pid,args", "--no-headers", "-s", str(process.pid)],
+                              capture_output=True, text=True).stdout
+        self.assertEqual(left.strip(), "")
+        self.assertEqual([port for port in range(self.port, self.port + PORTS) if listening(port)], [])
+
+    def run_to_its_end(self, *arguments):
+        process = demo(self.port, *arguments)
+        output, _ = process.communicate(timeout=RUN_S + START_WITHIN_S)
+        self.assertEqual(process.returncode, 0, output)
+        self.assertIn("delivered", output)
+        self.assert_nothing_left(process)
+        return output
+
+    def test_six_simulated_sensors_become_one_tracker(self):
+        output = self.run_to_its_end("--seconds", str(RUN_S))
+        self.assertIn("6 sensors", output)
+        self.assertIn(f"http://127.0.0.1:{self.port}/viewer/", output)
+
+    def test_the_real_cameras_become_one_tracker(self):
+        output = self.run_to_its_end("--seconds", "10", "--recording")
+        self.assertIn("4 sensors", output)
+
+    def test_a_port_in_use_is_named(self):
+        with socket.socket() as occupant:
+            occupant.bind(("127.0.0.1", self.port + 3))
+            occupant.listen()
+            process = demo(self.port, "--seconds", "5")
+            output, _ = process.communicate(timeout=START_WITHIN_S)
+        self.assertEqual(process.returncode, 1)
+        self.assertIn(f"port {self.port + 3} is in use", output)
+        self.assert_nothing_left(process)
+
+    def test_a_stop_by_signal_leaves_nothing_behind(self):
+        for stop in (signal.SIGINT, signal.SIGTERM):
+            process = demo(self.port)
+            deadline = time.monotonic() + START_WITHIN_S
+            while not listening(self.port) and time.monotonic() < deadline:
+                time.sleep(0.1)
+            self.assertTrue(listening(self.port), "the demo did not come up")
+            os.killpg(process.pid, stop)  # as a terminal does
+            output, _ = process.communicate(timeout=START_WITHIN_S)
+            self.assertNotEqual(process.returncode, 0, output)
+            self.assert_nothing_left(process)
+
+    def test_a_killed_demo_takes_its_programs_along(self):
+        process = demo(self.port)
+        deadline = time.monotonic() + START_WITHIN_S
+        while not listening(self.port) and time.monotonic() < deadline:
+            time.sleep(0.1)
+        process.kill()
+        process.wait()
+        process.stdout.close()
+        deadline = time.monotonic() + START_WITHIN_S
+        while time.monotonic() < deadline and any(listening(port) for port in range(self.port, self.port + PORTS)):
+            time.sleep(0.1)
+        self.assert_nothing_left(process)
+
+    def test_wrong_arguments_are_refused_before_anything_starts(self):
+        for arguments in (["--bogus"], ["--seconds", "soon"], ["--recording", "/nonexistent"], ["--port", "x"]):
+            process = demo(self.port, *arguments)
+            output, _ = process.communicate(timeout=START_WITHIN_S)
+            self.assertEqual(process.returncode, 1, arguments)
+            self.assertIn("demo:", output)
+
+
+if __name__ == "__main__":
+    unittest.main()
