@@ -36,17 +36,17 @@ struct FieldOfView {
 
 /// White noise along and across the line of sight.
 struct GaussianNoise {
-  double along = 0.030;          ///< Standard deviation [m]
-  double across = 0.015;         ///< Per axis [m]
-  double inferred_factor = 3.0;  ///< Inferred joints are this much worse.
+  double along = 0.025;          ///< Standard deviation [m]
+  double across = 0.010;         ///< Per axis [m]
+  double inferred_factor = 2.5;  ///< Inferred joints are this much worse.
   double turn = deg(4);          ///< Of orientations, per axis [rad]
 };
 
 /// The floor plane the sensor estimates: a fixed error per sensor and a little per frame.
 struct FloorNoise {
-  double fixed_tilt = deg(0.15);  ///< Standard deviation per axis [rad]
-  double fixed_offset = 0.003;    ///< [m]
-  double tilt = deg(0.1);         ///< Per frame [rad]
+  double fixed_tilt = deg(0.05);  ///< Standard deviation per axis [rad]
+  double fixed_offset = 0.002;    ///< [m]
+  double tilt = deg(0.2);         ///< Per frame [rad]
   double offset = 0.003;          ///< [m]
 };
 
