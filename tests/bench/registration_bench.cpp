@@ -47,6 +47,7 @@ void ring_run(const Workshop& workshop, const std::vector<registration::WalkTrac
   config.master = workshop.sensors.front().id;
   const Registration solved = solve(tracks, workshop.begin, config);
   for (const synthetic::SimulatedSensor& sensor : workshop.sensors) {
+    if (sensor.id == solved.master) continue;  // its place is the world's by definition
     const auto found = solved.sensors.find(sensor.id);
     if (found == solved.sensors.end()) {
       errors.add_failure();
@@ -69,24 +70,23 @@ void pair_run(const Workshop& workshop, const std::vector<registration::WalkTrac
   }
 }
 
+double over_100mm_percent(const Errors& errors) {
+  std::size_t over = 0;
+  for (const double value : errors.position_mm) over += !(value <= to_mm(kCatastrophe));
+  return 100.0 * static_cast<double>(over) / static_cast<double>(errors.position_mm.size());
+}
+
 void add_rows(Report& report, const std::string& name, const Errors& ours, const Errors& icp) {
   const auto row = [&](const std::string& metric, const std::vector<double>& values,
                        const std::vector<double>& beside, const std::string& unit) {
-    report.row(name, metric, median(values), unit, fmt::format("icp {:.4g}", median(beside)),
-               median(values) / median(beside));
-    report.row(name, metric + "_max", worst(values), unit, fmt::format("icp {:.4g}", worst(beside)),
-               worst(values) / worst(beside));
+    report.row(name, metric, median(values), unit, "icp", median(values) / median(beside));
+    report.row(name, metric + "_max", worst(values), unit, "icp", worst(values) / worst(beside));
   };
   row("position_mm", ours.position_mm, icp.position_mm, "mm");
   row("yaw_deg", ours.yaw_deg, icp.yaw_deg, "deg");
   row("pitch_roll_deg", ours.pitch_roll_deg, icp.pitch_roll_deg, "deg");
-  const auto share_over = [](const std::vector<double>& values) {
-    std::size_t over = 0;
-    for (const double value : values) over += !(value <= to_mm(kCatastrophe));
-    return 100.0 * static_cast<double>(over) / static_cast<double>(values.size());
-  };
-  report.row(name, "over_100mm_percent", share_over(ours.position_mm), "%",
-             fmt::format("icp {:.4g}", share_over(icp.position_mm)));
+  report.row(name, "over_100mm_percent", over_100mm_percent(ours), "%");
+  report.row(name, "icp_over_100mm_percent", over_100mm_percent(icp), "%");
 }
 
 using Run = void (*)(const Workshop&, const std::vector<registration::WalkTrack>&, PairMethod,
@@ -129,7 +129,8 @@ Result<void> run_registration(Report& report) {
                      std::chrono::seconds(10), pair_run});
   }
   report.note(
-      "Median and max over sensors and seeds; a sensor that was refused counts as infinitely "
+      "Median and max over sensors (without the master) and seeds; a sensor that was refused "
+      "counts as infinitely "
       "wrong.  icp: PCL ICP on neck clouds without time, same frames.");
   report.note(
       "Simulated sensors, profile gauss: white noise only.  No view-dependent bias, no "

@@ -20,10 +20,17 @@ std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.4g}", value) : std::string("-");
 }
 
+/// "icp 10.5": what stands beside, and its own value as the ratio tells it.
 Cells cells_of(const Row& row) {
-  return {row.case_name,     row.metric,
-          number(row.value), row.unit,
-          row.baseline,      std::isfinite(row.ratio) ? number(row.ratio) : std::string()};
+  const bool compared = std::isfinite(row.ratio);
+  const double beside = row.value / row.ratio;
+  const bool told = compared && std::isfinite(beside);
+  return {row.case_name,
+          row.metric,
+          number(row.value),
+          row.unit,
+          told ? row.baseline + " " + number(beside) : row.baseline,
+          compared ? number(row.ratio) : std::string()};
 }
 
 nlohmann::json number_or_null(double value) {
