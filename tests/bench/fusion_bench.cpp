@@ -123,6 +123,7 @@ Result<void> run_fusion(Report& report) {
              worst(each_run(runs, [](const Run& r) { return r.fused_mm[kOurs]; })), "mm");
   report.row(kCase, "coverage_percent",
              median(each_run(runs, [](const Run& r) { return r.coverage_percent[kOurs]; })), "%");
+  measure_simulator(report);
   report.condition(
       fmt::format("{}: the fused mean joint error is below the best single sensor's, also "
                   "one placed by the truth, in every one of {} runs",
