@@ -14,6 +14,7 @@
 #include "common/base/result.h"
 #include "common/body/skeleton.h"
 #include "common/resource/media_type.h"
+#include "common/resource/place.h"
 #include "common/sensor/sensor_frame.h"
 
 namespace chorus::resource {
@@ -37,22 +38,34 @@ struct BodyResource {
 struct FrameResource {
   std::uint64_t sequence = 0;
   Timestamp captured;
-  std::string source;                 ///< Sensor id, or "fusion".
+  std::string source;  ///< Sensor id, or "fusion".
   SpaceKind space = SpaceKind::Sensor;
-  std::vector<std::string> sensors;   ///< Fused: names behind the contributor bits (at most 64).
-  std::vector<BodyResource> bodies;   ///< Distinct ids, at most kMaxBodies.
+  std::vector<std::string> sensors;  ///< Fused: names behind the contributor bits (at most 64).
+  std::vector<BodyResource> bodies;  ///< Distinct ids, at most kMaxBodies.
 };
 
-/// Writes the default (compact) profile.  Non-finite numbers are never written: the joint is written as
-/// not tracked without position.  Turtle comes from a template, proven isomorphic to the Serd writer.
-[[nodiscard]] std::string write(const FrameResource& frame, Format format);
+/// Beyond this no coordinate is believed [m]; a writer treats the joint as not tracked, a reader
+/// refuses.
+inline constexpr double kMaxCoordinate = 1e4;
 
-/// The full ARVIDA pattern (proto/README.md, profile "arvida"), Turtle.
-[[nodiscard]] std::string write_arvida(const FrameResource& frame);
+/// Writes the default (compact) profile.  Numbers that are not finite or absurd are never written:
+/// the joint is written as not tracked, without position.  Turtle and JSON come from templates,
+/// proven isomorphic to the Serd writer.
+[[nodiscard]] std::string write(const FrameResource& frame, Format format, const Place& place = {});
 
-/// Reads Turtle (compact profile), JSON-LD or JSON as written above, in any equivalent spelling for
-/// Turtle.  Refuses, naming subject and property: duplicate ids, missing times, more than kMaxBodies,
-/// non-finite or absurd numbers (|v| > 1e4 m), unknown states.  Bounded in size and nesting.
+/// The full ARVIDA pattern (proto/README.md, profile "arvida"), Turtle or N-Triples.
+[[nodiscard]] std::string write_arvida(const FrameResource& frame, const Place& place = {},
+                                       Format format = Format::Turtle);
+
+/// One body of the frame, `/skeletons/{id}`: the same joints, with the frame's source, space and
+/// sequence.
+[[nodiscard]] std::string write_skeleton(const FrameResource& frame, const BodyResource& body,
+                                         Format format, const Place& place);
+
+/// Reads Turtle or N-Triples (compact profile, in any equivalent spelling), or JSON and JSON-LD in
+/// the shape written above.  Refuses, naming subject and property: duplicate ids, missing times,
+/// more than kMaxBodies, absurd numbers, wrong types, unknown states and joints.  Bounded in size
+/// and nesting.
 [[nodiscard]] Result<FrameResource> read_frame(std::string_view bytes, Format format);
 
 /// A sensor's frame as resource, and back.  `received` is not on the wire; reading sets it.

@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-namespace chorus::test {
+namespace chorus::testing {
 namespace {
 
 using rdf::Graph;
@@ -95,4 +95,4 @@ std::string difference(const Graph& left, const Graph& right) {
   return only_in(a, b, "only left: ") + only_in(b, a, "only right: ");
 }
 
-}  // namespace chorus::test
+}  // namespace chorus::testing

@@ -32,7 +32,7 @@ TEST(TurtleWriter, WhatItWritesReadsBackAsTheSameGraph) {
   ASSERT_TRUE(text) << to_string(text.error());
   const auto back = read_graph(*text);
   ASSERT_TRUE(back) << to_string(back.error()) << "\n" << *text;
-  EXPECT_EQ(test::difference(sample(), *back), "") << *text;
+  EXPECT_EQ(testing::difference(sample(), *back), "") << *text;
 }
 
 TEST(TurtleWriter, IsPleasantToRead) {
@@ -54,14 +54,14 @@ TEST(TurtleWriter, NTriplesHasAbsoluteIrisAndTheSameGraph) {
   ASSERT_TRUE(triples) << to_string(triples.error());
   options = {};
   options.base = "http://h/frames/42";
-  EXPECT_EQ(test::difference(*triples, *read_graph(*write_graph(sample(), kTurtle), options)), "");
+  EXPECT_EQ(testing::difference(*triples, *read_graph(*write_graph(sample(), kTurtle), options)), "");
 }
 
 TEST(TurtleWriter, LosesNoRingOfBlankNodes) {
   const Graph ring{{blank("a"), iri("http://p"), blank("b")},
                    {blank("b"), iri("http://p"), blank("a")}};
   const auto text = write_graph(ring, {});
-  EXPECT_EQ(test::difference(*read_graph(*text), ring), "") << *text;
+  EXPECT_EQ(testing::difference(*read_graph(*text), ring), "") << *text;
 }
 
 TEST(TurtleWriter, VeryDeepTreesStayReadable) {
@@ -105,9 +105,9 @@ TEST(Difference, SeesWhatBlankNodesHide) {
   const Graph two{{iri("a"), iri("p"), blank("x")},
                   {iri("a"), iri("p"), blank("y")},
                   {blank("x"), iri("q"), literal("1")}};
-  EXPECT_EQ(test::difference(one, same), "");
-  EXPECT_NE(test::difference(one, other), "");
-  EXPECT_NE(test::difference(one, two), "");
+  EXPECT_EQ(testing::difference(one, same), "");
+  EXPECT_NE(testing::difference(one, other), "");
+  EXPECT_NE(testing::difference(one, two), "");
 }
 
 }  // namespace

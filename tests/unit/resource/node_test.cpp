@@ -49,10 +49,10 @@ TEST(Node, TurtleAndNTriplesAreItsGraph) {
   const Node node = registration();
   const Place place{"registration", "", "http://h/"};
   const auto turtle = write(node, Format::Turtle, place);
-  EXPECT_EQ(test::difference(*rdf::read_graph(turtle), graph_of(node)), "") << turtle;
+  EXPECT_EQ(testing::difference(*rdf::read_graph(turtle), graph_of(node)), "") << turtle;
   const auto triples = write(node, Format::NTriples, place);
-  EXPECT_EQ(test::difference(read_at(triples, rdf::Syntax::NTriples),
-                             read_at(turtle, rdf::Syntax::Turtle)),
+  EXPECT_EQ(testing::difference(read_at(triples, rdf::Syntax::NTriples),
+                                read_at(turtle, rdf::Syntax::Turtle)),
             "");
   EXPECT_NE(triples.find("<http://h/sensors/s1>"), std::string::npos) << triples;
 }

@@ -1,0 +1,166 @@
+// Profile "arvida": the whole ARVIDA pattern, one spatial relationship a joint (proto/README.md).
+//
+// Source is the tracker's space, target the joint, translation the joint's position in the source:
+// the direction is documented nowhere, this is the one a published client uses.
+#include <algorithm>
+#include <array>
+
+#include "common/body/bones.h"
+#include "common/resource/frame_parts.h"
+
+namespace chorus::resource {
+namespace {
+
+constexpr std::string_view kPrefixes =
+    "@prefix ch: <https://w3id.org/chorus-tracking/ns#> .\n"
+    "@prefix core: <http://vocab.arvida.de/2015/06/core/vocab#> .\n"
+    "@prefix maths: <http://vocab.arvida.de/2015/06/maths/vocab#> .\n"
+    "@prefix skel: <http://vocab.arvida.de/2015/05/skel/vocab#> .\n"
+    "@prefix spatial: <http://vocab.arvida.de/2015/06/spatial/vocab#> .\n"
+    "@prefix tracking: <http://vocab.arvida.de/2015/06/tracking/vocab#> .\n"
+    "@prefix vom: <http://vocab.arvida.de/2015/06/vom/vocab#> .\n"
+    "@prefix xsd: <http://www.w3.org/2001/XMLSchema#> .\n";
+
+constexpr std::string_view kDouble = "\"^^xsd:double ; ";
+constexpr std::size_t kJointText = 2048;  // longest joint without its names
+
+class ArvidaFrame {
+ public:
+  ArvidaFrame(const FrameResource& frame, const Place& place)
+      : frame_(frame),
+        names_(place.up() + place.names),
+        pen_(2048 + frame.bodies.size() * 32 * 1024) {}
+
+  std::string run() {
+    put_frame();
+    for (const BodyResource& body : frame_.bodies) {
+      put_body(body);
+      for (std::size_t i = 0; i < kJointCount; ++i) put_joint(body, i);
+    }
+    return pen_.take();
+  }
+
+ private:
+  void put_frame() {
+    pen_.need(kJointText + 2 * names_.size() + frame_.source.size() * 6);
+    put(kPrefixes, "\n<", names_, "frame> a ch:Frame, core:Container ;\n  ch:sequence ");
+    pen_.put_integer(frame_.sequence);
+    put(" ;\n  ch:captured \"", time_.of(frame_.captured),
+        "\"^^xsd:dateTime ;\n  ch:capturedNanoseconds ");
+    pen_.put_integer(to_unix_ns(frame_.captured));
+    put(" ;\n  ch:source ", quoted(frame_.source), " ;\n  ch:space ch:", name_of(frame_.space));
+    std::string_view before = " ;\n  core:member <";
+    for (const BodyResource& body : frame_.bodies) {
+      pen_.need(kJointText + names_.size());
+      pen_.put(before);
+      put_body_name(body);
+      pen_.put(">");
+      before = ", <";
+    }
+    pen_.need(kJointText + names_.size());
+    put(" .\n\n<", names_, "frame#space> a maths:RightHandedCartesianCoordinateSystem3D ;\n",
+        "  maths:axesUnit vom:meter .\n");
+  }
+
+  void put_body(const BodyResource& body) {
+    pen_.need(kJointText + kJointCount * (64 + names_.size()));
+    pen_.put("\n<");
+    put_body_name(body);
+    pen_.put("> a skel:Skeleton, ch:Skeleton ;\n  ch:bodyId ");
+    pen_.put_integer(body.id);
+    std::string_view before = " ;\n  skel:skeletonJoint <";
+    for (const std::string_view joint : kJointNames) {
+      pen_.put(before);
+      put_joint_name(body, joint);
+      pen_.put(">");
+      before = ", <";
+    }
+    pen_.put(" .\n");
+  }
+
+  void put_joint(const BodyResource& body, std::size_t index) {
+    const std::string_view name = kJointNames[index];
+    const WritableJoint joint = writable(body.joints[index]);
+    pen_.need(kJointText + 5 * (names_.size() + 64));
+    pen_.put("\n<");
+    put_joint_name(body, name);
+    put("> a skel:Joint, spatial:SpatialRelationship, core:Output, core:Pull ;\n",
+        "  ch:jointName \"", name, "\" ;\n  ch:state ch:", name_of(joint.state),
+        " ;\n  spatial:sourceCoordinateSystem <", names_,
+        "frame#space> ;\n  spatial:targetCoordinateSystem <");
+    put_joint_name(body, name);
+    pen_.put("-space> ;\n  spatial:spatialRelationship <");
+    put_joint_name(body, name);
+    pen_.put(">");
+    put_timestamp(body.captured);
+    if (joint.state != JointState::NotTracked) put_translation(joint.position);
+    if (joint.has_orientation) put_rotation(joint.orientation);
+    pen_.put(" .\n\n<");
+    put_joint_name(body, name);
+    pen_.put("-space> a maths:RightHandedCartesianCoordinateSystem3D .\n");
+  }
+
+  void put_timestamp(Timestamp captured) {
+    pen_.put(
+        " ;\n  spatial:timestamp [ a tracking:UnixTimestamp ; vom:quantityValue [ a "
+        "vom:QuantityValue ; "
+        "vom:numericalValue \"");
+    pen_.put_integer(std::max<std::int64_t>(0, to_unix_ns(captured)));  // unsignedLong has no sign
+    pen_.put("\"^^xsd:unsignedLong ; vom:unit vom:NanoSecond ] ]");
+  }
+
+  void put_translation(const Eigen::Vector3d& p) {
+    pen_.put(
+        " ;\n  spatial:translation [ a spatial:Translation3D ; vom:quantityKind vom:Length ; "
+        "vom:quantityValue [ a maths:Vector3D ; ");
+    put_number("maths:x \"", p.x(), kPositionDecimals);
+    put_number("maths:y \"", p.y(), kPositionDecimals);
+    put_number("maths:z \"", p.z(), kPositionDecimals);
+    pen_.put("vom:unit vom:meter ] ]");
+  }
+
+  void put_rotation(const Eigen::Quaterniond& q) {
+    pen_.put(
+        " ;\n  spatial:rotation [ a spatial:Rotation3D ; vom:quantityKind vom:Angle ; "
+        "vom:quantityValue [ a maths:Quaternion, maths:Vector4D ; ");
+    put_number("maths:x \"", q.x(), kQuaternionDecimals);
+    put_number("maths:y \"", q.y(), kQuaternionDecimals);
+    put_number("maths:z \"", q.z(), kQuaternionDecimals);
+    put_number("maths:w \"", q.w(), kQuaternionDecimals);
+    pen_.put("] ]");
+  }
+
+  void put_number(std::string_view before, double value, int decimals) {
+    pen_.put(before);
+    pen_.put_decimal(value, decimals);
+    pen_.put(kDouble);
+  }
+
+  void put_body_name(const BodyResource& body) {
+    put(names_, "skeletons/");
+    pen_.put_integer(body.id);
+  }
+  void put_joint_name(const BodyResource& body, std::string_view joint) {
+    put_body_name(body);
+    put("#", joint);
+  }
+
+  template <class... Text>
+  void put(const Text&... text) {
+    (pen_.put(text), ...);
+  }
+
+  const FrameResource& frame_;
+  const std::string names_;
+  TimeText time_;
+  Pen pen_;
+};
+
+}  // namespace
+
+std::string write_arvida(const FrameResource& frame, const Place& place, Format format) {
+  std::string turtle = ArvidaFrame(frame, place).run();
+  return format == Format::NTriples ? turtle_to_ntriples(turtle, place) : turtle;
+}
+
+}  // namespace chorus::resource

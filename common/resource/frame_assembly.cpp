@@ -1,0 +1,227 @@
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <set>
+
+#include "common/body/bones.h"
+#include "common/rdf/utf8.h"
+#include "common/resource/frame_facts.h"
+
+namespace chorus::resource {
+namespace {
+
+/// Contributor bits are 64 (frame_resource.h).
+constexpr std::size_t kMaxSensors = 64;
+/// The two forms of one time may differ by rounding, not by more.
+constexpr Duration kTimeTolerance = std::chrono::milliseconds(1);
+
+template <class T>
+std::optional<T> parse_integer(std::string_view text) {
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  T value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+tl::unexpected<Error> refuse(const SubjectFacts& subject, std::string_view property,
+                             std::string message) {
+  return fail(ErrorCode::Malformed, place_of(subject, property), std::move(message));
+}
+
+Result<Timestamp> time_of(const SubjectFacts& subject) {
+  if (!subject.captured && !subject.captured_ns) {
+    return refuse(subject, "captured", "the capture time is missing");
+  }
+  if (!subject.captured_ns) return *subject.captured;
+  if (*subject.captured_ns < 0) {
+    return refuse(subject, "capturedNanoseconds", "a capture time before 1970 is not believed");
+  }
+  const Timestamp exact = from_unix_ns(*subject.captured_ns);
+  if (subject.captured && std::chrono::abs(*subject.captured - exact) > kTimeTolerance) {
+    return refuse(subject, "captured", "captured and capturedNanoseconds are different times");
+  }
+  return exact;
+}
+
+std::optional<double> number(const SubjectFacts& subject, Number which) {
+  return subject.numbers[static_cast<std::size_t>(which)];
+}
+
+/// All of `count` numbers from `first` on, or none; anything between is refused.
+Result<bool> has_all(const SubjectFacts& joint, Number first, std::size_t count) {
+  std::size_t given = 0;
+  std::size_t missing = 0;
+  for (std::size_t i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(first) + count;
+       ++i) {
+    if (joint.numbers[i]) {
+      ++given;
+    } else {
+      missing = i;
+    }
+  }
+  if (given == 0) return false;
+  if (given < count) return refuse(joint, kNumberNames[missing], "is missing beside the others");
+  return true;
+}
+
+Result<void> read_position(const SubjectFacts& facts, JointResource& joint) {
+  const auto given = has_all(facts, Number::X, 3);
+  if (!given) return pass(given);
+  if (!*given) return refuse(facts, "x", "a joint that is tracked or inferred has a position");
+  joint.position = {*number(facts, Number::X), *number(facts, Number::Y),
+                    *number(facts, Number::Z)};
+  if (joint.position.cwiseAbs().maxCoeff() > kMaxCoordinate) {
+    return refuse(facts, "x", "a coordinate beyond 10000 m is not believed");
+  }
+  return {};
+}
+
+Result<void> read_orientation(const SubjectFacts& facts, JointResource& joint) {
+  const auto given = has_all(facts, Number::Qx, 4);
+  if (!given) return pass(given);
+  if (!*given) return {};
+  const Eigen::Quaterniond q(*number(facts, Number::Qw), *number(facts, Number::Qx),
+                             *number(facts, Number::Qy), *number(facts, Number::Qz));
+  const double norm = q.norm();
+  if (norm == 0.0) return {};
+  if (!(std::abs(norm - 1.0) <= kUnitTolerance)) {
+    return refuse(facts, "qw", "the quaternion does not have length 1");
+  }
+  joint.orientation = q;
+  return {};
+}
+
+Result<void> read_contributors(const SubjectFacts& facts, const std::vector<std::string>& sensors,
+                               JointResource& joint) {
+  for (const std::string& name : facts.contributors) {
+    const auto at = std::ranges::find(sensors, name);
+    if (at == sensors.end()) {
+      return refuse(facts, "contributor", "'" + name + "' is none of the frame's sensors");
+    }
+    joint.contributors |= std::uint64_t{1} << (at - sensors.begin());
+  }
+  return {};
+}
+
+Result<JointResource> read_joint(const SubjectFacts& facts,
+                                 const std::vector<std::string>& sensors) {
+  JointResource joint;
+  if (!facts.state) return refuse(facts, "state", "is missing: Tracked, Inferred or NotTracked");
+  joint.state = *facts.state;
+  if (joint.state == JointState::NotTracked) return joint;
+  if (auto ok = read_position(facts, joint); !ok) return pass(ok);
+  if (auto ok = read_orientation(facts, joint); !ok) return pass(ok);
+  joint.variance = number(facts, Number::Variance);
+  if (joint.variance && !(*joint.variance >= 0.0 && *joint.variance <= kMaxCoordinate)) {
+    return refuse(facts, "variance", "is not between 0 and 10000 m^2");
+  }
+  if (auto ok = read_contributors(facts, sensors, joint); !ok) return pass(ok);
+  return joint;
+}
+
+Result<BodyResource> read_body(const Facts& facts, const SubjectFacts& subject,
+                               const std::vector<std::string>& sensors) {
+  BodyResource body;
+  if (!subject.body_id) return refuse(subject, "bodyId", "is missing");
+  body.id = *subject.body_id;
+  const auto captured = time_of(subject);
+  if (!captured) return pass(captured);
+  body.captured = *captured;
+  std::set<JointId> seen;
+  for (const std::size_t at : subject.joints) {
+    const SubjectFacts& joint = facts[at];
+    if (!joint.joint_name) return refuse(joint, "jointName", "is missing");
+    const auto id = joint_named(*joint.joint_name);
+    if (!id)
+      return refuse(joint, "jointName",
+                    "'" + joint.joint_name->substr(0, 40) + "' is no joint of ours");
+    if (!seen.insert(*id).second) return refuse(joint, "jointName", "this body has two of them");
+    auto read = read_joint(joint, sensors);
+    if (!read) return pass(read);
+    body.joints[index_of(*id)] = *read;
+  }
+  return body;
+}
+
+Result<FrameResource> read_head(const SubjectFacts& subject) {
+  FrameResource frame;
+  if (!subject.sequence) return refuse(subject, "sequence", "is missing");
+  frame.sequence = *subject.sequence;
+  const auto captured = time_of(subject);
+  if (!captured) return pass(captured);
+  frame.captured = *captured;
+  if (!subject.source) return refuse(subject, "source", "is missing");
+  if (auto id = SensorId::parse(*subject.source); !id)
+    return refuse(subject, "source", to_string(id.error()));
+  frame.source = *subject.source;
+  if (!subject.space) return refuse(subject, "space", "is missing: SensorSpace or WorldSpace");
+  frame.space = *subject.space;
+  if (subject.sensors.size() > kMaxSensors)
+    return refuse(subject, "sensor", "more than 64 sensors");
+  for (const std::string& name : subject.sensors) {
+    if (auto id = SensorId::parse(name); !id)
+      return refuse(subject, "sensor", to_string(id.error()));
+  }
+  frame.sensors = subject.sensors;
+  if (subject.bodies.size() > kMaxBodies) {
+    return fail(ErrorCode::TooLarge, place_of(subject, "body"),
+                "more than " + std::to_string(kMaxBodies) + " bodies");
+  }
+  return frame;
+}
+
+}  // namespace
+
+std::optional<SpaceKind> space_named(std::string_view name) {
+  if (name == "SensorSpace") return SpaceKind::Sensor;
+  if (name == "WorldSpace") return SpaceKind::World;
+  return std::nullopt;
+}
+
+std::optional<JointState> state_named(std::string_view name) {
+  if (name == "Tracked") return JointState::Tracked;
+  if (name == "Inferred") return JointState::Inferred;
+  if (name == "NotTracked") return JointState::NotTracked;
+  return std::nullopt;
+}
+
+std::optional<std::uint64_t> parse_unsigned(std::string_view text) {
+  return parse_integer<std::uint64_t>(text);
+}
+
+std::optional<std::int64_t> parse_signed(std::string_view text) {
+  return parse_integer<std::int64_t>(text);
+}
+
+std::string place_of(const SubjectFacts& subject, std::string_view property) {
+  return rdf::clean_utf8(std::string_view(subject.name).substr(0, 120)) +
+         " ch:" + std::string(property);
+}
+
+Result<FrameResource> assemble(const Facts& facts) {
+  const SubjectFacts* root = nullptr;
+  for (const SubjectFacts& subject : facts) {
+    if (!subject.is_frame) continue;
+    if (root != nullptr)
+      return refuse(subject, "Frame", "a document holds one frame, this is the second");
+    root = &subject;
+  }
+  if (root == nullptr) {
+    return fail(ErrorCode::Malformed, {}, "the document holds no ch:Frame");
+  }
+  auto frame = read_head(*root);
+  if (!frame) return frame;
+  std::set<std::uint64_t> ids;
+  for (const std::size_t at : root->bodies) {
+    auto body = read_body(facts, facts[at], frame->sensors);
+    if (!body) return pass(body);
+    if (!ids.insert(body->id).second) {
+      return refuse(facts[at], "bodyId", "two bodies have the id " + std::to_string(body->id));
+    }
+    frame->bodies.push_back(*std::move(body));
+  }
+  return frame;
+}
+
+}  // namespace chorus::resource

@@ -1,0 +1,80 @@
+#include "common/resource/frame_document.h"
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/resource/node.h"
+
+namespace chorus::resource {
+namespace {
+
+/// Nothing of an immutable frame ever changes: a year, as RFC 9111 caches take it.
+constexpr std::string_view kForever = "public, max-age=31536000, immutable";
+constexpr std::string_view kArvida = "arvida";
+
+using Render = std::function<std::string(Format)>;
+
+std::vector<http::Variant> variants_of(const Render& render) {
+  std::vector<http::Variant> variants;
+  for (const Format format : kFormats) {
+    variants.push_back(
+        {std::string(media_type(format)), [render, format] { return render(format); }});
+  }
+  return variants;
+}
+
+http::DocumentOptions options_of(const FrameResource& frame) {
+  http::DocumentOptions options;
+  options.version = std::to_string(frame.sequence);
+  options.captured = frame.captured;
+  return options;
+}
+
+}  // namespace
+
+http::DocumentPtr frame_document(FramePtr frame, const Place& place, bool kept) {
+  http::DocumentOptions options = options_of(*frame);
+  const bool immutable = place.path.find("frames/") != std::string::npos;
+  if (immutable) {
+    options.cache_control = kForever;
+    options.captured.reset();  // an age would say nothing
+  } else if (kept) {
+    options.content_location = place.up() + place.names + "frames/" + options.version;
+  }
+  auto variants =
+      variants_of([frame, place](Format format) { return write(*frame, format, place); });
+  for (const Format format : {Format::Turtle, Format::NTriples}) {
+    variants.push_back({std::string(media_type(format)),
+                        [frame, place, format] { return write_arvida(*frame, place, format); },
+                        std::string(kArvida)});
+  }
+  return std::make_shared<const http::Document>(std::move(variants), std::move(options));
+}
+
+http::DocumentPtr skeleton_document(FramePtr frame, std::uint64_t body_id, const Place& place) {
+  const auto body = std::ranges::find(frame->bodies, body_id, &BodyResource::id);
+  if (body == frame->bodies.end()) return nullptr;
+  const auto render = [frame, &found = *body, place](Format format) {
+    return write_skeleton(*frame, found, format, place);
+  };
+  return std::make_shared<const http::Document>(variants_of(render), options_of(*frame));
+}
+
+http::DocumentPtr skeletons_document(const FrameResource& frame, const Place& place) {
+  std::vector<Ref> bodies;
+  for (const BodyResource& body : frame.bodies) bodies.push_back({std::to_string(body.id)});
+  const Node container{"",
+                       {"ldp:BasicContainer"},
+                       {{"title", std::string("The bodies in the latest frame")},
+                        {"frame", Ref{place.up() + place.names + "frame"}},
+                        {"sequence", static_cast<std::int64_t>(frame.sequence)},
+                        {"contains", bodies}}};
+  http::DocumentOptions options = options_of(frame);
+  options.container = true;
+  return document_of(container, std::move(options), place);
+}
+
+}  // namespace chorus::resource

@@ -1,0 +1,72 @@
+// Internal to the room: what a frame document says, subject by subject, before it is believed.
+//
+// The Turtle and the JSON reader both fill these; assemble() alone decides what is a valid frame.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/resource/frame_resource.h"
+
+namespace chorus::resource {
+
+/// The decimals of a joint, in this order; names in kNumberNames.
+enum class Number : std::uint8_t { X, Y, Z, Qx, Qy, Qz, Qw, Variance };
+inline constexpr std::array<std::string_view, 8> kNumberNames{"x",  "y",  "z",  "qx",
+                                                              "qy", "qz", "qw", "variance"};
+
+/// How far from length 1 a quaternion may be; all zero means "not given".
+inline constexpr double kUnitTolerance = 0.1;
+
+/// Everything that may be said of one subject, whatever it turns out to be.
+struct SubjectFacts {
+  std::string name;  ///< Its IRI as written, for messages.
+  bool is_frame = false;
+  std::optional<std::uint64_t> sequence;
+  std::optional<std::uint64_t> body_id;
+  std::optional<Timestamp> captured;
+  std::optional<std::int64_t> captured_ns;
+  std::optional<std::string> source;
+  std::optional<SpaceKind> space;
+  std::optional<JointState> state;
+  std::optional<std::string> joint_name;
+  std::array<std::optional<double>, kNumberNames.size()> numbers;
+  std::vector<std::string> sensors;
+  std::vector<std::string> contributors;
+  std::vector<std::size_t> bodies;  ///< Indices of subjects.
+  std::vector<std::size_t> joints;
+};
+
+using Facts = std::vector<SubjectFacts>;
+
+/// Sets a property that a subject has once.  Saying the same twice is no contradiction.
+template <class T>
+[[nodiscard]] bool set_once(std::optional<T>& property, T value) {
+  if (property && *property != value) return false;
+  property = std::move(value);
+  return true;
+}
+
+[[nodiscard]] std::optional<SpaceKind> space_named(std::string_view name);
+[[nodiscard]] std::optional<JointState> state_named(std::string_view name);
+[[nodiscard]] std::optional<std::uint64_t> parse_unsigned(std::string_view text);
+[[nodiscard]] std::optional<std::int64_t> parse_signed(std::string_view text);
+
+/// "skeletons/7#Head ch:x": where in the document something is wrong.
+[[nodiscard]] std::string place_of(const SubjectFacts& subject, std::string_view property);
+
+[[nodiscard]] Result<FrameResource> assemble(const Facts& facts);
+
+/// The Turtle of our own template, without a parser; nullopt at the first byte that is not as we
+/// write it.
+[[nodiscard]] std::optional<FrameResource> read_template(std::string_view turtle);
+
+[[nodiscard]] Result<FrameResource> read_rdf_frame(std::string_view text, Format format);
+[[nodiscard]] Result<FrameResource> read_json_frame(std::string_view text);
+
+}  // namespace chorus::resource

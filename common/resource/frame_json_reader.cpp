@@ -1,0 +1,158 @@
+// A frame from JSON or JSON-LD, in the shape of our own context only (proto/README.md, section 3).
+#include <nlohmann/json.hpp>
+
+#include "common/resource/fixed_point.h"
+#include "common/resource/frame_facts.h"
+#include "common/resource/json_guard.h"
+
+namespace chorus::resource {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Reads one object of the document into the facts of one subject; keeps the first complaint.
+class Reading {
+ public:
+  Result<Facts> run(const Json& root) {
+    if (!root.is_object()) return fail(ErrorCode::Malformed, {}, "a frame is a JSON object");
+    const std::size_t frame = add_subject(root, "frame");
+    if (!root.contains("@type") || root.at("@type") != "Frame")
+      complain(frame, "@type", "is not \"Frame\"");
+    facts_[frame].is_frame = true;
+    read_common(frame, root);
+    list(frame, root, "sensors", facts_[frame].sensors);
+    read_bodies(frame, root);
+    if (error_) return tl::unexpected<Error>(*error_);
+    return std::move(facts_);
+  }
+
+ private:
+  std::size_t add_subject(const Json& object, std::string name) {
+    const auto id = object.find("@id");
+    facts_.emplace_back().name =
+        id != object.end() && id->is_string() ? id->get<std::string>() : std::move(name);
+    return facts_.size() - 1;
+  }
+
+  void complain(std::size_t at, std::string_view key, std::string message) {
+    if (!error_)
+      error_ = Error{ErrorCode::Malformed, place_of(facts_[at], key), std::move(message)};
+  }
+
+  void read_common(std::size_t at, const Json& object) {
+    integer(at, object, "sequence", facts_[at].sequence, parse_unsigned);
+    integer(at, object, "bodyId", facts_[at].body_id, parse_unsigned);
+    integer(at, object, "capturedNanoseconds", facts_[at].captured_ns, parse_signed);
+    text(at, object, "source", facts_[at].source);
+    named(at, object, "space", facts_[at].space, space_named);
+    named(at, object, "state", facts_[at].state, state_named);
+    std::optional<std::string> captured;
+    text(at, object, "captured", captured);
+    if (!captured) return;
+    const auto time = parse_iso8601(*captured);
+    if (!time) return complain(at, "captured", to_string(time.error()));
+    facts_[at].captured = *time;
+  }
+
+  void read_bodies(std::size_t frame, const Json& root) {
+    const auto bodies = root.find("bodies");
+    if (bodies == root.end()) return;
+    if (!bodies->is_array()) return complain(frame, "bodies", "is no array");
+    for (const Json& object : *bodies) {
+      if (!object.is_object())
+        return complain(frame, "bodies", "holds something that is no object");
+      if (facts_[frame].bodies.size() > kMaxBodies) return;  // assemble() names the limit
+      const std::size_t body = add_subject(object, "a body");
+      facts_[frame].bodies.push_back(body);
+      read_common(body, object);
+      read_joints(body, object);
+    }
+  }
+
+  void read_joints(std::size_t body, const Json& object) {
+    const auto joints = object.find("joints");
+    if (joints == object.end()) return;
+    if (!joints->is_object()) return complain(body, "joints", "is no object");
+    for (const auto& [name, value] : joints->items()) {
+      if (!value.is_object()) return complain(body, "joints", "holds something that is no object");
+      if (facts_[body].joints.size() > kJointCount) return;
+      const std::size_t joint = add_subject(value, facts_[body].name + "#" + name.substr(0, 40));
+      facts_[body].joints.push_back(joint);
+      facts_[joint].joint_name = name;
+      read_common(joint, value);
+      list(joint, value, "contributors", facts_[joint].contributors);
+      for (std::size_t i = 0; i < kNumberNames.size(); ++i) {
+        number(joint, value, kNumberNames[i], facts_[joint].numbers[i]);
+      }
+    }
+  }
+
+  /// A JSON number, or the same as a string, as JSON-LD and large integers have it.
+  template <class T, class Parse>
+  void integer(std::size_t at, const Json& object, std::string_view key, std::optional<T>& out,
+               Parse parse) {
+    const auto found = object.find(key);
+    if (found == object.end()) return;
+    if (!found->is_number_integer() && !found->is_string())
+      return complain(at, key, "is no integer");
+    out = parse(found->is_string() ? found->template get<std::string>() : found->dump());
+    if (!out) complain(at, key, "is no integer of 64 bits, or has the wrong sign");
+  }
+
+  void number(std::size_t at, const Json& object, std::string_view key,
+              std::optional<double>& out) {
+    const auto found = object.find(key);
+    if (found == object.end()) return;
+    if (found->is_number()) {
+      out = found->get<double>();
+    } else if (found->is_string()) {
+      out = parse_number(found->get_ref<const std::string&>());
+    }
+    if (!out) complain(at, key, "is no finite number");
+  }
+
+  void text(std::size_t at, const Json& object, std::string_view key,
+            std::optional<std::string>& out) {
+    const auto found = object.find(key);
+    if (found == object.end()) return;
+    if (!found->is_string()) return complain(at, key, "is no string");
+    out = found->get<std::string>();
+  }
+
+  template <class T, class Find>
+  void named(std::size_t at, const Json& object, std::string_view key, std::optional<T>& out,
+             Find find) {
+    std::optional<std::string> name;
+    text(at, object, key, name);
+    if (!name) return;
+    out = find(*name);
+    if (!out) complain(at, key, "is none of the names this property may have");
+  }
+
+  void list(std::size_t at, const Json& object, std::string_view key,
+            std::vector<std::string>& out) {
+    constexpr std::size_t kMoreThanEnough = 65;  // one above the limit, which assemble() names
+    const auto found = object.find(key);
+    if (found == object.end()) return;
+    if (!found->is_array()) return complain(at, key, "is no array");
+    for (const Json& item : *found) {
+      if (!item.is_string()) return complain(at, key, "holds something that is no string");
+      if (out.size() < kMoreThanEnough) out.push_back(item.get<std::string>());
+    }
+  }
+
+  Facts facts_;
+  std::optional<Error> error_;
+};
+
+}  // namespace
+
+Result<FrameResource> read_json_frame(std::string_view text) {
+  const auto json = parse_json(text);
+  if (!json) return pass(json);
+  auto facts = Reading().run(*json);
+  if (!facts) return pass(facts);
+  return assemble(*facts);
+}
+
+}  // namespace chorus::resource

@@ -1,0 +1,153 @@
+#include "common/resource/frame_parts.h"
+
+#include <cmath>
+
+#include "common/rdf/turtle_reader.h"
+#include "common/rdf/turtle_writer.h"
+#include "common/rdf/utf8.h"
+
+namespace chorus::resource {
+namespace {
+
+/// A quaternion this far from unit length is normalised before it is written.
+constexpr double kWrittenTolerance = 0.05;
+constexpr double kLeastNorm = 1e-6;  // below, a quaternion is "not given"
+constexpr double kMaxVariance = 1e4;
+
+bool plausible(const Eigen::Vector3d& p) {
+  return p.allFinite() && p.cwiseAbs().maxCoeff() <= kMaxCoordinate;
+}
+
+}  // namespace
+
+WritableJoint writable(const JointResource& joint) {
+  WritableJoint out;
+  if (joint.state == JointState::NotTracked || !plausible(joint.position)) return out;
+  out.state = joint.state;
+  out.position = joint.position;
+  const double norm = joint.orientation.norm();
+  if (std::isfinite(norm) && norm > kLeastNorm) {
+    out.has_orientation = true;
+    out.orientation = joint.orientation;
+    if (std::abs(norm - 1.0) > kWrittenTolerance) out.orientation.coeffs() /= norm;
+  }
+  const double variance = joint.variance.value_or(-1.0);
+  if (variance >= 0.0 && variance <= kMaxVariance) out.variance = variance;
+  return out;
+}
+
+std::string quoted(std::string_view text) {
+  constexpr std::string_view kHex = "0123456789ABCDEF";
+  std::string out = "\"";
+  for (const char c : rdf::clean_utf8(text)) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      out.append(1, '\\').append(1, c);
+    } else if (byte < 0x20) {
+      out.append("\\u00").append(1, kHex[byte >> 4U]).append(1, kHex[byte & 15U]);
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+std::vector<std::string> quoted_names(const FrameResource& frame) {
+  std::vector<std::string> names;
+  names.reserve(frame.sensors.size());
+  for (const std::string& name : frame.sensors) names.push_back(quoted(name));
+  return names;
+}
+
+std::string_view name_of(JointState state) {
+  switch (state) {
+    case JointState::Tracked:
+      return "Tracked";
+    case JointState::Inferred:
+      return "Inferred";
+    case JointState::NotTracked:
+      break;
+  }
+  return "NotTracked";
+}
+
+std::string_view name_of(SpaceKind space) {
+  return space == SpaceKind::World ? "WorldSpace" : "SensorSpace";
+}
+
+std::string turtle_to_ntriples(const std::string& turtle, const Place& place) {
+  rdf::ReadOptions reading;
+  reading.limits.bytes = turtle.size();  // our own text
+  const auto graph = rdf::read_graph(turtle, reading);
+  if (!graph) return {};
+  return rdf::write_graph(*graph, {rdf::Syntax::NTriples, {}, place.root + place.path})
+      .value_or("");
+}
+
+std::string write(const FrameResource& frame, Format format, const Place& place) {
+  switch (format) {
+    case Format::Turtle:
+      return write_turtle(frame, place);
+    case Format::JsonLd:
+      return write_json(frame, true, place);
+    case Format::Json:
+      return write_json(frame, false, place);
+    case Format::NTriples:
+      return turtle_to_ntriples(write_turtle(frame, place), place);
+  }
+  return {};
+}
+
+std::string write_skeleton(const FrameResource& frame, const BodyResource& body, Format format,
+                           const Place& place) {
+  switch (format) {
+    case Format::Turtle:
+      return write_turtle_skeleton(frame, body, place);
+    case Format::JsonLd:
+      return write_json_skeleton(frame, body, true, place);
+    case Format::Json:
+      return write_json_skeleton(frame, body, false, place);
+    case Format::NTriples:
+      return turtle_to_ntriples(write_turtle_skeleton(frame, body, place), place);
+  }
+  return {};
+}
+
+FrameResource to_resource(const SensorFrame& frame) {
+  FrameResource out;
+  out.sequence = frame.sequence;
+  out.captured = frame.captured;
+  out.source = frame.sensor.str();
+  out.bodies.reserve(frame.bodies.size());
+  for (const BodyFrame& body : frame.bodies) {
+    BodyResource& written = out.bodies.emplace_back();
+    written.id = body.id.value;
+    written.captured = body.captured;
+    for (std::size_t i = 0; i < kJointCount; ++i) {
+      const Joint& joint = body.skeleton.joints[i];
+      written.joints[i] = {joint.position, joint.orientation, joint.state, std::nullopt, 0};
+    }
+  }
+  return out;
+}
+
+SensorFrame to_sensor_frame(const FrameResource& frame, SensorId sensor, Timestamp received) {
+  SensorFrame out;
+  out.sensor = std::move(sensor);
+  out.sequence = frame.sequence;
+  out.captured = frame.captured;
+  out.received = received;
+  out.bodies.reserve(frame.bodies.size());
+  for (const BodyResource& body : frame.bodies) {
+    BodyFrame& seen = out.bodies.emplace_back();
+    seen.id = BodyId{body.id};
+    seen.captured = body.captured;
+    for (std::size_t i = 0; i < kJointCount; ++i) {
+      const JointResource& joint = body.joints[i];
+      seen.skeleton.joints[i] = {joint.position, joint.orientation, joint.state};
+    }
+  }
+  return out;
+}
+
+}  // namespace chorus::resource

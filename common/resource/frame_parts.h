@@ -1,0 +1,98 @@
+// Internal to the room: what the frame writers share.
+#pragma once
+
+#include <charconv>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/resource/fixed_point.h"
+#include "common/resource/frame_resource.h"
+
+namespace chorus::resource {
+
+/// Decimals on the wire (proto/README.md): 0.1 mm, quaternions, (0.1 mm)^2.
+inline constexpr int kPositionDecimals = 4;
+inline constexpr int kQuaternionDecimals = 5;
+inline constexpr int kVarianceDecimals = 8;
+
+/// A joint as it may be written: finite, plausible, or not tracked.
+struct WritableJoint {
+  JointState state = JointState::NotTracked;
+  bool has_orientation = false;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+  std::optional<double> variance;
+};
+[[nodiscard]] WritableJoint writable(const JointResource& joint);
+
+/// "text" with the escapes that Turtle and JSON share; broken UTF-8 is replaced.
+[[nodiscard]] std::string quoted(std::string_view text);
+
+/// Every sensor's name, quoted.
+[[nodiscard]] std::vector<std::string> quoted_names(const FrameResource& frame);
+
+/// Appends without checks: need() first says how much may follow.
+class Pen {
+ public:
+  explicit Pen(std::size_t expected) : text_(expected, '\0'), at_(text_.data()) {}
+
+  void need(std::size_t bytes) {
+    const auto used = static_cast<std::size_t>(at_ - text_.data());
+    if (text_.size() - used >= bytes) return;
+    text_.resize(text_.size() * 2 + bytes);
+    at_ = text_.data() + used;
+  }
+  void put(std::string_view text) {
+    std::memcpy(at_, text.data(), text.size());
+    at_ += text.size();
+  }
+  void put_decimal(double value, int decimals) { at_ = write_fixed(at_, value, decimals); }
+  template <class Integer>
+  void put_integer(Integer value) {
+    constexpr int kLongest = 20;  // digits and sign of 64 bits
+    at_ = std::to_chars(at_, at_ + kLongest, value).ptr;
+  }
+  [[nodiscard]] std::string take() {
+    text_.resize(static_cast<std::size_t>(at_ - text_.data()));
+    return std::move(text_);
+  }
+
+ private:
+  std::string text_;
+  char* at_;
+};
+
+/// dateTime text of an instant; bodies mostly share the frame's, so the last one is kept.
+class TimeText {
+ public:
+  [[nodiscard]] std::string_view of(Timestamp t) {
+    if (text_.empty() || t != last_) {
+      last_ = t;
+      text_ = to_iso8601(t);
+    }
+    return text_;
+  }
+
+ private:
+  Timestamp last_;
+  std::string text_;
+};
+
+[[nodiscard]] std::string_view name_of(JointState state);
+[[nodiscard]] std::string_view name_of(SpaceKind space);
+
+/// Bytes that one body takes, generously; and what a joint takes beyond its names.
+inline constexpr std::size_t kBodyBytes = 8192;
+inline constexpr std::size_t kJointBytes = 512;
+
+[[nodiscard]] std::string write_turtle(const FrameResource& frame, const Place& place);
+[[nodiscard]] std::string write_json(const FrameResource& frame, bool linked, const Place& place);
+[[nodiscard]] std::string write_turtle_skeleton(const FrameResource& frame,
+                                                const BodyResource& body, const Place& place);
+[[nodiscard]] std::string write_json_skeleton(const FrameResource& frame, const BodyResource& body,
+                                              bool linked, const Place& place);
+[[nodiscard]] std::string turtle_to_ntriples(const std::string& turtle, const Place& place);
+
+}  // namespace chorus::resource

@@ -1,0 +1,245 @@
+// A frame from Turtle or N-Triples in any spelling, through the parser.
+#include <algorithm>
+#include <map>
+
+#include "common/rdf/turtle_reader.h"
+#include "common/resource/fixed_point.h"
+#include "common/resource/frame_facts.h"
+#include "common/resource/terms.h"
+
+namespace chorus::resource {
+namespace {
+
+using rdf::TermKind;
+using rdf::TermView;
+
+enum class Property : std::uint8_t {
+  BodyIs,
+  BodyId,
+  Captured,
+  CapturedNanoseconds,
+  Contributor,
+  JointIs,
+  JointName,
+  Number,
+  Sensor,
+  Sequence,
+  Source,
+  Space,
+  State,
+};
+
+struct Row {
+  std::string_view name;
+  Property property;
+  Number number = Number::X;
+};
+
+/// Sorted by name; the properties a frame is made of.
+constexpr std::array kRows{
+    Row{"body", Property::BodyIs},
+    Row{"bodyId", Property::BodyId},
+    Row{"captured", Property::Captured},
+    Row{"capturedNanoseconds", Property::CapturedNanoseconds},
+    Row{"contributor", Property::Contributor},
+    Row{"joint", Property::JointIs},
+    Row{"jointName", Property::JointName},
+    Row{"qw", Property::Number, Number::Qw},
+    Row{"qx", Property::Number, Number::Qx},
+    Row{"qy", Property::Number, Number::Qy},
+    Row{"qz", Property::Number, Number::Qz},
+    Row{"sensor", Property::Sensor},
+    Row{"sequence", Property::Sequence},
+    Row{"source", Property::Source},
+    Row{"space", Property::Space},
+    Row{"state", Property::State},
+    Row{"variance", Property::Number, Number::Variance},
+    Row{"x", Property::Number, Number::X},
+    Row{"y", Property::Number, Number::Y},
+    Row{"z", Property::Number, Number::Z},
+};
+static_assert(std::ranges::is_sorted(kRows, {}, &Row::name));
+
+/// Compared as views: no text is built while reading.
+bool is_xsd(std::string_view datatype, std::string_view name) {
+  return datatype.size() == rdf::kXsd.size() + name.size() && datatype.starts_with(rdf::kXsd) &&
+         datatype.ends_with(name);
+}
+
+bool is_number(std::string_view datatype) {
+  return is_xsd(datatype, "decimal") || is_xsd(datatype, "double") || is_xsd(datatype, "integer") ||
+         is_xsd(datatype, "float");
+}
+
+bool is_integer(std::string_view datatype) {
+  return is_xsd(datatype, "integer") || is_xsd(datatype, "unsignedLong") ||
+         is_xsd(datatype, "long");
+}
+
+/// The name of one of our own individuals; empty when the term is none.
+std::string_view individual(const TermView& term) {
+  if (term.kind != TermKind::Iri || !term.value.starts_with(kChorus)) return {};
+  return term.value.substr(kChorus.size());
+}
+
+/// Adds to a list that is a set.
+template <class T>
+void add(std::vector<T>& list, T value) {
+  if (std::ranges::find(list, value) == list.end()) list.push_back(std::move(value));
+}
+
+class Collector {
+ public:
+  /// False when the document is refused; error() says why.
+  bool take(const rdf::TripleView& triple) {
+    const std::size_t at = subject_of(triple.subject);
+    const std::string_view verb = triple.predicate.value;
+    if (verb == type_) {
+      if (individual(triple.object) == "Frame") facts_[at].is_frame = true;
+      return true;
+    }
+    if (!verb.starts_with(kChorus)) return true;
+    const std::string_view name = verb.substr(kChorus.size());
+    const auto* const row = std::ranges::lower_bound(kRows, name, {}, &Row::name);
+    if (row == kRows.end() || row->name != name)
+      return true;  // additions are ignored (proto/README.md)
+    std::string_view why = store(at, *row, triple.object);
+    if (why.empty()) return true;
+    error_ = Error{ErrorCode::Malformed, place_of(facts_[at], name), std::string(why)};
+    return false;
+  }
+
+  [[nodiscard]] const std::optional<Error>& error() const { return error_; }
+  [[nodiscard]] const Facts& facts() const { return facts_; }
+
+ private:
+  /// Empty, or what is wrong with the object.
+  std::string_view store(std::size_t at, const Row& row, const TermView& object) {
+    switch (row.property) {
+      case Property::BodyIs:
+        return link(at, object, &SubjectFacts::bodies);
+      case Property::JointIs:
+        return link(at, object, &SubjectFacts::joints);
+      case Property::Number:
+        return store_number(facts_[at].numbers[static_cast<std::size_t>(row.number)], object);
+      case Property::BodyId:
+        return store_integer(facts_[at].body_id, object, parse_unsigned);
+      case Property::Sequence:
+        return store_integer(facts_[at].sequence, object, parse_unsigned);
+      case Property::CapturedNanoseconds:
+        return store_integer(facts_[at].captured_ns, object, parse_signed);
+      case Property::Captured:
+        return store_time(facts_[at].captured, object);
+      case Property::Source:
+        return store_text(facts_[at].source, object);
+      case Property::JointName:
+        return store_text(facts_[at].joint_name, object);
+      case Property::Space:
+        return store_named(facts_[at].space, object, space_named);
+      case Property::State:
+        return store_named(facts_[at].state, object, state_named);
+      case Property::Sensor:
+        return list_text(facts_[at].sensors, object);
+      case Property::Contributor:
+        return list_text(facts_[at].contributors, object);
+    }
+    return {};
+  }
+
+  static constexpr std::string_view kTwice = "is given twice, with different values";
+
+  std::string_view link(std::size_t at, const TermView& object,
+                        std::vector<std::size_t> SubjectFacts::*list) {
+    if (object.kind == TermKind::Literal) return "is a literal, not a resource";
+    const std::size_t to = find_or_add(object);
+    std::vector<std::size_t>& links = facts_[at].*list;
+    // Bounded here already, so that a long list costs nothing; assemble() names the limit.
+    if (links.size() <= std::max(kMaxBodies, kJointCount)) add(links, to);
+    return {};
+  }
+
+  static std::string_view store_number(std::optional<double>& property, const TermView& object) {
+    if (object.kind != TermKind::Literal || !is_number(object.datatype)) return "is no number";
+    const auto value = parse_number(object.value);
+    if (!value) return "is no finite number";
+    return set_once(property, *value) ? std::string_view() : kTwice;
+  }
+
+  template <class T, class Parse>
+  static std::string_view store_integer(std::optional<T>& property, const TermView& object,
+                                        Parse parse) {
+    if (object.kind != TermKind::Literal || !is_integer(object.datatype)) return "is no integer";
+    const auto value = parse(object.value);
+    if (!value) return "is no integer of 64 bits, or has the wrong sign";
+    return set_once(property, *value) ? std::string_view() : kTwice;
+  }
+
+  static std::string_view store_time(std::optional<Timestamp>& property, const TermView& object) {
+    if (object.kind != TermKind::Literal || !is_xsd(object.datatype, "dateTime"))
+      return "is no xsd:dateTime";
+    const auto value = parse_iso8601(object.value);
+    if (!value) return "is no xsd:dateTime with a zone, such as 2026-11-21T07:30:00.25Z";
+    return set_once(property, *value) ? std::string_view() : kTwice;
+  }
+
+  static std::string_view store_text(std::optional<std::string>& property, const TermView& object) {
+    if (object.kind != TermKind::Literal || !object.datatype.empty()) return "is no string";
+    return set_once(property, std::string(object.value)) ? std::string_view() : kTwice;
+  }
+
+  template <class T, class Find>
+  static std::string_view store_named(std::optional<T>& property, const TermView& object,
+                                      Find find) {
+    const auto value = find(individual(object));
+    if (!value) return "is none of the names this property may have";
+    return set_once(property, *value) ? std::string_view() : kTwice;
+  }
+
+  static std::string_view list_text(std::vector<std::string>& list, const TermView& object) {
+    constexpr std::size_t kMoreThanEnough = 65;  // one above the limit, which assemble() names
+    if (object.kind != TermKind::Literal || !object.datatype.empty()) return "is no string";
+    if (list.size() < kMoreThanEnough) add(list, std::string(object.value));
+    return {};
+  }
+
+  /// Triples of one subject mostly follow each other.
+  std::size_t subject_of(const TermView& subject) {
+    if (last_ < facts_.size() && facts_[last_].name == subject.value && last_kind_ == subject.kind)
+      return last_;
+    last_ = find_or_add(subject);
+    last_kind_ = subject.kind;
+    return last_;
+  }
+
+  std::size_t find_or_add(const TermView& term) {
+    auto& index = term.kind == TermKind::Blank ? blanks_ : iris_;
+    if (const auto found = index.find(term.value); found != index.end()) return found->second;
+    index.emplace(std::string(term.value), facts_.size());
+    facts_.emplace_back().name = std::string(term.value);
+    return facts_.size() - 1;
+  }
+
+  const std::string type_ = rdf::rdf("type");
+  Facts facts_;
+  std::map<std::string, std::size_t, std::less<>> iris_;
+  std::map<std::string, std::size_t, std::less<>> blanks_;
+  std::size_t last_ = 0;
+  TermKind last_kind_ = TermKind::Iri;
+  std::optional<Error> error_;
+};
+
+}  // namespace
+
+Result<FrameResource> read_rdf_frame(std::string_view text, Format format) {
+  rdf::ReadOptions options;
+  options.syntax = format == Format::NTriples ? rdf::Syntax::NTriples : rdf::Syntax::Turtle;
+  Collector collector;
+  const auto ok = rdf::read_triples(text, options, [&collector](const rdf::TripleView& triple) {
+    return collector.take(triple);
+  });
+  if (!ok) return pass(ok);
+  if (collector.error()) return tl::unexpected<Error>(*collector.error());
+  return assemble(collector.facts());
+}
+
+}  // namespace chorus::resource

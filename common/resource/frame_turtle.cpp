@@ -1,0 +1,205 @@
+// The compact profile in Turtle, from a template.  frame_fast_reader.cpp follows this layout byte
+// for byte.
+#include "common/body/bones.h"
+#include "common/resource/frame_parts.h"
+#include "common/resource/terms.h"
+
+namespace chorus::resource {
+namespace {
+
+constexpr std::string_view kPrefixes =
+    "@prefix ch: <https://w3id.org/chorus-tracking/ns#> .\n"
+    "@prefix xsd: <http://www.w3.org/2001/XMLSchema#> .\n";
+
+class TurtleFrame {
+ public:
+  TurtleFrame(const FrameResource& frame, const Place& place, std::size_t bodies)
+      : frame_(frame),
+        names_(place.up() + place.names),
+        sensors_(quoted_names(frame)),
+        pen_(1024 + bodies * kBodyBytes) {
+    for (const std::string& name : sensors_) sensor_bytes_ += name.size() + 2;
+  }
+
+  std::string whole() {
+    begin("frame", "ch:Frame");
+    put_sequence();
+    put_times(frame_.captured);
+    put_origin();
+    if (!sensors_.empty()) {
+      pen_.put(" ;\n  ch:sensor ");
+      put_names(~std::uint64_t{0});
+    }
+    put_body_links();
+    pen_.put(" .\n");
+    for (const BodyResource& body : frame_.bodies) {
+      begin_body(body);
+      put_joint_links(body);
+      put_joints(body);
+    }
+    return pen_.take();
+  }
+
+  std::string one(const BodyResource& body) {
+    begin_body(body);
+    put_sequence();
+    put_origin();
+    pen_.put(" ;\n  ch:frame <");
+    pen_.put(names_);
+    pen_.put("frame>");
+    put_joint_links(body);
+    put_joints(body);
+    return pen_.take();
+  }
+
+ private:
+  void begin(std::string_view name, std::string_view type) {
+    pen_.need(kJointBytes + names_.size() + sensor_bytes_ + frame_.source.size() * 6);
+    pen_.put(kPrefixes);
+    pen_.put("\n<");
+    pen_.put(names_);
+    pen_.put(name);
+    pen_.put("> a ");
+    pen_.put(type);
+    begun_ = true;
+  }
+
+  void begin_body(const BodyResource& body) {
+    pen_.need(2 * kJointBytes + 2 * names_.size() + frame_.source.size() * 6);
+    if (!begun_) pen_.put(kPrefixes);
+    begun_ = true;
+    pen_.put("\n<");
+    put_body_name(body);
+    pen_.put("> a ch:Skeleton ;\n  ch:bodyId ");
+    pen_.put_integer(body.id);
+    put_times(body.captured);
+  }
+
+  void put_sequence() {
+    pen_.put(" ;\n  ch:sequence ");
+    pen_.put_integer(frame_.sequence);
+  }
+
+  void put_times(Timestamp captured) {
+    pen_.put(" ;\n  ch:captured \"");
+    pen_.put(time_.of(captured));
+    pen_.put("\"^^xsd:dateTime ;\n  ch:capturedNanoseconds ");
+    pen_.put_integer(to_unix_ns(captured));
+  }
+
+  void put_origin() {
+    pen_.put(" ;\n  ch:source ");
+    pen_.put(quoted(frame_.source));
+    pen_.put(" ;\n  ch:space ch:");
+    pen_.put(name_of(frame_.space));
+  }
+
+  void put_names(std::uint64_t bits) {
+    std::string_view comma;
+    for (std::size_t i = 0; i < sensors_.size() && i < 64; ++i) {
+      if ((bits >> i & 1U) == 0) continue;
+      pen_.put(comma);
+      pen_.put(sensors_[i]);
+      comma = ", ";
+    }
+  }
+
+  void put_body_name(const BodyResource& body) {
+    pen_.put(names_);
+    pen_.put("skeletons/");
+    pen_.put_integer(body.id);
+  }
+
+  void put_body_links() {
+    std::string_view before = " ;\n  ch:body <";
+    for (const BodyResource& body : frame_.bodies) {
+      pen_.need(kJointBytes + names_.size());
+      pen_.put(before);
+      put_body_name(body);
+      pen_.put(">");
+      before = ", <";
+    }
+  }
+
+  void put_joint_name(const BodyResource& body, std::string_view joint) {
+    put_body_name(body);
+    pen_.put("#");
+    pen_.put(joint);
+  }
+
+  void put_joint_links(const BodyResource& body) {
+    pen_.need(kJointCount * (64 + names_.size()));
+    std::string_view before = " ;\n  ch:joint <";
+    for (const std::string_view joint : kJointNames) {
+      pen_.put(before);
+      put_joint_name(body, joint);
+      pen_.put(">");
+      before = ", <";
+    }
+    pen_.put(" .\n");
+  }
+
+  void put_joints(const BodyResource& body) {
+    for (std::size_t i = 0; i < kJointCount; ++i) {
+      pen_.need(kJointBytes + names_.size() + sensor_bytes_);
+      pen_.put("\n<");
+      put_joint_name(body, kJointNames[i]);
+      pen_.put("> a ch:Joint ;\n  ch:jointName \"");
+      pen_.put(kJointNames[i]);
+      pen_.put("\" ;\n");
+      put_joint(writable(body.joints[i]), body.joints[i].contributors);
+      pen_.put(" .\n");
+    }
+  }
+
+  void put_joint(const WritableJoint& joint, std::uint64_t contributors) {
+    if (joint.state != JointState::NotTracked) {
+      put_number("  ch:x ", joint.position.x(), kPositionDecimals);
+      put_number(" ; ch:y ", joint.position.y(), kPositionDecimals);
+      put_number(" ; ch:z ", joint.position.z(), kPositionDecimals);
+      pen_.put(" ;\n");
+    }
+    if (joint.has_orientation) {
+      put_number("  ch:qx ", joint.orientation.x(), kQuaternionDecimals);
+      put_number(" ; ch:qy ", joint.orientation.y(), kQuaternionDecimals);
+      put_number(" ; ch:qz ", joint.orientation.z(), kQuaternionDecimals);
+      put_number(" ; ch:qw ", joint.orientation.w(), kQuaternionDecimals);
+      pen_.put(" ;\n");
+    }
+    pen_.put("  ch:state ch:");
+    pen_.put(name_of(joint.state));
+    if (joint.variance) put_number(" ;\n  ch:variance ", *joint.variance, kVarianceDecimals);
+    const std::uint64_t known =
+        sensors_.size() >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << sensors_.size()) - 1;
+    if (joint.state != JointState::NotTracked && (contributors & known) != 0) {
+      pen_.put(" ;\n  ch:contributor ");
+      put_names(contributors);
+    }
+  }
+
+  void put_number(std::string_view before, double value, int decimals) {
+    pen_.put(before);
+    pen_.put_decimal(value, decimals);
+  }
+
+  const FrameResource& frame_;
+  const std::string names_;
+  const std::vector<std::string> sensors_;
+  std::size_t sensor_bytes_ = 0;
+  bool begun_ = false;
+  TimeText time_;
+  Pen pen_;
+};
+
+}  // namespace
+
+std::string write_turtle(const FrameResource& frame, const Place& place) {
+  return TurtleFrame(frame, place, frame.bodies.size()).whole();
+}
+
+std::string write_turtle_skeleton(const FrameResource& frame, const BodyResource& body,
+                                  const Place& place) {
+  return TurtleFrame(frame, place, 1).one(body);
+}
+
+}  // namespace chorus::resource

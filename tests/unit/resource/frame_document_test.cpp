@@ -1,0 +1,106 @@
+#include "common/resource/frame_document.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "common/rdf/turtle_reader.h"
+#include "tests/support/graph/isomorphism.h"
+#include "tests/unit/resource/frames.h"
+
+namespace chorus::resource {
+namespace {
+
+std::string body_of(const http::DocumentPtr& document, std::string_view accept,
+                    std::string_view profile = "") {
+  const auto chosen = document->choose(accept, profile);
+  EXPECT_TRUE(chosen) << to_string(chosen.error());
+  return chosen ? std::string((*chosen)->body()) : std::string();
+}
+
+rdf::Graph graph_at(const std::string& text, const std::string& base,
+                    rdf::Syntax syntax = rdf::Syntax::Turtle) {
+  const auto graph = rdf::read_graph(text, {syntax, base, {}});
+  EXPECT_TRUE(graph) << to_string(graph.error());
+  return graph.value_or(rdf::Graph{});
+}
+
+TEST(FrameDocument, OffersEveryFormatAndTheArvidaProfile) {
+  const auto frame = std::make_shared<const FrameResource>(random_frame(1, {2, true}));
+  const auto document = frame_document(frame);
+  EXPECT_EQ(body_of(document, ""), write(*frame, Format::Turtle, {"frame"}))
+      << "Turtle when not asked";
+  EXPECT_EQ(body_of(document, "application/json"), write(*frame, Format::Json, {"frame"}));
+  EXPECT_EQ(body_of(document, "application/ld+json"), write(*frame, Format::JsonLd, {"frame"}));
+  EXPECT_EQ(body_of(document, "application/n-triples"), write(*frame, Format::NTriples, {"frame"}));
+  EXPECT_EQ(body_of(document, "", "arvida"), write_arvida(*frame, {"frame"}));
+  EXPECT_FALSE(body_of(document, "application/n-triples", "arvida").empty());
+  EXPECT_FALSE(document->choose("application/json", "arvida"));
+  EXPECT_FALSE(document->choose("", "unknown"));
+}
+
+TEST(FrameDocument, TheLatestFrameNamesItsImmutableTwin) {
+  const auto frame = std::make_shared<const FrameResource>(random_frame(1));
+  const std::string sequence = std::to_string(frame->sequence);
+  const auto latest = frame_document(frame);
+  EXPECT_EQ(latest->options().version, sequence);
+  EXPECT_EQ(latest->options().content_location, "frames/" + sequence);
+  EXPECT_EQ(latest->options().cache_control, "no-cache");
+  const auto kept = frame_document(frame, {"frames/" + sequence});
+  EXPECT_NE(kept->options().cache_control.find("immutable"), std::string::npos);
+  EXPECT_TRUE(kept->options().content_location.empty());
+  EXPECT_TRUE(frame_document(frame, {"sensors/s1/frame", "sensors/s1/"}, false)
+                  ->options()
+                  .content_location.empty());
+}
+
+TEST(FrameDocument, BothPlacesSpeakOfTheSameResources) {
+  const auto frame = std::make_shared<const FrameResource>(random_frame(1, {1, false}));
+  const auto at_root = graph_at(body_of(frame_document(frame), ""), "http://h/frame");
+  const auto below =
+      graph_at(body_of(frame_document(frame, {"frames/1"}), ""), "http://h/frames/1");
+  EXPECT_EQ(testing::difference(at_root, below), "");
+}
+
+TEST(SkeletonDocument, IsOneBodyInEveryFormat) {
+  const auto frame = std::make_shared<const FrameResource>(random_frame(1, {2, true}));
+  const std::string id = std::to_string(frame->bodies[1].id);
+  const Place place{"skeletons/" + id, "", "http://h/"};
+  const auto document = skeleton_document(frame, frame->bodies[1].id, place);
+  ASSERT_NE(document, nullptr);
+  const std::string base = "http://h/skeletons/" + id;
+  const auto turtle = graph_at(body_of(document, "text/turtle"), base);
+  const auto triples =
+      graph_at(body_of(document, "application/n-triples"), "", rdf::Syntax::NTriples);
+  EXPECT_EQ(testing::difference(turtle, triples), "");
+  EXPECT_EQ(turtle.front().subject.value, base) << "the document speaks of itself first";
+  const auto json = nlohmann::json::parse(body_of(document, "application/json"));
+  EXPECT_EQ(json.at("@type"), "Skeleton");
+  EXPECT_EQ(json.at("frame"), "../frame");
+  EXPECT_EQ(json.at("space"), "WorldSpace");
+  EXPECT_EQ(json.at("joints").size(), kJointCount);
+  EXPECT_EQ(nlohmann::json::parse(body_of(document, "application/ld+json")).at("@context"),
+            "../context.jsonld");
+}
+
+TEST(SkeletonDocument, ThereIsNoneForABodyThatIsNotThere) {
+  const auto frame = std::make_shared<const FrameResource>(random_frame(1));
+  EXPECT_EQ(skeleton_document(frame, 12'345'678, {"skeletons/12345678"}), nullptr);
+}
+
+TEST(SkeletonsDocument, IsAContainerOfTheBodies) {
+  const FrameResource frame = random_frame(1, {2, false});
+  const auto document = skeletons_document(frame, {"skeletons/"});
+  EXPECT_TRUE(document->options().container);
+  const auto graph = graph_at(body_of(document, ""), "http://h/skeletons/");
+  const rdf::Triple member{rdf::iri("http://h/skeletons/"),
+                           rdf::iri("http://www.w3.org/ns/ldp#contains"),
+                           rdf::iri("http://h/skeletons/" + std::to_string(frame.bodies[0].id))};
+  EXPECT_NE(std::find(graph.begin(), graph.end(), member), graph.end());
+  const rdf::Triple type{rdf::iri("http://h/skeletons/"), rdf::iri(rdf::rdf("type")),
+                         rdf::iri("http://www.w3.org/ns/ldp#BasicContainer")};
+  EXPECT_NE(std::find(graph.begin(), graph.end(), type), graph.end());
+}
+
+}  // namespace
+}  // namespace chorus::resource

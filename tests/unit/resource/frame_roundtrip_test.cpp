@@ -1,0 +1,158 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "common/rdf/turtle_reader.h"
+#include "common/rdf/turtle_writer.h"
+#include "common/resource/frame_facts.h"
+#include "common/resource/frame_resource.h"
+#include "tests/support/graph/isomorphism.h"
+#include "tests/unit/resource/frames.h"
+
+namespace chorus::resource {
+namespace {
+
+constexpr std::uint64_t kSeeds = 60;
+
+FrameKind kind_of(std::uint64_t seed) { return {seed % 7, seed % 2 == 1}; }
+
+TEST(FrameRoundTrip, EveryFormatKeepsEveryValue) {
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const FrameResource frame = random_frame(seed, kind_of(seed));
+    for (const Format format : kFormats) {
+      const std::string text = write(frame, format);
+      const auto back = read_frame(text, format);
+      ASSERT_TRUE(back) << media_type(format) << ": " << to_string(back.error());
+      if (format != Format::NTriples) {  // sets have no order there
+        EXPECT_EQ(difference(frame, *back), "") << media_type(format) << " seed " << seed;
+      }
+      EXPECT_EQ(write(*back, format), text) << "write(read(x)) is stable";
+    }
+  }
+}
+
+TEST(FrameRoundTrip, TheParserAndTheTemplateReaderAgree) {
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const FrameResource frame = random_frame(seed, kind_of(seed));
+    const std::string text = write(frame, Format::Turtle);
+    const auto fast = read_template(text);
+    ASSERT_TRUE(fast) << "the template reader must know our own bytes";
+    const auto parsed = read_rdf_frame(text, Format::Turtle);
+    ASSERT_TRUE(parsed) << to_string(parsed.error());
+    EXPECT_EQ(difference(*fast, *parsed), "");
+    EXPECT_EQ(difference(*fast, frame), "");
+  }
+}
+
+TEST(FrameRoundTrip, TheTemplateWritesTheGraphThatSerdWrites) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const FrameResource frame = random_frame(seed, kind_of(seed));
+    const rdf::Graph graph = expected_graph(frame);
+    const auto serd = rdf::write_graph(graph, {rdf::Syntax::Turtle, {}, {}});
+    ASSERT_TRUE(serd) << to_string(serd.error());
+    const auto ours = rdf::read_graph(write(frame, Format::Turtle));
+    ASSERT_TRUE(ours) << to_string(ours.error());
+    EXPECT_EQ(testing::difference(*ours, *rdf::read_graph(*serd)), "");
+    const auto read = read_frame(*serd, Format::Turtle);
+    ASSERT_TRUE(read) << to_string(read.error());
+    EXPECT_EQ(difference(*read, frame), "") << "another spelling, the same frame";
+  }
+}
+
+TEST(FrameRoundTrip, NTriplesIsTheTurtleMadeAbsolute) {
+  const FrameResource frame = random_frame(3, {3, true});
+  const Place place{"frames/42", "", "http://host:8080/"};
+  const auto triples =
+      rdf::read_graph(write(frame, Format::NTriples, place), {rdf::Syntax::NTriples, {}, {}});
+  ASSERT_TRUE(triples) << to_string(triples.error());
+  rdf::ReadOptions options;
+  options.base = "http://host:8080/frames/42";
+  const auto turtle = rdf::read_graph(write(frame, Format::Turtle, place), options);
+  EXPECT_EQ(testing::difference(*triples, *turtle), "");
+  EXPECT_EQ(turtle->front().subject.value, "http://host:8080/frame");
+}
+
+TEST(FrameRoundTrip, PlacesChangeNamesAndNothingElse) {
+  const FrameResource frame = random_frame(5, {2, true});
+  for (const Place& place : {Place{"frames/42"}, Place{"sensors/s1/frame", "sensors/s1/"}}) {
+    for (const Format format : kFormats) {
+      const auto back = read_frame(write(frame, format, place), format);
+      ASSERT_TRUE(back) << to_string(back.error());
+      EXPECT_EQ(back->bodies.size(), 2U);
+    }
+    EXPECT_TRUE(read_template(write(frame, Format::Turtle, place))) << place.path;
+  }
+  EXPECT_NE(write(frame, Format::Turtle, {"sensors/s1/frame", "sensors/s1/"})
+                .find("<../../sensors/s1/frame>"),
+            std::string::npos);
+}
+
+TEST(FrameWriter, NeverWritesWhatIsNotANumber) {
+  const double nan = std::nan("");
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const double bad : {nan, inf, -inf, 1e300, 10'000.1}) {
+    FrameResource frame = random_frame(2, {1, true});
+    JointResource& joint = frame.bodies[0].joints[3];
+    joint = {Eigen::Vector3d(0, bad, 0), Eigen::Quaterniond(1, 0, 0, 0), JointState::Tracked, 0.1,
+             1};
+    frame.bodies[0].joints[4] = {Eigen::Vector3d(1, 2, 3), Eigen::Quaterniond(bad, 0, 0, 0),
+                                 JointState::Tracked, bad, 1};
+    for (const Format format : kFormats) {
+      const auto back = read_frame(write(frame, format), format);
+      ASSERT_TRUE(back) << bad << ": " << to_string(back.error());
+      EXPECT_EQ(back->bodies[0].joints[3].state, JointState::NotTracked);
+      EXPECT_EQ(back->bodies[0].joints[4].state, JointState::Tracked);
+    }
+    EXPECT_TRUE(rdf::read_graph(write_arvida(frame)));
+  }
+}
+
+TEST(FrameWriter, NormalisesAQuaternionBeforeItLeaves) {
+  FrameResource frame = random_frame(2, {1, false});
+  frame.bodies[0].joints[0] = {
+      Eigen::Vector3d(1, 2, 3), Eigen::Quaterniond(2, 0, 0, 0), JointState::Tracked, {}, 0};
+  const auto back = read_frame(write(frame, Format::Turtle), Format::Turtle);
+  ASSERT_TRUE(back) << to_string(back.error());
+  EXPECT_EQ(back->bodies[0].joints[0].orientation.w(), 1.0);
+}
+
+TEST(FrameWriter, NumbersInJsonAreNumbersAndInJsonLdStrings) {
+  const FrameResource frame = random_frame(4, {2, true});
+  const auto json = nlohmann::json::parse(write(frame, Format::Json));
+  const auto linked = nlohmann::json::parse(write(frame, Format::JsonLd));
+  EXPECT_EQ(linked.at("@context"), "context.jsonld");
+  for (const auto& [name, joint] : json.at("bodies")[0].at("joints").items()) {
+    if (joint.at("state") == "NotTracked") continue;
+    EXPECT_TRUE(joint.at("x").is_number());
+    EXPECT_TRUE(linked.at("bodies")[0].at("joints").at(name).at("x").is_string());
+  }
+  EXPECT_TRUE(json.at("bodies")[0].at("bodyId").is_number());
+  EXPECT_EQ(json.at("bodies")[1].at("bodyId"), "72057594037928018") << "beyond 2^53";
+}
+
+TEST(FrameResource, IsASensorFrameOnTheWire) {
+  SensorFrame frame;
+  frame.sensor = *SensorId::parse("s7");
+  frame.sequence = 9;
+  frame.captured = from_unix_ns(1'795'246'200'250'000'000);
+  BodyFrame body{BodyId{5}, frame.captured, {}};
+  body.skeleton[JointId::Head] = {Eigen::Vector3d(1, 2, 3), Eigen::Quaterniond(1, 0, 0, 0),
+                                  JointState::Inferred};
+  frame.bodies.push_back(body);
+  const Timestamp received = from_unix_ns(1'795'246'200'260'000'000);
+  const SensorFrame back = to_sensor_frame(to_resource(frame), frame.sensor, received);
+  EXPECT_EQ(back.sensor, frame.sensor);
+  EXPECT_EQ(back.sequence, 9U);
+  EXPECT_EQ(back.captured, frame.captured);
+  EXPECT_EQ(back.received, received);
+  ASSERT_EQ(back.bodies.size(), 1U);
+  EXPECT_EQ(back.bodies[0].id, BodyId{5});
+  EXPECT_EQ(back.bodies[0].skeleton[JointId::Head].position.z(), 3.0);
+  EXPECT_EQ(back.bodies[0].skeleton[JointId::Head].state, JointState::Inferred);
+  EXPECT_FALSE(back.bodies[0].skeleton[JointId::Neck].seen());
+}
+
+}  // namespace
+}  // namespace chorus::resource

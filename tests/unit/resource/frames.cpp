@@ -1,0 +1,179 @@
+#include "tests/unit/resource/frames.h"
+
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+#include "common/body/bones.h"
+
+namespace chorus::resource {
+namespace {
+
+using rdf::Graph;
+using rdf::Term;
+
+double rounded(double value, double unit) { return std::round(value / unit) * unit; }
+
+class Dice {
+ public:
+  explicit Dice(std::uint64_t seed) : random_(seed) {}
+  double between(double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random_);
+  }
+  bool chance(double p) { return between(0, 1) < p; }
+  std::uint64_t number(std::uint64_t most) {
+    return std::uniform_int_distribution<std::uint64_t>(0, most)(random_);
+  }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+JointResource random_joint(Dice& dice, const FrameResource& frame) {
+  JointResource joint;
+  if (dice.chance(0.2)) return joint;
+  joint.state = dice.chance(0.3) ? JointState::Inferred : JointState::Tracked;
+  for (int i = 0; i < 3; ++i) joint.position[i] = rounded(dice.between(-5, 5), 1e-4);
+  if (dice.chance(0.9)) {
+    Eigen::Quaterniond q(dice.between(-1, 1), dice.between(-1, 1), dice.between(-1, 1),
+                         dice.between(0.1, 1));
+    q.normalize();
+    for (int i = 0; i < 4; ++i) joint.orientation.coeffs()[i] = rounded(q.coeffs()[i], 1e-5);
+  }
+  if (frame.sensors.empty()) return joint;
+  joint.variance = rounded(dice.between(0, 0.01), 1e-8);
+  joint.contributors = dice.number((std::uint64_t{1} << frame.sensors.size()) - 1);
+  return joint;
+}
+
+std::string decimals(double value, int digits) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", digits, value == 0.0 ? 0.0 : value);
+  return text;
+}
+
+/// Adds triples about one subject.
+struct About {
+  Graph& graph;
+  Term subject;
+
+  void type(const std::string& name) {
+    graph.push_back({subject, rdf::iri(rdf::rdf("type")), own(name)});
+  }
+  void say(const std::string& property, Term object) {
+    graph.push_back({subject, own(property), std::move(object)});
+  }
+  void integer(const std::string& property, const std::string& value) {
+    say(property, rdf::literal(value, rdf::xsd("integer")));
+  }
+  void decimal(const std::string& property, double value, int digits) {
+    say(property, rdf::literal(decimals(value, digits), rdf::xsd("decimal")));
+  }
+  void times(Timestamp captured) {
+    say("captured", rdf::literal(to_iso8601(captured), rdf::xsd("dateTime")));
+    integer("capturedNanoseconds", std::to_string(to_unix_ns(captured)));
+  }
+  static Term own(const std::string& name) {
+    return rdf::iri("https://w3id.org/chorus-tracking/ns#" + name);
+  }
+};
+
+void add_joint(Graph& graph, const FrameResource& frame, const std::string& iri, std::size_t index,
+               const JointResource& joint) {
+  About about{graph, rdf::iri(iri)};
+  about.type("Joint");
+  about.say("jointName", rdf::literal(std::string(kJointNames[index])));
+  if (joint.state == JointState::NotTracked) return about.say("state", About::own("NotTracked"));
+  about.say("state", About::own(joint.state == JointState::Tracked ? "Tracked" : "Inferred"));
+  about.decimal("x", joint.position.x(), 4);
+  about.decimal("y", joint.position.y(), 4);
+  about.decimal("z", joint.position.z(), 4);
+  if (joint.orientation.norm() > 0) {
+    about.decimal("qx", joint.orientation.x(), 5);
+    about.decimal("qy", joint.orientation.y(), 5);
+    about.decimal("qz", joint.orientation.z(), 5);
+    about.decimal("qw", joint.orientation.w(), 5);
+  }
+  if (joint.variance) about.decimal("variance", *joint.variance, 8);
+  for (std::size_t i = 0; i < frame.sensors.size(); ++i) {
+    if ((joint.contributors >> i & 1U) != 0)
+      about.say("contributor", rdf::literal(frame.sensors[i]));
+  }
+}
+
+std::string text_of(const JointResource& joint) {
+  std::string text = std::to_string(static_cast<int>(joint.state));
+  for (int i = 0; i < 3; ++i) text += " " + decimals(joint.position[i], 6);
+  for (int i = 0; i < 4; ++i) text += " " + decimals(joint.orientation.coeffs()[i], 7);
+  return text + " v" + decimals(joint.variance.value_or(-1), 10) + " c" +
+         std::to_string(joint.contributors);
+}
+
+}  // namespace
+
+FrameResource random_frame(std::uint64_t seed, const FrameKind& kind) {
+  Dice dice(seed);
+  FrameResource frame;
+  frame.sequence = dice.number(1'000'000);
+  frame.captured = from_unix_ns(1'795'246'200'000'000'000 +
+                                static_cast<std::int64_t>(dice.number(1'000'000'000'000)));
+  frame.source = kind.fused ? "fusion" : "s1";
+  frame.space = kind.fused ? SpaceKind::World : SpaceKind::Sensor;
+  if (kind.fused) frame.sensors = {"s1", "s2", "s10", "north_3"};
+  for (std::size_t b = 0; b < kind.bodies; ++b) {
+    BodyResource body;
+    body.id = b * 1'000 + dice.number(999);
+    if (b == 1) body.id = 72'057'594'037'928'018;  // as Kinect v2 numbers them: beyond a double
+    body.captured =
+        dice.chance(0.5) ? frame.captured : frame.captured - Duration(dice.number(30'000'000));
+    for (JointResource& joint : body.joints) joint = random_joint(dice, frame);
+    frame.bodies.push_back(body);
+  }
+  return frame;
+}
+
+rdf::Graph expected_graph(const FrameResource& frame) {
+  Graph graph;
+  About about{graph, rdf::iri("frame")};
+  about.type("Frame");
+  about.integer("sequence", std::to_string(frame.sequence));
+  about.times(frame.captured);
+  about.say("source", rdf::literal(frame.source));
+  about.say("space", About::own(frame.space == SpaceKind::World ? "WorldSpace" : "SensorSpace"));
+  for (const std::string& sensor : frame.sensors) about.say("sensor", rdf::literal(sensor));
+  for (const BodyResource& body : frame.bodies) {
+    const std::string iri = "skeletons/" + std::to_string(body.id);
+    about.say("body", rdf::iri(iri));
+    About skeleton{graph, rdf::iri(iri)};
+    skeleton.type("Skeleton");
+    skeleton.integer("bodyId", std::to_string(body.id));
+    skeleton.times(body.captured);
+    for (std::size_t i = 0; i < kJointCount; ++i) {
+      const std::string joint = iri + "#" + std::string(kJointNames[i]);
+      skeleton.say("joint", rdf::iri(joint));
+      add_joint(graph, frame, joint, i, body.joints[i]);
+    }
+  }
+  return graph;
+}
+
+std::string difference(const FrameResource& a, const FrameResource& b) {
+  if (a.sequence != b.sequence) return "sequence";
+  if (a.captured != b.captured) return "captured";
+  if (a.source != b.source) return "source";
+  if (a.space != b.space) return "space";
+  if (a.sensors != b.sensors) return "sensors";
+  if (a.bodies.size() != b.bodies.size()) return "number of bodies";
+  for (std::size_t i = 0; i < a.bodies.size(); ++i) {
+    if (a.bodies[i].id != b.bodies[i].id) return "body id";
+    if (a.bodies[i].captured != b.bodies[i].captured) return "body captured";
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      const std::string left = text_of(a.bodies[i].joints[j]);
+      const std::string right = text_of(b.bodies[i].joints[j]);
+      if (left != right) return std::string(kJointNames[j]) + ": " + left + " | " + right;
+    }
+  }
+  return {};
+}
+
+}  // namespace chorus::resource

@@ -1,0 +1,26 @@
+// Frames for the tests of this room: random but valid, and the graph each one stands for.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/rdf/term.h"
+#include "common/resource/frame_resource.h"
+
+namespace chorus::resource {
+
+struct FrameKind {
+  std::size_t bodies = 2;
+  bool fused = false;  ///< World space, variances, contributors.
+};
+
+/// Different for each seed; numbers are already rounded to what the wire carries.
+[[nodiscard]] FrameResource random_frame(std::uint64_t seed, const FrameKind& kind = {});
+
+/// The triples of the compact profile, spelt out one by one from the specification.
+[[nodiscard]] rdf::Graph expected_graph(const FrameResource& frame);
+
+/// Empty when equal, else the first difference.
+[[nodiscard]] std::string difference(const FrameResource& a, const FrameResource& b);
+
+}  // namespace chorus::resource
