@@ -1,0 +1,200 @@
+#include "tests/bench/http_load.h"
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <thread>
+
+namespace chorus::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+sockaddr_in loopback(std::uint16_t port) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(port);
+  return address;
+}
+
+std::uint16_t free_port() {
+  const int probe = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address = loopback(0);
+  socklen_t size = sizeof address;
+  ::bind(probe, reinterpret_cast<sockaddr*>(&address), size);
+  ::getsockname(probe, reinterpret_cast<sockaddr*>(&address), &size);
+  ::close(probe);
+  return ntohs(address.sin_port);
+}
+
+bool answers(std::uint16_t port) {
+  const int probe = ::socket(AF_INET, SOCK_STREAM, 0);
+  const sockaddr_in address = loopback(port);
+  const bool connected =
+      ::connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  ::close(probe);
+  return connected;
+}
+
+bool wait_until_it_answers(std::uint16_t port) {
+  constexpr int kTries = 200;
+  constexpr std::chrono::milliseconds kPause{25};
+  for (int i = 0; i < kTries; ++i) {
+    if (answers(port)) return true;
+    std::this_thread::sleep_for(kPause);
+  }
+  return false;
+}
+
+/// Debian's defaults, with what makes nginx fast for one small file.
+std::string nginx_config(const std::string& folder, std::uint16_t port) {
+  std::ostringstream text;
+  text << "daemon off; master_process off; worker_processes 1;\n"
+       << "pid " << folder << "/pid; error_log " << folder << "/error.log crit;\n"
+       << "events { worker_connections 1024; }\n"
+       << "http { access_log off; sendfile on; tcp_nopush on; tcp_nodelay on;\n"
+       << " keepalive_requests 1000000000; default_type text/turtle;\n"
+       << " open_file_cache max=16 inactive=600s; open_file_cache_valid 600s;\n";
+  for (const auto kind : {"client_body", "proxy", "fastcgi", "uwsgi", "scgi"})
+    text << " " << kind << "_temp_path " << folder << "/" << kind << ";\n";
+  text << " server { listen 127.0.0.1:" << port << "; root " << folder << "/www; } }\n";
+  return text.str();
+}
+
+Result<std::string> nginx_folder(const std::string& body, std::uint16_t port) {
+  std::string folder = (fs::temp_directory_path() / "chorus-bench-XXXXXX").string();
+  if (::mkdtemp(folder.data()) == nullptr)
+    return fail(ErrorCode::Io, folder, "cannot make a temporary folder");
+  fs::create_directory(fs::path(folder) / "www");
+  std::ofstream(fs::path(folder) / "www" / "frame", std::ios::binary) << body;
+  std::ofstream(fs::path(folder) / "nginx.conf") << nginx_config(folder, port);
+  return folder;
+}
+
+void send_all(int to, const void* bytes, std::size_t size) {
+  if (::write(to, bytes, size) != static_cast<ssize_t>(size)) std::_Exit(1);
+}
+
+}  // namespace
+
+Result<ServingProcess> ServingProcess::fork(const Serve& serve) {
+  std::array<int, 2> port_pipe{};
+  std::array<int, 2> life_pipe{};
+  if (::pipe(port_pipe.data()) != 0 || ::pipe(life_pipe.data()) != 0)
+    return fail(ErrorCode::Io, "pipe", "cannot make a pipe");
+  const pid_t pid = ::fork();
+  if (pid < 0) return fail(ErrorCode::Io, "fork", "cannot start a process");
+  if (pid == 0) {
+    ::close(port_pipe[0]);
+    ::close(life_pipe[1]);
+    serve([&](std::uint16_t port) { send_all(port_pipe[1], &port, sizeof port); },
+          [&] {
+            char nothing = 0;
+            while (::read(life_pipe[0], &nothing, 1) > 0) {
+            }
+          });
+    std::_Exit(0);
+  }
+  ::close(port_pipe[1]);
+  ::close(life_pipe[0]);
+  ServingProcess process;
+  process.pid_ = pid;
+  process.life_line_ = life_pipe[1];
+  const bool told = ::read(port_pipe[0], &process.port_, sizeof process.port_) ==
+                    static_cast<ssize_t>(sizeof process.port_);
+  ::close(port_pipe[0]);
+  if (!told) return fail(ErrorCode::Unavailable, "server", "the server process did not start");
+  return process;
+}
+
+Result<ServingProcess> ServingProcess::nginx(const std::string& body) {
+  const std::uint16_t port = free_port();
+  const auto folder = nginx_folder(body, port);
+  if (!folder) return pass(folder);
+  const std::string config = *folder + "/nginx.conf";
+  const std::string errors = *folder + "/error.log";
+  ServingProcess process;
+  process.folder_ = *folder;
+  process.port_ = port;
+  process.pid_ = ::fork();
+  if (process.pid_ == 0) {
+    ::execlp("nginx", "nginx", "-e", errors.c_str(), "-p", folder->c_str(), "-c", config.c_str(),
+             nullptr);
+    ::execl("/usr/sbin/nginx", "nginx", "-e", errors.c_str(), "-p", folder->c_str(), "-c",
+            config.c_str(), nullptr);
+    std::_Exit(1);
+  }
+  if (process.pid_ < 0 || !wait_until_it_answers(port))
+    return fail(ErrorCode::Unavailable, "nginx",
+                "nginx does not start; it is the baseline (Debian package nginx)");
+  return process;
+}
+
+ServingProcess::ServingProcess(ServingProcess&& other) noexcept
+    : pid_(std::exchange(other.pid_, -1)),
+      life_line_(std::exchange(other.life_line_, -1)),
+      port_(other.port_),
+      folder_(std::exchange(other.folder_, {})) {}
+
+ServingProcess::~ServingProcess() {
+  if (life_line_ >= 0) ::close(life_line_);
+  if (pid_ > 0) {
+    ::kill(pid_, SIGTERM);
+    ::waitpid(pid_, nullptr, 0);
+  }
+  std::error_code ignored;
+  if (!folder_.empty()) fs::remove_all(folder_, ignored);
+}
+
+double ServingProcess::cpu_seconds() const {
+  std::ifstream stat("/proc/" + std::to_string(pid_) + "/stat");
+  std::string line;
+  std::getline(stat, line);
+  // Fields 14 and 15 (proc(5)) are counted behind the name, which may hold spaces.
+  std::istringstream fields(line.substr(std::min(line.rfind(')') + 1, line.size())));
+  std::string skipped;
+  constexpr int kFieldsBeforeUserTime = 11;
+  for (int i = 0; i < kFieldsBeforeUserTime; ++i) fields >> skipped;
+  double user = 0.0;
+  double system = 0.0;
+  fields >> user >> system;
+  return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
+}
+
+Result<WrkResult> run_wrk(std::uint16_t port, int connections, int run_seconds) {
+  const std::string command = "wrk -t1 -c" + std::to_string(connections) + " -d" +
+                              std::to_string(run_seconds) +
+                              "s http://127.0.0.1:" + std::to_string(port) + "/frame 2>&1";
+  const std::unique_ptr<FILE, int (*)(FILE*)> output(::popen(command.c_str(), "r"), ::pclose);
+  if (!output) return fail(ErrorCode::Io, "wrk", "cannot start wrk");
+  WrkResult result;
+  std::array<char, 256> line{};
+  std::string all;
+  while (std::fgets(line.data(), line.size(), output.get()) != nullptr) {
+    all += line.data();
+    (void)std::sscanf(line.data(), "Requests/sec: %lf", &result.requests_per_s);
+    (void)std::sscanf(line.data(), " %lf requests in", &result.requests);
+  }
+  const bool errors =
+      all.find("Non-2xx") != std::string::npos || all.find("Socket errors") != std::string::npos;
+  if (result.requests <= 0.0 || errors)
+    return fail(ErrorCode::Unavailable, "wrk",
+                "wrk (Debian package wrk) did not measure cleanly: " + all);
+  return result;
+}
+
+}  // namespace chorus::bench
