@@ -33,8 +33,8 @@ bool is_writable(const ClientRequest& request) {
   const bool lines = std::all_of(request.headers.begin(), request.headers.end(), [](const auto& h) {
     return is_one_line(h.first) && is_one_line(h.second);
   });
-  return lines && is_one_line(request.method) && is_one_line(request.target) &&
-         request.target.find(' ') == std::string::npos;
+  const std::string line = request.method + request.target;
+  return lines && is_one_line(line) && line.find(' ') == std::string::npos;
 }
 
 ClientResponse response_of(const Parser::value_type& message) {
@@ -70,7 +70,10 @@ struct AsyncClient::Impl : std::enable_shared_from_this<AsyncClient::Impl> {
   void connect_to(std::vector<tcp::endpoint> endpoints);
   void write();
   void read();
-  void on_read(error_code failed);
+  void on_head(error_code failed);
+  void on_failed_read(error_code failed);
+  void on_answer();
+  void too_large();
   void retry_or_fail(error_code failed, std::string_view doing);
   void finish(Result<ClientResponse> result);
   void finish_later(Error error);
@@ -114,7 +117,7 @@ void AsyncClient::Impl::begin(ClientRequest request, std::chrono::milliseconds a
   ++attempt;
   if (!is_writable(request))
     return finish_later({ErrorCode::InvalidArgument, authority,
-                         "the request has a line break in its target or a header field"});
+                         "a method or target has no spaces, and a header field no line breaks"});
   head_only = request.method == "HEAD";
   repeatable = request.method == "GET" || head_only;
   answer_time = answer_timeout;
@@ -176,26 +179,45 @@ void AsyncClient::Impl::read() {
   parser->header_limit(kMaxHeadBytes);
   parser->body_limit(limits.max_body_bytes);
   parser->skip(head_only);
-  beast::http::async_read(
+  in.reserve(kMaxHeadBytes);
+  beast::http::async_read_header(
       socket, in, *parser,
       [self = shared_from_this(), mine = attempt](error_code failed, std::size_t) {
-        if (self->attempt == mine) self->on_read(failed);
+        if (self->attempt == mine) self->on_head(failed);
       });
 }
 
-void AsyncClient::Impl::on_read(error_code failed) {
-  if (failed == beast::http::error::body_limit)
-    return finish(
-        fail(ErrorCode::TooLarge, authority,
-             "the answer is larger than " + std::to_string(limits.max_body_bytes) + " bytes"));
-  if (failed && parser->got_some()) {
-    const bool broken = failed != beast::http::error::partial_message && failed != net::error::eof;
-    return finish(fail(broken ? ErrorCode::Malformed : ErrorCode::Unavailable, authority,
-                       "the answer is broken or cut off: " + failed.message()));
-  }
-  if (failed) return retry_or_fail(failed, "read the answer");
+void AsyncClient::Impl::on_head(error_code failed) {
+  if (failed) return on_failed_read(failed);
   constexpr unsigned kFirstFinalStatus = 200;
   if (parser->get().result_int() < kFirstFinalStatus) return read();  // 100 Continue
+  // Beast 1.74 does not hold a Content-Length of a response against its body limit.
+  const auto length = parser->content_length();
+  if (!head_only && length && *length > limits.max_body_bytes) return too_large();
+  if (parser->is_done()) return on_answer();
+  beast::http::async_read(
+      socket, in, *parser,
+      [self = shared_from_this(), mine = attempt](error_code body_failed, std::size_t) {
+        if (self->attempt != mine) return;
+        body_failed ? self->on_failed_read(body_failed) : self->on_answer();
+      });
+}
+
+void AsyncClient::Impl::too_large() {
+  finish(fail(ErrorCode::TooLarge, authority,
+              "the answer is larger than " + std::to_string(limits.max_body_bytes) + " bytes"));
+}
+
+void AsyncClient::Impl::on_failed_read(error_code failed) {
+  if (failed == beast::http::error::body_limit) return too_large();
+  if (!parser->got_some()) return retry_or_fail(failed, "read the answer");
+  const error_code cut_off = beast::http::error::partial_message;
+  const bool broken = failed.category() == cut_off.category() && failed != cut_off;
+  finish(fail(broken ? ErrorCode::Malformed : ErrorCode::Unavailable, authority,
+              "the answer is broken or cut off: " + failed.message()));
+}
+
+void AsyncClient::Impl::on_answer() {
   ClientResponse response = response_of(parser->get());
   response.body = std::move(parser->get().body());
   response.sent_ns = sent_ns;
