@@ -14,7 +14,7 @@ struct Text {
 }  // namespace
 
 Problem problem_of(const Error& error) {
-  return {http_status(error.code), name_of(error.code), error.context, error.message};
+  return {http_status(error.code), name_of(error.code), {}, error.context, error.message};
 }
 
 std::string problem_json(const Problem& problem) {
@@ -23,6 +23,7 @@ std::string problem_json(const Problem& problem) {
   json["title"] = reason_phrase(problem.status);
   json["status"] = problem.status;
   json["detail"] = problem.detail;
+  if (!problem.instance.empty()) json["instance"] = problem.instance;
   if (!problem.code.empty()) json["code"] = problem.code;
   if (!problem.context.empty()) json["context"] = problem.context;
   if (!problem.available.empty()) json["available"] = problem.available;

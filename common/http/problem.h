@@ -12,9 +12,10 @@ namespace chorus::http {
 
 struct Problem {
   int status = 500;
-  std::string_view code = {};     ///< name_of(ErrorCode), for programs.
-  std::string_view context = {};  ///< What the error is about: a path, a key, a field.
-  std::string_view detail = {};   ///< What to change, for people.
+  std::string_view code = {};      ///< name_of(ErrorCode), for programs.
+  std::string_view instance = {};  ///< The path that was asked for.
+  std::string_view context = {};   ///< What the error is about: a path, a key, a field.
+  std::string_view detail = {};    ///< What to change, for people.
   std::vector<std::string_view> available = {};  ///< 406: media types that there are.
 };
 

@@ -213,7 +213,7 @@ Reaction Responder::write(const RequestHead& head, Router::Match match, const Pe
     const std::string detail =
         "this resource answers " + allowed_methods(*match.entry) + " and no other method";
     Answer answer =
-        problem_answer({kMethodNotAllowed, "unsupported", head.path, detail}, is_head(head));
+        problem_answer({kMethodNotAllowed, "unsupported", head.path, {}, detail}, is_head(head));
     answer.route = route;
     answer.close = head.content_length > 0;
     return to_answer(std::move(answer));
@@ -266,6 +266,7 @@ Answer Responder::represent(const DocumentPtr& document, const RequestHead& head
   const auto chosen = document->choose(head.accept, *profile);
   if (!chosen && chosen.error().code == ErrorCode::NotAcceptable) {
     Problem problem = problem_of(chosen.error());
+    problem.instance = head.path;
     problem.available = document->media_types(*profile);
     Answer answer = problem_answer(problem, is_head(head));
     answer.route = route;
@@ -290,7 +291,9 @@ Answer Responder::represent(const DocumentPtr& document, const RequestHead& head
 
 Answer Responder::fault(const Error& error, const RequestHead& head, std::string_view route) const {
   if (error.code == ErrorCode::Internal) faults_->hit(to_string(error));
-  Answer answer = problem_answer(problem_of(error), is_head(head));
+  Problem problem = problem_of(error);
+  problem.instance = head.path;
+  Answer answer = problem_answer(problem, is_head(head));
   answer.route = route;
   if (error.code == ErrorCode::Unauthorized)
     answer.extra = "WWW-Authenticate: Bearer realm=\"chorus\"\r\n";
@@ -299,7 +302,7 @@ Answer Responder::fault(const Error& error, const RequestHead& head, std::string
 }
 
 Answer Responder::refuse(const Refusal& refusal) const {
-  Answer answer = problem_answer({refusal.status, "malformed", {}, refusal.detail}, false);
+  Answer answer = problem_answer({refusal.status, "malformed", {}, {}, refusal.detail}, false);
   answer.route = any_route_;
   answer.close = true;
   return answer;
