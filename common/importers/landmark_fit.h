@@ -5,7 +5,7 @@
 // then as good as the detector's guess of the person's size (decimetres), its bearing as good as
 // the pixels.  So each landmark keeps its depth from the fit and takes its lateral place from its
 // own pixel ray: lateral error is then 15-35 mm against 31-48 mm for the rigid fit
-// (tests/bench/real_four_cameras_bench.cpp).
+// (tests/bench/real_bench.cpp).
 #pragma once
 
 #include "common/base/result.h"

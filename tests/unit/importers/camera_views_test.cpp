@@ -61,7 +61,7 @@ TEST(CameraViews, ImportTheShippedFolderInStep) {
   }
 }
 
-/// Ceilings of the committed measurement (tests/bench/real_four_cameras_bench.cpp) plus a tenth.
+/// Ceilings of the committed measurement (tests/bench/real_bench.cpp) plus a tenth.
 TEST(CameraViews, LieNearTheTriangulationAndBestAcrossTheLineOfSight) {
   const auto set = import_files(FileFormat::Pose2Sim, {kFolder});
   ASSERT_THAT(set, IsOk());
