@@ -26,24 +26,26 @@ std::vector<http::Variant> variants_of(const Render& render) {
   return variants;
 }
 
-http::DocumentOptions options_of(const FrameResource& frame) {
+}  // namespace
+
+http::DocumentOptions latest_options(const FrameResource& frame, const std::string& run) {
   http::DocumentOptions options;
-  options.version = std::to_string(frame.sequence);
+  options.version = std::to_string(frame.sequence) + (run.empty() ? "" : "." + run);
+  options.content_location = "frames/" + std::to_string(frame.sequence);
   options.captured = frame.captured;
   return options;
 }
 
-}  // namespace
+http::DocumentOptions kept_options(const FrameResource& frame, const std::string& run) {
+  http::DocumentOptions options = latest_options(frame, run);
+  options.cache_control = kForever;
+  options.content_location.clear();
+  options.captured.reset();  // the age of something kept says nothing
+  return options;
+}
 
-http::DocumentPtr frame_document(FramePtr frame, const Place& place, bool kept) {
-  http::DocumentOptions options = options_of(*frame);
-  const bool immutable = place.path.find("frames/") != std::string::npos;
-  if (immutable) {
-    options.cache_control = kForever;
-    options.captured.reset();  // an age would say nothing
-  } else if (kept) {
-    options.content_location = place.up() + place.names + "frames/" + options.version;
-  }
+http::DocumentPtr frame_document(FramePtr frame, const Place& place,
+                                 http::DocumentOptions options) {
   auto variants =
       variants_of([frame, place](Format format) { return write(*frame, format, place); });
   for (const Format format : {Format::Turtle, Format::NTriples}) {
@@ -54,16 +56,18 @@ http::DocumentPtr frame_document(FramePtr frame, const Place& place, bool kept) 
   return std::make_shared<const http::Document>(std::move(variants), std::move(options));
 }
 
-http::DocumentPtr skeleton_document(FramePtr frame, std::uint64_t body_id, const Place& place) {
+http::DocumentPtr skeleton_document(FramePtr frame, std::uint64_t body_id, const Place& place,
+                                    http::DocumentOptions options) {
   const auto body = std::ranges::find(frame->bodies, body_id, &BodyResource::id);
   if (body == frame->bodies.end()) return nullptr;
   const auto render = [frame, &found = *body, place](Format format) {
     return write_skeleton(*frame, found, format, place);
   };
-  return std::make_shared<const http::Document>(variants_of(render), options_of(*frame));
+  return std::make_shared<const http::Document>(variants_of(render), std::move(options));
 }
 
-http::DocumentPtr skeletons_document(const FrameResource& frame, const Place& place) {
+http::DocumentPtr skeletons_document(const FrameResource& frame, const Place& place,
+                                     http::DocumentOptions options) {
   std::vector<Ref> bodies;
   for (const BodyResource& body : frame.bodies) bodies.push_back({std::to_string(body.id)});
   const Node container{"",
@@ -72,7 +76,6 @@ http::DocumentPtr skeletons_document(const FrameResource& frame, const Place& pl
                         {"frame", Ref{place.up() + place.names + "frame"}},
                         {"sequence", static_cast<std::int64_t>(frame.sequence)},
                         {"contains", bodies}}};
-  http::DocumentOptions options = options_of(frame);
   options.container = true;
   return document_of(container, std::move(options), place);
 }

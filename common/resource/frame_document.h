@@ -11,18 +11,27 @@ namespace chorus::resource {
 
 using FramePtr = std::shared_ptr<const FrameResource>;
 
-/// `/frame` (place "frame") or one of `/frames/{seq}` (place "frames/42"), which is immutable and
-/// cached for ever.  Turtle, JSON-LD, JSON, N-Triples; profile "arvida" in Turtle and N-Triples.
-/// The ETag's version is the sequence; `/frame` names its immutable twin in Content-Location when
-/// `kept` (the service has it).
-[[nodiscard]] http::DocumentPtr frame_document(FramePtr frame, const Place& place = {"frame", {}},
-                                               bool kept = true);
+/// `/frame` (place "frame"), one of `/frames/{seq}` (place "frames/42") or a relayed frame. Turtle,
+/// JSON-LD, JSON, N-Triples; profile "arvida" in Turtle and N-Triples.
+[[nodiscard]] http::DocumentPtr frame_document(FramePtr frame, const Place& place,
+                                               http::DocumentOptions options);
+
+/// What such documents answer with: version = sequence (and `run`, so that a restarted service's
+/// ETags differ).
+/// `/frame` is revalidated and names its immutable twin in Content-Location; `/frames/{seq}` is
+/// cached for ever.
+[[nodiscard]] http::DocumentOptions latest_options(const FrameResource& frame,
+                                                   const std::string& run = {});
+[[nodiscard]] http::DocumentOptions kept_options(const FrameResource& frame,
+                                                 const std::string& run = {});
 
 /// `/skeletons/{id}`; null when the frame has no such body.
 [[nodiscard]] http::DocumentPtr skeleton_document(FramePtr frame, std::uint64_t body_id,
-                                                  const Place& place);
+                                                  const Place& place,
+                                                  http::DocumentOptions options);
 
 /// `/skeletons/`: an LDP container of the bodies in the frame.
-[[nodiscard]] http::DocumentPtr skeletons_document(const FrameResource& frame, const Place& place);
+[[nodiscard]] http::DocumentPtr skeletons_document(const FrameResource& frame, const Place& place,
+                                                   http::DocumentOptions options);
 
 }  // namespace chorus::resource

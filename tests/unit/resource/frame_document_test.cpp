@@ -27,7 +27,7 @@ rdf::Graph graph_at(const std::string& text, const std::string& base,
 
 TEST(FrameDocument, OffersEveryFormatAndTheArvidaProfile) {
   const auto frame = std::make_shared<const FrameResource>(random_frame(1, {2, true}));
-  const auto document = frame_document(frame);
+  const auto document = frame_document(frame, {"frame"}, latest_options(*frame));
   EXPECT_EQ(body_of(document, ""), write(*frame, Format::Turtle, {"frame"}))
       << "Turtle when not asked";
   EXPECT_EQ(body_of(document, "application/json"), write(*frame, Format::Json, {"frame"}));
@@ -42,23 +42,22 @@ TEST(FrameDocument, OffersEveryFormatAndTheArvidaProfile) {
 TEST(FrameDocument, TheLatestFrameNamesItsImmutableTwin) {
   const auto frame = std::make_shared<const FrameResource>(random_frame(1));
   const std::string sequence = std::to_string(frame->sequence);
-  const auto latest = frame_document(frame);
+  const auto latest = frame_document(frame, {"frame"}, latest_options(*frame));
   EXPECT_EQ(latest->options().version, sequence);
   EXPECT_EQ(latest->options().content_location, "frames/" + sequence);
   EXPECT_EQ(latest->options().cache_control, "no-cache");
-  const auto kept = frame_document(frame, {"frames/" + sequence});
+  const auto kept = frame_document(frame, {"frames/" + sequence}, kept_options(*frame));
   EXPECT_NE(kept->options().cache_control.find("immutable"), std::string::npos);
   EXPECT_TRUE(kept->options().content_location.empty());
-  EXPECT_TRUE(frame_document(frame, {"sensors/s1/frame", "sensors/s1/"}, false)
-                  ->options()
-                  .content_location.empty());
+  EXPECT_EQ(latest_options(*frame, "r1").version, sequence + ".r1");
 }
 
 TEST(FrameDocument, BothPlacesSpeakOfTheSameResources) {
   const auto frame = std::make_shared<const FrameResource>(random_frame(1, {1, false}));
-  const auto at_root = graph_at(body_of(frame_document(frame), ""), "http://h/frame");
+  const auto at_root =
+      graph_at(body_of(frame_document(frame, {"frame"}, {}), ""), "http://h/frame");
   const auto below =
-      graph_at(body_of(frame_document(frame, {"frames/1"}), ""), "http://h/frames/1");
+      graph_at(body_of(frame_document(frame, {"frames/1"}, {}), ""), "http://h/frames/1");
   EXPECT_EQ(testing::difference(at_root, below), "");
 }
 
@@ -66,7 +65,8 @@ TEST(SkeletonDocument, IsOneBodyInEveryFormat) {
   const auto frame = std::make_shared<const FrameResource>(random_frame(1, {2, true}));
   const std::string id = std::to_string(frame->bodies[1].id);
   const Place place{"skeletons/" + id, "", "http://h/"};
-  const auto document = skeleton_document(frame, frame->bodies[1].id, place);
+  const auto document =
+      skeleton_document(frame, frame->bodies[1].id, place, latest_options(*frame));
   ASSERT_NE(document, nullptr);
   const std::string base = "http://h/skeletons/" + id;
   const auto turtle = graph_at(body_of(document, "text/turtle"), base);
@@ -85,12 +85,12 @@ TEST(SkeletonDocument, IsOneBodyInEveryFormat) {
 
 TEST(SkeletonDocument, ThereIsNoneForABodyThatIsNotThere) {
   const auto frame = std::make_shared<const FrameResource>(random_frame(1));
-  EXPECT_EQ(skeleton_document(frame, 12'345'678, {"skeletons/12345678"}), nullptr);
+  EXPECT_EQ(skeleton_document(frame, 12'345'678, {"skeletons/12345678"}, {}), nullptr);
 }
 
 TEST(SkeletonsDocument, IsAContainerOfTheBodies) {
   const FrameResource frame = random_frame(1, {2, false});
-  const auto document = skeletons_document(frame, {"skeletons/"});
+  const auto document = skeletons_document(frame, {"skeletons/"}, latest_options(frame));
   EXPECT_TRUE(document->options().container);
   const auto graph = graph_at(body_of(document, ""), "http://h/skeletons/");
   const rdf::Triple member{rdf::iri("http://h/skeletons/"),

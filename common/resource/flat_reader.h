@@ -1,0 +1,22 @@
+// Reads small documents about one thing (/floor-plane, /clock): its plain properties as text.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "common/base/result.h"
+#include "common/resource/media_type.h"
+
+namespace chorus::resource {
+
+/// Our properties of the one subject of class `type` ("FloorPlane"), by name without prefix.  Only
+/// literals and our own individuals; a repeated property is refused.
+using Properties = std::map<std::string, std::string, std::less<>>;
+[[nodiscard]] Result<Properties> read_properties(std::string_view bytes, Format format,
+                                                 std::string_view type);
+
+/// The finite number under `key`.
+[[nodiscard]] Result<double> number_of(const Properties& properties, std::string_view key);
+
+}  // namespace chorus::resource

@@ -1,0 +1,15 @@
+// What one camera image shows and how to measure in it: capture time, size, intrinsics.
+#pragma once
+
+#include <string>
+
+#include "common/resource/node.h"
+#include "common/sensor/camera_image.h"
+
+namespace chorus::resource {
+
+/// The description of the image at `iri` ("images/depth").  Pixels; OpenCV's order of distortion;
+/// depth images also say how long one unit is.
+[[nodiscard]] Node image_node(const CameraImage& image, std::string iri);
+
+}  // namespace chorus::resource

@@ -1,0 +1,76 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/resource/clock_resource.h"
+#include "common/resource/flat_reader.h"
+#include "common/resource/floor_plane_resource.h"
+#include "common/resource/image_resource.h"
+
+namespace chorus::resource {
+namespace {
+
+TEST(FloorPlaneResource, ReadsBackFromEveryFormat) {
+  const FloorPlane floor = *make_plane(0.01, 0.98, 0.2, 1.25);
+  const Node node = floor_plane_node(floor, SpaceKind::Sensor);
+  EXPECT_TRUE(undeclared_terms(node).empty());
+  for (const Format format : kFormats) {
+    const auto back = read_floor_plane(write(node, format, {"floor-plane"}), format);
+    ASSERT_TRUE(back) << media_type(format) << ": " << to_string(back.error());
+    EXPECT_NEAR((back->normal - floor.normal).norm(), 0.0, 2e-6);
+    EXPECT_NEAR(back->offset, floor.offset, 2e-6);
+  }
+}
+
+TEST(FloorPlaneResource, RefusesWhatIsNoFloor) {
+  const auto read = [](const char* json) { return read_floor_plane(json, Format::Json); };
+  EXPECT_FALSE(read(R"({"@type":"FloorPlane","normalX":0,"normalY":0,"normalZ":0,"offset":1})"));
+  EXPECT_FALSE(read(R"({"@type":"FloorPlane","normalX":0,"normalY":1,"normalZ":0})"));
+  EXPECT_FALSE(
+      read(R"({"@type":"FloorPlane","normalX":0,"normalY":"NaN","normalZ":0,"offset":1})"));
+  EXPECT_FALSE(read(R"({"@type":"FloorPlane","normalX":0,"normalY":1,"normalZ":0,"offset":1e9})"));
+  EXPECT_FALSE(read(R"({"@type":"Clock","normalX":0,"normalY":1,"normalZ":0,"offset":1})"));
+  EXPECT_FALSE(read("[]"));
+  EXPECT_TRUE(read(R"({"@type":"FloorPlane","normalX":0,"normalY":2,"normalZ":0,"offset":2})"));
+  const char* const twice =
+      "@prefix ch: <https://w3id.org/chorus-tracking/ns#> . <> a ch:FloorPlane ; ch:normalX 0 ; "
+      "ch:normalY 1, 2 ; ch:normalZ 0 ; ch:offset 1 .";
+  const auto refused = read_floor_plane(twice, Format::Turtle);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().context, "ch:normalY");
+}
+
+TEST(ClockResource, ReadsBackFromEveryFormat) {
+  const ClockState clock{from_unix_ns(1'795'246'200'250'000'001),
+                         {true, Duration(-1500), Duration(2'000'000), Duration(3000), -12.5}};
+  const Node node = clock_node(clock);
+  EXPECT_TRUE(undeclared_terms(node).empty());
+  for (const Format format : kFormats) {
+    const auto back = read_clock(write(node, format, {"clock"}), format);
+    ASSERT_TRUE(back) << media_type(format) << ": " << to_string(back.error());
+    EXPECT_EQ(back->now, clock.now);
+    EXPECT_EQ(back->ntp, clock.ntp) << media_type(format);
+  }
+}
+
+TEST(ClockResource, RefusesAClockWithoutATime) {
+  EXPECT_FALSE(read_clock(R"({"@type":"Clock","synchronised":true})", Format::Json));
+  EXPECT_FALSE(read_clock(R"({"@type":"Clock","nowNanoseconds":"soon"})", Format::Json));
+  const auto bare = read_clock(R"({"@type":"Clock","nowNanoseconds":"5"})", Format::Json);
+  ASSERT_TRUE(bare);
+  EXPECT_FALSE(bare->ntp.synchronised);
+}
+
+TEST(ImageResource, SaysHowToMeasureInIt) {
+  CameraImage image{from_unix_ns(1), {}, "image/png", ""};
+  const Node depth = image_node(image, "images/depth");
+  EXPECT_TRUE(undeclared_terms(depth).empty());
+  const std::string turtle = write(depth, Format::Turtle, {"images/"});
+  EXPECT_NE(turtle.find("ch:fx 366.300"), std::string::npos) << turtle;
+  EXPECT_NE(turtle.find("ch:metresPerUnit 0.0010"), std::string::npos) << turtle;
+  image.media_type = "image/jpeg";
+  EXPECT_EQ(write(image_node(image, "c"), Format::Json).find("metresPerUnit"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace chorus::resource
