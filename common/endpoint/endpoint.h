@@ -1,5 +1,5 @@
 // What every Chorus service says about itself, the same on each of them:
-// /clock /healthz /openapi.json /ns /shapes /context.jsonld /.well-known/void
+// /clock /healthz /metrics /openapi.json /ns /shapes /context.jsonld /.well-known/void
 #pragma once
 
 #include <functional>
@@ -18,9 +18,10 @@ struct Health {
 };
 
 struct EndpointOptions {
-  std::shared_ptr<const Clock> clock;
-  std::function<Health()> health;
-  std::function<std::string()> metrics;  ///< Prometheus text (metrics.h), complete.
+  std::shared_ptr<const Clock> clock;  ///< Null: the host's.
+  std::function<Health()> health;      ///< Empty: always ready.
+  std::function<std::string()>
+      metrics;  ///< Prometheus text (metrics.h), complete; empty: no /metrics.
 };
 
 void add_routes(http::Router& router, const EndpointOptions& options);

@@ -1,0 +1,133 @@
+#include "common/endpoint/endpoint.h"
+
+#include <string_view>
+#include <utility>
+
+#include "common/resource/node.h"
+#include "common/resource/place.h"
+#include "common/time/ntp_status.h"
+#include "proto/embedded.h"
+
+namespace chorus::endpoint {
+namespace {
+
+using http::DocumentOptions;
+using http::DocumentPtr;
+using http::PathParams;
+using http::Request;
+using http::Variant;
+
+/// FNV-1a, 64 bit: the ETag of a text that only a new build changes.
+std::string version_of(std::string_view text) {
+  constexpr std::uint64_t kOffsetBasis = 0xcbf29ce484222325;
+  constexpr std::uint64_t kPrime = 0x100000001b3;
+  std::uint64_t hash = kOffsetBasis;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * kPrime;
+  return std::to_string(hash);
+}
+
+/// The same text under each of these types.
+DocumentPtr fixed_document(std::vector<std::string> media_types, std::string_view text) {
+  DocumentOptions options;
+  options.version = version_of(text);
+  options.cache_control = "public, max-age=3600";
+  options.rdf_source = false;
+  std::vector<Variant> variants;
+  for (std::string& type : media_types)
+    variants.push_back({std::move(type), [text] { return std::string(text); }});
+  return std::make_shared<const http::Document>(std::move(variants), std::move(options));
+}
+
+void serve(http::Router& router, std::string path, DocumentPtr document) {
+  router.get(std::move(path),
+             [document = std::move(document)](
+                 const Request&, const PathParams&) -> Result<DocumentPtr> { return document; });
+}
+
+DocumentOptions fleeting(Timestamp now) {
+  DocumentOptions options;
+  options.version = std::to_string(to_unix_ns(now));
+  options.cache_control = "no-store";
+  return options;
+}
+
+/// What the kernel knows of this host's clock, and what the clock says (proto/README.md 7).
+DocumentPtr clock_document(const Clock& clock) {
+  constexpr int kPpmDigits = 3;
+  const NtpStatus ntp = read_ntp_status();
+  const Timestamp now = clock.now();
+  resource::Node node{"", {"Clock"}, {}};
+  node.properties = {{"now", now},
+                     {"nowNanoseconds", std::int64_t{to_unix_ns(now)}},
+                     {"synchronised", ntp.synchronised},
+                     {"offsetNanoseconds", std::int64_t{ntp.offset.count()}},
+                     {"maxErrorNanoseconds", std::int64_t{ntp.max_error.count()}},
+                     {"estimatedErrorNanoseconds", std::int64_t{ntp.est_error.count()}},
+                     {"frequencyPpm", resource::Decimal{ntp.frequency_ppm, kPpmDigits}}};
+  return resource::document_of(std::move(node), fleeting(now), {"clock"});
+}
+
+Result<DocumentPtr> health_document(const Health& health, Timestamp now) {
+  if (!health.ready) return fail(ErrorCode::Unavailable, "health", health.reason);
+  DocumentOptions options = fleeting(now);
+  options.rdf_source = false;
+  std::vector<Variant> variants{{"application/json", [] { return "{\"status\":\"ok\"}\n"; }},
+                                {"text/plain", [] { return "ok\n"; }}};
+  return std::make_shared<const http::Document>(std::move(variants), std::move(options));
+}
+
+DocumentPtr metrics_document(std::string text, Timestamp now) {
+  DocumentOptions options = fleeting(now);
+  options.rdf_source = false;
+  return http::make_document("text/plain; version=0.0.4; charset=utf-8", std::move(text),
+                             std::move(options));
+}
+
+/// VoID: where the data begins and in which words it speaks.
+DocumentPtr void_document() {
+  const resource::Place place{".well-known/void"};
+  resource::Node node{"", {"void:Dataset"}, {}};
+  node.properties = {
+      {"title", std::string("Chorus: live bodies as linked data")},
+      {"rootResource", resource::Ref{"../"}},
+      {"exampleResource", resource::Ref{"../frame"}},
+      {"vocabulary", std::vector<resource::Ref>{{"https://w3id.org/chorus-tracking/ns#"},
+                                                {"http://www.w3.org/ns/ldp#"}}}};
+  DocumentOptions options;
+  options.version = "1";
+  options.cache_control = "public, max-age=3600";
+  return resource::document_of(std::move(node), std::move(options), place);
+}
+
+void add_fixed(http::Router& router) {
+  serve(router, "/openapi.json",
+        fixed_document({"application/json", "application/vnd.oai.openapi+json"},
+                       proto::openapi_json()));
+  serve(router, "/ns", fixed_document({"text/turtle"}, proto::vocabulary()));
+  serve(router, "/shapes", fixed_document({"text/turtle"}, proto::shapes()));
+  serve(router, "/context.jsonld",
+        fixed_document({"application/ld+json", "application/json"}, proto::context()));
+  serve(router, "/.well-known/void", void_document());
+}
+
+}  // namespace
+
+void add_routes(http::Router& router, const EndpointOptions& options) {
+  std::shared_ptr<const Clock> clock = options.clock;
+  if (!clock) clock = std::make_shared<SystemClock>();
+  router.get("/clock", [clock](const Request&, const PathParams&) -> Result<DocumentPtr> {
+    return clock_document(*clock);
+  });
+  router.get(
+      "/healthz",
+      [clock, health = options.health](const Request&, const PathParams&) -> Result<DocumentPtr> {
+        return health_document(health ? health() : Health{}, clock->now());
+      });
+  if (options.metrics)
+    router.get("/metrics",
+               [clock, metrics = options.metrics](const Request&, const PathParams&)
+                   -> Result<DocumentPtr> { return metrics_document(metrics(), clock->now()); });
+  add_fixed(router);
+}
+
+}  // namespace chorus::endpoint

@@ -1,0 +1,73 @@
+// What a service measures of itself, written for Prometheus (text format 0.0.4).
+//
+// Counters end in _total, names carry their unit; never a label per body or client (linked-data
+// C4).
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/http/server.h"
+
+namespace chorus::endpoint {
+
+using Labels = std::vector<std::pair<std::string, std::string>>;
+
+/// How often values fell below each bound.  Any thread may observe.
+class Histogram {
+ public:
+  /// Upper bounds, ascending and finite; one more without bound is added.
+  explicit Histogram(std::vector<double> bounds);
+  /// Not a number is not counted.
+  void observe(double value);
+
+  struct Snapshot {
+    std::vector<double> bounds;
+    std::vector<std::uint64_t> counts;  ///< By bucket, not cumulative; the last has no bound.
+    double sum = 0.0;
+  };
+  [[nodiscard]] Snapshot snapshot() const;
+
+ private:
+  std::vector<double> bounds_;
+  std::unique_ptr<std::atomic<std::uint64_t>[]> counts_;
+  std::atomic<double> sum_ = 0.0;
+};
+
+/// Collects samples and writes them as one text; a metric's help appears once, before its first
+/// sample.
+class MetricsText {
+ public:
+  struct Metric {
+    std::string_view name;  ///< [a-zA-Z_:][a-zA-Z0-9_:]*
+    std::string_view help;
+  };
+
+  void counter(const Metric& metric, double value, const Labels& labels = {});
+  void gauge(const Metric& metric, double value, const Labels& labels = {});
+  void histogram(const Metric& metric, const Histogram::Snapshot& values,
+                 const Labels& labels = {});
+
+  /// Samples of one metric stand together whatever the order of the calls.
+  [[nodiscard]] std::string text() const;
+
+ private:
+  struct Family {
+    std::string name;
+    std::string head;
+    std::string samples;
+  };
+  std::string& samples_of(const Metric& metric, std::string_view type);
+
+  std::vector<Family> families_;
+};
+
+/// chorus_http_*: what every server counts.
+void add_server(MetricsText& text, const http::ServerCounters& counters);
+
+}  // namespace chorus::endpoint
