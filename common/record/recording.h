@@ -1,7 +1,9 @@
-// Recordings: MCAP files (chunked, zstd, indexed), JSON messages.  Append-only, readable after a crash.
+// Recordings: MCAP files (chunked, zstd, indexed), JSON messages.  Append-only, readable after a
+// crash.
 //
 // MCAP version 0, https://mcap.dev/spec, written by hand (docs/decisions/0003-mcap-by-hand.md).
-// Bytes in, bytes out: this room knows topics and times, not skeletons.  frame_recording.h adds frames.
+// Bytes in, bytes out: this room knows topics and times, not skeletons.  frame_recording.h adds
+// frames.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +20,9 @@
 namespace chorus::record {
 
 struct Channel {
-  std::string topic;          ///< "/frame", "/floor-plane", "/registration"
-  std::string schema_name;    ///< "chorus.Frame"
-  std::string schema_json;    ///< JSON Schema text; may be empty.
+  std::string topic;        ///< "/frame", "/floor-plane", "/registration"
+  std::string schema_name;  ///< "chorus.Frame"
+  std::string schema_json;  ///< JSON Schema text; may be empty.
   std::map<std::string, std::string> metadata = {};
 };
 
@@ -33,10 +35,12 @@ struct Message {
 };
 
 struct WriterOptions {
-  std::size_t chunk_bytes = 1u << 20;          ///< A chunk is closed at this size or
-  Duration chunk_duration = std::chrono::seconds(1);  ///< at this span of log time: what a crash can lose.
+  std::size_t chunk_bytes = 1u << 20;  ///< A chunk is closed at this size or
+  Duration chunk_duration =
+      std::chrono::seconds(1);  ///< at this span of log time: what a crash can lose.
   std::string library = "chorus";
-  bool sync = false;  ///< Also wait for the disk after each chunk: survives a power cut, not only a crash.
+  bool sync =
+      false;  ///< Also wait for the disk after each chunk: survives a power cut, not only a crash.
 };
 
 class RecordingWriter {
@@ -49,7 +53,8 @@ class RecordingWriter {
   ~RecordingWriter();  ///< close()s; use close() to learn of errors.
 
   [[nodiscard]] Result<std::uint16_t> add_channel(const Channel& channel);
-  /// `message.topic` is not looked at; the channel says it.  After an IO error every call repeats it.
+  /// `message.topic` is not looked at; the channel says it.  After an IO error every call repeats
+  /// it.
   [[nodiscard]] Result<void> write(std::uint16_t channel, const Message& message);
   /// A named set of strings about the whole recording ("chorus": sensor id, device, intrinsics).
   [[nodiscard]] Result<void> write_metadata(const std::string& name,
@@ -65,8 +70,9 @@ class RecordingWriter {
 
 inline constexpr std::size_t kMaxNotes = 20;
 
-/// A whole recording, read.  A file cut off by a crash is read up to its last complete chunk; a damaged
-/// chunk is left out as a whole and named in the notes; records of unknown kinds are skipped.
+/// A whole recording, read.  A file cut off by a crash is read up to its last complete chunk; a
+/// damaged chunk is left out as a whole and named in the notes; records of unknown kinds are
+/// skipped.
 struct Recording {
   std::vector<Channel> channels;
   std::map<std::string, std::map<std::string, std::string>> metadata;
@@ -78,7 +84,8 @@ struct Recording {
 struct ReadLimits {
   std::uintmax_t max_file_bytes = 4ull << 30;
   std::size_t max_chunk_bytes = 64u << 20;  ///< Uncompressed; zip bombs are refused.
-  std::uintmax_t max_total_bytes = 4ull << 30;  ///< Memory of all messages; beyond it the file is refused.
+  std::uintmax_t max_total_bytes =
+      4ull << 30;  ///< Memory of all messages; beyond it the file is refused.
 };
 
 [[nodiscard]] Result<Recording> read_recording(const std::filesystem::path& path,

@@ -1,0 +1,246 @@
+#include "common/record/frame_recording.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <utility>
+
+#include "common/record/frame_schema.h"
+#include "common/resource/frame_resource.h"
+
+namespace chorus::record {
+
+namespace {
+
+using Strings = std::map<std::string, std::string>;
+
+constexpr std::string_view kFrameTopic = "/frame";
+constexpr std::string_view kFloorTopic = "/floor-plane";
+constexpr std::string_view kMetadataName = "chorus";
+constexpr std::string_view kNotePrefix = "note.";
+constexpr std::array<const char*, 5> kDistortion{"k1", "k2", "p1", "p2", "k3"};
+constexpr int kLargestImage = 1 << 20;  // [pixels per side]
+
+std::string text_of(double value) {
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  return {buffer.data(), end};
+}
+
+std::optional<double> number_at(const Strings& values, const std::string& key) {
+  const auto found = values.find(key);
+  if (found == values.end()) return std::nullopt;
+  double value = 0.0;
+  const char* last = found->second.data() + found->second.size();
+  const auto [end, error] = std::from_chars(found->second.data(), last, value);
+  if (error != std::errc{} || end != last || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::string text_at(const Strings& values, const std::string& key) {
+  const auto found = values.find(key);
+  return found == values.end() ? std::string{} : found->second;
+}
+
+Strings metadata_of(const FrameRecording& recording) {
+  Strings values{{"sensor", recording.sensor.str()}, {"device", recording.device}};
+  if (const auto& camera = recording.intrinsics) {
+    values["width"] = std::to_string(camera->width);
+    values["height"] = std::to_string(camera->height);
+    values["fx"] = text_of(camera->fx);
+    values["fy"] = text_of(camera->fy);
+    values["cx"] = text_of(camera->cx);
+    values["cy"] = text_of(camera->cy);
+    for (std::size_t i = 0; i < kDistortion.size(); ++i) {
+      values[kDistortion[i]] = text_of(camera->distortion[i]);
+    }
+  }
+  if (const auto& floor = recording.floor) {
+    values["floor_normal_x"] = text_of(floor->normal.x());
+    values["floor_normal_y"] = text_of(floor->normal.y());
+    values["floor_normal_z"] = text_of(floor->normal.z());
+    values["floor_offset"] = text_of(floor->offset);
+  }
+  for (const auto& [name, note] : recording.notes) values[std::string(kNotePrefix) + name] = note;
+  return values;
+}
+
+std::optional<Intrinsics> intrinsics_of(const Strings& values) {
+  const auto width = number_at(values, "width");
+  const auto height = number_at(values, "height");
+  const auto fx = number_at(values, "fx");
+  const auto fy = number_at(values, "fy");
+  const auto cx = number_at(values, "cx");
+  const auto cy = number_at(values, "cy");
+  if (!width || !height || !fx || !fy || !cx || !cy) return std::nullopt;
+  if (*width < 1 || *width > kLargestImage || *height < 1 || *height > kLargestImage) {
+    return std::nullopt;
+  }
+  Intrinsics camera{static_cast<int>(*width), static_cast<int>(*height), *fx, *fy, *cx, *cy, {}};
+  for (std::size_t i = 0; i < kDistortion.size(); ++i) {
+    camera.distortion[i] = number_at(values, kDistortion[i]).value_or(0.0);
+  }
+  return camera;
+}
+
+std::optional<FloorPlane> floor_of(const Strings& values) {
+  const auto x = number_at(values, "floor_normal_x");
+  const auto y = number_at(values, "floor_normal_y");
+  const auto z = number_at(values, "floor_normal_z");
+  const auto d = number_at(values, "floor_offset");
+  if (!x || !y || !z || !d) return std::nullopt;
+  const auto plane = make_plane(*x, *y, *z, *d);
+  return plane ? std::optional(*plane) : std::nullopt;
+}
+
+bool same(const FloorPlane& a, const FloorPlane& b) {
+  return a.normal == b.normal && a.offset == b.offset;
+}
+
+std::string floor_json(const FloorPlane& floor) {
+  return nlohmann::json{{"normalX", floor.normal.x()},
+                        {"normalY", floor.normal.y()},
+                        {"normalZ", floor.normal.z()},
+                        {"offset", floor.offset}}
+      .dump();
+}
+
+Result<FloorPlane> read_floor(const std::string& text) {
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  std::array<double, 4> v{};
+  constexpr std::array<const char*, 4> kKeys{"normalX", "normalY", "normalZ", "offset"};
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    if (!json.is_object() || !json.contains(kKeys[i]) || !json[kKeys[i]].is_number()) {
+      return fail(ErrorCode::Malformed, std::string(kFloorTopic),
+                  "a floor plane is not four numbers");
+    }
+    v[i] = json[kKeys[i]].get<double>();
+  }
+  return make_plane(v[0], v[1], v[2], v[3]);
+}
+
+struct Channels {
+  std::uint16_t frame = 0;
+  std::uint16_t floor = 0;
+};
+
+Result<void> write_frames(RecordingWriter& writer, const Channels& channels,
+                          const FrameRecording& recording) {
+  const FloorPlane* floor = recording.floor ? &*recording.floor : nullptr;
+  for (const SensorFrame& frame : recording.frames) {
+    Message message{std::string(kFrameTopic),
+                    static_cast<std::uint32_t>(frame.sequence),
+                    frame.captured,
+                    frame.captured,
+                    {}};
+    if (frame.floor && (floor == nullptr || !same(*floor, *frame.floor))) {
+      floor = &*frame.floor;
+      message.data = floor_json(*floor);
+      if (auto ok = writer.write(channels.floor, message); !ok) return ok;
+    }
+    message.data = resource::write(resource::to_resource(frame), resource::Format::Json);
+    if (auto ok = writer.write(channels.frame, message); !ok) return ok;
+  }
+  return {};
+}
+
+Result<void> check_order(const std::vector<SensorFrame>& frames, const std::string& where) {
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    if (frames[i].captured > frames[i - 1].captured) continue;
+    const bool repeats = frames[i].captured == frames[i - 1].captured;
+    return fail(ErrorCode::Malformed, where,
+                "frame " + std::to_string(i) + " of " + std::to_string(frames.size()) +
+                    (repeats ? " repeats the capture time " : " goes back in time to ") +
+                    to_iso8601(frames[i].captured));
+  }
+  return {};
+}
+
+Result<void> write_whole(const std::filesystem::path& path, const FrameRecording& recording) {
+  auto writer = RecordingWriter::create(path);
+  if (!writer) return pass(writer);
+  if (auto ok = writer->write_metadata(std::string(kMetadataName), metadata_of(recording)); !ok) {
+    return ok;
+  }
+  const auto frame = writer->add_channel(
+      {std::string(kFrameTopic), std::string(kFrameSchemaName), std::string(kFrameSchema), {}});
+  if (!frame) return pass(frame);
+  const auto floor = writer->add_channel(
+      {std::string(kFloorTopic), std::string(kFloorSchemaName), std::string(kFloorSchema), {}});
+  if (!floor) return pass(floor);
+  if (auto ok = write_frames(*writer, {*frame, *floor}, recording); !ok) return ok;
+  return writer->close();
+}
+
+void read_description(const Strings& values, FrameRecording& out) {
+  if (const auto id = SensorId::parse(text_at(values, "sensor"))) out.sensor = *id;
+  out.device = text_at(values, "device");
+  out.intrinsics = intrinsics_of(values);
+  out.floor = floor_of(values);
+  for (const auto& [key, value] : values) {
+    if (key.starts_with(kNotePrefix)) out.notes[key.substr(kNotePrefix.size())] = value;
+  }
+}
+
+Result<FrameRecording> frames_of(const Recording& recording, const std::string& where) {
+  FrameRecording out;
+  if (const auto found = recording.metadata.find(std::string(kMetadataName));
+      found != recording.metadata.end()) {
+    read_description(found->second, out);
+  }
+  FloorPlane floor = out.floor.value_or(FloorPlane{});
+  bool floor_known = out.floor.has_value();
+  for (const Message& message : recording.messages) {
+    if (message.topic == kFloorTopic) {
+      const auto plane = read_floor(message.data);
+      if (!plane) return fail(ErrorCode::Malformed, where, plane.error().message);
+      floor = *plane;
+      floor_known = true;
+    } else if (message.topic == kFrameTopic) {
+      const auto frame = resource::read_frame(message.data, resource::Format::Json);
+      if (!frame) {
+        return fail(ErrorCode::Malformed, where,
+                    "frame " + std::to_string(out.frames.size()) + ": " + to_string(frame.error()));
+      }
+      if (out.sensor.str().empty()) {
+        if (const auto id = SensorId::parse(frame->source)) out.sensor = *id;
+      }
+      out.frames.push_back(resource::to_sensor_frame(*frame, out.sensor, message.log_time));
+      if (floor_known) out.frames.back().floor = floor;
+    }
+  }
+  if (auto ok = check_order(out.frames, where); !ok) return pass(ok);
+  for (std::size_t i = 0; i < recording.notes.size(); ++i) {
+    out.notes["damage." + std::to_string(i + 1)] = recording.notes[i];
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<void> write_frame_recording(const std::filesystem::path& path,
+                                   const FrameRecording& recording) {
+  if (auto ok = check_order(recording.frames, path.string()); !ok) return ok;
+  std::filesystem::path partial = path;
+  partial += ".partial";
+  std::error_code error;
+  std::filesystem::remove(partial, error);
+  auto ok = write_whole(partial, recording);
+  if (ok) {
+    std::filesystem::rename(partial, path, error);
+    if (error) ok = fail(ErrorCode::Io, path.string(), error.message());
+  }
+  if (!ok) std::filesystem::remove(partial, error);
+  return ok;
+}
+
+Result<FrameRecording> read_frame_recording(const std::filesystem::path& path,
+                                            const ReadLimits& limits) {
+  const auto recording = read_recording(path, limits);
+  if (!recording) return pass(recording);
+  return frames_of(*recording, path.string());
+}
+
+}  // namespace chorus::record

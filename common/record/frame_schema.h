@@ -1,0 +1,55 @@
+// The JSON Schema that stands in every recording, so that its messages explain themselves.
+#pragma once
+
+#include <string_view>
+
+namespace chorus::record {
+
+inline constexpr std::string_view kFrameSchemaName = "chorus.Frame";
+inline constexpr std::string_view kFrameSchema = R"({
+  "$schema": "http://json-schema.org/draft-07/schema#",
+  "title": "chorus.Frame",
+  "description": "All bodies one sensor saw at one instant: /frame as application/json. Metres, right-handed, +y up.",
+  "type": "object",
+  "required": ["sequence", "capturedNanoseconds", "source", "space", "bodies"],
+  "properties": {
+    "sequence": {"type": "integer", "minimum": 0},
+    "captured": {"type": "string", "format": "date-time", "description": "UTC of capture"},
+    "capturedNanoseconds": {"type": "string", "description": "the same, nanoseconds since the Unix epoch"},
+    "source": {"type": "string", "description": "sensor id"},
+    "space": {"enum": ["SensorSpace", "WorldSpace"]},
+    "bodies": {"type": "array", "items": {
+      "type": "object",
+      "required": ["bodyId", "joints"],
+      "properties": {
+        "bodyId": {"type": "integer"},
+        "captured": {"type": "string"},
+        "capturedNanoseconds": {"type": "string"},
+        "joints": {"type": "object", "description": "by Kinect v2 joint name", "additionalProperties": {
+          "type": "object",
+          "required": ["state"],
+          "properties": {
+            "x": {"type": "number"}, "y": {"type": "number"}, "z": {"type": "number"},
+            "qx": {"type": "number"}, "qy": {"type": "number"}, "qz": {"type": "number"}, "qw": {"type": "number"},
+            "state": {"enum": ["Tracked", "Inferred", "NotTracked"]}
+          }
+        }}
+      }
+    }}
+  }
+})";
+
+inline constexpr std::string_view kFloorSchemaName = "chorus.FloorPlane";
+inline constexpr std::string_view kFloorSchema = R"({
+  "$schema": "http://json-schema.org/draft-07/schema#",
+  "title": "chorus.FloorPlane",
+  "description": "n.x + d = 0 in sensor space, valid from this message on; unit normal, metres",
+  "type": "object",
+  "required": ["normalX", "normalY", "normalZ", "offset"],
+  "properties": {
+    "normalX": {"type": "number"}, "normalY": {"type": "number"}, "normalZ": {"type": "number"},
+    "offset": {"type": "number"}
+  }
+})";
+
+}  // namespace chorus::record

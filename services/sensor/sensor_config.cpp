@@ -1,0 +1,139 @@
+#include "services/sensor/sensor_config.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "services/sensor/device/replay.h"
+#include "services/sensor/device/simulated.h"
+
+namespace chorus::sensor_service {
+
+namespace {
+
+constexpr int kMostFrames = 10'000;  // five minutes, 100 MB
+constexpr Duration kLargestClockError = std::chrono::hours(24);
+constexpr std::string_view kDefaultId = "s1";
+
+Result<std::string> text_of(const std::string& path) {
+  if (path.empty()) return std::string("{}");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return fail(ErrorCode::NotFound, path, std::strerror(errno));
+  return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+template <class T>
+void take(ConfigReader& config, std::string_view key, const Result<T>& value, T& out) {
+  if (value) {
+    out = *value;
+  } else {
+    config.complain(key, value.error().message);
+  }
+}
+
+void read_log(ConfigReader config, LogConfig& out) {
+  std::string level = "info";
+  std::string format = "text";
+  config.read("level", level);
+  config.read("format", format);
+  take(config, "level", log::parse_level(level), out.level);
+  take(config, "format", log::parse_format(format), out.format);
+}
+
+void read_http(ConfigReader config, HttpConfig& out) {
+  int port = out.port;
+  config.read("address", out.address);
+  config.read("port", port, 0, 65535);
+  config.read("bearer_token", out.bearer_token);
+  config.read("allowed_origin", out.allowed_origin);
+  out.port = static_cast<std::uint16_t>(port);
+}
+
+SensorConfig read_config(ConfigReader& root) {
+  SensorConfig config;
+  std::string id(kDefaultId);
+  root.read("id", id);
+  take(root, "id", SensorId::parse(id), config.id);
+  read_http(root.child("http"), config.http);
+  root.read("images", config.images);
+  int frames_kept = static_cast<int>(config.frames_kept);
+  root.read("frames_kept", frames_kept, 1, kMostFrames);
+  config.frames_kept = static_cast<std::size_t>(frames_kept);
+  root.read_ms("clock_error_ms", config.clock_error, -kLargestClockError, kLargestClockError);
+  read_log(root.child("log"), config.log);
+  return config;
+}
+
+using Device = Result<std::unique_ptr<FrameSource>>;
+
+Device open_replay(ConfigReader& config, const ReplayOptions& options, const Setup& setup) {
+  if (options.recording.empty()) {
+    config.complain("recording", "name the recording to replay, a .mcap file");
+    return nullptr;
+  }
+  auto recording = record::read_frame_recording(options.recording);
+  if (!recording) return pass(recording);
+  for (const auto& [name, note] : recording->notes) {
+    if (name.starts_with("damage.")) log::warn("recording is damaged", {{"note", note}});
+  }
+  return make_replay(std::move(*recording), options, setup.config.id, {setup.clock, {}});
+}
+
+/// Both kinds are read whatever the kind is, so that a file may describe both and typing errors
+/// show.
+Device read_device(ConfigReader device, const Setup& setup) {
+  std::size_t kind = 0;
+  device.read_choice("kind", kind, {"simulated", "replay"});
+  auto replay = device.child("replay");
+  const ReplayOptions options = read_replay_options(replay);
+  auto simulation = device.child("simulated");
+  auto simulated = make_simulated(simulation, setup.config.id, setup.clock);
+  return kind == 0 ? std::move(simulated) : open_replay(replay, options, setup);
+}
+
+std::string device_part(const std::string& text) {
+  const auto json = nlohmann::json::parse(text, nullptr, false, true);
+  return json.is_object() && json.contains("device") ? json["device"].dump() : std::string{};
+}
+
+}  // namespace
+
+Result<Setup> read_setup(const SetupSource& source) {
+  const auto text = text_of(source.config_path);
+  if (!text) return pass(text);
+  auto root =
+      ConfigReader::parse(*text, source.config_path.empty() ? "defaults" : source.config_path);
+  if (!root) return pass(root);
+  for (const std::string& assignment : source.assignments) {
+    if (auto ok = root->set(assignment); !ok) return pass(ok);
+  }
+  Setup setup;
+  setup.config = read_config(*root);
+  setup.clock = std::make_shared<SystemClock>(setup.config.clock_error);
+  setup.device_text = device_part(*text);
+  auto device = read_device(root->child("device"), setup);
+  if (auto ok = root->finish(); !ok) return pass(ok);
+  if (!device) return pass(device);
+  setup.device = std::move(*device);
+  return setup;
+}
+
+std::vector<std::string> restart_keys(const Setup& running, const Setup& wanted) {
+  const SensorConfig& a = running.config;
+  const SensorConfig& b = wanted.config;
+  std::vector<std::string> keys;
+  const auto compare = [&](bool same, const char* key) {
+    if (!same) keys.emplace_back(key);
+  };
+  compare(a.id == b.id, "id");
+  compare(a.http == b.http, "http");
+  compare(a.frames_kept == b.frames_kept, "frames_kept");
+  compare(a.clock_error == b.clock_error, "clock_error_ms");
+  compare(running.device_text == wanted.device_text, "device");
+  return keys;
+}
+
+}  // namespace chorus::sensor_service

@@ -1,0 +1,64 @@
+// deploy/config/sensor.json as a struct, and the device it asks for.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/base/config_reader.h"
+#include "common/base/log.h"
+#include "common/base/strong_id.h"
+#include "common/sensor/frame_source.h"
+#include "common/time/clock.h"
+
+namespace chorus::sensor_service {
+
+struct LogConfig {
+  log::Level level = log::Level::Info;
+  log::Format format = log::Format::Text;
+
+  bool operator==(const LogConfig&) const = default;
+};
+
+struct HttpConfig {
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 8081;
+  std::string bearer_token;  ///< For writing methods; empty: only from loopback.
+  std::string allowed_origin = "*";
+
+  bool operator==(const HttpConfig&) const = default;
+};
+
+struct SensorConfig {
+  SensorId id;
+  HttpConfig http;
+  bool images = false;
+  std::size_t frames_kept = 90;
+  Duration clock_error{0};  ///< Added to the host's clock: simulated hosts that disagree.
+  LogConfig log;
+
+  bool operator==(const SensorConfig&) const = default;
+};
+
+/// What a start needs: the settings, and the device ready to run.
+struct Setup {
+  SensorConfig config;
+  std::string device_text;  ///< The `device` object as written, to tell whether it changed.
+  std::shared_ptr<const Clock> clock;
+  std::unique_ptr<FrameSource> device;
+};
+
+/// The file (empty: all defaults) and what the command line puts over it.
+struct SetupSource {
+  std::string config_path;
+  std::vector<std::string> assignments;  ///< "path=value", in order.
+};
+
+/// Reads everything and makes the device; all mistakes come in one Error.
+[[nodiscard]] Result<Setup> read_setup(const SetupSource& source);
+
+/// The keys whose change takes effect only with a new start.
+[[nodiscard]] std::vector<std::string> restart_keys(const Setup& running, const Setup& wanted);
+
+}  // namespace chorus::sensor_service

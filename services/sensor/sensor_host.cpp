@@ -1,0 +1,154 @@
+#include "services/sensor/sensor_host.h"
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <random>
+#include <utility>
+
+#include "services/sensor/metrics_text.h"
+
+namespace chorus::sensor_service {
+
+namespace {
+
+/// Six hexadecimal digits, new with every start.
+std::string run_name() {
+  std::array<char, 8> text{};
+  std::snprintf(text.data(), text.size(), "%06x", std::random_device{}() & 0xFFFFFFu);
+  return text.data();
+}
+
+ServiceOptions service_options(const Setup& setup) {
+  ServiceOptions options;
+  options.id = setup.config.id;
+  options.device = setup.device->describe();
+  options.frames_kept = setup.config.frames_kept;
+  options.images = setup.config.images;
+  options.run = run_name();
+  return options;
+}
+
+http::ServerConfig server_config(const Setup& setup) {
+  http::ServerConfig config;
+  config.address = setup.config.http.address;
+  config.port = setup.config.http.port;
+  config.bearer_token = setup.config.http.bearer_token;
+  config.allowed_origin = setup.config.http.allowed_origin;
+  config.clock = setup.clock;
+  return config;
+}
+
+sigset_t watched_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&set, signal);
+  return set;
+}
+
+void complain(const Error& error) {
+  std::fprintf(stderr, "chorus-sensor: %s\n", to_string(error).c_str());
+}
+
+void reload(SensorHost& host, const SetupSource& source) {
+  auto wanted = read_setup(source);
+  if (wanted) return host.reload(std::move(*wanted));
+  log::error("reload refused, the old configuration stays",
+             {{"problems", to_string(wanted.error())}});
+}
+
+/// Waits for signals until one asks to stop.  They are blocked in all threads, so none is lost.
+void serve_until_stopped(SensorHost& host, const SetupSource& source) {
+  const sigset_t watched = watched_signals();
+  for (int signal = 0; sigwait(&watched, &signal) == 0;) {
+    if (signal != SIGHUP) return log::info("stopping", {{"signal", signal}});
+    reload(host, source);
+  }
+}
+
+}  // namespace
+
+SensorHost::SensorHost(Setup setup)
+    : setup_(std::move(setup)),
+      service_(service_options(setup_)),
+      server_(server_config(setup_), routes()) {}
+
+std::shared_ptr<http::Router> SensorHost::routes() {
+  auto router = std::make_shared<http::Router>();
+  service_.add_routes(*router);
+  endpoint::EndpointOptions options;
+  options.clock = setup_.clock;
+  options.health = [this] { return service_.health(); };
+  options.metrics = [this] { return metrics_text(service_.counters(), server_.counters()); };
+  endpoint::add_routes(*router, options);
+  return router;
+}
+
+SensorHost::~SensorHost() { stop(); }
+
+Result<void> SensorHost::start() {
+  if (auto ok = server_.start(); !ok) return ok;
+  log::info("sensor serving", {{"sensor", setup_.config.id.str()},
+                               {"url", "http://" + setup_.config.http.address + ":" +
+                                           std::to_string(server_.port()) + "/"},
+                               {"device", setup_.device->describe().label}});
+  device_ = std::jthread([this](std::stop_token stop) { run_device(std::move(stop)); });
+  return {};
+}
+
+void SensorHost::run_device(std::stop_token stop) {
+  Result<void> how;
+  try {
+    how = setup_.device->run(stop,
+                             [this](Capture capture) { service_.on_capture(std::move(capture)); });
+  } catch (const std::exception& failure) {
+    how = fail(ErrorCode::Internal, "device", failure.what());
+  }
+  if (stop.stop_requested()) return;
+  service_.on_device_end(how);
+  if (how) return log::info("the device has come to its end");
+  log::error("the device failed", {{"reason", to_string(how.error())}});
+}
+
+void SensorHost::stop() {
+  device_.request_stop();
+  server_.stop();
+  if (device_.joinable()) device_.join();
+}
+
+void SensorHost::reload(Setup wanted) {
+  for (const std::string& key : restart_keys(setup_, wanted)) {
+    log::warn("changed, but needs a restart", {{"key", key}});
+  }
+  setup_.config.images = wanted.config.images;
+  setup_.config.log = wanted.config.log;
+  service_.show_images(setup_.config.images);
+  log::configure(setup_.config.log.level, setup_.config.log.format);
+  log::info("configuration reloaded");
+}
+
+int run_sensor(const CommandLine& command) {
+  auto setup = read_setup(command.source);
+  if (!setup) {
+    complain(setup.error());
+    return kExitMistaken;
+  }
+  if (command.check_only) {
+    std::puts("The configuration is good.");
+    return kExitStopped;
+  }
+  log::configure(setup->config.log.level, setup->config.log.format);
+  const sigset_t watched = watched_signals();
+  pthread_sigmask(SIG_BLOCK, &watched, nullptr);  // before any thread starts
+  std::signal(SIGPIPE, SIG_IGN);
+  SensorHost host(std::move(*setup));
+  if (auto ok = host.start(); !ok) {
+    complain(ok.error());
+    return kExitMistaken;
+  }
+  serve_until_stopped(host, command.source);
+  host.stop();
+  return kExitStopped;
+}
+
+}  // namespace chorus::sensor_service

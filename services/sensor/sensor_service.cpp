@@ -1,0 +1,128 @@
+#include "services/sensor/sensor_service.h"
+
+#include <unordered_set>
+#include <utility>
+
+#include "services/sensor/self_description.h"
+
+namespace chorus::sensor_service {
+
+using http::PathParams;
+using http::Request;
+
+SensorService::SensorService(ServiceOptions options)
+    : options_(std::move(options)), recent_(options_.frames_kept), images_(options_.images) {}
+
+/// Why a frame cannot be true; empty when it can.  Called with the mutex held.
+std::string SensorService::objection(const SensorFrame& frame) const {
+  if (frame.bodies.size() > kMaxBodies) return "too many bodies";
+  std::unordered_set<std::uint64_t> ids;
+  for (const BodyFrame& body : frame.bodies) {
+    if (!ids.insert(body.id.value).second) return "two bodies have one id";
+  }
+  if (!sight_) return {};
+  if (frame.captured <= sight_->frame->captured) return "its capture time does not advance";
+  if (frame.sequence <= sight_->frame->sequence) return "its sequence number does not advance";
+  return {};
+}
+
+void SensorService::on_capture(Capture capture) {
+  SightPtr before;
+  {
+    const std::lock_guard lock(mutex_);
+    if (const std::string reason = objection(capture.frame); !reason.empty()) {
+      ++counters_.refused;
+      refused_.hit(reason);
+      return;
+    }
+    before = sight_;
+  }
+  const SightPtr now = see(std::move(capture), before.get());
+  const std::uint64_t sequence = now->frame->sequence;
+  recent_.add(sequence, numbered_frame(*now, options_.run));
+  {
+    const std::lock_guard lock(mutex_);
+    counters_.captured += 1;
+    counters_.bodies = now->frame->bodies.size();
+    if (before) counters_.lost += sequence - before->frame->sequence - 1;
+    sight_ = now;
+    last_capture_ = options_.steady_now();
+  }
+  live_->publish(latest_frame(*now, options_.run));
+}
+
+void SensorService::on_device_end(const Result<void>& how) {
+  const std::lock_guard lock(mutex_);
+  ended_ = how ? "the device has come to its end" : "the device failed: " + to_string(how.error());
+}
+
+void SensorService::show_images(bool on) { images_ = on; }
+
+endpoint::Health SensorService::health() const {
+  const std::lock_guard lock(mutex_);
+  if (!ended_.empty()) return {false, ended_};
+  if (!sight_) return {false, "no frame has been captured yet"};
+  const Duration silent = options_.steady_now() - last_capture_;
+  if (silent > options_.stall_after) {
+    return {false, "the device has been silent for " +
+                       std::to_string(static_cast<long>(seconds(silent))) + " s"};
+  }
+  return {};
+}
+
+ServiceCounters SensorService::counters() const {
+  const std::lock_guard lock(mutex_);
+  ServiceCounters counters = counters_;
+  if (sight_) counters.age_s = seconds(options_.steady_now() - last_capture_);
+  return counters;
+}
+
+Result<SightPtr> SensorService::sight() const {
+  const std::lock_guard lock(mutex_);
+  if (!sight_) return fail(ErrorCode::Unavailable, "sensor", "no frame has been captured yet");
+  return sight_;
+}
+
+SensorService::Answer SensorService::self() const {
+  return self_document({options_.id, options_.device, images_}, options_.run);
+}
+
+SensorService::Answer SensorService::image(std::shared_ptr<const LazyImage> Sight::*which) const {
+  if (!images_) {
+    return fail(ErrorCode::NotFound, "images", "images are switched off; set images: true");
+  }
+  const auto now = sight();
+  if (!now) return pass(now);
+  const auto& image = **now.*which;
+  if (!image) return fail(ErrorCode::NotFound, "images", "this device has no such images");
+  return image_document(*image, (*now)->frame->sequence, options_.run);
+}
+
+void SensorService::add_routes(http::Router& router) {
+  const std::string& run = options_.run;
+  router.live("/frame", live_);
+  router.get("/", [this](const Request&, const PathParams&) { return self(); });
+  router.get("/frames/{seq}", [this](const Request&, const PathParams& path) {
+    return recent_.find(path.at("seq"));
+  });
+  router.get("/skeletons/", [this, run](const Request&, const PathParams&) -> Answer {
+    return sight().map([&](const SightPtr& now) { return skeleton_list(*now, run); });
+  });
+  router.get("/skeletons/{id}", [this, run](const Request&, const PathParams& path) -> Answer {
+    return sight().and_then(
+        [&](const SightPtr& now) { return skeleton(*now, path.at("id"), run); });
+  });
+  router.get("/floor-plane", [this, run](const Request&, const PathParams&) -> Answer {
+    return sight().and_then([&](const SightPtr& now) { return floor_plane(*now, run); });
+  });
+  router.get("/images/", [this, run](const Request&, const PathParams&) -> Answer {
+    if (!images_) return image(&Sight::color);
+    return sight().map([&](const SightPtr& now) { return image_list(*now, run); });
+  });
+  router.get("/images/color",
+             [this](const Request&, const PathParams&) { return image(&Sight::color); });
+  router.get("/images/depth",
+             [this](const Request&, const PathParams&) { return image(&Sight::depth); });
+}
+
+}  // namespace chorus::sensor_service

@@ -1,0 +1,84 @@
+// One device as resources.  Captures in, documents out; no socket, no thread of its own.
+//
+// on_capture() runs on the device's thread, the routes on the server's; they meet at one immutable
+// Sight.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "common/base/rate_report.h"
+#include "common/endpoint/endpoint.h"
+#include "common/http/live_document.h"
+#include "common/http/router.h"
+#include "common/sensor/frame_source.h"
+#include "services/sensor/recent_frames.h"
+#include "services/sensor/sight.h"
+
+namespace chorus::sensor_service {
+
+using SteadyNow = std::function<std::chrono::steady_clock::time_point()>;
+
+struct ServiceOptions {
+  SensorId id;
+  DeviceDescription device;
+  std::size_t frames_kept = 90;  ///< For /frames/{seq}: three seconds at 30 Hz.
+  bool images = false;           ///< They show people: off unless somebody wants them.
+  Duration stall_after = std::chrono::seconds(2);  ///< Without a capture for so long: not ready.
+  std::string run;  ///< Distinguishes this run from earlier ones in every ETag.
+  SteadyNow steady_now = [] { return std::chrono::steady_clock::now(); };
+};
+
+struct ServiceCounters {
+  std::uint64_t captured = 0;  ///< Frames published.
+  std::uint64_t lost = 0;      ///< Gaps in the device's numbering.
+  std::uint64_t refused = 0;   ///< Captures that could not be true (see on_capture).
+  std::uint64_t bodies = 0;    ///< In the latest frame.
+  double age_s = 0.0;          ///< Since the latest capture arrived; 0 before the first.
+};
+
+class SensorService {
+ public:
+  explicit SensorService(ServiceOptions options);
+
+  /// Publishes one capture.  Refused and counted: time or numbering that does not advance, two
+  /// bodies with one id, too many bodies.
+  void on_capture(Capture capture);
+  /// The device will deliver nothing more; health() says why.
+  void on_device_end(const Result<void>& how);
+
+  /// Takes effect with the next request.
+  void show_images(bool on);
+
+  [[nodiscard]] endpoint::Health health() const;
+  [[nodiscard]] ServiceCounters counters() const;
+
+  /// All resources but those of common/endpoint.  The service must outlive the router.
+  void add_routes(http::Router& router);
+
+ private:
+  using Answer = Result<http::DocumentPtr>;
+
+  [[nodiscard]] std::string objection(const SensorFrame& frame) const;
+  [[nodiscard]] Result<SightPtr> sight() const;
+  [[nodiscard]] Answer self() const;
+  [[nodiscard]] Answer image(std::shared_ptr<const LazyImage> Sight::*which) const;
+
+  const ServiceOptions options_;
+  const std::shared_ptr<http::LiveDocument> live_ = std::make_shared<http::LiveDocument>();
+  RecentFrames recent_;
+  RateReport refused_{"capture refused"};
+  std::atomic<bool> images_;
+
+  mutable std::mutex mutex_;  ///< Guards what follows.
+  SightPtr sight_;
+  ServiceCounters counters_;
+  std::chrono::steady_clock::time_point last_capture_{};
+  std::string ended_;  ///< Why the device delivers nothing more; empty while it runs.
+};
+
+}  // namespace chorus::sensor_service

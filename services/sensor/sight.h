@@ -1,0 +1,46 @@
+// What the service knows after one capture: immutable, shared by all requests until the next one.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/base/result.h"
+#include "common/http/document.h"
+#include "common/resource/frame_resource.h"
+#include "common/sensor/frame_source.h"
+#include "services/sensor/lazy_image.h"
+
+namespace chorus::sensor_service {
+
+struct Sight {
+  std::shared_ptr<const resource::FrameResource> frame;
+  std::optional<FloorPlane> floor;
+  std::uint64_t floor_version = 0;         ///< Counts changes of the floor plane.
+  std::shared_ptr<const LazyImage> color;  ///< Null: the device has none.
+  std::shared_ptr<const LazyImage> depth;
+};
+using SightPtr = std::shared_ptr<const Sight>;
+
+/// The sight of a capture; `before` (may be null) lends its floor plane when the capture has none.
+[[nodiscard]] SightPtr see(Capture capture, const Sight* before);
+
+// The documents of one sight.  `run` goes into every ETag, so that a validator of an earlier run of
+// the service never fits a document of this one.
+
+[[nodiscard]] http::DocumentPtr latest_frame(const Sight& sight, const std::string& run);
+[[nodiscard]] http::DocumentPtr numbered_frame(const Sight& sight, const std::string& run);
+[[nodiscard]] http::DocumentPtr skeleton_list(const Sight& sight, const std::string& run);
+/// NotFound names the bodies there are.
+[[nodiscard]] Result<http::DocumentPtr> skeleton(const Sight& sight, const std::string& id,
+                                                 const std::string& run);
+[[nodiscard]] Result<http::DocumentPtr> floor_plane(const Sight& sight, const std::string& run);
+/// `/images/`: which images there are, and the camera model behind each.
+[[nodiscard]] http::DocumentPtr image_list(const Sight& sight, const std::string& run);
+/// One image as bytes; an encoder that fails is an Error.
+[[nodiscard]] Result<http::DocumentPtr> image_document(const LazyImage& image,
+                                                       std::uint64_t sequence,
+                                                       const std::string& run);
+
+}  // namespace chorus::sensor_service

@@ -1,0 +1,243 @@
+#include "services/sensor/sensor_service.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "common/resource/node.h"
+#include "services/sensor/self_description.h"
+#include "tests/support/builders.h"
+#include "tests/unit/sensor_service/served.h"
+
+namespace chorus::sensor_service {
+namespace {
+
+using chorus::testing::kFrameInterval;
+using chorus::testing::kStart;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class SensorServiceTest : public ::testing::Test {
+ protected:
+  SensorServiceTest() { service_.add_routes(router_); }
+
+  static ServiceOptions options(std::chrono::steady_clock::time_point* now) {
+    ServiceOptions out;
+    out.id = chorus::testing::sensor_id("s1");
+    out.device = {"simulated", "a <test> device", {}, 30.0};
+    out.frames_kept = 5;
+    out.run = "0a0b0c";
+    out.steady_now = [now] { return *now; };
+    return out;
+  }
+
+  static Capture capture(int index, std::vector<std::uint64_t> ids = {7}) {
+    const Timestamp t = kStart + kFrameInterval * index;
+    const auto pose = chorus::testing::ring_sensor(0, 6);
+    std::vector<BodyFrame> bodies;
+    for (const auto id : ids) {
+      bodies.push_back(
+          chorus::testing::body_seen_from(pose, chorus::testing::standing_person(), t, id));
+    }
+    Capture out;
+    out.frame = chorus::testing::sensor_frame("s1", t, std::move(bodies));
+    out.frame.sequence = static_cast<std::uint64_t>(index + 1);
+    return out;
+  }
+
+  static std::function<Result<CameraImage>()> image(std::string bytes, int* encoded) {
+    return [bytes, encoded]() -> Result<CameraImage> {
+      ++*encoded;
+      return CameraImage{kStart, {}, "image/png", bytes};
+    };
+  }
+
+  nlohmann::json json(const std::string& path) {
+    return nlohmann::json::parse(get(router_, path).body);
+  }
+
+  std::chrono::steady_clock::time_point now_{std::chrono::hours(1)};
+  SensorService service_{options(&now_)};
+  http::Router router_;
+};
+
+TEST_F(SensorServiceTest, BeforeTheFirstCaptureNothingIsReady) {
+  EXPECT_EQ(get(router_, "/frame").status, 503);
+  EXPECT_EQ(get(router_, "/skeletons/").status, 503);
+  EXPECT_EQ(get(router_, "/floor-plane").status, 503);
+  EXPECT_EQ(get(router_, "/frames/1").status, 404);
+  EXPECT_EQ(get(router_, "/").status, 200) << "what it is, it knows";
+  EXPECT_FALSE(service_.health().ready);
+}
+
+TEST_F(SensorServiceTest, ACaptureIsTheFrame) {
+  service_.on_capture(capture(0));
+  const auto frame = json("/frame");
+  EXPECT_EQ(frame["sequence"], 1);
+  EXPECT_EQ(frame["source"], "s1");
+  EXPECT_EQ(frame["capturedNanoseconds"], std::to_string(to_unix_ns(kStart)));
+  EXPECT_EQ(frame["bodies"][0]["bodyId"], 7);
+  EXPECT_EQ(frame["bodies"][0]["joints"].size(), 25u);
+  EXPECT_TRUE(service_.health().ready);
+  EXPECT_THAT(get(router_, "/frame").etag, HasSubstr("1.0a0b0c"));
+  EXPECT_THAT(get(router_, "/frame").head, HasSubstr("Content-Location: frames/1"));
+  EXPECT_EQ(get(router_, "/frame", "").type, "text/turtle") << "the default";
+  EXPECT_THAT(get(router_, "/frame", "", "arvida").body, HasSubstr("spatial"));
+}
+
+TEST_F(SensorServiceTest, FramesAreKeptThenGoneAndNeverBeforeTheyAre) {
+  for (int i = 0; i < 8; ++i) service_.on_capture(capture(i));
+  EXPECT_EQ(get(router_, "/frames/3").status, 410);
+  EXPECT_THAT(get(router_, "/frames/3").body, HasSubstr("oldest one kept is 4"));
+  for (int i = 4; i <= 8; ++i) {
+    EXPECT_EQ(json("/frames/" + std::to_string(i))["sequence"], i);
+  }
+  EXPECT_THAT(get(router_, "/frames/5").head, HasSubstr("immutable"));
+  for (const char* wrong : {"9", "-1", "x", "1e3", "99999999999999999999999"}) {
+    EXPECT_EQ(get(router_, std::string("/frames/") + wrong).status, 404) << wrong;
+  }
+}
+
+TEST_F(SensorServiceTest, LostFramesAreCountedAndSaid) {
+  service_.on_capture(capture(0));
+  service_.on_capture(capture(3));
+  EXPECT_EQ(service_.counters().lost, 2u);
+  EXPECT_EQ(get(router_, "/frames/3").status, 404);
+  EXPECT_THAT(get(router_, "/frames/3").body, HasSubstr("lost"));
+}
+
+TEST_F(SensorServiceTest, CapturesThatCannotBeTrueAreRefusedAndCounted) {
+  service_.on_capture(capture(5));
+  Capture backwards = capture(6);
+  backwards.frame.captured = kStart;
+  service_.on_capture(std::move(backwards));
+  service_.on_capture(capture(5));          // the same again
+  service_.on_capture(capture(6, {7, 7}));  // two bodies with one id
+  std::vector<std::uint64_t> crowd(kMaxBodies + 1);
+  for (std::size_t i = 0; i < crowd.size(); ++i) crowd[i] = i;
+  service_.on_capture(capture(6, crowd));
+  Capture renumbered = capture(7);
+  renumbered.frame.sequence = 6;
+  service_.on_capture(std::move(renumbered));
+  EXPECT_EQ(service_.counters().refused, 5u);
+  EXPECT_EQ(service_.counters().captured, 1u);
+  EXPECT_EQ(json("/frame")["sequence"], 6);
+  service_.on_capture(capture(6));
+  EXPECT_EQ(json("/frame")["sequence"], 7) << "a refused capture does no lasting harm";
+}
+
+TEST_F(SensorServiceTest, NotANumberBecomesNotTracked) {
+  Capture broken = capture(0);
+  broken.frame.bodies[0].skeleton[JointId::Head].position.x() = std::nan("");
+  service_.on_capture(std::move(broken));
+  EXPECT_EQ(json("/frame")["bodies"][0]["joints"]["Head"]["state"], "NotTracked");
+  EXPECT_THAT(get(router_, "/frame").body, Not(HasSubstr("nan")));
+}
+
+TEST_F(SensorServiceTest, SkeletonsAreListedAndServedOneByOne) {
+  service_.on_capture(capture(0, {7, 12}));
+  EXPECT_EQ(json("/skeletons/")["contains"], nlohmann::json({"7", "12"}));
+  EXPECT_EQ(json("/skeletons/12")["bodyId"], 12);
+  EXPECT_EQ(get(router_, "/skeletons/8").status, 404);
+  EXPECT_THAT(get(router_, "/skeletons/8").body, HasSubstr("7, 12"));
+  EXPECT_THAT(get(router_, "/skeletons/", "text/turtle").head, HasSubstr("BasicContainer"));
+}
+
+TEST_F(SensorServiceTest, AnEmptyRoomIsAFrameToo) {
+  service_.on_capture(capture(0, {}));
+  EXPECT_TRUE(json("/frame")["bodies"].empty());
+  EXPECT_THAT(get(router_, "/skeletons/7").body, HasSubstr("no body"));
+}
+
+TEST_F(SensorServiceTest, TheFloorPlaneChangesItsETagOnlyWhenItChanges) {
+  service_.on_capture(capture(0));
+  EXPECT_EQ(get(router_, "/floor-plane").status, 404);
+  Capture with_floor = capture(1);
+  with_floor.frame.floor = FloorPlane{Eigen::Vector3d(0.0, 0.6, 0.8), 1.25};
+  service_.on_capture(std::move(with_floor));
+  const Answer first = get(router_, "/floor-plane");
+  EXPECT_EQ(nlohmann::json::parse(first.body)["normalZ"], 0.8);
+  EXPECT_EQ(nlohmann::json::parse(first.body)["offset"], 1.25);
+  service_.on_capture(capture(2));
+  EXPECT_EQ(get(router_, "/floor-plane").etag, first.etag) << "kept, not forgotten";
+  Capture moved = capture(3);
+  moved.frame.floor = FloorPlane{Eigen::Vector3d(0.0, 1.0, 0.0), 1.25};
+  service_.on_capture(std::move(moved));
+  EXPECT_NE(get(router_, "/floor-plane").etag, first.etag);
+}
+
+TEST_F(SensorServiceTest, ImagesAreOffUntilSomebodyWantsThem) {
+  int encoded = 0;
+  Capture with_images = capture(0);
+  with_images.depth = image("depth bytes", &encoded);
+  service_.on_capture(std::move(with_images));
+  for (const char* path : {"/images/", "/images/color", "/images/depth"}) {
+    EXPECT_EQ(get(router_, path).status, 404);
+    EXPECT_THAT(get(router_, path).body, HasSubstr("set images: true"));
+  }
+  EXPECT_THAT(get(router_, "/").body, Not(HasSubstr("images")));
+  EXPECT_EQ(encoded, 0);
+  service_.show_images(true);
+  EXPECT_THAT(get(router_, "/").body, HasSubstr("images/depth"));
+  EXPECT_EQ(get(router_, "/images/color").status, 404) << "this device has no colour camera";
+  const Answer depth = get(router_, "/images/depth", "image/*");
+  EXPECT_EQ(depth.type, "image/png");
+  EXPECT_EQ(depth.body, "depth bytes");
+  EXPECT_THAT(depth.head, HasSubstr("</images/>; rel=\"describedby\""));
+  EXPECT_THAT(get(router_, "/images/", "text/turtle").body, HasSubstr("366.3"));
+  (void)get(router_, "/images/depth", "image/*");
+  EXPECT_EQ(encoded, 1) << "encoded once for all clients";
+  service_.show_images(false);
+  EXPECT_EQ(get(router_, "/images/depth").status, 404);
+}
+
+TEST_F(SensorServiceTest, AnEncoderThatFailsIsAnErrorNotACrash) {
+  service_.show_images(true);
+  Capture broken = capture(0);
+  broken.depth = []() -> Result<CameraImage> { throw std::runtime_error("no memory"); };
+  broken.color = []() -> Result<CameraImage> { return fail(ErrorCode::Unavailable, "x", "later"); };
+  service_.on_capture(std::move(broken));
+  EXPECT_EQ(get(router_, "/images/depth").status, 500);
+  EXPECT_EQ(get(router_, "/images/color").status, 503);
+}
+
+TEST_F(SensorServiceTest, ASilentDeviceIsNotHealthyUntilItSpeaksAgain) {
+  service_.on_capture(capture(0));
+  now_ += std::chrono::milliseconds(1900);
+  EXPECT_TRUE(service_.health().ready);
+  now_ += std::chrono::milliseconds(200);
+  EXPECT_FALSE(service_.health().ready);
+  EXPECT_THAT(service_.health().reason, HasSubstr("silent for 2 s"));
+  service_.on_capture(capture(1));
+  EXPECT_TRUE(service_.health().ready);
+}
+
+TEST_F(SensorServiceTest, ADeviceThatFailedIsNamed) {
+  service_.on_capture(capture(0));
+  service_.on_device_end(fail(ErrorCode::Io, "usb", "unplugged"));
+  EXPECT_FALSE(service_.health().ready);
+  EXPECT_THAT(service_.health().reason, HasSubstr("unplugged"));
+}
+
+TEST_F(SensorServiceTest, ItSaysWhatItIsToMachinesAndPeople) {
+  const auto self = json("/");
+  EXPECT_EQ(self["sensorId"], "s1");
+  EXPECT_EQ(self["deviceKind"], "simulated");
+  for (const char* path : {"frame", "skeletons/", "floor-plane", "clock", "ns", "shapes"}) {
+    EXPECT_THAT(self["contains"].dump(), HasSubstr(path));
+  }
+  const Answer page = get(router_, "/", "text/html,application/xhtml+xml,*/*;q=0.8");
+  EXPECT_EQ(page.type, "text/html");
+  EXPECT_THAT(page.body, HasSubstr("a &lt;test&gt; device"));
+  EXPECT_THAT(page.body, Not(HasSubstr("<test>")));
+  EXPECT_EQ(get(router_, "/", "").type, "text/turtle");
+}
+
+TEST_F(SensorServiceTest, EveryWordOfItsDocumentsIsDeclared) {
+  const Self self{chorus::testing::sensor_id("s1"), {}, true};
+  EXPECT_THAT(resource::undeclared_terms(self_node(self)), ::testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace chorus::sensor_service
