@@ -142,7 +142,7 @@ start_simulated() {
   for (( i = 0; i < sensor_count; ++i )); do
     local id="s$(( i + 1 ))" p=$(( port + 1 + i ))
     start "$id" "$bin/chorus-sensor" --config deploy/config/sensor.json --set "id=$id" --set "http.port=$p" \
-      --set device.kind=simulated --set "device.ring.index=$i" --set "device.ring.count=$sensor_count"
+      --set device.kind=simulated --set "device.simulated.ring.index=$i" --set "device.simulated.ring.count=$sensor_count"
     add_sensor "$id" "http://127.0.0.1:$p/"
   done
 }
