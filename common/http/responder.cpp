@@ -60,6 +60,13 @@ Result<std::string> profile_of(const RequestHead& head) {
   return profile == query->end() ? std::string() : profile->second;
 }
 
+/// True for GET /frame?at=TIME where the route has a getter for "at".
+bool asks_by_query(const RequestHead& head, const Router::Entry& entry) {
+  if (!entry.by_query || head.query.empty()) return false;
+  const auto query = decode_query(head.query);
+  return query && query->contains(entry.query_key);
+}
+
 Result<Request> request_of(const RequestHead& head, const Peer& peer, std::string_view path) {
   auto query = decode_query(head.query);
   if (!query) return pass(query);
@@ -130,7 +137,8 @@ Reaction Responder::react(const RequestHead& head, const Peer& peer) const {
       return options(route_lines_[match->entry->index], allowed_methods(*match->entry));
     case Method::Get:
     case Method::Head:
-      if (match->entry->live) return read_live(head, *match->entry);
+      if (match->entry->live && !asks_by_query(head, *match->entry))
+        return read_live(head, *match->entry);
       return read(head, *match, peer, *path);
     default:
       return write(head, std::move(*match), peer);
@@ -161,7 +169,7 @@ Reaction Responder::read(const RequestHead& head, const Router::Match& match, co
     if (entry.files) return entry.files->document(match.rest);
     const auto request = request_of(head, peer, path);
     if (!request) return pass(request);
-    return entry.getter(*request, match.params);
+    return (entry.live ? entry.by_query : entry.getter)(*request, match.params);
   });
   if (!document) return to_answer(fault(document.error(), head, route));
   return to_answer(represent(*document, head, route));

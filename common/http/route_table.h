@@ -20,6 +20,8 @@ struct Router::Entry {
 
   Getter getter;
   std::shared_ptr<LiveDocument> live;
+  std::string query_key;  ///< With `live`: requests that have this key in their query ...
+  Getter by_query;        ///< ... are answered here.
   std::map<Method, Action> actions;
   std::unique_ptr<StaticFiles> files;  ///< The pattern is a prefix then.
 

@@ -96,6 +96,13 @@ void Router::live(std::string pattern, std::shared_ptr<LiveDocument> document) {
   entry.live = std::move(document);
 }
 
+void Router::by_query(const std::string& pattern, std::string key, Getter getter) {
+  Entry& entry = entry_of(pattern);
+  assert(entry.live && !entry.by_query && !key.empty());
+  entry.query_key = std::move(key);
+  entry.by_query = std::move(getter);
+}
+
 void Router::action(Method method, std::string pattern, Action action) {
   assert(method != Method::Get && method != Method::Head && method != Method::Options);
   [[maybe_unused]] const bool added =

@@ -54,6 +54,8 @@ class Router {
   void get(std::string pattern, Getter getter);
   /// GET/HEAD of a live document, with Prefer: wait long polling and Accept: text/event-stream.
   void live(std::string pattern, std::shared_ptr<LiveDocument> document);
+  /// GET/HEAD with ?key=... of a pattern that live() knows: answered by the getter instead.
+  void by_query(const std::string& pattern, std::string key, Getter getter);
   /// A writing method; needs a bearer token unless the request comes from loopback.
   void action(Method method, std::string pattern, Action action);
   /// GET/HEAD of the files below `folder`, never outside it; types by extension.  Prefix ends in

@@ -76,6 +76,17 @@ TEST(Router, AllowNamesWhatThereIs) {
   EXPECT_EQ(allowed_methods(*router.match("/frame")->entry), "GET, HEAD, OPTIONS");
 }
 
+TEST(Router, ALiveDocumentMayHaveAGetterForOneQueryKey) {
+  Router router;
+  router.live("/frame", std::make_shared<LiveDocument>());
+  router.by_query("/frame", "at", nothing());
+  const auto match = router.match("/frame");
+  EXPECT_EQ(match->entry->query_key, "at");
+  EXPECT_TRUE(match->entry->by_query);
+  EXPECT_DEATH(router.by_query("/frame", "at", nothing()), "by_query");
+  EXPECT_DEATH(router.by_query("/other", "at", nothing()), "live");
+}
+
 TEST(RouterDeathTest, FillingAPatternTwiceAsserts) {
   Router router = example();
   EXPECT_DEATH(router.get("/frame", nothing()), "readable");
