@@ -1,0 +1,91 @@
+#include "fusion-server/poll/answer.h"
+
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "common/resource/floor_plane_resource.h"
+
+namespace chorus::poll {
+namespace {
+
+constexpr int kOk = 200;
+constexpr std::size_t kMaxFloorBytes = 64u << 10;
+
+std::string_view header(const http::ClientResponse& response, std::string_view name) {
+  const auto it = response.headers.find(name);
+  return it == response.headers.end() ? std::string_view{} : std::string_view(it->second);
+}
+
+std::string_view without_parameters(std::string_view content_type) {
+  content_type = content_type.substr(0, content_type.find(';'));
+  while (!content_type.empty() && content_type.back() == ' ') content_type.remove_suffix(1);
+  return content_type;
+}
+
+std::optional<resource::Format> format_of(std::string_view content_type) {
+  for (const resource::Format format : resource::kFormats) {
+    if (resource::media_type(format) == content_type) return format;
+  }
+  return std::nullopt;
+}
+
+Event unreadable(ErrorCode code, std::string context, std::string message) {
+  return Unreadable{Error{code, std::move(context), std::move(message)}};
+}
+
+std::optional<Error> stranger(const resource::FrameResource& frame, const SensorId& expected) {
+  if (frame.space == resource::SpaceKind::World || frame.source == expected.str())
+    return std::nullopt;
+  return Error{ErrorCode::Conflict, "frame",
+               "the service calls itself \"" + frame.source + "\", the config calls it \"" +
+                   expected.str() + "\"; make both the same"};
+}
+
+}  // namespace
+
+FrameAnswer read_frame_answer(const http::ClientResponse& response, const SensorId& expected) {
+  const std::string etag(header(response, "etag"));
+  if (response.status != kOk) return {FrameAnswered{response.status, etag, {}}, nullptr};
+  const std::string_view type = without_parameters(header(response, "content-type"));
+  const auto format = format_of(type);
+  if (!format || *format == resource::Format::NTriples) {
+    return {unreadable(ErrorCode::Unsupported, "frame",
+                       "the content type is \"" + std::string(type.substr(0, 64)) +
+                           "\", where a sensor sends text/turtle"),
+            nullptr};
+  }
+  auto frame = resource::read_frame(response.body, *format);
+  if (!frame) return {Unreadable{frame.error()}, nullptr};
+  if (auto error = stranger(*frame, expected)) return {Unreadable{std::move(*error)}, nullptr};
+  auto shared = std::make_shared<const resource::FrameResource>(std::move(*frame));
+  return {FrameAnswered{kOk, etag, shared->captured}, shared};
+}
+
+std::optional<FloorPlane> read_floor_answer(const http::ClientResponse& response) {
+  if (response.status != kOk || response.body.size() > kMaxFloorBytes) return std::nullopt;
+  const auto format = format_of(without_parameters(header(response, "content-type")));
+  if (!format) return std::nullopt;
+  const auto floor = resource::read_floor_plane(response.body, *format);
+  if (!floor) return std::nullopt;
+  return *floor;
+}
+
+std::optional<Exchange> exchange_of(const http::ClientResponse& response) {
+  const auto stamps = parse_server_stamps(header(response, "chorus-clock"));
+  if (!stamps) return std::nullopt;
+  return Exchange{from_unix_ns(response.sent_ns), stamps->receipt, stamps->sending,
+                  from_unix_ns(response.received_ns)};
+}
+
+SensorFrame place_in_time(const resource::FrameResource& frame, const SensorId& sensor,
+                          Timestamp received, Duration shift,
+                          const std::optional<FloorPlane>& floor) {
+  SensorFrame placed = resource::to_sensor_frame(frame, sensor, received);
+  placed.captured += shift;
+  for (BodyFrame& body : placed.bodies) body.captured += shift;
+  placed.floor = frame.space == resource::SpaceKind::World ? FloorPlane{} : floor;
+  return placed;
+}
+
+}  // namespace chorus::poll

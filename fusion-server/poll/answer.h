@@ -1,0 +1,36 @@
+// What an HTTP answer of a sensor means.  No socket, no state.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "common/http/client.h"
+#include "common/resource/frame_resource.h"
+#include "common/sensor/sensor_frame.h"
+#include "fusion-server/poll/clock_estimate.h"
+#include "fusion-server/poll/poll_fsm.h"
+
+namespace chorus::poll {
+
+struct FrameAnswer {
+  Event event;
+  std::shared_ptr<const resource::FrameResource> frame;  ///< Null unless the body was a frame.
+};
+
+/// Refuses, as Unreadable: a content type that is no frame, an unreadable frame, a frame of another
+/// sensor. A frame in world space may carry any source: fusion servers chain.
+[[nodiscard]] FrameAnswer read_frame_answer(const http::ClientResponse& response,
+                                            const SensorId& expected);
+
+/// /floor-plane; none when there is none or it is none.
+[[nodiscard]] std::optional<FloorPlane> read_floor_answer(const http::ClientResponse& response);
+
+/// The four stamps, when the answer carries Chorus-Clock.
+[[nodiscard]] std::optional<Exchange> exchange_of(const http::ClientResponse& response);
+
+/// The frame by our clock, `shift` later, with its floor: in world space that is y = 0.
+[[nodiscard]] SensorFrame place_in_time(const resource::FrameResource& frame,
+                                        const SensorId& sensor, Timestamp received, Duration shift,
+                                        const std::optional<FloorPlane>& floor);
+
+}  // namespace chorus::poll

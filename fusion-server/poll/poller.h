@@ -1,0 +1,75 @@
+// Polls every sensor: executes what PollFsm decides, reads the frames, corrects their clocks.
+//
+// One thread and one kept-alive connection per sensor; a sensor that is dead, slow or lying costs
+// the others nothing but its bytes.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/http/client.h"
+#include "common/resource/frame_resource.h"
+#include "common/sensor/sensor_frame.h"
+#include "common/time/clock.h"
+#include "fusion-server/poll/clock_estimate.h"
+#include "fusion-server/poll/poll_fsm.h"
+
+namespace chorus::poll {
+
+struct PolledSensor {
+  SensorId id;
+  std::string url;  ///< Of the service's `/`: "http://127.0.0.1:8081/".
+
+  bool operator==(const PolledSensor&) const = default;
+};
+
+struct PolledFrame {
+  SensorFrame frame;  ///< By our clock, with the floor plane last heard of.
+  std::shared_ptr<const resource::FrameResource> raw;  ///< As the sensor sent it.
+};
+
+/// What a poll knows of one sensor; a copy.
+struct PollReport {
+  PolledSensor sensor;
+  SensorState state = SensorState::Connecting;
+  std::string last_error;
+  std::optional<Timestamp> newest;  ///< Capture time of the last frame, by our clock.
+  double rate_hz = 0.0;  ///< Frames per second of capture time, over the last two seconds.
+  std::optional<ClockEstimate> clock;
+  std::uint64_t frames = 0;
+  std::uint64_t missed = 0;  ///< Gaps in the sensor's sequence.
+  std::uint64_t failures = 0;
+};
+
+struct PollerOptions {
+  PollTimings timings;
+  std::size_t max_body_bytes = 2u << 20;
+  std::shared_ptr<const Clock> clock;
+  /// Called on the poll thread; must return at once.
+  std::function<void(PolledFrame)> deliver;
+};
+
+class Poller {
+ public:
+  explicit Poller(PollerOptions options);
+  ~Poller();  ///< Stops and joins.
+
+  /// Starts polling these and stops polling all others; known ones are left in peace.  The urls
+  /// have passed http::parse_url.  Thread-safe.
+  void poll(std::vector<PolledSensor> sensors);
+
+  /// Ends all polling; nothing is delivered afterwards.  reports() still answers.
+  void stop();
+
+  [[nodiscard]] std::vector<PollReport> reports() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace chorus::poll

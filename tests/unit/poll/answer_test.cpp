@@ -1,0 +1,133 @@
+// What a sensor's answer means, honest or not.
+#include "fusion-server/poll/answer.h"
+
+#include <gtest/gtest.h>
+
+#include "common/resource/floor_plane_resource.h"
+#include "tests/support/builders.h"
+
+namespace chorus::poll {
+namespace {
+
+using testing::kStart;
+using testing::sensor_id;
+
+resource::FrameResource frame(const std::string& source) {
+  const auto pose = testing::ring_sensor(0, 6);
+  return resource::to_resource(testing::sensor_frame(
+      source, kStart, {testing::body_seen_from(pose, testing::standing_person(), kStart)}));
+}
+
+http::ClientResponse answer(int status, std::string type, std::string body) {
+  http::ClientResponse response;
+  response.status = status;
+  response.headers["content-type"] = std::move(type);
+  response.headers["etag"] = "\"42-ttl\"";
+  response.body = std::move(body);
+  response.sent_ns = to_unix_ns(kStart);
+  response.received_ns = to_unix_ns(kStart + std::chrono::milliseconds(2));
+  return response;
+}
+
+http::ClientResponse turtle(const resource::FrameResource& f) {
+  return answer(200, "text/turtle", write(f, resource::Format::Turtle));
+}
+
+std::string why(const FrameAnswer& read) {
+  const auto* unreadable = std::get_if<Unreadable>(&read.event);
+  return unreadable == nullptr ? "" : to_string(unreadable->error);
+}
+
+TEST(FrameAnswer, IsAFrameInEveryFormatASensorWrites) {
+  for (const auto format :
+       {resource::Format::Turtle, resource::Format::Json, resource::Format::JsonLd}) {
+    const auto type = std::string(media_type(format)) + "; charset=utf-8";
+    const auto read =
+        read_frame_answer(answer(200, type, write(frame("s1"), format)), sensor_id("s1"));
+    ASSERT_NE(read.frame, nullptr) << type << why(read);
+    const auto& event = std::get<FrameAnswered>(read.event);
+    EXPECT_EQ(event.etag, "\"42-ttl\"");
+    EXPECT_EQ(event.captured, kStart);
+    EXPECT_EQ(read.frame->bodies.size(), 1u);
+  }
+}
+
+TEST(FrameAnswer, PassesStatusesOnWithoutReadingTheBody) {
+  const auto read = read_frame_answer(answer(304, "", ""), sensor_id("s1"));
+  EXPECT_EQ(std::get<FrameAnswered>(read.event).status, 304);
+  EXPECT_EQ(read.frame, nullptr);
+}
+
+TEST(FrameAnswer, RefusesWebPagesNonsenseAndStrangers) {
+  EXPECT_NE(
+      why(read_frame_answer(answer(200, "text/html", "<html>"), sensor_id("s1"))).find("text/html"),
+      std::string::npos);
+  EXPECT_NE(why(read_frame_answer(answer(200, "text/turtle", "no turtle"), sensor_id("s1"))), "");
+  EXPECT_NE(why(read_frame_answer(answer(200, "text/turtle", ""), sensor_id("s1"))), "");
+  EXPECT_NE(
+      why(read_frame_answer(answer(200, "text/turtle", std::string(20000, '[')), sensor_id("s1"))),
+      "");
+  EXPECT_EQ(
+      why(read_frame_answer(turtle(frame("s2")), sensor_id("s1"))),
+      "frame: the service calls itself \"s2\", the config calls it \"s1\"; make both the same");
+}
+
+TEST(FrameAnswer, ARefusedContentTypeIsQuotedOnlyInPart) {
+  const auto read = read_frame_answer(answer(200, std::string(5000, 'x'), ""), sensor_id("s1"));
+  EXPECT_LT(why(read).size(), 200u);
+}
+
+TEST(FrameAnswer, AFusionServerIsASensorWhateverItIsCalled) {
+  auto fused = frame("fusion");
+  fused.space = resource::SpaceKind::World;
+  fused.sensors = {"s1", "s2"};
+  const auto read = read_frame_answer(turtle(fused), sensor_id("cell1"));
+  ASSERT_NE(read.frame, nullptr) << why(read);
+  const auto placed = place_in_time(*read.frame, sensor_id("cell1"), kStart, Duration{0}, {});
+  EXPECT_EQ(placed.sensor, sensor_id("cell1"));
+  ASSERT_TRUE(placed.floor);  // its world's floor is y = 0
+  EXPECT_EQ(placed.floor->normal, Eigen::Vector3d::UnitY());
+  EXPECT_EQ(placed.floor->offset, 0.0);
+}
+
+TEST(PlaceInTime, ShiftsCaptureTimesOfFrameAndBodiesAndAddsTheFloor) {
+  const FloorPlane floor{Eigen::Vector3d::UnitY(), 1.2};
+  const auto shift = std::chrono::milliseconds(-250);
+  const auto placed = place_in_time(frame("s1"), sensor_id("s1"), kStart, shift, floor);
+  EXPECT_EQ(placed.captured, kStart + shift);
+  ASSERT_EQ(placed.bodies.size(), 1u);
+  EXPECT_EQ(placed.bodies[0].captured, kStart + shift);
+  EXPECT_EQ(placed.floor->offset, 1.2);
+  EXPECT_EQ(placed.received, kStart);
+}
+
+TEST(FloorAnswer, ReadsAPlaneAndIgnoresAnythingElse) {
+  const FloorPlane floor{Eigen::Vector3d(0, 0.8, 0.6), 1.25};
+  const auto node = resource::floor_plane_node(floor, resource::SpaceKind::Sensor);
+  for (const auto format : {resource::Format::Turtle, resource::Format::Json}) {
+    const auto read =
+        read_floor_answer(answer(200, std::string(media_type(format)), write(node, format)));
+    ASSERT_TRUE(read) << media_type(format);
+    EXPECT_NEAR((read->normal - floor.normal).norm(), 0, 1e-4);
+    EXPECT_NEAR(read->offset, 1.25, 1e-4);
+  }
+  EXPECT_FALSE(read_floor_answer(answer(404, "application/problem+json", "{}")));
+  EXPECT_FALSE(read_floor_answer(answer(200, "text/turtle", "nonsense")));
+  EXPECT_FALSE(read_floor_answer(
+      answer(200, "application/json", R"({"normalX":0,"normalY":0,"normalZ":0,"offset":1})")));
+}
+
+TEST(ExchangeOf, NeedsTheHeader) {
+  auto response = answer(200, "text/turtle", "");
+  EXPECT_FALSE(exchange_of(response));
+  response.headers["chorus-clock"] = "1795246200000000000 1795246200001000000";
+  const auto exchange = exchange_of(response);
+  ASSERT_TRUE(exchange);
+  EXPECT_EQ(exchange->sent, kStart);
+  EXPECT_EQ(exchange->their_sending - exchange->their_receipt, std::chrono::milliseconds(1));
+  response.headers["chorus-clock"] = "now then";
+  EXPECT_FALSE(exchange_of(response));
+}
+
+}  // namespace
+}  // namespace chorus::poll

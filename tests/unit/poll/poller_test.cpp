@@ -1,0 +1,207 @@
+// The poller against real sockets on loopback: good, dead, lying and returning sensors side by
+// side.
+#include "fusion-server/poll/poller.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <map>
+#include <mutex>
+
+#include <gtest/gtest.h>
+
+#include "common/http/server.h"
+#include "common/resource/frame_document.h"
+#include "tests/support/builders.h"
+
+namespace chorus::poll {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::sensor_id;
+
+constexpr auto kPatience = seconds(20);  // a ceiling for loaded machines; nothing waits so long
+
+/// A sensor service with frames on demand, or anything else at /frame.
+class FakeSensor {
+ public:
+  explicit FakeSensor(std::string name, std::uint16_t port = 0) : name_(std::move(name)) {
+    auto router = std::make_shared<http::Router>();
+    router->live("/frame", live_);
+    http::ServerConfig config;
+    config.port = port;
+    server_ = std::make_unique<http::Server>(config, router);
+    if (auto ok = server_->start(); !ok) ADD_FAILURE() << to_string(ok.error());
+  }
+
+  void send(std::uint64_t sequence, Timestamp captured) {
+    auto frame = testing::sensor_frame(name_, captured, {});
+    auto resource = resource::to_resource(frame);
+    resource.sequence = sequence;
+    const auto shared = std::make_shared<const resource::FrameResource>(std::move(resource));
+    live_->publish(
+        resource::frame_document(shared, {"frame", {}}, resource::latest_options(*shared)));
+  }
+  void answer(std::string type, std::string body) {
+    http::DocumentOptions options;
+    options.version = std::to_string(++version_);
+    live_->publish(http::make_document(std::move(type), std::move(body), options));
+  }
+
+  [[nodiscard]] std::uint16_t port() const { return server_->port(); }
+  [[nodiscard]] std::uint64_t requests() const { return server_->counters().requests; }
+  [[nodiscard]] std::string url() const {
+    return "http://127.0.0.1:" + std::to_string(port()) + "/";
+  }
+
+ private:
+  std::string name_;
+  std::shared_ptr<http::LiveDocument> live_ = std::make_shared<http::LiveDocument>();
+  std::unique_ptr<http::Server> server_;
+  int version_ = 0;
+};
+
+class Polling : public ::testing::Test {
+ protected:
+  Polling() {
+    PollerOptions options;
+    options.clock = clock_;
+    options.timings.wait = seconds(1);
+    options.timings.first_backoff = milliseconds(10);
+    options.timings.max_backoff = milliseconds(50);
+    options.deliver = [this](PolledFrame polled) {
+      const std::scoped_lock lock(mutex_);
+      frames_[polled.frame.sensor].push_back(polled.frame);
+      arrived_.notify_all();
+    };
+    poller_ = std::make_unique<Poller>(options);
+  }
+  ~Polling() override { poller_.reset(); }
+
+  [[nodiscard]] std::size_t count(const char* sensor) {
+    const std::scoped_lock lock(mutex_);
+    return frames_[sensor_id(sensor)].size();
+  }
+  bool wait_for(const char* sensor, std::size_t frames) {
+    std::unique_lock lock(mutex_);
+    return arrived_.wait_for(lock, kPatience,
+                             [&] { return frames_[sensor_id(sensor)].size() >= frames; });
+  }
+  bool wait_until(const std::function<bool(const PollReport&)>& holds, const char* sensor) {
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (std::chrono::steady_clock::now() < deadline) {
+      for (const PollReport& report : poller_->reports()) {
+        if (report.sensor.id == sensor_id(sensor) && holds(report)) return true;
+      }
+      std::this_thread::sleep_for(milliseconds(2));
+    }
+    return false;
+  }
+  /// Frames one by one, each after the one before has arrived: every one must come, once.
+  void expect_every_frame(FakeSensor& sensor, const char* name, int frames) {
+    const std::size_t before = count(name);
+    for (int i = 0; i < frames; ++i) {
+      sensor.send(++sequence_, clock_->now());
+      ASSERT_TRUE(wait_for(name, before + static_cast<std::size_t>(i) + 1)) << i;
+    }
+    EXPECT_EQ(count(name), before + static_cast<std::size_t>(frames));
+  }
+
+  std::shared_ptr<const Clock> clock_ = std::make_shared<SystemClock>();
+  std::mutex mutex_;
+  std::condition_variable arrived_;
+  std::map<SensorId, std::vector<SensorFrame>> frames_;
+  std::uint64_t sequence_ = 0;
+  std::unique_ptr<Poller> poller_;
+};
+
+TEST_F(Polling, DeliversEveryFrameOnce) {
+  FakeSensor s1("s1");
+  poller_->poll({{sensor_id("s1"), s1.url()}});
+  expect_every_frame(s1, "s1", 20);
+  EXPECT_TRUE(wait_until([](const PollReport& r) { return r.state == SensorState::Live; }, "s1"));
+  const auto report = poller_->reports().at(0);
+  EXPECT_EQ(report.frames, 20u);
+  EXPECT_EQ(report.missed, 0u);
+  ASSERT_TRUE(report.clock);
+  // One host, one clock: whatever is measured, it must be within its own bound.
+  EXPECT_LE(std::chrono::abs(report.clock->ours_minus_theirs), report.clock->uncertainty);
+}
+
+TEST_F(Polling, ADeadAndALyingSensorDoNotStallAGoodOne) {
+  FakeSensor good("s1");
+  FakeSensor liar("s2");
+  liar.answer("text/turtle", std::string(20000, '['));
+  FakeSensor page("s3");
+  page.answer("text/html", "<html></html>");
+  poller_->poll({{sensor_id("s1"), good.url()},
+                 {sensor_id("s2"), liar.url()},
+                 {sensor_id("s3"), page.url()},
+                 {sensor_id("s4"), "http://127.0.0.1:1/"}});
+  expect_every_frame(good, "s1", 20);
+  const auto refused = [](const PollReport& r) { return r.state == SensorState::Refused; };
+  EXPECT_TRUE(wait_until(refused, "s2"));
+  EXPECT_TRUE(wait_until(refused, "s3"));
+  EXPECT_TRUE(wait_until([](const PollReport& r) { return !r.last_error.empty(); }, "s4"));
+  EXPECT_EQ(count("s2") + count("s3") + count("s4"), 0u);
+}
+
+TEST_F(Polling, ALiarThatTellsTheTruthAgainIsTakenBack) {
+  FakeSensor s1("s1");
+  s1.answer("text/turtle", "nonsense");
+  poller_->poll({{sensor_id("s1"), s1.url()}});
+  EXPECT_TRUE(
+      wait_until([](const PollReport& r) { return r.state == SensorState::Refused; }, "s1"));
+  expect_every_frame(s1, "s1", 3);
+  EXPECT_TRUE(wait_until([](const PollReport& r) { return r.state == SensorState::Live; }, "s1"));
+}
+
+TEST_F(Polling, AReturningSensorIsFoundAgain) {
+  auto s1 = std::make_unique<FakeSensor>("s1");
+  const std::uint16_t port = s1->port();
+  poller_->poll({{sensor_id("s1"), s1->url()}});
+  expect_every_frame(*s1, "s1", 3);
+  s1.reset();
+  EXPECT_TRUE(wait_until([](const PollReport& r) { return r.state == SensorState::Lost; }, "s1"));
+  s1 = std::make_unique<FakeSensor>("s1", port);
+  expect_every_frame(*s1, "s1", 3);
+}
+
+TEST_F(Polling, SensorsComeAndGo) {
+  FakeSensor s1("s1");
+  FakeSensor s2("s2");
+  poller_->poll({{sensor_id("s1"), s1.url()}});
+  expect_every_frame(s1, "s1", 2);
+  poller_->poll({{sensor_id("s1"), s1.url()}, {sensor_id("s2"), s2.url()}});
+  expect_every_frame(s2, "s2", 2);
+  poller_->poll({{sensor_id("s2"), s2.url()}});
+  ASSERT_EQ(poller_->reports().size(), 1u);
+  expect_every_frame(s2, "s2", 2);
+}
+
+TEST_F(Polling, AnEndlessStreamOfTheSameFrameIsNotASpin) {
+  FakeSensor s1("s1");
+  poller_->poll({{sensor_id("s1"), s1.url()}});
+  s1.send(1, testing::kStart);
+  ASSERT_TRUE(wait_for("s1", 1));
+  const auto before = s1.requests();
+  for (int i = 2; i < 40; ++i) {  // new tag, old capture time
+    s1.send(static_cast<std::uint64_t>(i), testing::kStart);
+    std::this_thread::sleep_for(milliseconds(2));
+  }
+  EXPECT_EQ(count("s1"), 1u);
+  EXPECT_LT(s1.requests() - before, 40u);
+}
+
+TEST_F(Polling, NothingIsDeliveredAfterStop) {
+  FakeSensor s1("s1");
+  poller_->poll({{sensor_id("s1"), s1.url()}});
+  expect_every_frame(s1, "s1", 2);
+  poller_->stop();
+  s1.send(99, clock_->now());
+  EXPECT_EQ(count("s1"), 2u);
+  EXPECT_EQ(poller_->reports().size(), 1u);
+}
+
+}  // namespace
+}  // namespace chorus::poll
