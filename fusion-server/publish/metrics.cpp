@@ -1,0 +1,58 @@
+#include "fusion-server/publish/metrics.h"
+
+namespace chorus::publish {
+namespace {
+
+using Metric = endpoint::MetricsText::Metric;
+
+double number(std::uint64_t count) { return static_cast<double>(count); }
+
+void add_sensor(endpoint::MetricsText& out, const SensorStatus& s) {
+  const endpoint::Labels labels{{"sensor", s.id.str()}};
+  out.gauge({"chorus_sensor_up", "1 while the sensor delivers frames."},
+            s.state == "live" ? 1.0 : 0.0, labels);
+  if (s.age) {
+    out.gauge({"chorus_frame_age_seconds", "Age of the sensor's newest frame."}, seconds(*s.age),
+              labels);
+  }
+  if (s.clock_offset) {
+    out.gauge({"chorus_clock_offset_seconds", "Our clock minus the sensor's."},
+              seconds(*s.clock_offset), labels);
+  }
+  out.gauge({"chorus_view_weight", "Largest weight of the sensor's views."}, s.weight, labels);
+  out.counter({"chorus_frames_received_total", "Frames received from the sensor."},
+              number(s.frames), labels);
+  out.counter({"chorus_frames_missed_total", "Gaps in the sensor's own sequence."},
+              number(s.missed), labels);
+  out.counter(
+      {"chorus_frames_refused_total", "Frames that went back in time or came from the future."},
+      number(s.refused), labels);
+  out.counter({"chorus_poll_failures_total", "Requests without a usable answer."},
+              number(s.failures), labels);
+}
+
+}  // namespace
+
+std::string metrics_text(const Status& status, const http::ServerCounters& http) {
+  endpoint::MetricsText out;
+  const Counters& counters = status.counters;
+  out.counter({"chorus_fused_frames_total", "Fused frames published."}, number(counters.ticks));
+  out.counter({"chorus_skipped_frames_total", "Instants left out because we were too late."},
+              number(counters.ticks_skipped));
+  out.counter({"chorus_dropped_frames_total",
+               "Sensor frames dropped because the pipeline did not keep up."},
+              number(counters.frames_dropped));
+  out.counter({"chorus_fusion_seconds_total", "Time spent handing fused frames over."},
+              counters.step_seconds);
+  out.histogram({"chorus_fused_frame_age_seconds", "Instant to publication of fused frames."},
+                counters.age);
+  out.gauge({"chorus_registration_version", "Version of the registration in use."},
+            number(status.registration.version));
+  out.gauge({"chorus_registered_sensors", "Sensors with a place."},
+            number(status.registration.sensors.size()));
+  for (const SensorStatus& sensor : status.sensors) add_sensor(out, sensor);
+  endpoint::add_server(out, http);
+  return out.text();
+}
+
+}  // namespace chorus::publish

@@ -1,0 +1,20 @@
+// /registration: the extrinsics, why they are not better, and the session that improves them.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "common/resource/node.h"
+#include "fusion-server/flow.h"
+#include "fusion-server/publish/status.h"
+
+namespace chorus::publish {
+
+[[nodiscard]] resource::Node registration_node(const Registration& registration,
+                                               const SessionStatus& session);
+
+/// The word on the wire: "Good", "Provisional", "Refused", "None".
+[[nodiscard]] std::string_view name_of(Verdict verdict) noexcept;
+[[nodiscard]] std::optional<Verdict> verdict_named(std::string_view name) noexcept;
+
+}  // namespace chorus::publish

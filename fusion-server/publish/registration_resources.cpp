@@ -1,0 +1,77 @@
+#include "fusion-server/publish/registration_resources.h"
+
+#include <cmath>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "fusion-server/publish/registration_resource.h"
+
+namespace chorus::publish {
+namespace {
+
+constexpr double kLeastSeconds = 8.0;
+constexpr double kMostSeconds = 300.0;
+constexpr int kAccepted = 202;
+constexpr int kNoContent = 204;
+
+}  // namespace
+
+Result<Duration> parse_session_request(std::string_view body, Duration fallback) {
+  const auto wrong = [](std::string message) {
+    return fail(ErrorCode::InvalidArgument, "registration", std::move(message));
+  };
+  if (body.find_first_not_of(" \t\r\n") == std::string_view::npos) return fallback;
+  constexpr std::size_t kMostBytes = 4096;
+  if (body.size() > kMostBytes) return wrong("the body is at most {\"seconds\": 30}");
+  const auto json = nlohmann::json::parse(body, nullptr, false);
+  if (!json.is_object()) return wrong("send a JSON object, such as {\"seconds\": 30}");
+  for (const auto& [key, value] : json.items()) {
+    if (key != "seconds") return wrong("\"" + key + "\" is not known; only \"seconds\" is");
+  }
+  if (json.empty()) return fallback;
+  const auto& value = json.at("seconds");
+  const double wanted = value.is_number() ? value.get<double>() : std::nan("");
+  if (!(wanted >= kLeastSeconds && wanted <= kMostSeconds)) {
+    return wrong("\"seconds\" is a number from 8 to 300");
+  }
+  return from_seconds(wanted);
+}
+
+RegistrationResources::RegistrationResources(RestContext context, RegistrationControl control)
+    : context_(std::move(context)),
+      control_(std::move(control)),
+      live_(std::make_shared<http::LiveDocument>()) {}
+
+void RegistrationResources::publish(const Registration& registration,
+                                    const SessionStatus& session) {
+  http::DocumentOptions options;
+  options.version = context_.instance + "-" + std::to_string(++version_);
+  resource::Place here;
+  here.path = "registration";
+  here.root = context_.root;
+  live_->publish(
+      resource::document_of(registration_node(registration, session), std::move(options), here));
+}
+
+Result<http::ActionResult> RegistrationResources::post(const http::Request& request) const {
+  const auto target = parse_session_request(request.body, control_.default_target);
+  if (!target) return pass(target);
+  if (auto started = control_.start(*target); !started) return pass(started);
+  return http::ActionResult{kAccepted, live_->current(), "/registration"};
+}
+
+void RegistrationResources::add_routes(http::Router& router) {
+  router.live("/registration", live_);
+  router.action(
+      http::Method::Post, "/registration",
+      [this](const http::Request& request, const http::PathParams&) { return post(request); });
+  router.action(
+      http::Method::Delete, "/registration",
+      [this](const http::Request&, const http::PathParams&) -> Result<http::ActionResult> {
+        if (auto forgotten = control_.forget(); !forgotten) return pass(forgotten);
+        return http::ActionResult{kNoContent, nullptr, {}};
+      });
+}
+
+}  // namespace chorus::publish
