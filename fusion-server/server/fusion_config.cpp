@@ -1,0 +1,213 @@
+#include "fusion-server/server/fusion_config.h"
+
+#include <array>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "common/base/config_reader.h"
+
+namespace chorus::server {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr std::size_t kMaxSensors = 64;  // contributor bits of a snapshot
+
+void read_http(ConfigReader reader, http::ServerConfig& out) {
+  reader.read("address", out.address);
+  int port = out.port;
+  reader.read("port", port, 0, 65535);
+  out.port = static_cast<std::uint16_t>(port);
+  reader.read("bearer_token", out.bearer_token);
+  reader.read("allowed_origin", out.allowed_origin);
+}
+
+void read_noise(ConfigReader& reader, fusion::NoiseModel& out) {
+  reader.read("along_m", out.along, 1e-4, 1.0);
+  reader.read("across_m", out.across, 1e-4, 1.0);
+  reader.read("inferred_factor", out.inferred_factor, 1.0, 100.0);
+}
+
+void read_sensor(ConfigReader& reader, FusionConfig& out, std::set<SensorId>& known) {
+  std::string name;
+  poll::PolledSensor sensor;
+  reader.read("id", name);
+  reader.read("url", sensor.url);
+  auto id = SensorId::parse(name);
+  if (!id) return reader.complain("id", id.error().message);
+  if (!known.insert(*id).second) return reader.complain("id", "is the id of another sensor too");
+  if (auto url = http::parse_url(sensor.url); !url) {
+    return reader.complain("url", url.error().message);
+  }
+  sensor.id = *id;
+  if (reader.has("noise")) {
+    fusion::NoiseModel noise = out.pipeline.fusion.noise;
+    ConfigReader child = reader.child("noise");
+    read_noise(child, noise);
+    out.pipeline.fusion.sensor_noise[*id] = noise;
+  }
+  out.sensors.push_back(std::move(sensor));
+}
+
+void read_sensors(ConfigReader& root, FusionConfig& out) {
+  std::set<SensorId> known;
+  for (ConfigReader& reader : root.items("sensors")) read_sensor(reader, out, known);
+  if (out.sensors.size() > kMaxSensors) root.complain("sensors", "at most 64 are possible");
+}
+
+void read_poll(ConfigReader reader, poll::PollTimings& out) {
+  reader.read_s("wait_s", out.wait, seconds(1), seconds(30));
+  reader.read_ms("answer_slack_ms", out.answer_slack, milliseconds(50), seconds(30));
+  reader.read_ms("min_interval_ms", out.min_interval, milliseconds(1), seconds(1));
+  reader.read_ms("first_backoff_ms", out.first_backoff, milliseconds(10), seconds(10));
+  reader.read_ms("max_backoff_ms", out.max_backoff, milliseconds(100), seconds(600));
+  reader.read_s("floor_interval_s", out.floor_interval, seconds(1), seconds(3600));
+}
+
+void read_output(ConfigReader reader, FusionConfig& out) {
+  reader.read("rate_hz", out.output.rate_hz, 1, 240);
+  reader.read_ms("alignment_delay_ms", out.output.alignment_delay, milliseconds(0), seconds(2));
+  reader.read_s("history_s", out.history, seconds(1), seconds(120));
+}
+
+void read_align(ConfigReader reader, align::AlignConfig& out) {
+  reader.read_ms("max_gap_ms", out.max_gap, milliseconds(1), seconds(2));
+  reader.read_ms("patience_ms", out.patience, milliseconds(1), seconds(5));
+}
+
+void read_quality(ConfigReader reader, fusion::QualityLimits& out) {
+  reader.read("best_distance_m", out.best_distance, 0.1, 20.0);
+  reader.read("distance_reach_m", out.distance_reach, 0.1, 20.0);
+  reader.read_deg("max_facing_deg", out.max_facing, 1.0, 180.0);
+  reader.read_deg("max_bearing_deg", out.max_bearing, 1.0, 180.0);
+}
+
+void read_association(ConfigReader reader, associate::AssociationConfig& out) {
+  reader.read("gate_m", out.gate, 0.05, 10.0);
+  reader.read("cluster_m", out.cluster, 0.05, 10.0);
+  reader.read("confirm_frames", out.confirm_frames, 1, 1000);
+  reader.read_s("coast_s", out.coast, seconds(0), seconds(60));
+  reader.read("merge_frames", out.merge_frames, 1, 1000);
+}
+
+void read_fusion(ConfigReader reader, fusion::FusionConfig& out) {
+  constexpr std::array kMethods{fusion::Method::Otto, fusion::Method::Mean,
+                                fusion::Method::BestView, fusion::Method::InverseVariance};
+  std::vector<std::string_view> names;
+  for (const fusion::Method method : kMethods) names.push_back(fusion::name_of(method));
+  std::size_t chosen = kMethods.size();
+  reader.read_choice("method", chosen, names);
+  if (chosen < kMethods.size()) out.method = kMethods.at(chosen);
+  reader.read("zero_weight_floor", out.zero_weight_floor, 0.0, 1.0);
+  reader.read("common_sigma_m", out.common_sigma, 0.0, 1.0);
+  reader.read("huber", out.huber, 0.1, 100.0);
+  ConfigReader noise = reader.child("noise");
+  read_noise(noise, out.noise);
+}
+
+void read_pairing(ConfigReader& reader, registration::RegistrationConfig& out) {
+  using registration::JointChoice;
+  using registration::PairMethod;
+  std::size_t method = static_cast<std::size_t>(out.method);
+  reader.read_choice("method", method, {"timed-robust", "icp-only"});
+  out.method = method == 0 ? PairMethod::TimedRobust : PairMethod::IcpOnly;
+  std::size_t joints = static_cast<std::size_t>(out.joints);
+  reader.read_choice("joints", joints, {"neck", "core", "all"});
+  out.joints = static_cast<JointChoice>(joints);
+  reader.read("use_floor", out.use_floor);
+  reader.read_ms("max_gap_ms", out.max_gap, milliseconds(1), seconds(1));
+  reader.read("min_distance_m", out.min_distance, 0.0, 20.0);
+  reader.read("max_distance_m", out.max_distance, 0.1, 50.0);
+  reader.read("max_speed_m_s", out.max_speed, 0.1, 20.0);
+  int min_pairs = static_cast<int>(out.min_pairs);
+  reader.read("min_pairs", min_pairs, 3, 100000);
+  out.min_pairs = static_cast<std::size_t>(min_pairs);
+  reader.read("min_spread_m", out.min_spread, 0.0, 20.0);
+  reader.read("max_edge_rms_m", out.max_edge_rms, 0.001, 5.0);
+  reader.read("good_rms_m", out.good_rms, 0.001, 5.0);
+  reader.read_s("good_duration_s", out.good_duration, seconds(1), seconds(300));
+}
+
+void read_registration(ConfigReader reader, FusionConfig& out) {
+  reader.read("auto", out.session.automatic);
+  double target = chorus::seconds(out.session.target);
+  reader.read("seconds", target, 8.0, 300.0);
+  out.session.target = from_seconds(target);
+  reader.read_s("first_solve_s", out.session.first_solve, seconds(2), seconds(60));
+  reader.read_s("solve_every_s", out.session.solve_every, seconds(1), seconds(60));
+  reader.read("file", out.registration_file);
+  std::string master;
+  reader.read("master", master);
+  if (!master.empty()) {
+    auto id = SensorId::parse(master);
+    if (id) {
+      out.registration.master = *id;
+    } else {
+      reader.complain("master", id.error().message);
+    }
+  }
+  read_pairing(reader, out.registration);
+}
+
+bool same_address(const http::ServerConfig& a, const http::ServerConfig& b) {
+  return a.address == b.address && a.port == b.port && a.bearer_token == b.bearer_token &&
+         a.allowed_origin == b.allowed_origin;
+}
+
+}  // namespace
+
+Result<FusionConfig> read_fusion_config(std::string_view text, std::string_view origin,
+                                        const std::vector<std::string>& overrides) {
+  auto root = ConfigReader::parse(text, origin);
+  if (!root) return pass(root);
+  for (const std::string& assignment : overrides) {
+    if (auto ok = root->set(assignment); !ok) return pass(ok);
+  }
+  FusionConfig config;
+  config.http.port = 8080;
+  root->read("title", config.title);
+  read_http(root->child("http"), config.http);
+  read_poll(root->child("poll"), config.poll);
+  read_output(root->child("output"), config);
+  read_align(root->child("align"), config.pipeline.align);
+  read_quality(root->child("quality"), config.pipeline.quality);
+  read_association(root->child("association"), config.pipeline.association);
+  read_fusion(root->child("fusion"), config.pipeline.fusion);
+  read_sensors(*root, config);
+  read_registration(root->child("registration"), config);
+  root->read("state_dir", config.state_dir);
+  root->read("viewer_dir", config.viewer_dir);
+  if (auto ok = root->finish(); !ok) return pass(ok);
+  return config;
+}
+
+Result<FusionConfig> load_fusion_config(const std::string& path,
+                                        const std::vector<std::string>& overrides) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  if (!file || !(text << file.rdbuf())) {
+    return fail(ErrorCode::Io, path, "the configuration file cannot be read");
+  }
+  return read_fusion_config(text.str(), path, overrides);
+}
+
+std::string needs_restart(const FusionConfig& now, const FusionConfig& next) {
+  std::string keys;
+  const auto add = [&](bool changed, std::string_view key) {
+    if (!changed) return;
+    if (!keys.empty()) keys += ", ";
+    keys += key;
+  };
+  add(!same_address(now.http, next.http), "http");
+  add(now.title != next.title, "title");
+  add(now.history != next.history, "output.history_s");
+  add(now.state_dir != next.state_dir, "state_dir");
+  add(now.viewer_dir != next.viewer_dir, "viewer_dir");
+  add(now.registration_file != next.registration_file, "registration.file");
+  return keys;
+}
+
+}  // namespace chorus::server

@@ -1,0 +1,230 @@
+#include "fusion-server/server/fusion_server.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "common/base/log.h"
+#include "common/endpoint/endpoint.h"
+#include "fusion-server/publish/frame_resources.h"
+#include "fusion-server/publish/metrics.h"
+#include "fusion-server/publish/registration_resources.h"
+#include "fusion-server/publish/self_description.h"
+#include "fusion-server/publish/sensor_resources.h"
+#include "fusion-server/server/pipeline_loop.h"
+
+namespace chorus::server {
+namespace {
+
+std::vector<SensorId> ids_of(const std::vector<poll::PolledSensor>& sensors) {
+  std::vector<SensorId> ids;
+  for (const poll::PolledSensor& sensor : sensors) ids.push_back(sensor.id);
+  return ids;
+}
+
+CoreConfig core_config(const FusionConfig& config) {
+  CoreConfig core;
+  core.output = config.output;
+  core.pipeline = config.pipeline;
+  core.registration = config.registration;
+  core.session = config.session;
+  if (!config.registration_file.empty()) core.session.automatic = false;  // places are given
+  for (const poll::PolledSensor& sensor : config.sensors) core.sensors.insert(sensor.id);
+  return core;
+}
+
+std::size_t ring_capacity(const FusionConfig& config) {
+  return static_cast<std::size_t>(seconds(config.history) * config.output.rate_hz) + 1;
+}
+
+/// Says which sensors the stored places do not fit.
+void report_fit(const Registration& registration, const std::vector<SensorId>& configured) {
+  for (const SensorId& sensor : configured) {
+    if (!registration.sensors.contains(sensor)) {
+      log::warn("sensor has no place in the stored registration", {{"sensor", sensor.str()}});
+    }
+  }
+  for (const auto& [sensor, place] : registration.sensors) {
+    if (std::find(configured.begin(), configured.end(), sensor) == configured.end()) {
+      log::warn("stored registration knows a sensor that is not polled",
+                {{"sensor", sensor.str()}});
+    }
+  }
+}
+
+Result<Registration> initial_registration(const FusionConfig& config) {
+  if (!config.registration_file.empty()) return load_registration_file(config.registration_file);
+  auto stored = RegistrationStore(config.state_dir).load();
+  if (!stored) {
+    log::error("stored registration not used", {{"reason", to_string(stored.error())}});
+    return Registration{};
+  }
+  if (!*stored) return Registration{};
+  log::info("stored registration in use",
+            {{"version", (*stored)->version}, {"sensors", (*stored)->sensors.size()}});
+  report_fit(**stored, ids_of(config.sensors));
+  return std::move(**stored);
+}
+
+endpoint::Health health_of(const publish::Status& status) {
+  std::size_t live = 0;
+  for (const publish::SensorStatus& sensor : status.sensors) live += sensor.state == "live" ? 1 : 0;
+  if (live == 0) return {false, "none of the sensors delivers frames; see /sensors/"};
+  if (status.registration.sensors.empty()) {
+    return {false, "the sensors are not registered yet; walk through the room, see /registration"};
+  }
+  return {true, {}};
+}
+
+}  // namespace
+
+struct FusionServer::Impl {
+  Impl(FusionConfig c, std::shared_ptr<const Clock> k) : config(std::move(c)), clock(std::move(k)) {
+    context.instance = fmt::format("{:x}", to_unix_ns(clock->now()) / 1'000'000);
+    context.root = fmt::format("http://{}:{}/", config.http.address, config.http.port);
+  }
+
+  std::shared_ptr<http::Router> make_router();
+  void take_status(const publish::Status& next);
+  Result<void> start_session(Duration target);
+  [[nodiscard]] publish::Status status_now() const {
+    const std::scoped_lock lock(mutex);
+    return status;
+  }
+
+  FusionConfig config;
+  std::shared_ptr<const Clock> clock;
+  publish::RestContext context;
+  std::vector<std::unique_ptr<publish::Sink>> sinks;
+  mutable std::mutex mutex;
+  publish::Status status;      ///< Guarded by mutex.
+  bool session_asked = false;  ///< Guarded by mutex: a start is on its way to the pipeline.
+  std::optional<publish::FrameResources> frames;
+  std::optional<publish::SensorResources> sensors;
+  std::optional<publish::RegistrationResources> registration;
+  std::unique_ptr<http::Server> http;
+  std::unique_ptr<PipelineLoop> loop;
+  std::unique_ptr<poll::Poller> poller;
+};
+
+std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
+  auto router = std::make_shared<http::Router>();
+  publish::RegistrationControl control;
+  control.default_target = config.session.target;
+  control.start = [this](Duration target) { return start_session(target); };
+  control.forget = [this]() -> Result<void> {
+    loop->ask(Forget{});
+    return {};
+  };
+  frames.emplace(context, ring_capacity(config));
+  sensors.emplace(context, ids_of(config.sensors));
+  registration.emplace(context, std::move(control));
+  frames->add_routes(*router);
+  sensors->add_routes(*router);
+  registration->add_routes(*router);
+  publish::add_description_routes(*router, context, config.title, config.viewer_dir);
+  endpoint::EndpointOptions endpoint;
+  endpoint.clock = clock;
+  endpoint.health = [this] { return health_of(status_now()); };
+  endpoint.metrics = [this] { return publish::metrics_text(status_now(), http->counters()); };
+  endpoint::add_routes(*router, endpoint);
+  return router;
+}
+
+Result<void> FusionServer::Impl::start_session(Duration target) {
+  const std::scoped_lock lock(mutex);
+  if (status.session.collecting || session_asked) {
+    return fail(ErrorCode::Conflict, "registration",
+                "a session is running already; DELETE /registration cancels it");
+  }
+  session_asked = true;
+  loop->ask(StartSession{target});
+  return {};
+}
+
+void FusionServer::Impl::take_status(const publish::Status& next) {
+  sensors->publish(next.sensors);
+  registration->publish(next.registration, next.session);
+  const std::scoped_lock lock(mutex);
+  status = next;
+  session_asked = false;
+}
+
+FusionServer::FusionServer(FusionConfig config, std::shared_ptr<const Clock> clock)
+    : impl_(std::make_unique<Impl>(std::move(config), std::move(clock))) {}
+
+FusionServer::~FusionServer() { stop(); }
+
+void FusionServer::add(std::unique_ptr<publish::Sink> sink) {
+  impl_->sinks.push_back(std::move(sink));
+}
+
+Result<void> FusionServer::start() {
+  Impl& s = *impl_;
+  auto registration = initial_registration(s.config);
+  if (!registration) return pass(registration);
+  http::ServerConfig http = s.config.http;
+  http.clock = s.clock;
+  s.http = std::make_unique<http::Server>(http, s.make_router());
+
+  LoopOptions loop;
+  loop.core = core_config(s.config);
+  // Sequences rise across restarts (no output is faster than 1 kHz), so that /frames/{seq} and
+  // ETags of an earlier run are never taken for ours by a cache.
+  loop.core.first_sequence = static_cast<std::uint64_t>(to_unix_ns(s.clock->now()) / 1'000'000);
+  loop.registration = std::move(*registration);
+  loop.store = RegistrationStore(s.config.state_dir);
+  loop.clock = s.clock;
+  loop.sinks.push_back(&*s.frames);
+  for (const auto& sink : s.sinks) loop.sinks.push_back(sink.get());
+  loop.on_status = [&s](const publish::Status& status) { s.take_status(status); };
+  loop.poll_reports = [&s] {
+    return s.poller ? s.poller->reports() : std::vector<poll::PollReport>{};
+  };
+  s.loop = std::make_unique<PipelineLoop>(std::move(loop));
+
+  if (auto bound = s.http->start(); !bound) return bound;
+  poll::PollerOptions polling;
+  polling.timings = s.config.poll;
+  polling.clock = s.clock;
+  polling.deliver = [&s](poll::PolledFrame polled) {
+    s.sensors->relay(polled.frame.sensor, std::move(polled.raw));
+    s.loop->give(std::move(polled.frame));
+  };
+  s.poller = std::make_unique<poll::Poller>(std::move(polling));
+  s.poller->poll(s.config.sensors);
+  s.loop->start();
+  return {};
+}
+
+std::uint16_t FusionServer::port() const { return impl_->http ? impl_->http->port() : 0; }
+
+void FusionServer::reload(const FusionConfig& next) {
+  Impl& s = *impl_;
+  const std::string waiting = needs_restart(s.config, next);
+  if (!waiting.empty()) log::warn("changes wait for a restart", {{"keys", waiting}});
+  FusionConfig taken = s.config;
+  taken.sensors = next.sensors;
+  taken.output = next.output;
+  taken.pipeline = next.pipeline;
+  taken.registration = next.registration;
+  taken.session = next.session;
+  s.loop->ask(core_config(taken));
+  s.poller->poll(taken.sensors);
+  s.config = std::move(taken);
+  log::info("configuration reloaded", {{"sensors", s.config.sensors.size()}});
+}
+
+void FusionServer::stop() {
+  Impl& s = *impl_;
+  // From the rim inwards: nobody asks any more, nothing arrives any more, then the pipeline ends.
+  if (s.http) s.http->stop();
+  if (s.poller) s.poller->stop();
+  s.loop.reset();
+}
+
+}  // namespace chorus::server

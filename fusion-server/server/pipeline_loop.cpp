@@ -1,0 +1,175 @@
+#include "fusion-server/server/pipeline_loop.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/base/log.h"
+#include "fusion-server/publish/registration_resource.h"
+
+namespace chorus::server {
+namespace {
+
+constexpr std::size_t kMostFrames = 4096;   // 64 sensors at 30 Hz for two seconds
+constexpr std::size_t kMostCommands = 256;  // people, not frames, send these
+constexpr Duration kMostIdle = std::chrono::milliseconds(20);
+constexpr Duration kStatusInterval = std::chrono::milliseconds(200);
+constexpr Duration kStale = std::chrono::milliseconds(1500);
+
+/// Around one frame interval, the alignment delay, and what nobody should see [s].
+const std::vector<double> kAgeBounds{0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.08, 0.1, 0.15, 0.2, 0.5};
+
+std::string joined(const std::vector<std::string>& reasons) {
+  std::string text;
+  for (const std::string& reason : reasons) text += (text.empty() ? "" : "; ") + reason;
+  return text;
+}
+
+std::string_view name_of(SolveKind kind) {
+  return kind == SolveKind::Final ? "final" : "provisional";
+}
+
+void save(const RegistrationStore& store, const Registration& registration) {
+  if (auto ok = store.save(registration); !ok) {
+    log::error("registration not stored", {{"reason", to_string(ok.error())}});
+  }
+}
+
+}  // namespace
+
+PipelineLoop::PipelineLoop(LoopOptions options)
+    : options_(std::move(options)),
+      core_(options_.core, options_.registration),
+      frames_(kMostFrames),
+      commands_(kMostCommands),
+      solutions_(1),
+      age_(kAgeBounds) {}
+
+PipelineLoop::~PipelineLoop() {
+  thread_.request_stop();
+  frames_.close();
+}
+
+void PipelineLoop::start() {
+  publish_status(options_.clock->now());
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+void PipelineLoop::run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    const Duration idle = std::min(core_.idle(options_.clock->now()), kMostIdle);
+    for (const SensorFrame& frame : frames_.take(idle)) core_.take(frame);
+    for (Command& command : commands_.take(Duration{0})) obey(std::move(command));
+    take_solutions();
+    const Timestamp now = options_.clock->now();
+    if (auto snapshot = core_.tick(now)) publish(std::move(*snapshot), now);
+    if (auto job = core_.due_job(now)) solve(std::move(*job));
+    if (now - status_at_ >= kStatusInterval || now < status_at_) publish_status(now);
+  }
+}
+
+void PipelineLoop::obey(Command command) {
+  if (auto* start = std::get_if<StartSession>(&command)) {
+    // A refusal here lost a race that the route has checked before; the session that runs goes on.
+    if (core_.start_session(start->target)) {
+      log::info("registration session started", {{"seconds", seconds(start->target)}});
+    }
+  } else if (std::holds_alternative<Forget>(command)) {
+    core_.forget();
+    log::info("registration forgotten");
+    worker_.post([store = options_.store] {
+      if (auto ok = store.forget(); !ok) {
+        log::error("stored registration not forgotten", {{"reason", to_string(ok.error())}});
+      }
+    });
+  } else {
+    core_.reconfigure(std::move(std::get<CoreConfig>(command)));
+  }
+  publish_status(options_.clock->now());
+}
+
+void PipelineLoop::publish(Snapshot snapshot, Timestamp begun) {
+  const auto shared = std::make_shared<const Snapshot>(std::move(snapshot));
+  for (publish::Sink* sink : options_.sinks) sink->publish(shared);
+  const Timestamp done = options_.clock->now();
+  ++counters_.ticks;
+  counters_.step_seconds += std::max(0.0, seconds(done - begun));
+  age_.observe(seconds(done - shared->instant));
+}
+
+void PipelineLoop::solve(SolveJob job) {
+  const bool was_collecting = core_.session().collecting;
+  if (job.kind == SolveKind::Provisional && was_collecting) {
+    log::debug("registration solving", {{"sensors", job.walk.size()}});
+  }
+  worker_.post([this, job = std::move(job)] {
+    solutions_.give(
+        {job.session, job.kind, registration::solve(job.walk, options_.clock->now(), job.config)});
+  });
+}
+
+void PipelineLoop::take_solutions() {
+  for (Solution& solution : solutions_.take(Duration{0})) {
+    const SolveKind kind = solution.kind;
+    const bool adopted = core_.solved(std::move(solution));
+    const Registration& now = core_.registration();
+    if (adopted) {
+      log::info("registration adopted", {{"version", now.version},
+                                         {"solve", name_of(kind)},
+                                         {"verdict", publish::name_of(now.verdict)},
+                                         {"sensors", now.sensors.size()},
+                                         {"reasons", joined(now.reasons)}});
+    } else if (kind == SolveKind::Final) {
+      log::warn("registration not adopted", {{"reasons", joined(core_.session().reasons)}});
+    }
+    if (kind == SolveKind::Final && !now.sensors.empty()) {
+      worker_.post([store = options_.store, now] { save(store, now); });
+    }
+    publish_status(options_.clock->now());
+  }
+}
+
+publish::SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp now) const {
+  publish::SensorStatus status;
+  status.id = report.sensor.id;
+  status.url = report.sensor.url;
+  if (report.newest) status.age = now - *report.newest;
+  const bool silent = report.state == poll::SensorState::Live && status.age && *status.age > kStale;
+  status.state = poll::name_of(silent ? poll::SensorState::Lost : report.state);
+  status.last_error = report.last_error;
+  status.rate_hz = report.rate_hz;
+  status.frames = report.frames;
+  status.missed = report.missed;
+  status.failures = report.failures;
+  status.refused = core_.refused(report.sensor.id);
+  if (report.clock) {
+    status.clock_offset = report.clock->ours_minus_theirs;
+    status.clock_uncertainty = report.clock->uncertainty;
+    status.clock_corrected = poll::correction(report.clock) != Duration{0};
+  }
+  const auto& reports = core_.reports();
+  const auto own = std::find_if(reports.begin(), reports.end(), [&](const SensorReport& r) {
+    return r.sensor == report.sensor.id;
+  });
+  if (own != reports.end()) {
+    status.bodies = own->bodies;
+    status.weight = own->weight;
+  }
+  return status;
+}
+
+void PipelineLoop::publish_status(Timestamp now) {
+  status_at_ = now;
+  publish::Status status;
+  for (const poll::PollReport& report : options_.poll_reports()) {
+    status.sensors.push_back(status_of(report, now));
+  }
+  status.registration = core_.registration();
+  status.session = core_.session();
+  status.counters = counters_;
+  status.counters.age = age_.snapshot();
+  status.counters.ticks_skipped = core_.skipped();
+  status.counters.frames_dropped = frames_.dropped();
+  options_.on_status(status);
+}
+
+}  // namespace chorus::server

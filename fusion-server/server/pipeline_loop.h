@@ -1,0 +1,74 @@
+// The pipeline's thread: takes frames as they come, ticks at the output rate, hands snapshots out.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "common/time/clock.h"
+#include "fusion-server/poll/poller.h"
+#include "fusion-server/publish/handover.h"
+#include "fusion-server/publish/sink.h"
+#include "fusion-server/publish/status.h"
+#include "fusion-server/server/fusion_core.h"
+#include "fusion-server/server/registration_store.h"
+#include "fusion-server/server/worker.h"
+
+namespace chorus::server {
+
+// What other threads may ask of the pipeline.
+struct StartSession {
+  Duration target{0};
+};
+struct Forget {};
+using Command = std::variant<StartSession, Forget, CoreConfig>;
+
+struct LoopOptions {
+  CoreConfig core;
+  Registration registration;
+  RegistrationStore store{""};
+  std::shared_ptr<const Clock> clock;
+  std::vector<publish::Sink*> sinks;  ///< Outlive the loop.
+  /// Called a few times a second and whenever the registration has changed, on the pipeline's
+  /// thread.
+  std::function<void(const publish::Status&)> on_status;
+  std::function<std::vector<poll::PollReport>()> poll_reports;
+};
+
+class PipelineLoop {
+ public:
+  explicit PipelineLoop(LoopOptions options);
+  ~PipelineLoop();  ///< Stops and joins.
+
+  void start();
+
+  /// Never blocks; the oldest frames are dropped when the pipeline does not keep up.
+  void give(SensorFrame frame) { frames_.give(std::move(frame)); }
+  /// Taken within one output interval.
+  void ask(Command command) { commands_.give(std::move(command)); }
+
+ private:
+  void run(const std::stop_token& stop);
+  void obey(Command command);
+  void publish(Snapshot snapshot, Timestamp computed);
+  void solve(SolveJob job);
+  void take_solutions();
+  void publish_status(Timestamp now);
+  [[nodiscard]] publish::SensorStatus status_of(const poll::PollReport& report,
+                                                Timestamp now) const;
+
+  LoopOptions options_;
+  FusionCore core_;
+  publish::Handover<SensorFrame> frames_;
+  publish::Handover<Command> commands_;
+  publish::Handover<Solution> solutions_;
+  publish::Counters counters_;
+  endpoint::Histogram age_;  ///< Instant to publication [s].
+  Timestamp status_at_{};
+  Worker worker_;
+  std::jthread thread_;
+};
+
+}  // namespace chorus::server

@@ -1,0 +1,47 @@
+// The thread for what takes long: solving a registration, writing it to disk.
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <stop_token>
+#include <thread>
+
+namespace chorus::server {
+
+/// Runs jobs one after the other.  The owner bounds how many are out; stopping drops those not
+/// begun.
+class Worker {
+ public:
+  Worker() : thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+  void post(std::function<void()> job) {
+    {
+      const std::scoped_lock lock(mutex_);
+      jobs_.push_back(std::move(job));
+    }
+    arrived_.notify_one();
+  }
+
+ private:
+  void run(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      std::function<void()> job;
+      {
+        std::unique_lock lock(mutex_);
+        if (!arrived_.wait(lock, stop, [this] { return !jobs_.empty(); })) return;
+        job = std::move(jobs_.front());
+        jobs_.pop_front();
+      }
+      job();
+    }
+  }
+
+  std::mutex mutex_;
+  std::condition_variable_any arrived_;
+  std::deque<std::function<void()>> jobs_;
+  std::jthread thread_;  ///< Last: stops and joins before the rest goes.
+};
+
+}  // namespace chorus::server
