@@ -61,7 +61,8 @@ struct PairwiseRegistration {
   double icp_rms = 0.0;   ///< Residual after ICP refinement [m].
   std::size_t pairs = 0;  ///< Time-paired correspondences.
   std::size_t inliers = 0;
-  double spread = 0.0;  ///< rms radius of the walk about its centroid, horizontally [m].
+  double spread = 0.0;     ///< rms radius of the walk about its centroid, horizontally [m].
+  double inflation = 1.0;  ///< Pairs per independent pair.
   /// Of a small motion exp(omega), tau applied on the target side [rad^2, rad m, m^2].
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };

@@ -16,8 +16,6 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kFloorTilt = deg(0.4) * std::numbers::sqrt2;  // notes 1.4 step 1, of two floors
-constexpr double kFloorHeight = mm(10) * std::numbers::sqrt2;  // the same
 constexpr double kLeastAgreement = 0.3;  // share of inliers below which nothing is believed
 constexpr double kLeastSlimness =
     0.01;                         // lambda2 / lambda1 of the walk: a line at 10 % lateral rms
@@ -77,6 +75,8 @@ void apply(std::vector<Pair>& pairs, const Levelled& levelled) {
   for (Pair& pair : pairs) {
     pair.x_in_target = levelled.level_from_target * pair.x_in_target;
     pair.x_in_source = levelled.level_from_source * pair.x_in_source;
+    pair.ray_in_target = levelled.level_from_target.linear() * pair.ray_in_target;
+    pair.ray_in_source = levelled.level_from_source.linear() * pair.ray_in_source;
   }
 }
 
@@ -120,19 +120,18 @@ void clouds_of(const std::vector<Pair>& pairs, std::vector<Eigen::Vector3d>& tar
   }
 }
 
-/// Otto 5.2: ICP on the neck clouds.  Kept only where the timed pairs, which know more, do not
-/// object.
-double refine_with_icp(const std::vector<Pair>& pairs, const RobustFit& fit,
-                       Eigen::Isometry3d& target_from_source) {
+/// Otto 5.2: ICP on the neck clouds.  Returns its residual.  Kept only where the timed pairs, which
+/// know more, do not object.
+double refine_with_icp(const std::vector<Pair>& pairs, Refined& refined, double along_ratio) {
   std::vector<Eigen::Vector3d> target;
   std::vector<Eigen::Vector3d> source;
   clouds_of(pairs, target, source);
-  const double before = rms_of(pairs, fit.weights, target_from_source);
-  const auto icp = refine_by_icp(source, target, target_from_source, kIcpReach);
-  if (!icp) return before;
-  const double after = rms_of(pairs, fit.weights, icp->target_from_source);
-  if (after <= before) target_from_source = icp->target_from_source;
-  return after;
+  const auto icp = refine_by_icp(source, target, refined.target_from_source, kIcpReach);
+  if (!icp) return rms_of(pairs, refined.weights, refined.target_from_source);
+  Refined moved = refined;
+  moved.target_from_source = icp->target_from_source;
+  if (cost_of(pairs, moved, along_ratio) <= cost_of(pairs, refined, along_ratio)) refined = moved;
+  return rms_of(pairs, moved.weights, moved.target_from_source);
 }
 
 /// Bias that no length of walk removes: grows with the angle between the two lines of sight.
@@ -182,20 +181,22 @@ Result<PairwiseRegistration> timed(const Walker& target, const Walker& source,
   apply(pairs, levelled);
   const auto fit = fit_robustly(pairs, levelled.both ? Freedom::Yaw : Freedom::Full);
   if (!fit) return fail(ErrorCode::Unavailable, both, both + ": " + fit.error().message);
-  const Extent extent = extent_of(pairs, fit->weights);
+  const FloorPrior prior = levelled.both ? kTwoFloors : FloorPrior{};
+  Refined refined = refine(pairs, *fit, prior, config.along_ratio);
+  const Extent extent = extent_of(pairs, refined.weights);
   if (const auto ok = determined(extent, levelled.both, both, config.joints); !ok) return pass(ok);
-  const FloorPrior prior = levelled.both ? FloorPrior{kFloorTilt, kFloorHeight} : FloorPrior{};
-  const Refined refined = refine(pairs, *fit, prior);
-  Eigen::Isometry3d level_from_level = refined.target_from_source;
   PairwiseRegistration edge{target.trail.sensor, source.trail.sensor};
-  edge.icp_rms = refine_with_icp(pairs, *fit, level_from_level);
-  edge.rms = rms_of(pairs, fit->weights, level_from_level);
+  edge.icp_rms = refine_with_icp(pairs, refined, config.along_ratio);
+  edge.rms = rms_of(pairs, refined.weights, refined.target_from_source);
   edge.pairs = pairs.size();
-  edge.inliers = fit->inliers;
+  edge.inliers = static_cast<std::size_t>(std::count_if(
+      refined.weights.begin(), refined.weights.end(), [](double w) { return w > 0; }));
   edge.spread = extent.spread;
+  edge.inflation = refined.inflation;
   if (const auto ok = believable(edge, extent, both, config); !ok) return pass(ok);
   const Eigen::Isometry3d target_from_level = levelled.level_from_target.inverse();
-  edge.target_from_source = target_from_level * level_from_level * levelled.level_from_source;
+  edge.target_from_source =
+      target_from_level * refined.target_from_source * levelled.level_from_source;
   const Matrix6 turn = adjoint(target_from_level);
   edge.covariance =
       turn * (refined.covariance + bias_floor(edge.target_from_source)) * turn.transpose();

@@ -7,16 +7,10 @@
 namespace chorus::registration {
 namespace {
 
-/// The target's trail at one instant.
-struct Between {
-  TrailFrame frame;
-  double speed = 0.0;  ///< Mean over the slots [m/s].
-};
-
-Between interpolate(const TrailFrame& before, const TrailFrame& after, Timestamp instant) {
+TrailMoment interpolate(const TrailFrame& before, const TrailFrame& after, Timestamp instant) {
   const double gap = seconds(after.captured - before.captured);
   const double s = gap > 0 ? seconds(instant - before.captured) / gap : 0.0;
-  Between between;
+  TrailMoment between;
   between.frame.captured = instant;
   between.frame.body = before.body;
   between.frame.seen = before.seen & after.seen;
@@ -45,48 +39,38 @@ bool in_range(const TrailFrame& frame, const RegistrationConfig& config) {
   return distance >= config.min_distance && distance <= config.max_distance;
 }
 
-/// Walks along the target's trail as the source's instants advance.
-class Bracket {
- public:
-  Bracket(const Trail& trail, Duration max_gap) : frames_(trail.frames), max_gap_(max_gap) {}
-
-  std::optional<Between> at(Timestamp instant) {
-    while (next_ < frames_.size() && frames_[next_].captured < instant) ++next_;
-    if (next_ == frames_.size()) return std::nullopt;
-    const TrailFrame& after = frames_[next_];
-    if (after.captured == instant) return interpolate(after, after, instant);
-    if (next_ == 0) return std::nullopt;
-    const TrailFrame& before = frames_[next_ - 1];
-    const bool usable = after.captured - before.captured <= max_gap_ && before.body == after.body;
-    if (!usable) return std::nullopt;
-    return interpolate(before, after, instant);
-  }
-
- private:
-  const std::vector<TrailFrame>& frames_;
-  Duration max_gap_;
-  std::size_t next_ = 0;
-};
-
 void add(Pairing& pairing, const TrailFrame& target, const TrailFrame& source,
          std::span<const Slot> slots) {
   const std::size_t before = pairing.pairs.size();
   for (std::size_t i = 0; i < slots.size(); ++i) {
     if (!target.has(i) || !source.has(i)) continue;
     const double sigma = std::numbers::sqrt2 * slots[i].sigma;
-    pairing.pairs.push_back({target.points[i], source.points[i], sigma, i, pairing.instants});
+    pairing.pairs.push_back({target.points[i], source.points[i], target.points[i].normalized(),
+                             source.points[i].normalized(), sigma, i, pairing.instants});
   }
   if (pairing.pairs.size() > before) ++pairing.instants;
 }
 
 }  // namespace
 
+std::optional<TrailMoment> TrailReader::at(Timestamp instant) {
+  while (next_ < frames_.size() && frames_[next_].captured < instant) ++next_;
+  if (next_ == frames_.size()) return std::nullopt;
+  const TrailFrame& after = frames_[next_];
+  if (after.captured == instant) return interpolate(after, after, instant);
+  if (next_ == 0) return std::nullopt;
+  const TrailFrame& before = frames_[next_ - 1];
+  const bool usable = after.captured - before.captured <= max_gap_ && before.body == after.body;
+  if (!usable) return std::nullopt;
+  return interpolate(before, after, instant);
+}
+
 Pairing pair_up(const Trail& target, const Trail& source, const RegistrationConfig& config) {
   const std::span<const Slot> slots = slots_of(config.joints);
-  Bracket bracket(target, config.max_gap);
+  TrailReader reader(target, config.max_gap);
   Pairing pairing;
   for (const TrailFrame& seen : source.frames) {
-    const std::optional<Between> other = bracket.at(seen.captured);
+    const std::optional<TrailMoment> other = reader.at(seen.captured);
     if (!other) continue;
     ++pairing.together;
     if (!in_range(seen, config) || !in_range(other->frame, config)) {

@@ -4,15 +4,38 @@
 // sensors give simultaneous points.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "fusion-server/registration/trail.h"
 
 namespace chorus::registration {
 
+/// A trail at one instant.
+struct TrailMoment {
+  TrailFrame frame;
+  double speed = 0.0;  ///< Mean over the slots [m/s].
+};
+
+/// Walks along a trail as the instants advance.
+class TrailReader {
+ public:
+  TrailReader(const Trail& trail, Duration max_gap) : frames_(trail.frames), max_gap_(max_gap) {}
+
+  /// Instants must not go back.  None where no narrow bracket of one body holds the instant.
+  std::optional<TrailMoment> at(Timestamp instant);
+
+ private:
+  const std::vector<TrailFrame>& frames_;
+  Duration max_gap_;
+  std::size_t next_ = 0;
+};
+
 struct Pair {
   Eigen::Vector3d x_in_target;
   Eigen::Vector3d x_in_source;
+  Eigen::Vector3d ray_in_target;  ///< Unit line of sight of the target sensor.
+  Eigen::Vector3d ray_in_source;
   double sigma = 0.0;  ///< Of the difference, as far as the slot tells [m].
   std::size_t slot = 0;
   std::size_t instant =

@@ -10,56 +10,68 @@
 namespace chorus::registration {
 namespace {
 
-constexpr int kIterations = 6;
+constexpr int kIterations = 15;
+constexpr double kSettled = 1e-7;         // [rad], [m]
 constexpr double kMostCorrelated = 0.98;  // rho beyond this says "constant error", not "no samples"
 constexpr double kTiny = 1e-12;
-constexpr double kRidge = 1e-9;  // keeps an unobserved direction finite instead of NaN
+constexpr double kTukey = 4.685;          // 95 % efficiency for a Gaussian
+constexpr double kMedianToSigma = 1.538;  // median of the norm of a 3-D standard Gaussian
+constexpr double kLeastScale = 0.02;      // in sigmas; perfect pairs must not divide by zero
+constexpr double kAxes = 3.0;
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Row6 = Eigen::Matrix<double, 1, 6>;
+/// One pair at the present place: what is left, and S^-1.
+struct Residual {
+  Eigen::Vector3d off;
+  Eigen::Matrix3d information;
 
-/// Normal equations of small motions (omega, tau) on the target side.
-struct Normal {
-  Matrix6 information = kRidge * Matrix6::Identity();
-  Vector6 right = Vector6::Zero();
-
-  void add(const Row6& row, double residual, double weight) {
-    information += weight * row.transpose() * row;
-    right += weight * row.transpose() * residual;
-  }
+  [[nodiscard]] double squared() const { return off.dot(information * off); }
 };
 
-/// target - q with q = target_from_source * source: d/d omega = [q]x, d/d tau = -1; residual to be
-/// removed.
-void add_pair(Normal& normal, const Pair& pair, const Eigen::Isometry3d& target_from_source,
-              double weight) {
-  const Eigen::Vector3d q = target_from_source * pair.x_in_source;
-  const Eigen::Vector3d off = pair.x_in_target - q;
-  const Eigen::Matrix<double, 3, 6> rows = at_point(q).bottomRows<3>();
-  normal.information += weight * rows.transpose() * rows;
-  normal.right += weight * rows.transpose() * off;
+Residual residual_of(const Pair& pair, const Eigen::Isometry3d& target_from_source,
+                     double along_ratio) {
+  const double extra = std::max(0.0, along_ratio * along_ratio - 1.0);
+  const Eigen::Vector3d source_ray = target_from_source.linear() * pair.ray_in_source;
+  const Eigen::Matrix3d shape = Eigen::Matrix3d::Identity() +
+                                0.5 * extra * pair.ray_in_target * pair.ray_in_target.transpose() +
+                                0.5 * extra * source_ray * source_ray.transpose();
+  return {pair.x_in_target - target_from_source * pair.x_in_source,
+          shape.inverse() / (pair.sigma * pair.sigma)};
 }
 
-/// Up must stay up, and the floor under the walk must stay the floor.
-void add_prior(Normal& normal, const FloorPrior& prior, const Eigen::Isometry3d& target_from_source,
-               const Eigen::Vector3d& centre_in_source) {
-  if (prior.tilt > 0) {
-    const Eigen::Vector3d up = target_from_source.linear() * Eigen::Vector3d::UnitY();
-    const double weight = 1.0 / (prior.tilt * prior.tilt);
-    Row6 along_x = Row6::Zero();
-    along_x << 0, up.z(), -up.y(), 0, 0, 0;
-    Row6 along_z = Row6::Zero();
-    along_z << up.y(), -up.x(), 0, 0, 0, 0;
-    normal.add(along_x, -up.x(), weight);
-    normal.add(along_z, -up.z(), weight);
+std::vector<Residual> residuals_of(const std::vector<Pair>& pairs,
+                                   const Eigen::Isometry3d& target_from_source,
+                                   double along_ratio) {
+  std::vector<Residual> residuals;
+  residuals.reserve(pairs.size());
+  for (const Pair& pair : pairs) {
+    residuals.push_back(residual_of(pair, target_from_source, along_ratio));
   }
-  if (prior.height > 0) {
-    const Eigen::Vector3d below(centre_in_source.x(), 0, centre_in_source.z());
-    const Eigen::Vector3d q = target_from_source * below;
-    Row6 row;
-    row << -q.z(), 0, q.x(), 0, 1, 0;
-    normal.add(row, -q.y(), 1.0 / (prior.height * prior.height));
+  return residuals;
+}
+
+/// Tukey's weights with the scale from the median of the pairs that count so far.
+void reweigh(const std::vector<Residual>& residuals, Refined& refined) {
+  std::vector<double> norms;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    if (refined.weights[i] > 0) norms.push_back(std::sqrt(residuals[i].squared()));
   }
+  if (norms.empty()) return;
+  const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
+  std::nth_element(norms.begin(), middle, norms.end());
+  refined.scale = std::max(kLeastScale, *middle / kMedianToSigma);
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    const double limit = kTukey * refined.scale;
+    const double off = residuals[i].squared() / (limit * limit);
+    refined.weights[i] = off < 1.0 ? (1.0 - off) * (1.0 - off) : 0.0;
+  }
+}
+
+void add_pair(Normal& normal, const Eigen::Vector3d& point_in_target, const Residual& residual,
+              double weight) {
+  const Eigen::Matrix<double, 3, 6> rows = at_point(point_in_target).bottomRows<3>();
+  const Eigen::Matrix<double, 6, 3> weighted = weight * rows.transpose() * residual.information;
+  normal.information += weighted * rows;
+  normal.right += weighted * residual.off;
 }
 
 Eigen::Vector3d centre_of(const std::vector<Pair>& pairs, const std::vector<double>& weights) {
@@ -75,37 +87,69 @@ Eigen::Vector3d centre_of(const std::vector<Pair>& pairs, const std::vector<doub
 /// Mean whitened residual of each instant, and what one pair alone scatters.
 struct Instants {
   std::vector<Eigen::Vector3d> means;
-  double pair_variance = 0.0;  ///< Per axis.
-  double pairs_per_instant = 0.0;
+  double squares = 0.0;
+  std::size_t used = 0;
 };
 
-Instants instants_of(const std::vector<Pair>& pairs, const RobustFit& fit) {
+Instants instants_of(const std::vector<Pair>& pairs, const std::vector<Residual>& residuals,
+                     const std::vector<double>& weights) {
   Instants instants;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double squares = 0.0;
   std::size_t in_sum = 0;
-  std::size_t used = 0;
-  const auto close = [&] {
-    if (in_sum > 0) instants.means.push_back(sum / static_cast<double>(in_sum));
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (weights[i] > 0) {
+      const Eigen::Matrix3d root = residuals[i].information.llt().matrixU();
+      const Eigen::Vector3d white = root * residuals[i].off;
+      sum += white;
+      instants.squares += white.squaredNorm();
+      ++in_sum;
+      ++instants.used;
+    }
+    const bool last = i + 1 == pairs.size() || pairs[i + 1].instant != pairs[i].instant;
+    if (!last || in_sum == 0) continue;
+    instants.means.push_back(sum / static_cast<double>(in_sum));
     sum.setZero();
     in_sum = 0;
-  };
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (i > 0 && pairs[i].instant != pairs[i - 1].instant) close();
-    if (!(fit.weights[i] > 0)) continue;
-    const Eigen::Vector3d off =
-        (pairs[i].x_in_target - fit.target_from_source * pairs[i].x_in_source) / pairs[i].sigma;
-    sum += off;
-    squares += off.squaredNorm();
-    ++in_sum;
-    ++used;
   }
-  close();
-  if (used == 0 || instants.means.empty()) return instants;
-  instants.pair_variance = squares / (3.0 * static_cast<double>(used));
-  instants.pairs_per_instant =
-      static_cast<double>(used) / static_cast<double>(instants.means.size());
   return instants;
+}
+
+/// Pairs per independent pair: lag-1 autocorrelation of the instants, times the correlation of the
+/// joints within an instant.
+double inflation_of(const Instants& instants) {
+  double same = 0.0;
+  double next = 0.0;
+  for (std::size_t i = 0; i < instants.means.size(); ++i) {
+    same += instants.means[i].squaredNorm();
+    if (i > 0) next += instants.means[i].dot(instants.means[i - 1]);
+  }
+  if (!(same > kTiny) || !(instants.squares > kTiny)) return 1.0;
+  const double rho = std::clamp(next / same, 0.0, kMostCorrelated);
+  const double used = static_cast<double>(instants.used);
+  const double count = static_cast<double>(instants.means.size());
+  const double pair_variance = instants.squares / (kAxes * used);
+  const double independent_mean_variance = pair_variance * count / used;
+  const double joints = same / (kAxes * count) / independent_mean_variance;
+  return std::max(1.0, joints) * (1.0 + rho) / (1.0 - rho);
+}
+
+Normal equations(const std::vector<Pair>& pairs, const std::vector<Residual>& residuals,
+                 const Refined& at) {
+  Normal normal;
+  const double variance = at.scale * at.scale * at.inflation;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (!(at.weights[i] > 0)) continue;
+    const Eigen::Vector3d point = at.target_from_source * pairs[i].x_in_source;
+    add_pair(normal, point, residuals[i], at.weights[i] / variance);
+  }
+  return normal;
+}
+
+void move(Refined& refined, const Vector6& motion) {
+  Eigen::Isometry3d step = Eigen::Isometry3d::Identity();
+  step.linear() = exp_map(motion.head<3>()).toRotationMatrix();
+  step.translation() = motion.tail<3>();
+  refined.target_from_source = step * refined.target_from_source;
 }
 
 }  // namespace
@@ -122,44 +166,33 @@ double rms_of(const std::vector<Pair>& pairs, const std::vector<double>& weights
   return used > 0 ? std::sqrt(squares / static_cast<double>(used)) : 0.0;
 }
 
-double inflation_of(const std::vector<Pair>& pairs, const RobustFit& fit) {
-  const Instants instants = instants_of(pairs, fit);
-  double same = 0.0;
-  double next = 0.0;
-  for (std::size_t i = 0; i < instants.means.size(); ++i) {
-    same += instants.means[i].squaredNorm();
-    if (i > 0) next += instants.means[i].dot(instants.means[i - 1]);
+double cost_of(const std::vector<Pair>& pairs, const Refined& at, double along_ratio) {
+  double cost = 0.0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (!(at.weights[i] > 0)) continue;
+    cost += at.weights[i] * residual_of(pairs[i], at.target_from_source, along_ratio).squared();
   }
-  if (!(same > kTiny) || !(instants.pair_variance > kTiny)) return 1.0;
-  const double rho = std::clamp(next / same, 0.0, kMostCorrelated);
-  const double mean_variance = same / (3.0 * static_cast<double>(instants.means.size()));
-  const double joints = mean_variance * instants.pairs_per_instant / instants.pair_variance;
-  return std::max(1.0, joints) * (1.0 + rho) / (1.0 - rho);
+  return cost;
 }
 
-Refined refine(const std::vector<Pair>& pairs, const RobustFit& fit, const FloorPrior& prior) {
+Refined refine(const std::vector<Pair>& pairs, const RobustFit& fit, const FloorPrior& prior,
+               double along_ratio) {
   Refined refined;
   refined.target_from_source = fit.target_from_source;
-  refined.inflation = inflation_of(pairs, fit);
+  refined.weights = fit.weights;
   const Eigen::Vector3d centre = centre_of(pairs, fit.weights);
-  const double scale = std::max(fit.scale, kTiny);
   Matrix6 information = Matrix6::Identity();
   for (int i = 0; i < kIterations; ++i) {
-    Normal normal;
-    for (std::size_t k = 0; k < pairs.size(); ++k) {
-      if (!(fit.weights[k] > 0)) continue;
-      const double sigma = scale * pairs[k].sigma;
-      const double weight = fit.weights[k] / (sigma * sigma * refined.inflation);
-      add_pair(normal, pairs[k], refined.target_from_source, weight);
-    }
+    const auto residuals = residuals_of(pairs, refined.target_from_source, along_ratio);
+    reweigh(residuals, refined);
+    refined.inflation = inflation_of(instants_of(pairs, residuals, refined.weights));
+    Normal normal = equations(pairs, residuals, refined);
     add_prior(normal, prior, refined.target_from_source, centre);
     information = normal.information;
     const Vector6 motion = information.ldlt().solve(normal.right);
     if (!motion.allFinite()) break;
-    Eigen::Isometry3d step = Eigen::Isometry3d::Identity();
-    step.linear() = exp_map(motion.head<3>()).toRotationMatrix();
-    step.translation() = motion.tail<3>();
-    refined.target_from_source = step * refined.target_from_source;
+    move(refined, motion);
+    if (motion.norm() < kSettled) break;
   }
   refined.covariance = information.ldlt().solve(Matrix6::Identity());
   return refined;

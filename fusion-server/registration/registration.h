@@ -34,6 +34,9 @@ struct RegistrationConfig {
   PairMethod method = PairMethod::TimedRobust;
   JointChoice joints = JointChoice::Core;
   bool use_floor = true;  ///< Pitch, roll and height from the floor plane where there is one.
+  /// Error along a sensor's line of sight over the error across it: 1.5-2 for a depth sensor, 5-10
+  /// for a single camera that knows depth from the size of the person.
+  double along_ratio = 2.0;
   Duration max_gap = std::chrono::milliseconds(60);  ///< Widest bracket for a correspondence.
   double min_distance = 0.5;                         ///< [m]
   double max_distance = 6.0;                         ///< [m]
@@ -41,7 +44,9 @@ struct RegistrationConfig {
   std::size_t min_pairs = 60;  ///< Fewer correspondences make no edge.
   double min_spread = 0.25;    ///< Narrower walks are refused [m].
   double max_edge_rms = 0.15;  ///< Wider residuals make no edge [m].
-  double good_rms = 0.08;      ///< Above this the verdict is provisional [m].
+  bool adjust_together =
+      true;                ///< Three sensors and more: one adjustment over all of them at the end.
+  double good_rms = 0.08;  ///< Above this the verdict is provisional [m].
   Duration good_duration = std::chrono::seconds(20);  ///< Shorter walks stay provisional.
   /// Above this 95 % radius of a sensor's place on the floor the verdict is provisional [m].
   double good_position = 0.05;

@@ -10,6 +10,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "fusion-server/registration/adjoint.h"
+#include "fusion-server/registration/adjustment.h"
 #include "fusion-server/registration/pair_registration.h"
 #include "fusion-server/registration/transform_graph.h"
 
@@ -125,8 +126,31 @@ std::optional<std::string> impossible(const Eigen::Isometry3d& world_from_sensor
   return std::nullopt;
 }
 
+double median_inflation(const std::vector<PairwiseRegistration>& edges) {
+  std::vector<double> all;
+  for (const PairwiseRegistration& edge : edges) all.push_back(edge.inflation);
+  if (all.empty()) return 1.0;
+  std::sort(all.begin(), all.end());
+  return all[all.size() / 2];
+}
+
+/// Chains first; from three sensors on, all of them once more together.  The covariance stays the
+/// chain's: an upper bound, because the adjustment only adds knowledge.
+std::map<SensorId, Chain> link(const Work& work) {
+  auto chains = best_chains(work.result.master, work.result.edges);
+  const bool timed = work.config.method == PairMethod::TimedRobust;
+  if (chains.size() < 3 || !timed || !work.config.adjust_together) return chains;
+  Places places;
+  for (const auto& [sensor, chain] : chains) places[sensor] = chain.master_from_sensor;
+  const Walkers walkers{work.walkers, work.result.master, median_inflation(work.result.edges)};
+  for (auto& [sensor, place] : adjust_together(places, walkers, work.config)) {
+    chains.at(sensor).master_from_sensor = place;
+  }
+  return chains;
+}
+
 void place_sensors(Work& work) {
-  const auto chains = best_chains(work.result.master, work.result.edges);
+  const std::map<SensorId, Chain> chains = link(work);
   const Eigen::Isometry3d in_world = world_from_master(floor_in_master(work, chains));
   const Matrix6 turn = adjoint(in_world);
   for (const auto& [sensor, chain] : chains) {

@@ -1,0 +1,317 @@
+#include "fusion-server/registration/adjustment.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "common/geometry/rotation.h"
+#include "fusion-server/registration/floor_prior.h"
+#include "fusion-server/registration/pairs.h"
+
+namespace chorus::registration {
+namespace {
+
+constexpr std::size_t kMostPoints = 1500;  // points of the walk; successive ones repeat one another
+constexpr std::size_t kLeastSights = 20;   // with fewer a sensor keeps the place its chain gave it
+constexpr int kIterations = 40;
+constexpr double kSettled = 1e-6;         // [rad], [m]
+constexpr double kTukey = 4.685;          // 95 % efficiency for a Gaussian
+constexpr double kMedianToSigma = 1.538;  // median of the norm of a 3-D standard Gaussian
+constexpr double kLeastScale = 0.02;      // in sigmas
+constexpr double kRidge = 1e-6;           // keeps an unobserved direction where it is
+
+/// One sensor's sight of one point, in its levelled frame.
+struct Sight {
+  std::size_t sensor = 0;
+  Eigen::Vector3d x;
+  Eigen::Vector3d ray;
+  double sigma = 0.0;
+};
+
+using Point = std::vector<Sight>;  ///< Of at least two sensors.
+
+/// A sensor while it is being moved.
+struct Station {
+  SensorId id;
+  const Walker* walker = nullptr;
+  Eigen::Isometry3d level_from_sensor = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d world_from_level =
+      Eigen::Isometry3d::Identity();  ///< World: the levelled master.
+  bool levelled = false;
+  bool master = false;
+  bool fixed = false;  ///< The master, and whoever shares too few points to be moved.
+};
+
+Eigen::Isometry3d level_of(const Walker& walker, bool use_floor) {
+  return use_floor && walker.floor.floor ? level(*walker.floor.floor)
+                                         : Eigen::Isometry3d::Identity();
+}
+
+std::vector<Station> stations_of(const Places& places, const Walkers& walkers, bool use_floor) {
+  const Walker& master = walkers.all.at(walkers.master);
+  const bool master_levelled = use_floor && master.floor.floor;
+  const Eigen::Isometry3d world_from_master = level_of(master, use_floor);
+  std::vector<Station> stations;
+  for (const auto& [id, master_from_sensor] : places) {
+    const Walker& walker = walkers.all.at(id);
+    Station station{id, &walker};
+    station.levelled = master_levelled && walker.floor.floor;
+    if (station.levelled) station.level_from_sensor = level_of(walker, use_floor);
+    station.master = station.fixed = id == walkers.master;
+    station.world_from_level =
+        world_from_master * master_from_sensor * station.level_from_sensor.inverse();
+    stations.push_back(station);
+  }
+  return stations;
+}
+
+/// Who saw which slot at one instant.
+void add_instant(const std::vector<std::optional<TrailMoment>>& moments,
+                 const std::vector<Station>& stations, std::span<const Slot> slots,
+                 std::vector<Point>& points) {
+  for (std::size_t slot = 0; slot < slots.size(); ++slot) {
+    Point point;
+    for (std::size_t i = 0; i < stations.size(); ++i) {
+      if (!moments[i] || !moments[i]->frame.has(slot)) continue;
+      const Eigen::Vector3d& x = moments[i]->frame.points[slot];
+      const Eigen::Isometry3d& turn = stations[i].level_from_sensor;
+      point.push_back({i, turn * x, turn.linear() * x.normalized(), slots[slot].sigma});
+    }
+    if (point.size() > 1) points.push_back(std::move(point));
+  }
+}
+
+/// Every sensor's own instants, thinned to what is worth the time: overlaps that only some share
+/// must not be missed.
+std::vector<Timestamp> instants_of(const std::vector<Station>& stations, std::size_t slots) {
+  std::vector<Timestamp> all;
+  for (const Station& station : stations) {
+    for (const TrailFrame& frame : station.walker->trail.frames) all.push_back(frame.captured);
+  }
+  std::sort(all.begin(), all.end());
+  const std::size_t step = std::max<std::size_t>(1, all.size() * slots / kMostPoints);
+  std::vector<Timestamp> instants;
+  for (std::size_t i = 0; i < all.size(); i += step) instants.push_back(all[i]);
+  return instants;
+}
+
+std::vector<Point> points_of(const std::vector<Station>& stations,
+                             const RegistrationConfig& config) {
+  const auto slots = slots_of(config.joints);
+  std::vector<TrailReader> readers;
+  for (const Station& station : stations) {
+    readers.emplace_back(station.walker->trail, config.max_gap);
+  }
+  std::vector<Point> points;
+  for (const Timestamp instant : instants_of(stations, slots.size())) {
+    std::vector<std::optional<TrailMoment>> moments;
+    for (TrailReader& reader : readers) {
+      moments.push_back(reader.at(instant));
+      if (moments.back() && moments.back()->speed > config.max_speed) moments.back().reset();
+    }
+    add_instant(moments, stations, slots, points);
+  }
+  return points;
+}
+
+void hold_strangers(std::vector<Station>& stations, const std::vector<Point>& points) {
+  std::vector<std::size_t> sights(stations.size(), 0);
+  for (const Point& point : points) {
+    for (const Sight& sight : point) ++sights[sight.sensor];
+  }
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    if (sights[i] < kLeastSights) stations[i].fixed = true;
+  }
+}
+
+/// A point at the present places.
+struct Fused {
+  std::vector<Eigen::Vector3d> seen;            ///< Each sight in the world.
+  std::vector<Eigen::Matrix3d> information;     ///< S^-1 of each sight.
+  Eigen::Vector3d x = Eigen::Vector3d::Zero();  ///< Inverse-variance mean.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+
+Fused fuse(const Point& point, const std::vector<Station>& stations, double along_ratio) {
+  // (I + e r r^T)^-1 = I - e / (1 + e) r r^T
+  const double extra = std::max(0.0, along_ratio * along_ratio - 1.0);
+  const double blunt = extra / (1.0 + extra);
+  Fused fused;
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (const Sight& sight : point) {
+    const Eigen::Isometry3d& place = stations[sight.sensor].world_from_level;
+    const Eigen::Vector3d ray = place.linear() * sight.ray;
+    fused.seen.push_back(place * sight.x);
+    fused.information.push_back((Eigen::Matrix3d::Identity() - blunt * ray * ray.transpose()) /
+                                (sight.sigma * sight.sigma));
+    sum += fused.information.back();
+    right += fused.information.back() * fused.seen.back();
+  }
+  fused.covariance = sum.inverse();
+  fused.x = fused.covariance * right;
+  return fused;
+}
+
+/// Whole points are believed or not: in units of sigma, the worst sight counts.
+double worst_norm(const Fused& fused) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < fused.seen.size(); ++i) {
+    const Eigen::Vector3d off = fused.x - fused.seen[i];
+    worst = std::max(worst, off.dot(fused.information[i] * off));
+  }
+  return std::sqrt(worst);
+}
+
+/// The adjustment's state between iterations.
+struct Adjustment {
+  std::vector<Station> stations;
+  std::vector<Point> points;
+  double along_ratio = 1.0;
+  double inflation = 1.0;
+  double scale = 0.0;  ///< Fixed after the first look, so that costs can be compared.
+
+  [[nodiscard]] std::vector<Fused> fuse_all() const {
+    std::vector<Fused> all;
+    for (const Point& point : points) all.push_back(fuse(point, stations, along_ratio));
+    return all;
+  }
+  [[nodiscard]] double weight(const Fused& fused) const {
+    const double off = worst_norm(fused) / (kTukey * scale);
+    return off < 1.0 ? (1.0 - off * off) * (1.0 - off * off) : 0.0;
+  }
+};
+
+double median_norm(const std::vector<Fused>& all) {
+  std::vector<double> norms;
+  for (const Fused& fused : all) norms.push_back(worst_norm(fused));
+  const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
+  std::nth_element(norms.begin(), middle, norms.end());
+  return *middle;
+}
+
+/// Tukey's loss, which the weights above belong to.
+double cost_of(const Adjustment& adjustment) {
+  double cost = 0.0;
+  for (const Fused& fused : adjustment.fuse_all()) {
+    const double off = worst_norm(fused) / (kTukey * adjustment.scale);
+    const double rest = off < 1.0 ? 1.0 - off * off : 0.0;
+    cost += 1.0 - rest * rest * rest;
+  }
+  return cost;
+}
+
+struct Equations {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd right;
+};
+
+void add_point(Equations& equations, const Point& point, const Fused& fused, double weight) {
+  std::vector<Eigen::Matrix<double, 3, 6>> rows;
+  for (std::size_t i = 0; i < point.size(); ++i) {
+    const Eigen::Matrix<double, 3, 6> motion = at_point(fused.seen[i]).bottomRows<3>();
+    rows.push_back(fused.information[i] * motion);
+    const auto at = static_cast<Eigen::Index>(6 * point[i].sensor);
+    equations.information.block<6, 6>(at, at) += weight * motion.transpose() * rows[i];
+    equations.right.segment<6>(at) += weight * rows[i].transpose() * (fused.x - fused.seen[i]);
+  }
+  for (std::size_t i = 0; i < point.size(); ++i) {
+    const Eigen::Matrix<double, 6, 3> left = weight * rows[i].transpose() * fused.covariance;
+    for (std::size_t j = 0; j < point.size(); ++j) {
+      equations.information.block<6, 6>(static_cast<Eigen::Index>(6 * point[i].sensor),
+                                        static_cast<Eigen::Index>(6 * point[j].sensor)) -=
+          left * rows[j];
+    }
+  }
+}
+
+void add_floors(Equations& equations, const std::vector<Station>& stations,
+                const Eigen::Vector3d& centre_in_world) {
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    if (!stations[i].levelled || stations[i].fixed) continue;
+    Normal normal;
+    const Eigen::Isometry3d& place = stations[i].world_from_level;
+    add_prior(normal, kTwoFloors, place, place.inverse() * centre_in_world);
+    const auto at = static_cast<Eigen::Index>(6 * i);
+    equations.information.block<6, 6>(at, at) += normal.information;
+    equations.right.segment<6>(at) += normal.right;
+  }
+}
+
+/// The master must not move: its rows become identity.
+void hold_fixed(Equations& equations, const std::vector<Station>& stations) {
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    if (!stations[i].fixed) continue;
+    const auto at = static_cast<Eigen::Index>(6 * i);
+    equations.information.middleRows<6>(at).setZero();
+    equations.information.middleCols<6>(at).setZero();
+    equations.information.block<6, 6>(at, at).setIdentity();
+    equations.right.segment<6>(at).setZero();
+  }
+}
+
+Equations equations_of(const Adjustment& adjustment) {
+  const auto size = static_cast<Eigen::Index>(6 * adjustment.stations.size());
+  Equations equations{kRidge * Eigen::MatrixXd::Identity(size, size), Eigen::VectorXd::Zero(size)};
+  const double variance = adjustment.scale * adjustment.scale * adjustment.inflation;
+  const std::vector<Fused> all = adjustment.fuse_all();
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const double weight = adjustment.weight(all[k]);
+    centre += all[k].x / static_cast<double>(all.size());
+    if (weight > 0) add_point(equations, adjustment.points[k], all[k], weight / variance);
+  }
+  add_floors(equations, adjustment.stations, centre);
+  hold_fixed(equations, adjustment.stations);
+  return equations;
+}
+
+/// False when nothing moves any more.
+bool iterate(Adjustment& adjustment) {
+  const Equations equations = equations_of(adjustment);
+  const Eigen::VectorXd motion = equations.information.ldlt().solve(equations.right);
+  if (!motion.allFinite()) return false;
+  for (std::size_t i = 0; i < adjustment.stations.size(); ++i) {
+    if (adjustment.stations[i].fixed) continue;
+    const Vector6 own = motion.segment<6>(static_cast<Eigen::Index>(6 * i));
+    Eigen::Isometry3d step = Eigen::Isometry3d::Identity();
+    step.linear() = exp_map(own.head<3>()).toRotationMatrix();
+    step.translation() = own.tail<3>();
+    adjustment.stations[i].world_from_level = step * adjustment.stations[i].world_from_level;
+  }
+  return motion.norm() > kSettled;
+}
+
+Places places_of(const std::vector<Station>& stations) {
+  Eigen::Isometry3d world_from_master = Eigen::Isometry3d::Identity();
+  for (const Station& station : stations) {
+    if (station.master) world_from_master = station.world_from_level * station.level_from_sensor;
+  }
+  Places places;
+  for (const Station& station : stations) {
+    places[station.id] =
+        world_from_master.inverse() * station.world_from_level * station.level_from_sensor;
+  }
+  return places;
+}
+
+}  // namespace
+
+Places adjust_together(const Places& places, const Walkers& walkers,
+                       const RegistrationConfig& config) {
+  Adjustment adjustment;
+  adjustment.stations = stations_of(places, walkers, config.use_floor);
+  adjustment.points = points_of(adjustment.stations, config);
+  if (adjustment.points.empty()) return places;
+  hold_strangers(adjustment.stations, adjustment.points);
+  adjustment.along_ratio = config.along_ratio;
+  adjustment.inflation = std::max(1.0, walkers.inflation);
+  adjustment.scale = std::max(kLeastScale, median_norm(adjustment.fuse_all()) / kMedianToSigma);
+  const double before = cost_of(adjustment);
+  for (int i = 0; i < kIterations && iterate(adjustment); ++i) {
+  }
+  return cost_of(adjustment) <= before ? places_of(adjustment.stations) : places;
+}
+
+}  // namespace chorus::registration

@@ -1,0 +1,37 @@
+// Normal equations of small motions, and what two levelled floors add to them.
+#pragma once
+
+#include <numbers>
+
+#include "common/base/units.h"
+#include "fusion-server/registration/adjoint.h"
+
+namespace chorus::registration {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Row6 = Eigen::Matrix<double, 1, 6>;
+
+/// information * (omega, tau) = right, for a motion on the target side.
+struct Normal {
+  Matrix6 information = Matrix6::Zero();
+  Vector6 right = Vector6::Zero();
+
+  void add(const Row6& row, double residual, double weight);
+};
+
+/// How far two levelled frames may differ in pitch and roll (tilt [rad], per axis) and height [m];
+/// 0: no prior.
+struct FloorPrior {
+  double tilt = 0.0;
+  double height = 0.0;
+};
+
+/// Each floor is good to 0.4 deg and 10 mm (notes 1.4 step 1); two of them differ by sqrt(2) more.
+inline constexpr FloorPrior kTwoFloors{deg(0.4) * std::numbers::sqrt2,
+                                       mm(10) * std::numbers::sqrt2};
+
+/// Up must stay up, and the floor under the walk must stay the floor.  Both frames are levelled.
+void add_prior(Normal& normal, const FloorPrior& prior, const Eigen::Isometry3d& target_from_source,
+               const Eigen::Vector3d& centre_in_source);
+
+}  // namespace chorus::registration
