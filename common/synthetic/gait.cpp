@@ -51,6 +51,25 @@ Cut best_cut(const std::vector<AmcFrame>& take) {
   return best;
 }
 
+/// Turns the legs of a mean walking pose into standing ones: knees as straight as they get in the
+/// walk, thighs back and feet down by half of that, so that the feet stay under the hips and flat.
+void straighten_legs(const motion::AsfSkeleton& skeleton, const std::vector<AmcFrame>& cycle,
+                     AmcFrame& standing) {
+  for (const auto& [thigh, shank, foot] :
+       {std::array{"lfemur", "ltibia", "lfoot"}, std::array{"rfemur", "rtibia", "rfoot"}}) {
+    const auto channel = [&](const char* bone) {
+      return skeleton.bones[bone_named(skeleton, bone)].first_channel;  // rx comes first
+    };
+    const std::size_t knee = channel(shank);
+    double straightest = standing[knee];
+    for (const AmcFrame& frame : cycle) straightest = std::min(straightest, frame[knee]);
+    const double change = standing[knee] - straightest;
+    standing[knee] = straightest;
+    standing[channel(thigh)] += 0.5 * change;
+    standing[channel(foot)] += 0.5 * change;
+  }
+}
+
 double smooth(double x) { return x * x * (3 - 2 * x); }
 
 double lowest_foot(const Skeleton<WorldSpace>& body) {
@@ -105,6 +124,7 @@ void Gait::stand_on_floor() {
       standing_[c] += frame[c] / static_cast<double>(cycle_.size());
     }
   }
+  straighten_legs(*skeleton_, cycle_, standing_);
   for (AmcFrame& frame : cycle_) {
     frame[0] -= standing_[0];
     frame[2] -= standing_[2];

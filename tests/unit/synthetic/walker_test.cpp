@@ -89,6 +89,29 @@ TEST(Walker, WalksForward) {
   }
 }
 
+TEST(Gait, TheSeamIsAsSmoothAsTheRest) {
+  for (const std::size_t take : {0u, 1u}) {
+    const Gait& gait = Gait::built_in(take);
+    constexpr int kSteps = 200;
+    // Second differences over one cycle and across the seam, in arbitrary units of phase.
+    double inside = 0, seam = 0;
+    for (int i = 0; i < kSteps; ++i) {
+      const auto body = [&](int step) {
+        return gait.pose(static_cast<double>(step) / kSteps, 1.0);
+      };
+      const auto before = body(i - 1), now = body(i), after = body(i + 1);
+      for (std::size_t j = 0; j < kJointCount; ++j) {
+        const double bend =
+            (after.joints[j].position - 2 * now.joints[j].position + before.joints[j].position)
+                .norm();
+        double& most = i <= 2 || i >= kSteps - 2 ? seam : inside;
+        most = std::max(most, bend);
+      }
+    }
+    EXPECT_LT(seam, 1.5 * inside) << "take " << take;
+  }
+}
+
 TEST(Walker, StandingFeetDoNotSlideFar) {
   // Speed-matched steps: while a foot stands (low and for a while), it hardly moves over the floor.
   WalkerScript script;
