@@ -118,6 +118,8 @@ void read_pairing(ConfigReader& reader, registration::RegistrationConfig& out) {
   reader.read_choice("joints", joints, {"neck", "core", "all"});
   out.joints = static_cast<JointChoice>(joints);
   reader.read("use_floor", out.use_floor);
+  reader.read("along_ratio", out.along_ratio, 1.0, 100.0);
+  reader.read("adjust_together", out.adjust_together);
   reader.read_ms("max_gap_ms", out.max_gap, milliseconds(1), seconds(1));
   reader.read("min_distance_m", out.min_distance, 0.0, 20.0);
   reader.read("max_distance_m", out.max_distance, 0.1, 50.0);
@@ -128,6 +130,7 @@ void read_pairing(ConfigReader& reader, registration::RegistrationConfig& out) {
   reader.read("min_spread_m", out.min_spread, 0.0, 20.0);
   reader.read("max_edge_rms_m", out.max_edge_rms, 0.001, 5.0);
   reader.read("good_rms_m", out.good_rms, 0.001, 5.0);
+  reader.read("good_position_m", out.good_position, 0.001, 5.0);
   reader.read_s("good_duration_s", out.good_duration, seconds(1), seconds(300));
 }
 

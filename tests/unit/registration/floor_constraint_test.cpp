@@ -1,0 +1,58 @@
+#include "fusion-server/registration/floor_constraint.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/registration/walk_builder.h"
+
+namespace chorus::registration {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const Eigen::Isometry3d kPlace = ring_place(deg(30));
+
+TEST(FloorOf, IsTheMedianSoThatOneBadFrameDoesNoHarm) {
+  WalkTrack walk = watch(1, kPlace, {.length = 2});
+  walk.frames[3].floor = FloorPlane{Eigen::Vector3d::UnitX(), 9.0};
+  walk.frames[4].floor = FloorPlane{{std::nan(""), 0, 0}, std::nan("")};
+  const FloorSight sight = floor_of(walk);
+  ASSERT_TRUE(sight.floor) << sight.objection;
+  EXPECT_NEAR(sight.floor->offset, 1.8, 1e-6);
+  EXPECT_NEAR(sight.floor->normal.y(), std::cos(deg(15)), 1e-6);
+  EXPECT_THAT(sight.objection, IsEmpty());
+}
+
+TEST(FloorOf, SaysWhatIsWrong) {
+  const auto with = [](const FloorPlane& in_world) {
+    return floor_of(watch(1, kPlace, {.length = 2, .floor_in_world = in_world})).objection;
+  };
+  EXPECT_THAT(with({Eigen::Vector3d::UnitY(), -0.8}), HasSubstr("above the person's feet"));
+  EXPECT_THAT(with({Eigen::Vector3d::UnitY(), 1.5}), HasSubstr("below the person's feet"));
+  EXPECT_THAT(with({-Eigen::Vector3d::UnitY(), 0.0}), HasSubstr("does not point up"));
+  EXPECT_THAT(with({Eigen::Vector3d::UnitY(), -3.0}), HasSubstr("not below it"));
+  EXPECT_EQ(floor_of({sensor(1), {}}).objection, "it reports no floor plane");
+}
+
+TEST(FloorFromBody, StandsUnderTheFeetOfAnUprightPerson) {
+  const auto floor = floor_from_body(watch(1, kPlace, {.floor_in_world = std::nullopt}));
+  ASSERT_TRUE(floor);
+  EXPECT_NEAR(floor->offset, 1.8, 0.03);
+  EXPECT_NEAR(std::acos(floor->normal.dot(kPlace.linear().row(1).transpose())), 0.0, deg(0.5));
+  EXPECT_FALSE(floor_from_body({sensor(1), {}}));
+}
+
+TEST(WorldFromMaster, PutsTheFloorAtZeroAndTheViewAlongZ) {
+  const Eigen::Isometry3d rolled = kPlace * Eigen::AngleAxisd(deg(7), Eigen::Vector3d::UnitZ());
+  const Eigen::Isometry3d world = world_from_master(plane_in_sensor({}, rolled));
+  EXPECT_LT((world.translation() - Eigen::Vector3d(0, 1.8, 0)).norm(), 1e-9);
+  const Eigen::Vector3d view = world.linear() * Eigen::Vector3d::UnitZ();
+  EXPECT_NEAR(view.x(), 0.0, 1e-9);
+  EXPECT_GT(view.z(), 0.9);
+  const Eigen::Vector3d down_view(0, 0, -1);  // a ceiling sensor: no view direction on the floor
+  EXPECT_TRUE(world_from_master({down_view, 2.5}).matrix().allFinite());
+}
+
+}  // namespace
+}  // namespace chorus::registration
