@@ -1,9 +1,17 @@
 #include "common/rdf/turtle_guard.h"
 
+#include <array>
 #include <string>
 
 namespace chorus::rdf {
 namespace {
+
+constexpr auto kNotInIri = [] {
+  std::array<bool, 256> never{};
+  for (std::size_t c = 0; c <= 0x20; ++c) never[c] = true;
+  for (const char c : std::string_view("<\"{}|^`")) never[static_cast<unsigned char>(c)] = true;
+  return never;
+}();
 
 /// One pass over the text; every skip_ function starts behind the opening character.
 class Scan {
@@ -60,11 +68,10 @@ class Scan {
   }
 
   Result<void> skip_iri() {
-    constexpr std::string_view kNever = "<\"{}|^`";
     while (at_ < text_.size()) {
       const char c = text_[at_++];
       if (c == '>') return {};
-      if (static_cast<unsigned char>(c) <= 0x20 || kNever.find(c) != std::string_view::npos) {
+      if (kNotInIri[static_cast<unsigned char>(c)]) {
         return refuse("an IRI holds a character it must not hold, or lacks its '>'");
       }
     }

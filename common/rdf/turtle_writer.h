@@ -2,6 +2,7 @@
 // template.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -24,6 +25,11 @@ struct WriteOptions {
 /// place, as "[ ]".  Refuses what no syntax can hold: a literal as subject, broken UTF-8, an IRI
 /// with a space.
 [[nodiscard]] Result<std::string> write_graph(const Graph& graph, const WriteOptions& options);
+
+/// A Turtle document as N-Triples, one triple at a time; relative IRIs are resolved against `base`.
+[[nodiscard]] Result<std::string> turtle_to_ntriples(std::string_view turtle,
+                                                     const std::string& base,
+                                                     std::size_t max_bytes);
 
 /// RFC 3986 5.2: `reference` as seen from the absolute IRI `base`.
 [[nodiscard]] std::string resolve_iri(const std::string& reference, const std::string& base);

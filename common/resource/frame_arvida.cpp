@@ -160,7 +160,7 @@ class ArvidaFrame {
 
 std::string write_arvida(const FrameResource& frame, const Place& place, Format format) {
   std::string turtle = ArvidaFrame(frame, place).run();
-  return format == Format::NTriples ? turtle_to_ntriples(turtle, place) : turtle;
+  return format == Format::NTriples ? to_ntriples(turtle, place) : turtle;
 }
 
 }  // namespace chorus::resource

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "common/rdf/turtle_reader.h"
 #include "common/rdf/turtle_writer.h"
 #include "common/rdf/utf8.h"
 
@@ -75,13 +74,9 @@ std::string_view name_of(SpaceKind space) {
   return space == SpaceKind::World ? "WorldSpace" : "SensorSpace";
 }
 
-std::string turtle_to_ntriples(const std::string& turtle, const Place& place) {
-  rdf::ReadOptions reading;
-  reading.limits.bytes = turtle.size();  // our own text
-  const auto graph = rdf::read_graph(turtle, reading);
-  if (!graph) return {};
-  return rdf::write_graph(*graph, {rdf::Syntax::NTriples, {}, place.root + place.path})
-      .value_or("");
+std::string to_ntriples(const std::string& turtle, const Place& place) {
+  // Our own text: it has no errors, and its size is no concern.
+  return rdf::turtle_to_ntriples(turtle, place.root + place.path, turtle.size()).value_or("");
 }
 
 std::string write(const FrameResource& frame, Format format, const Place& place) {
@@ -93,7 +88,7 @@ std::string write(const FrameResource& frame, Format format, const Place& place)
     case Format::Json:
       return write_json(frame, false, place);
     case Format::NTriples:
-      return turtle_to_ntriples(write_turtle(frame, place), place);
+      return to_ntriples(write_turtle(frame, place), place);
   }
   return {};
 }
@@ -108,7 +103,7 @@ std::string write_skeleton(const FrameResource& frame, const BodyResource& body,
     case Format::Json:
       return write_json_skeleton(frame, body, false, place);
     case Format::NTriples:
-      return turtle_to_ntriples(write_turtle_skeleton(frame, body, place), place);
+      return to_ntriples(write_turtle_skeleton(frame, body, place), place);
   }
   return {};
 }

@@ -93,6 +93,6 @@ inline constexpr std::size_t kJointBytes = 512;
                                                 const BodyResource& body, const Place& place);
 [[nodiscard]] std::string write_json_skeleton(const FrameResource& frame, const BodyResource& body,
                                               bool linked, const Place& place);
-[[nodiscard]] std::string turtle_to_ntriples(const std::string& turtle, const Place& place);
+[[nodiscard]] std::string to_ntriples(const std::string& turtle, const Place& place);
 
 }  // namespace chorus::resource

@@ -1,6 +1,7 @@
 // A frame from Turtle or N-Triples in any spelling, through the parser.
 #include <algorithm>
-#include <map>
+#include <functional>
+#include <unordered_map>
 
 #include "common/rdf/turtle_reader.h"
 #include "common/resource/fixed_point.h"
@@ -90,6 +91,12 @@ void add(std::vector<T>& list, T value) {
 
 class Collector {
  public:
+  Collector() {
+    constexpr std::size_t kUsual = 256;  // subjects of a frame with a few bodies
+    facts_.reserve(kUsual);
+    iris_.reserve(kUsual);
+  }
+
   /// False when the document is refused; error() says why.
   bool take(const rdf::TripleView& triple) {
     const std::size_t at = subject_of(triple.subject);
@@ -221,8 +228,16 @@ class Collector {
 
   const std::string type_ = rdf::rdf("type");
   Facts facts_;
-  std::map<std::string, std::size_t, std::less<>> iris_;
-  std::map<std::string, std::size_t, std::less<>> blanks_;
+  struct Hash {
+    using is_transparent = void;
+    std::size_t operator()(std::string_view text) const {
+      return std::hash<std::string_view>{}(text);
+    }
+  };
+  using Index = std::unordered_map<std::string, std::size_t, Hash, std::equal_to<>>;
+
+  Index iris_;
+  Index blanks_;
   std::size_t last_ = 0;
   TermKind last_kind_ = TermKind::Iri;
   std::optional<Error> error_;

@@ -54,7 +54,8 @@ TEST(TurtleWriter, NTriplesHasAbsoluteIrisAndTheSameGraph) {
   ASSERT_TRUE(triples) << to_string(triples.error());
   options = {};
   options.base = "http://h/frames/42";
-  EXPECT_EQ(testing::difference(*triples, *read_graph(*write_graph(sample(), kTurtle), options)), "");
+  EXPECT_EQ(testing::difference(*triples, *read_graph(*write_graph(sample(), kTurtle), options)),
+            "");
 }
 
 TEST(TurtleWriter, LosesNoRingOfBlankNodes) {
@@ -80,6 +81,20 @@ TEST(TurtleWriter, RefusesWhatNoSyntaxCanHold) {
   EXPECT_FALSE(write_graph({{iri("a"), blank("b"), iri("c")}}, {}));
   EXPECT_FALSE(write_graph({{iri("a b"), iri("b"), iri("c")}}, {}));
   EXPECT_FALSE(write_graph({{iri("a"), iri("b"), literal("\xC3\x28")}}, {}));
+}
+
+TEST(TurtleToNTriples, IsTheSameGraphLineByLine) {
+  const std::string turtle = *write_graph(sample(), kTurtle);
+  const auto triples = turtle_to_ntriples(turtle, "http://h/x", turtle.size());
+  ASSERT_TRUE(triples) << to_string(triples.error());
+  ReadOptions options;
+  options.syntax = Syntax::NTriples;
+  const auto read = read_graph(*triples, options);
+  ASSERT_TRUE(read) << to_string(read.error()) << "\n" << *triples;
+  options = {};
+  options.base = "http://h/x";
+  EXPECT_EQ(testing::difference(*read, *read_graph(turtle, options)), "");
+  EXPECT_FALSE(turtle_to_ntriples("<a> <b> .", "http://h/x", 100));
 }
 
 TEST(ResolveIri, FollowsRfc3986) {
