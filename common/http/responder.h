@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/base/rate_report.h"
@@ -51,6 +52,8 @@ class Responder {
   [[nodiscard]] Answer refuse(const Refusal& refusal) const;
 
   [[nodiscard]] const Router& router() const { return *router_; }
+
+  void set_bearer_token(std::string token) { bearer_token_ = std::move(token); }
 
  private:
   struct Reading;

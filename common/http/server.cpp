@@ -1,6 +1,7 @@
 #include "common/http/server.h"
 
 #include <thread>
+#include <utility>
 
 #include "common/http/server_core.h"
 
@@ -41,6 +42,12 @@ ServerCounters Server::counters() const {
   return {read(now.requests),           read(now.refused),          read(now.not_modified),
           read(now.connections_total),  read(now.connections_open), read(now.long_polls_waiting),
           read(now.event_streams_open), read(now.events_skipped),   read(now.bytes_sent)};
+}
+
+void Server::set_bearer_token(std::string token) {
+  net::post(impl_->core->io, [core = impl_->core.get(), token = std::move(token)]() mutable {
+    core->responder.set_bearer_token(std::move(token));
+  });
 }
 
 void Server::stop() {

@@ -58,6 +58,9 @@ class Server {
   [[nodiscard]] std::uint16_t port() const;
   [[nodiscard]] ServerCounters counters() const;
 
+  /// Another bearer token from the next request on; any thread, while serving or before.
+  void set_bearer_token(std::string token);
+
   /// Stops accepting, answers waiting long polls with 503, lets writes finish (2 s), joins.
   void stop();
 

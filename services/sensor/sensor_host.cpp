@@ -122,7 +122,9 @@ void SensorHost::reload(Setup wanted) {
   }
   setup_.config.images = wanted.config.images;
   setup_.config.log = wanted.config.log;
+  setup_.config.http.bearer_token = wanted.config.http.bearer_token;
   service_.show_images(setup_.config.images);
+  server_.set_bearer_token(setup_.config.http.bearer_token);
   log::configure(setup_.config.log.level, setup_.config.log.format);
   log::info("configuration reloaded");
 }

@@ -198,6 +198,10 @@ TEST(Server, ActionsOfForeignPagesNeedTheToken) {
   EXPECT_TRUE(
       service.ask("/registration", {page}, "POST", "x").headers.contains("www-authenticate"));
 
+  service.server.set_bearer_token("another");
+  EXPECT_EQ(status({page, {"Authorization", "Bearer open sesame"}}), 401);
+  EXPECT_EQ(status({page, {"Authorization", "Bearer another"}}), 201);
+
   TestServer without_token;
   EXPECT_EQ(without_token.ask("/registration", {page}, "POST", "x").status, 403);
 }

@@ -94,7 +94,7 @@ class Process(unittest.TestCase):
         sensor.signal(signal.SIGHUP)
         self.assertIn("images", str(sensor.wait_for_event("reload refused, the old configuration stays")))
         self.assertEqual(sensor.get("/frame").status, 200)
-        configure(images=True, id="other")
+        configure(images=True, id="other", http={"bearer_token": "secret"})
         sensor.signal(signal.SIGHUP)
         self.assertEqual(sensor.wait_for_event("changed, but needs a restart")["key"], "id")
         sensor.wait_for_event("configuration reloaded")

@@ -26,7 +26,7 @@ std::string refusal(std::vector<std::string> assignments) {
 }
 
 TEST(SensorConfig, TheCommentedFileSaysTheDefaults) {
-  const Setup documented = setup_with({}, "deploy/config/sensor.json");
+  const auto documented = setup_with({}, "deploy/config/sensor.json");
   EXPECT_EQ(documented.config, setup_with({}).config);
   EXPECT_EQ(documented.device->describe().kind, "simulated");
 }
@@ -73,8 +73,10 @@ TEST(SensorConfig, ChangesThatNeedARestartAreNamed) {
   const record::TemporaryFolder folder;
   const auto path = (folder / "sensor.json").string();
   std::ofstream(path) << R"({"device": {"simulated": {"latency_ms": 5}}})";
-  const Setup running = setup_with({});
-  EXPECT_THAT(restart_keys(running, setup_with({"images=true", "log.level=debug"})), IsEmpty());
+  const auto running = setup_with({});
+  EXPECT_THAT(
+      restart_keys(running, setup_with({"images=true", "log.level=debug", "http.bearer_token=x"})),
+      IsEmpty());
   EXPECT_THAT(restart_keys(running, setup_with({"id=s2", "http.port=1", "clock_error_ms=1"})),
               ElementsAre("id", "http", "clock_error_ms"));
   EXPECT_THAT(restart_keys(running, setup_with({}, path)), ElementsAre("device"));
