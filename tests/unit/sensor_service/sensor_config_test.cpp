@@ -32,7 +32,7 @@ TEST(SensorConfig, TheCommentedFileSaysTheDefaults) {
 }
 
 TEST(SensorConfig, EveryKeyIsRead) {
-  const Setup setup =
+  const auto setup =
       setup_with({"id=cam-2", "http.address=0.0.0.0", "http.port=9000", "http.bearer_token=secret",
                   "http.allowed_origin=http://a", "images=true", "frames_kept=7",
                   "clock_error_ms=-250", "log.level=warn", "log.format=json"});
