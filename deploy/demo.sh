@@ -159,7 +159,7 @@ start_replays() {
   [[ -f "${files[0]}" ]] || fail "there is no *.mcap in $recording (chorus import makes them)"
   need_free_ports ${#files[@]}
   start replay "$bin/chorus" replay "$recording" --port $(( port + 1 )) --loop
-  local deadline=$(( SECONDS + start_within_s )) line
+  local deadline=$(( SECONDS + start_within_s ))
   until (( $(grep -c ' at http' "$logs/replay.out") == ${#files[@]} )); do
     all_alive || { show_logs; fail "the replay ended"; }
     (( SECONDS < deadline )) || { show_logs; fail "the replay did not start within $start_within_s s"; }
