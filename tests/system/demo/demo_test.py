@@ -9,29 +9,14 @@ import time
 import unittest
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).parent))
+from demo_ports import free_ports, is_listening  # noqa: E402
+
 ROOT = Path(__file__).resolve().parents[3]
 BIN = Path(os.environ["CHORUS_BIN"])
 PORTS = 8            # the fusion server and up to seven sensors
 RUN_S = 20           # first provisional registration after about 7 s
 START_WITHIN_S = 60  # loaded machines are slow
-
-
-def free_ports():
-    """The first of PORTS neighbouring ports that nobody listens on."""
-    for first in range(20000 + os.getpid() % 20000, 60000, PORTS):
-        try:
-            for port in range(first, first + PORTS):
-                with socket.socket() as probe:
-                    probe.bind(("127.0.0.1", port))
-            return first
-        except OSError:
-            continue
-    raise RuntimeError("no free ports")
-
-
-def listening(port):
-    with socket.socket() as probe:
-        return probe.connect_ex(("127.0.0.1", port)) == 0
 
 
 def demo(port, *arguments):
@@ -41,13 +26,13 @@ def demo(port, *arguments):
 
 class Demo(unittest.TestCase):
     def setUp(self):
-        self.port = free_ports()
+        self.port = free_ports(PORTS)
 
     def assert_nothing_left(self, process):
         left = subprocess.run(["ps", "-o", "pid,args", "--no-headers", "-s", str(process.pid)],
                               capture_output=True, text=True).stdout
         self.assertEqual(left.strip(), "")
-        self.assertEqual([port for port in range(self.port, self.port + PORTS) if listening(port)], [])
+        self.assertEqual([port for port in range(self.port, self.port + PORTS) if is_listening(port)], [])
 
     def run_to_its_end(self, *arguments):
         process = demo(self.port, *arguments)
@@ -80,9 +65,9 @@ class Demo(unittest.TestCase):
         for stop in (signal.SIGINT, signal.SIGTERM):
             process = demo(self.port)
             deadline = time.monotonic() + START_WITHIN_S
-            while not listening(self.port) and time.monotonic() < deadline:
+            while not is_listening(self.port) and time.monotonic() < deadline:
                 time.sleep(0.1)
-            self.assertTrue(listening(self.port), "the demo did not come up")
+            self.assertTrue(is_listening(self.port), "the demo did not come up")
             os.killpg(process.pid, stop)  # as a terminal does
             output, _ = process.communicate(timeout=START_WITHIN_S)
             self.assertNotEqual(process.returncode, 0, output)
@@ -91,13 +76,13 @@ class Demo(unittest.TestCase):
     def test_a_killed_demo_takes_its_programs_along(self):
         process = demo(self.port)
         deadline = time.monotonic() + START_WITHIN_S
-        while not listening(self.port) and time.monotonic() < deadline:
+        while not is_listening(self.port) and time.monotonic() < deadline:
             time.sleep(0.1)
         process.kill()
         process.wait()
         process.stdout.close()
         deadline = time.monotonic() + START_WITHIN_S
-        while time.monotonic() < deadline and any(listening(port) for port in range(self.port, self.port + PORTS)):
+        while time.monotonic() < deadline and any(is_listening(port) for port in range(self.port, self.port + PORTS)):
             time.sleep(0.1)
         self.assert_nothing_left(process)
 

@@ -1,0 +1,82 @@
+"""Every curl line in our documents works against a running demo: run as it is printed, with the ports moved."""
+
+import os
+import re
+import subprocess
+import sys
+import time
+import unittest
+import urllib.request
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests/system/demo"))
+from demo_ports import free_ports, is_listening  # noqa: E402
+
+BIN = Path(os.environ["CHORUS_BIN"])
+DOCUMENTED_FUSION_PORT = 8080
+SENSORS = 6
+START_WITHIN_S = 60
+FIRST_BODY_WITHIN_S = 60
+BLOCK = re.compile(r"^```sh\n(.*?)^```", re.DOTALL | re.MULTILINE)
+SKIPPED = {"node_modules", "build", "var", ".git"}
+
+
+def curl_lines():
+    """(document, line) for every line of a shell block that calls curl."""
+    for file in sorted(ROOT.rglob("*.md")):
+        if SKIPPED & set(file.relative_to(ROOT).parts):
+            continue
+        for block in BLOCK.findall(file.read_text(encoding="utf-8")):
+            for line in block.replace("\\\n", " ").splitlines():
+                if re.match(r"\s*curl\s", line):
+                    yield file.relative_to(ROOT).as_posix(), line.strip()
+
+
+def moved(line, first):
+    """The line for a demo whose fusion server listens on `first`, failing on HTTP errors."""
+    for i in range(SENSORS + 1):
+        line = line.replace(f"127.0.0.1:{DOCUMENTED_FUSION_PORT + i}", f"127.0.0.1:{first + i}")
+    return re.sub(r"^curl\s", "curl --fail --max-time 20 ", line)
+
+
+class CurlLines(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.port = free_ports(SENSORS + 1)
+        cls.demo = subprocess.Popen(["deploy/demo.sh", "--bin", str(BIN), "--port", str(cls.port)], cwd=ROOT,
+                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+        cls.addClassCleanup(cls.stop)
+        deadline = time.monotonic() + START_WITHIN_S
+        while not is_listening(cls.port) and time.monotonic() < deadline:
+            time.sleep(0.1)
+        deadline = time.monotonic() + FIRST_BODY_WITHIN_S
+        while not cls.has_body() and time.monotonic() < deadline:
+            time.sleep(0.2)
+
+    @classmethod
+    def stop(cls):
+        cls.demo.terminate()
+        cls.demo.wait(START_WITHIN_S)
+
+    @classmethod
+    def has_body(cls):
+        try:
+            with urllib.request.urlopen(f"http://127.0.0.1:{cls.port}/skeletons/", timeout=5) as answer:
+                return b"skeletons/" in answer.read()
+        except OSError:
+            return False
+
+    def test_every_documented_line_answers(self):
+        lines = list(curl_lines())
+        self.assertGreaterEqual(len(lines), 3, "the README has three")
+        for document, line in lines:
+            with self.subTest(document=document, line=line):
+                result = subprocess.run(["bash", "-o", "pipefail", "-c", moved(line, self.port)],
+                                        capture_output=True, text=True, timeout=60)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertNotEqual(result.stdout.strip(), "")
+
+
+if __name__ == "__main__":
+    unittest.main()
