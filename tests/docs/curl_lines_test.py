@@ -1,5 +1,6 @@
 """Every curl line in our documents works against a running demo: run as it is printed, with the ports moved."""
 
+import json
 import os
 import re
 import subprocess
@@ -62,8 +63,9 @@ class CurlLines(unittest.TestCase):
     @classmethod
     def has_body(cls):
         try:
-            with urllib.request.urlopen(f"http://127.0.0.1:{cls.port}/skeletons/", timeout=5) as answer:
-                return b"skeletons/" in answer.read()
+            request = urllib.request.Request(f"http://127.0.0.1:{cls.port}/frame", headers={"Accept": "application/json"})
+            with urllib.request.urlopen(request, timeout=5) as answer:
+                return bool(json.load(answer)["bodies"])
         except OSError:
             return False
 

@@ -28,11 +28,15 @@ class Demo(unittest.TestCase):
     def setUp(self):
         self.port = free_ports(PORTS)
 
+    def left_by(self, process):
+        """What still runs of the demo's session, and which of its ports still answer."""
+        lines = subprocess.run(["ps", "-o", "stat=,args=", "-s", str(process.pid)], capture_output=True,
+                               text=True).stdout.splitlines()
+        running = [line for line in lines if not line.startswith("Z")]  # dead, only not yet buried
+        return running + [port for port in range(self.port, self.port + PORTS) if is_listening(port)]
+
     def assert_nothing_left(self, process):
-        left = subprocess.run(["ps", "-o", "pid,args", "--no-headers", "-s", str(process.pid)],
-                              capture_output=True, text=True).stdout
-        self.assertEqual(left.strip(), "")
-        self.assertEqual([port for port in range(self.port, self.port + PORTS) if is_listening(port)], [])
+        self.assertEqual(self.left_by(process), [])
 
     def run_to_its_end(self, *arguments):
         process = demo(self.port, *arguments)
@@ -82,7 +86,7 @@ class Demo(unittest.TestCase):
         process.wait()
         process.stdout.close()
         deadline = time.monotonic() + START_WITHIN_S
-        while time.monotonic() < deadline and any(is_listening(port) for port in range(self.port, self.port + PORTS)):
+        while self.left_by(process) and time.monotonic() < deadline:
             time.sleep(0.1)
         self.assert_nothing_left(process)
 
