@@ -92,6 +92,10 @@ Result<void> SensorHost::start() {
                                {"url", "http://" + setup_.config.http.address + ":" +
                                            std::to_string(server_.port()) + "/"},
                                {"device", setup_.device->describe().label}});
+  encoder_ = std::jthread([this](const std::stop_token& stop) {
+    while (service_.encode_next(stop)) {
+    }
+  });
   device_ = std::jthread([this](std::stop_token stop) { run_device(std::move(stop)); });
   return {};
 }
@@ -112,8 +116,10 @@ void SensorHost::run_device(std::stop_token stop) {
 
 void SensorHost::stop() {
   device_.request_stop();
+  encoder_.request_stop();
   server_.stop();
   if (device_.joinable()) device_.join();
+  if (encoder_.joinable()) encoder_.join();
 }
 
 void SensorHost::reload(Setup wanted) {

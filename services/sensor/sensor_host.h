@@ -38,6 +38,7 @@ class SensorHost {
   SensorService service_;
   http::Server server_;
   std::jthread device_;
+  std::jthread encoder_;  ///< Idle unless images are switched on.
 };
 
 /// From command line to exit code; SIGINT and SIGTERM stop, SIGHUP reloads.

@@ -11,7 +11,9 @@ using http::PathParams;
 using http::Request;
 
 SensorService::SensorService(ServiceOptions options)
-    : options_(std::move(options)), recent_(options_.frames_kept), images_(options_.images) {}
+    : options_(std::move(options)),
+      recent_(options_.frames_kept),
+      images_(options_.images, options_.steady_now) {}
 
 /// Why a frame cannot be true; empty when it can.  Called with the mutex held.
 std::string SensorService::objection(const SensorFrame& frame) const {
@@ -49,14 +51,13 @@ void SensorService::on_capture(Capture capture) {
     last_capture_ = options_.steady_now();
   }
   live_->publish(latest_frame(*now, options_.run));
+  images_.offer(now);
 }
 
 void SensorService::on_device_end(const Result<void>& how) {
   const std::lock_guard lock(mutex_);
   ended_ = how ? "the device has come to its end" : "the device failed: " + to_string(how.error());
 }
-
-void SensorService::show_images(bool on) { images_ = on; }
 
 endpoint::Health SensorService::health() const {
   const std::lock_guard lock(mutex_);
@@ -84,18 +85,26 @@ Result<SightPtr> SensorService::sight() const {
 }
 
 SensorService::Answer SensorService::self() const {
-  return self_document({options_.id, options_.device, images_}, options_.run);
+  return self_document({options_.id, options_.device, images_.allowed()}, options_.run);
 }
 
-SensorService::Answer SensorService::image(std::shared_ptr<const LazyImage> Sight::*which) const {
-  if (!images_) {
-    return fail(ErrorCode::NotFound, "images", "images are switched off; set images: true");
-  }
-  const auto now = sight();
-  if (!now) return pass(now);
-  const auto& image = **now.*which;
+SensorService::Answer SensorService::image(std::shared_ptr<const LazyImage> Sight::*which) {
+  const auto pictured = images_.ask();
+  if (!pictured) return pass(pictured);
+  const auto& image = **pictured.*which;
   if (!image) return fail(ErrorCode::NotFound, "images", "this device has no such images");
-  return image_document(*image, (*now)->frame->sequence, options_.run);
+  return image_document(*image, (*pictured)->frame->sequence, options_.run);
+}
+
+void SensorService::add_image_routes(http::Router& router) {
+  router.get("/images/", [this](const Request&, const PathParams&) -> Answer {
+    return images_.ask().map(
+        [this](const SightPtr& now) { return image_list(*now, options_.run); });
+  });
+  router.get("/images/color",
+             [this](const Request&, const PathParams&) { return image(&Sight::color); });
+  router.get("/images/depth",
+             [this](const Request&, const PathParams&) { return image(&Sight::depth); });
 }
 
 void SensorService::add_routes(http::Router& router) {
@@ -115,14 +124,7 @@ void SensorService::add_routes(http::Router& router) {
   router.get("/floor-plane", [this, run](const Request&, const PathParams&) -> Answer {
     return sight().and_then([&](const SightPtr& now) { return floor_plane(*now, run); });
   });
-  router.get("/images/", [this, run](const Request&, const PathParams&) -> Answer {
-    if (!images_) return image(&Sight::color);
-    return sight().map([&](const SightPtr& now) { return image_list(*now, run); });
-  });
-  router.get("/images/color",
-             [this](const Request&, const PathParams&) { return image(&Sight::color); });
-  router.get("/images/depth",
-             [this](const Request&, const PathParams&) { return image(&Sight::depth); });
+  add_image_routes(router);
 }
 
 }  // namespace chorus::sensor_service

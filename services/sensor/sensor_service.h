@@ -4,7 +4,6 @@
 // Sight.
 #pragma once
 
-#include <atomic>
 #include <chrono>
 #include <functional>
 #include <memory>
@@ -16,12 +15,11 @@
 #include "common/http/live_document.h"
 #include "common/http/router.h"
 #include "common/sensor/frame_source.h"
+#include "services/sensor/image_desk.h"
 #include "services/sensor/recent_frames.h"
 #include "services/sensor/sight.h"
 
 namespace chorus::sensor_service {
-
-using SteadyNow = std::function<std::chrono::steady_clock::time_point()>;
 
 struct ServiceOptions {
   SensorId id;
@@ -52,7 +50,9 @@ class SensorService {
   void on_device_end(const Result<void>& how);
 
   /// Takes effect with the next request.
-  void show_images(bool on);
+  void show_images(bool on) { images_.allow(on); }
+  /// Work for a thread of its own: blocks until images are due, encodes them; false when stopped.
+  bool encode_next(const std::stop_token& stop) { return images_.encode_next(stop); }
 
   [[nodiscard]] endpoint::Health health() const;
   [[nodiscard]] ServiceCounters counters() const;
@@ -66,13 +66,14 @@ class SensorService {
   [[nodiscard]] std::string objection(const SensorFrame& frame) const;
   [[nodiscard]] Result<SightPtr> sight() const;
   [[nodiscard]] Answer self() const;
-  [[nodiscard]] Answer image(std::shared_ptr<const LazyImage> Sight::*which) const;
+  [[nodiscard]] Answer image(std::shared_ptr<const LazyImage> Sight::*which);
+  void add_image_routes(http::Router& router);
 
   const ServiceOptions options_;
   const std::shared_ptr<http::LiveDocument> live_ = std::make_shared<http::LiveDocument>();
   RecentFrames recent_;
   RateReport refused_{"capture refused"};
-  std::atomic<bool> images_;
+  ImageDesk images_;
 
   mutable std::mutex mutex_;  ///< Guards what follows.
   SightPtr sight_;

@@ -97,7 +97,7 @@ class Process(unittest.TestCase):
         sensor.signal(signal.SIGHUP)
         self.assertEqual(sensor.wait_for_event("changed, but needs a restart")["key"], "id")
         sensor.wait_for_event("configuration reloaded")
-        self.assertIn("no such images", sensor.get("/images/depth").json["detail"])
+        self.assertIn("no such images", sensor.wait_for("/images/depth", 404).json["detail"])
         self.assertEqual(sensor.get("/frame").json["source"], "s1")
 
     def test_replays_with_one_epoch_stay_in_step(self):
@@ -124,6 +124,17 @@ class Process(unittest.TestCase):
                 self.assertLess(min(off, step - off), 600)
         for captured in times[1]:
             self.assertTrue(0.999e9 <= (captured - start) % period <= 3.001e9, "its place in the round is kept")
+
+    def test_images_of_the_simulated_device(self):
+        sensor = self.start("--set", "images=true")
+        for path, media_type, magic in (("/images/depth", "image/png", b"\x89PNG"), ("/images/color", "image/jpeg", b"\xff\xd8")):
+            sensor.wait_for(path, 200)
+            answer = sensor.get(path, accept="image/*")
+            self.assertEqual((answer.status, answer.type), (200, media_type))
+            self.assertTrue(answer.bytes.startswith(magic))
+            self.assertIn('</images/>; rel="describedby"', ", ".join(answer.headers.get_all("Link")))
+        depth = sensor.get("/images/").json["depthImage"]
+        self.assertEqual((depth["width"], depth["height"]), (512, 424))
 
     def test_a_simulated_clock_error_shows_everywhere(self):
         sensor = self.start("--recording", make_recording(self.folder.name), "--set", "clock_error_ms=60000")

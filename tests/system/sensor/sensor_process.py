@@ -67,7 +67,7 @@ class Sensor:
         end = time.monotonic() + START_S
         while True:
             answer = self.get(path, accept="application/json, */*;q=0.1")
-            if answer.status == status and containing in answer.text:
+            if answer.status == status and containing.encode() in answer.bytes:
                 return answer
             assert time.monotonic() < end, f"{path} stays {answer.status}, not {status}"
             time.sleep(0.02)

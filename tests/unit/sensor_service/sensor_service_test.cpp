@@ -60,6 +60,7 @@ class SensorServiceTest : public ::testing::Test {
   std::chrono::steady_clock::time_point now_{std::chrono::hours(1)};
   SensorService service_{options(&now_)};
   http::Router router_;
+  std::stop_source stop_;
 };
 
 TEST_F(SensorServiceTest, BeforeTheFirstCaptureNothingIsReady) {
@@ -177,9 +178,11 @@ TEST_F(SensorServiceTest, ImagesAreOffUntilSomebodyWantsThem) {
     EXPECT_THAT(get(router_, path).body, HasSubstr("set images: true"));
   }
   EXPECT_THAT(get(router_, "/").body, Not(HasSubstr("images")));
-  EXPECT_EQ(encoded, 0);
   service_.show_images(true);
   EXPECT_THAT(get(router_, "/").body, HasSubstr("images/depth"));
+  EXPECT_EQ(get(router_, "/images/depth").status, 503) << "not encoded yet, and not on this thread";
+  EXPECT_EQ(encoded, 0);
+  ASSERT_TRUE(service_.encode_next(stop_.get_token()));
   EXPECT_EQ(get(router_, "/images/color").status, 404) << "this device has no colour camera";
   const Answer depth = get(router_, "/images/depth", "image/*");
   EXPECT_EQ(depth.type, "image/png");
@@ -192,14 +195,39 @@ TEST_F(SensorServiceTest, ImagesAreOffUntilSomebodyWantsThem) {
   EXPECT_EQ(get(router_, "/images/depth").status, 404);
 }
 
+TEST_F(SensorServiceTest, ImagesAreEncodedWhileSomebodyAsksAndElseOnceASecond) {
+  service_.show_images(true);
+  int encoded = 0;
+  const auto captured = [&](int index) {
+    Capture with_image = capture(index);
+    with_image.depth = image("depth", &encoded);
+    service_.on_capture(std::move(with_image));
+  };
+  now_ += std::chrono::hours(1);
+  captured(0);
+  ASSERT_TRUE(service_.encode_next(stop_.get_token()));  // the first at once
+  stop_.request_stop();  // from here on: true when due, false instead of waiting
+  captured(1);
+  EXPECT_FALSE(service_.encode_next(stop_.get_token())) << "nobody asked";
+  now_ += std::chrono::milliseconds(1001);
+  EXPECT_TRUE(service_.encode_next(stop_.get_token())) << "a second has passed";
+  captured(2);
+  (void)get(router_, "/images/depth", "image/*");
+  EXPECT_TRUE(service_.encode_next(stop_.get_token())) << "somebody asked";
+  EXPECT_FALSE(service_.encode_next(stop_.get_token())) << "the same capture is encoded once";
+  EXPECT_EQ(encoded, 3);
+}
+
 TEST_F(SensorServiceTest, AnEncoderThatFailsIsAnErrorNotACrash) {
   service_.show_images(true);
   Capture broken = capture(0);
   broken.depth = []() -> Result<CameraImage> { throw std::runtime_error("no memory"); };
   broken.color = []() -> Result<CameraImage> { return fail(ErrorCode::Unavailable, "x", "later"); };
   service_.on_capture(std::move(broken));
+  ASSERT_TRUE(service_.encode_next(stop_.get_token()));
   EXPECT_EQ(get(router_, "/images/depth").status, 500);
   EXPECT_EQ(get(router_, "/images/color").status, 503);
+  EXPECT_EQ(get(router_, "/images/").status, 200) << "a list without images";
 }
 
 TEST_F(SensorServiceTest, ASilentDeviceIsNotHealthyUntilItSpeaksAgain) {

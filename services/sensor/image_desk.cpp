@@ -1,0 +1,67 @@
+#include "services/sensor/image_desk.h"
+
+#include <utility>
+
+namespace chorus::sensor_service {
+
+namespace {
+
+constexpr std::chrono::seconds kDemandLasts{2};  // a client that asked may ask again so soon
+constexpr std::chrono::seconds kIdlePace{1};     // how old an image may get while nobody asks
+
+}  // namespace
+
+void ImageDesk::allow(bool on) {
+  const std::lock_guard lock(mutex_);
+  on_ = on;
+  if (!on) pictured_ = nullptr;
+  changed_.notify_all();
+}
+
+bool ImageDesk::allowed() const {
+  const std::lock_guard lock(mutex_);
+  return on_;
+}
+
+void ImageDesk::offer(SightPtr sight) {
+  const std::lock_guard lock(mutex_);
+  offered_ = std::move(sight);
+  if (on_) changed_.notify_all();
+}
+
+Result<SightPtr> ImageDesk::ask() {
+  const std::lock_guard lock(mutex_);
+  if (!on_) {
+    return fail(ErrorCode::NotFound, "images", "images are switched off; set images: true");
+  }
+  asked_ = steady_now_();
+  changed_.notify_all();
+  if (!pictured_) {
+    return fail(ErrorCode::Unavailable, "images", "the first image is still being encoded");
+  }
+  return pictured_;
+}
+
+/// Called with the mutex held.
+bool ImageDesk::due() const {
+  if (!on_ || offered_ == pictured_ || !offered_) return false;
+  const auto now = steady_now_();
+  return !pictured_ || now - asked_ < kDemandLasts || now - encoded_ >= kIdlePace;
+}
+
+bool ImageDesk::encode_next(const std::stop_token& stop) {
+  SightPtr sight;
+  {
+    std::unique_lock lock(mutex_);
+    if (!changed_.wait(lock, stop, [this] { return due(); })) return false;
+    sight = offered_;
+  }
+  if (sight->color) (void)sight->color->get();
+  if (sight->depth) (void)sight->depth->get();
+  const std::lock_guard lock(mutex_);
+  encoded_ = steady_now_();
+  if (on_) pictured_ = std::move(sight);
+  return true;
+}
+
+}  // namespace chorus::sensor_service
