@@ -19,7 +19,9 @@ struct Problem {
   std::vector<std::string_view> available = {};  ///< 406: media types that there are.
 };
 
+/// Its views point into `error`.
 [[nodiscard]] Problem problem_of(const Error& error);
+Problem problem_of(Error&&) = delete;
 
 /// {"type":"about:blank","title":...,"status":...,"detail":...}; bytes that are no UTF-8 are
 /// replaced.

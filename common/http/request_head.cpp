@@ -197,16 +197,17 @@ std::optional<Refusal> check_expectation(RequestHead& head) {
   return {};
 }
 
-void read_connection(RequestHead& head) {
+std::optional<Refusal> read_connection(RequestHead& head) {
   std::string_view list = head.connection;
+  bool close = false;
   while (!list.empty()) {
     const std::string_view option = next_element(list, ',');
-    if (equal_ignoring_case(option, "close")) {
-      head.keep_alive = false;
-      return;
-    }
+    if (!all_in(option, kToken)) return bad("Connection is a list of words");
+    close |= equal_ignoring_case(option, "close");
     if (equal_ignoring_case(option, "keep-alive")) head.keep_alive = true;
   }
+  if (close) head.keep_alive = false;
+  return {};
 }
 
 /// Cuts one line off; find_head_end has seen that each ends in CR LF.
@@ -254,8 +255,7 @@ std::optional<Refusal> read_head(std::string_view bytes, RequestHead& head) {
   if (auto refusal = check_host(head)) return refusal;
   if (auto refusal = check_framing(head)) return refusal;
   if (auto refusal = check_expectation(head)) return refusal;
-  read_connection(head);
-  return {};
+  return read_connection(head);
 }
 
 }  // namespace chorus::http

@@ -99,6 +99,7 @@ std::vector<Refused> refused_requests() {
       {"length beyond 64 bits", post + "Content-Length: 99999999999999999999\r\n\r\n", 400},
       {"length beyond the limit", post + "Content-Length: 99999999\r\n\r\nabc", 413},
       {"unknown expectation", post + "Expect: miracles\r\nContent-Length: 1\r\n\r\nx", 417},
+      {"connection without words", get + "Host: a\r\nConnection: kee@p-alive\r\n\r\n", 400},
       {"empty line first", "\r\nGET /frame HTTP/1.1\r\nHost: a\r\n\r\n", 400},
       {"TLS client hello", "\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\n", 400},
       {"huge target", "GET /" + std::string(20000, 'a') + " HTTP/1.1\r\nHost: a\r\n\r\n", 414},

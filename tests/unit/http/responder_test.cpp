@@ -1,0 +1,91 @@
+// Requests to reactions without a socket; the HTTP checklist is in
+// tests/integration/http/server_test.
+#include "common/http/responder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace chorus::http {
+namespace {
+
+using testing::HasSubstr;
+
+class ResponderTest : public testing::Test {
+ protected:
+  ResponderTest() {
+    auto router = std::make_shared<Router>();
+    router->live("/frame", frame_);
+    router->action(Method::Post, "/do", [](const Request& request, const PathParams&) {
+      return Result<ActionResult>(
+          ActionResult{200, make_document("text/plain", std::string(request.body), {"1"})});
+    });
+    responder_ = std::make_unique<Responder>(config_, router);
+    publish(1);
+  }
+  void publish(int version) {
+    frame_->publish(make_document("text/plain", "x", {std::to_string(version)}));
+  }
+  Reaction react(const std::string& lines) {
+    bytes_ = lines + "\r\n";
+    EXPECT_FALSE(read_head(bytes_, head_));
+    return responder_->react(head_, {true, "127.0.0.1", 80});
+  }
+
+  ServerConfig config_;
+  std::shared_ptr<LiveDocument> frame_ = std::make_shared<LiveDocument>();
+  std::unique_ptr<Responder> responder_;
+  std::string bytes_;
+  RequestHead head_;
+};
+
+TEST_F(ResponderTest, ALongPollWaitsUntilTheTagChanges) {
+  const Reaction reaction =
+      react("GET /frame HTTP/1.1\r\nHost: x\r\nPrefer: wait=100\r\nIf-None-Match: \"1-txt\"\r\n");
+  ASSERT_EQ(reaction.kind, Reaction::Kind::Wait);
+  EXPECT_EQ(reaction.wait, config_.limits.max_wait);
+  EXPECT_FALSE(responder_->waited(*reaction.entry, head_));
+  publish(1);
+  EXPECT_FALSE(responder_->waited(*reaction.entry, head_));
+  EXPECT_EQ(responder_->given_up(*reaction.entry, head_).status, 304);
+  publish(2);
+  const auto answer = responder_->waited(*reaction.entry, head_);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->status, 200);
+  EXPECT_EQ(answer->extra, "Preference-Applied: wait\r\n");
+}
+
+TEST_F(ResponderTest, TheBodyOfTheHotPathIsTheDocumentsOwn) {
+  const Reaction reaction = react("GET /frame HTTP/1.1\r\nHost: x\r\n");
+  const auto* rendered = *frame_->current()->choose("");
+  EXPECT_EQ(reaction.answer.body.data(), rendered->body().data());
+  EXPECT_EQ(reaction.answer.own.data(), rendered->wire->data());
+}
+
+TEST_F(ResponderTest, AnAnswerOutlivesTheNextPublish) {
+  const Reaction reaction = react("GET /frame HTTP/1.1\r\nHost: x\r\n");
+  publish(2);
+  EXPECT_EQ(reaction.answer.body, "x");
+}
+
+TEST_F(ResponderTest, ActionsAskForTheirBodyFirst) {
+  const Reaction reaction = react("POST /do HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2\r\n");
+  ASSERT_EQ(reaction.kind, Reaction::Kind::ReadBody);
+  EXPECT_EQ(responder_->act(reaction, head_, {true, "127.0.0.1", 80}, "hi").body, "hi");
+}
+
+TEST_F(ResponderTest, UnreadBodiesEndTheConnection) {
+  EXPECT_TRUE(react("POST /frame HTTP/1.1\r\nHost: x\r\nContent-Length: 2\r\n").answer.close);
+  EXPECT_TRUE(react("POST /nope HTTP/1.1\r\nHost: x\r\nContent-Length: 2\r\n").answer.close);
+  EXPECT_FALSE(react("POST /nope HTTP/1.1\r\nHost: x\r\n").answer.close);
+}
+
+TEST_F(ResponderTest, OneOriginWhenConfigured) {
+  config_.allowed_origin = "http://viewer.example";
+  const Responder strict(config_, std::make_shared<Router>());
+  EXPECT_FALSE(read_head("GET /frame HTTP/1.1\r\nHost: x\r\n\r\n", head_));
+  EXPECT_THAT(std::string(strict.react(head_, {}).answer.route),
+              HasSubstr("Access-Control-Allow-Origin: http://viewer.example\r\n"));
+}
+
+}  // namespace
+}  // namespace chorus::http
