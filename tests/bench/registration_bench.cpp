@@ -134,7 +134,7 @@ Result<void> run_registration(Report& report) {
       "wrong.  icp: PCL ICP on neck clouds without time, same frames.");
   report.note(
       "Simulated sensors, profile gauss: white noise only.  No view-dependent bias, no "
-      "coloured noise, no left/right flips: real sensors do worse, see docs.");
+      "coloured noise, no left/right flips: real sensors do worse.");
   return {};
 }
 
