@@ -21,7 +21,7 @@ constexpr std::string_view kPrefixes =
     "@prefix vom: <http://vocab.arvida.de/2015/06/vom/vocab#> .\n"
     "@prefix xsd: <http://www.w3.org/2001/XMLSchema#> .\n";
 
-constexpr std::string_view kDouble = "\"^^xsd:double ; ";
+constexpr std::string_view kDouble = "\"^^xsd:double";
 constexpr std::size_t kJointText = 2048;  // longest joint without its names
 
 class ArvidaFrame {
@@ -66,7 +66,7 @@ class ArvidaFrame {
     pen_.need(kJointText + kJointCount * (64 + names_.size()));
     pen_.put("\n<");
     put_body_name(body);
-    pen_.put("> a skel:Skeleton, ch:Skeleton ;\n  ch:bodyId ");
+    pen_.put("> a skel:Skeleton ;\n  ch:bodyId ");
     pen_.put_integer(body.id);
     std::string_view before = " ;\n  skel:skeletonJoint <";
     for (const std::string_view joint : kJointNames) {
@@ -112,22 +112,22 @@ class ArvidaFrame {
   void put_translation(const Eigen::Vector3d& p) {
     pen_.put(
         " ;\n  spatial:translation [ a spatial:Translation3D ; vom:quantityKind vom:Length ; "
-        "vom:quantityValue [ a maths:Vector3D ; ");
-    put_number("maths:x \"", p.x(), kPositionDecimals);
-    put_number("maths:y \"", p.y(), kPositionDecimals);
-    put_number("maths:z \"", p.z(), kPositionDecimals);
-    pen_.put("vom:unit vom:meter ] ]");
+        "vom:quantityValue [ a maths:Vector3D");
+    put_number(" ; maths:x \"", p.x(), kPositionDecimals);
+    put_number(" ; maths:y \"", p.y(), kPositionDecimals);
+    put_number(" ; maths:z \"", p.z(), kPositionDecimals);
+    pen_.put(" ; vom:unit vom:meter ] ]");
   }
 
   void put_rotation(const Eigen::Quaterniond& q) {
     pen_.put(
         " ;\n  spatial:rotation [ a spatial:Rotation3D ; vom:quantityKind vom:Angle ; "
-        "vom:quantityValue [ a maths:Quaternion, maths:Vector4D ; ");
-    put_number("maths:x \"", q.x(), kQuaternionDecimals);
-    put_number("maths:y \"", q.y(), kQuaternionDecimals);
-    put_number("maths:z \"", q.z(), kQuaternionDecimals);
-    put_number("maths:w \"", q.w(), kQuaternionDecimals);
-    pen_.put("] ]");
+        "vom:quantityValue [ a maths:Quaternion, maths:Vector4D");
+    put_number(" ; maths:x \"", q.x(), kQuaternionDecimals);
+    put_number(" ; maths:y \"", q.y(), kQuaternionDecimals);
+    put_number(" ; maths:z \"", q.z(), kQuaternionDecimals);
+    put_number(" ; maths:w \"", q.w(), kQuaternionDecimals);
+    pen_.put(" ] ]");
   }
 
   void put_number(std::string_view before, double value, int decimals) {

@@ -1,0 +1,53 @@
+// With an independent JSON-LD processor and an independent Turtle parser: perfect/x.jsonld is the graph of perfect/x.ttl,
+// and perfect/x.json is too, once the Link header's context is applied to everything but the decimals.
+import assert from 'node:assert/strict';
+import { readdirSync, readFileSync } from 'node:fs';
+import { test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+
+import jsonld from 'jsonld';
+import { Parser } from 'n3';
+
+const proto = fileURLToPath(new URL('../../proto/', import.meta.url));
+const base = 'http://localhost/frame';
+const context = JSON.parse(readFileSync(`${proto}context.jsonld`, 'utf8'));
+
+async function documentLoader(url) {
+  assert.equal(url, 'http://localhost/context.jsonld', 'the only document to be loaded is our context');
+  return { contextUrl: null, documentUrl: url, document: context };
+}
+
+/// Our documents have no blank nodes where this is used: triples can be compared as text.
+function lines(quads) {
+  return quads.map((q) => [q.subject, q.predicate, q.object].map((t) =>
+    (t.termType === 'Literal' ? `"${t.value}"^^${t.datatype.value}` : t.value)).join(' ')).sort();
+}
+
+async function fromJsonLd(document) {
+  const nquads = await jsonld.toRDF(document, { base, format: 'application/n-quads', documentLoader });
+  return lines(new Parser({ format: 'application/n-quads' }).parse(nquads));
+}
+
+const names = readdirSync(`${proto}golden/perfect`).filter((name) => name.endsWith('.jsonld')).map((name) => name.slice(0, -7));
+
+test('there is something to compare', () => assert.ok(names.length >= 3));
+
+for (const name of names) {
+  const read = (extension) => readFileSync(`${proto}golden/perfect/${name}.${extension}`, 'utf8');
+  test(`${name}: JSON-LD is the graph of the Turtle`, async () => {
+    const turtle = lines(new Parser({ baseIRI: base }).parse(read('ttl')));
+    assert.deepEqual(await fromJsonLd(JSON.parse(read('jsonld'))), turtle);
+  });
+
+  test(`${name}: N-Triples is the graph of the Turtle`, () => {
+    const triples = new Parser({ format: 'N-Triples' }).parse(read('nt'));
+    assert.deepEqual(lines(triples), lines(new Parser({ baseIRI: base }).parse(read('ttl'))));
+  });
+
+  test(`${name}: the JSON holds the same as the JSON-LD`, () => {
+    const strip = (_, value) => (typeof value === 'string' && /^-?\d+\.\d+$/.test(value) ? Number(value) : value);
+    const { '@context': _, ...linked } = JSON.parse(read('jsonld'), strip);
+    for (const body of linked.bodies) for (const joint of Object.values(body.joints)) delete joint['@type'];
+    assert.deepEqual(JSON.parse(read('json')), linked);
+  });
+}

@@ -1,0 +1,30 @@
+// The SHACL shapes, with an independent validator: they accept what the golden folders call valid and refuse what a shape can see.
+import assert from 'node:assert/strict';
+import { readFileSync, readdirSync } from 'node:fs';
+import { test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+
+import { Parser, Store } from 'n3';
+import Validator from 'rdf-validate-shacl';
+
+const proto = fileURLToPath(new URL('../../proto/', import.meta.url));
+const read = (path) => new Store(new Parser({ baseIRI: 'http://localhost/' }).parse(readFileSync(`${proto}${path}`, 'utf8')));
+const validator = new Validator(read('shapes.ttl'));
+
+for (const name of readdirSync(`${proto}golden/perfect`).filter((file) => file.endsWith('.ttl'))) {
+  test(`perfect/${name} conforms`, async () => {
+    const report = await validator.validate(read(`golden/perfect/${name}`));
+    assert.ok(report.conforms, report.results.map((r) => `${r.focusNode?.value} ${r.path?.value}`).join('; '));
+  });
+}
+
+// What a reader refuses for its numbers, names and missing properties, a shape sees too.
+const visible = ['no-time', 'no-body-time', 'no-sequence', 'no-source', 'no-space', 'no-body-id', 'no-joint-name', 'no-state', 'no-position',
+  'half-a-position', 'absurd-coordinate', 'nan-coordinate', 'two-positions', 'unknown-state', 'unknown-space', 'unknown-joint',
+  'negative-sequence', 'negative-variance', 'string-for-a-number', 'decimal-for-an-integer', 'quaternion-of-length-two',
+  'source-with-a-slash', 'too-many-bodies', 'time-as-a-string'];
+for (const name of visible) {
+  test(`bad/${name}.ttl does not conform`, async () => {
+    assert.equal((await validator.validate(read(`golden/bad/${name}.ttl`))).conforms, false);
+  });
+}
