@@ -142,9 +142,13 @@ pipeline::OfflineConfig config_for(const Case& each) {
   // Views of one person lie up to half a metre apart in depth; there is one person.
   config.pipeline.association.gate = 1.5;
   config.pipeline.association.cluster = 1.5;
+  // As tests/data/pose2sim_mediapipe/fusion.json, which says why.
   config.registration.joints = registration::JointChoice::All;
+  config.registration.along_ratio = 8.0;
+  config.registration.use_floor = false;
+  config.registration.min_spread = 0.0;
   config.registration.max_edge_rms = 0.5;
-  config.registration.min_spread = 0.05;  // two steps on a beam, not a walk through a room
+  config.registration.max_speed = 10.0;
   return config;
 }
 

@@ -34,7 +34,7 @@ TEST(NtuSkeleton, ReadsNoneOneAndTwoBodies) {
   EXPECT_EQ(recording->frames[1].bodies[0].id, BodyId{1});
   EXPECT_EQ(recording->frames[2].bodies[0].id, BodyId{2}) << "numbered in order of appearance";
   EXPECT_EQ(recording->frames[2].bodies[1].id, BodyId{1});
-  EXPECT_EQ(recording->frames[2].captured - recording->frames[0].captured, Duration(66'666'666));
+  EXPECT_EQ(recording->frames[2].captured - recording->frames[0].captured, Duration(66'666'667));
   const Joint& joint = recording->frames[1].bodies[0].skeleton[JointId::SpineMid];
   EXPECT_NEAR(joint.position.x(), 0.11, 1e-9);
   EXPECT_EQ(joint.state, JointState::Tracked);

@@ -1,0 +1,26 @@
+// Processes that live and die with us.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/base/result.h"
+
+namespace chorus::ctl {
+
+/// The program next to ours, else the bare name for $PATH.
+[[nodiscard]] std::filesystem::path sibling_program(const std::string& name);
+
+struct Child {
+  std::string label;  ///< For messages.
+  std::vector<std::string> command;
+};
+
+/// Starts all and waits.  SIGINT or SIGTERM to us stops all of them: success.  As soon as one ends
+/// by itself the others are stopped: success when it ended with 0, else an error that names it.
+[[nodiscard]] Result<void> run_children(const std::vector<Child>& children);
+
+}  // namespace chorus::ctl

@@ -1,0 +1,122 @@
+#include <array>
+#include <exception>
+#include <iostream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "common/base/nearest.h"
+#include "services/ctl/command.h"
+
+namespace chorus::ctl {
+namespace {
+
+constexpr std::array kCommands{
+    Command{"import", "Turns other people's recordings into ours, one .mcap per sensor",
+            "Examples:\n"
+            "  chorus import labanotation Ges01.csv --out rec --floor 0,0.99,0.12,1.1\n"
+            "  chorus import pose2sim tests/data/pose2sim_mediapipe --out rec\n"
+            "  chorus import nw-ucla a04_s01_e00_v0*.json --out rec --start 2026-11-21T07:30:00Z\n"
+            "Writes DIR/SENSOR.mcap, and registration.json and truth.ndjson where the source has "
+            "them.\n"
+            "Then: chorus fuse rec --out fused.ndjson, or chorus replay rec.",
+            &add_import},
+    Command{"register", "Finds where the sensors stand, from a person who walks through the room",
+            "Examples:\n"
+            "  chorus register                        walk through the room until it says so\n"
+            "  chorus register --seconds 45 --fresh   forget what is known first\n"
+            "  chorus register --json | jq .verdict\n"
+            "Exit code 0: good or provisional; 1: refused, the reasons are printed.",
+            &add_register},
+    Command{"status", "Shows the sensors, the registration and the fused bodies of a fusion server",
+            "Examples:\n"
+            "  chorus status\n"
+            "  chorus status --url http://127.0.0.1:8080/ --json | jq .sensors",
+            &add_status},
+    Command{"replay", "Plays recordings as sensors: one chorus-sensor process for each",
+            "Examples:\n"
+            "  chorus replay rec --loop               all recordings of a folder, ports 8081, "
+            "8082, ...\n"
+            "  chorus replay rec/cam01.mcap --port 9001\n"
+            "Ctrl-C stops all of them.",
+            &add_replay},
+    Command{
+        "fuse", "Fuses recordings of several sensors offline, registration included",
+        "Examples:\n"
+        "  chorus fuse rec --out fused.ndjson\n"
+        "  chorus fuse rec --out fused.ndjson --registration rec/registration.json --method otto\n"
+        "  chorus fuse rec --out - --config deploy/config/fusion.json | jq .bodies[0].joints.Head\n"
+        "One /frame document a line; the same input gives the same bytes.",
+        &add_fuse},
+};
+
+struct Added {
+  CLI::App* options = nullptr;
+  Run run;
+};
+
+/// CLI11 would only say that an argument was not expected.
+bool complain_of_unknown_command(int argc, const char* const* argv) {
+  if (argc < 2 || argv[1][0] == '-') return false;
+  const std::string word = argv[1];
+  std::vector<std::string> known;
+  for (const Command& command : kCommands) known.emplace_back(command.name);
+  if (std::find(known.begin(), known.end(), word) != known.end()) return false;
+  const std::string meant = nearest(word, known);
+  std::cerr << fmt::format("chorus: there is no command \"{}\"{}\nThe commands are: {}.\n", word,
+                           meant.empty() ? "." : fmt::format("; did you mean \"{}\"?", meant),
+                           fmt::join(known, ", "));
+  return true;
+}
+
+int run_added(const std::vector<Added>& all) {
+  for (const Added& each : all) {
+    if (!each.options->parsed()) continue;
+    const Result<int> code = each.run();
+    if (code) return *code;
+    std::cerr << fmt::format("chorus {}: {}\n", each.options->get_name(), to_string(code.error()));
+    return kExitFailed;
+  }
+  return kExitUsage;
+}
+
+int parse_and_run(int argc, const char* const* argv) {
+  CLI::App app{"Chorus: many body-tracking sensors, one tracker."};
+  app.name("chorus");
+  app.set_version_flag("--version", std::string("chorus 0.1.0"));
+  app.require_subcommand(1);
+  app.footer(
+      "chorus COMMAND --help explains each with examples.\n"
+      "Exit codes: 0 done, 1 failed, 2 wrong usage.");
+  std::vector<Added> all;
+  for (const Command& command : kCommands) {
+    auto* options = app.add_subcommand(std::string(command.name), std::string(command.summary));
+    options->footer(std::string(command.examples));
+    all.push_back({options, command.add(*options)});
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& wrong) {
+    return app.exit(wrong) == 0 ? kExitOk : kExitUsage;
+  }
+  return run_added(all);
+}
+
+}  // namespace
+
+std::span<const Command> commands() { return kCommands; }
+
+int run_command_line(int argc, const char* const* argv) {
+  if (complain_of_unknown_command(argc, argv)) return kExitUsage;
+  try {
+    return parse_and_run(argc, argv);
+  } catch (const std::exception& unforeseen) {
+    std::cerr << "chorus: " << unforeseen.what() << '\n';
+    return kExitFailed;
+  }
+}
+
+}  // namespace chorus::ctl

@@ -1,0 +1,40 @@
+// What people see: aligned tables, and progress that is a bar on a terminal and plain lines
+// elsewhere.
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace chorus::ctl {
+
+/// Columns aligned to their widest cell, two blanks between; the first row is the heading.
+[[nodiscard]] std::string table(const std::vector<std::vector<std::string>>& rows);
+
+/// "1.23", or "-" when the number is not finite.
+[[nodiscard]] std::string shown(double value, int digits);
+
+class Progress {
+ public:
+  /// On a terminal one line is redrawn; elsewhere a line is printed for each new tenth or remark.
+  Progress(std::ostream& out, bool terminal, std::string label)
+      : out_(out), terminal_(terminal), label_(std::move(label)) {}
+
+  void show(double fraction, std::string_view remark);
+  /// Ends the bar's line, so that what follows starts on its own.
+  void finish();
+
+ private:
+  std::ostream& out_;
+  const bool terminal_;
+  const std::string label_;
+  int tenth_ = -1;
+  std::string remark_;
+  bool drawn_ = false;
+};
+
+/// Standard error is a terminal.
+[[nodiscard]] bool on_terminal();
+
+}  // namespace chorus::ctl

@@ -1,0 +1,210 @@
+// chorus import FORMAT INPUT... --out DIR
+#include <iostream>
+#include <memory>
+#include <set>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "common/importers/formats.h"
+#include "common/record/frame_recording.h"
+#include "common/resource/frame_resource.h"
+#include "fusion-server/publish/registration_file.h"
+#include "services/ctl/command.h"
+#include "services/ctl/console.h"
+#include "services/ctl/text_file.h"
+
+namespace chorus::ctl {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ImportArguments {
+  std::string format;
+  std::vector<std::string> inputs;
+  std::string out;
+  std::string floor;
+  std::string start;
+  std::string sensor;
+  bool json = false;
+};
+
+/// A CLI11 check that says why the text is refused.
+template <class Parse>
+std::function<std::string(const std::string&)> readable_by(Parse parse) {
+  return [parse](const std::string& text) {
+    const auto value = parse(text);
+    return value ? std::string() : to_string(value.error());
+  };
+}
+
+std::string check_format(const std::string& name) {
+  if (importers::format_named(name)) return {};
+  std::string known;
+  for (const auto& row : importers::kFormats) known += fmt::format(" {}", row.name);
+  return fmt::format("there is no format \"{}\"; known are{}", name, known);
+}
+
+/// Published extrinsics as a registration that stands: the first sensor is the master of each.
+Registration registration_of(const importers::ImportedSet& set) {
+  Registration registration;
+  registration.version = 1;
+  registration.verdict = Verdict::Good;
+  registration.reasons = {"published with the recording"};
+  registration.solved = set.recordings.front().frames.front().captured;
+  registration.master = set.recordings.front().sensor;
+  for (const auto& [sensor, world_from_sensor] : set.world_from_sensor) {
+    Extrinsics& place = registration.sensors[sensor];
+    place.world_from_sensor = world_from_sensor;
+    place.chain = {sensor};
+  }
+  return registration;
+}
+
+resource::FrameResource truth_frame(const importers::TruthFrame& truth, Timestamp captured) {
+  resource::FrameResource frame;
+  frame.sequence = truth.index + 1;
+  frame.captured = captured;
+  frame.source = "truth";
+  frame.space = resource::SpaceKind::World;
+  resource::BodyResource& body = frame.bodies.emplace_back();
+  body.id = 1;
+  body.captured = captured;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const Joint& joint = truth.skeleton.joints[j];
+    body.joints[j] = {joint.position, joint.orientation, joint.state, std::nullopt, 0};
+  }
+  return frame;
+}
+
+/// One /frame document a line, at the capture times of the first recording.
+Result<void> write_truth(const fs::path& file, const importers::ImportedSet& set) {
+  const auto& frames = set.recordings.front().frames;
+  std::string text;
+  for (const auto& truth : set.truth) {
+    if (truth.index >= frames.size()) break;
+    std::string line =
+        resource::write(truth_frame(truth, frames[truth.index].captured), resource::Format::Json);
+    while (line.ends_with('\n')) line.pop_back();
+    text += line + "\n";
+  }
+  return write_text(file.string(), text);
+}
+
+Result<std::vector<fs::path>> write_set(const fs::path& folder, const importers::ImportedSet& set) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) return fail(ErrorCode::Io, folder.string(), failed.message());
+  std::vector<fs::path> written;
+  for (const auto& recording : set.recordings) {
+    written.push_back(folder / (recording.sensor.str() + ".mcap"));
+    const auto done = record::write_frame_recording(written.back(), recording);
+    if (!done) return pass(done);
+  }
+  if (!set.world_from_sensor.empty()) {
+    written.push_back(folder / "registration.json");
+    const auto done =
+        write_text(written.back().string(), publish::write_registration(registration_of(set)));
+    if (!done) return pass(done);
+  }
+  if (!set.truth.empty()) {
+    written.push_back(folder / "truth.ndjson");
+    if (const auto done = write_truth(written.back(), set); !done) return pass(done);
+  }
+  return written;
+}
+
+/// Recordings that lie in the folder but are not of this import would be fused along with it.
+void warn_of_strangers(const fs::path& folder, const std::vector<fs::path>& written) {
+  const std::set<fs::path> ours(written.begin(), written.end());
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().extension() == ".mcap" && ours.count(entry.path()) == 0)
+      std::cerr << fmt::format("note: {} was there before and is not part of this import.\n",
+                               entry.path().string());
+  }
+}
+
+nlohmann::json summary_json(const importers::ImportedSet& set,
+                            const std::vector<fs::path>& written) {
+  nlohmann::json out{{"files", nlohmann::json::array()}, {"recordings", nlohmann::json::array()}};
+  for (const fs::path& file : written) out["files"].push_back(file.string());
+  for (const auto& recording : set.recordings) {
+    out["recordings"].push_back({{"sensor", recording.sensor.str()},
+                                 {"device", recording.device},
+                                 {"frames", recording.frames.size()},
+                                 {"first", to_iso8601(recording.frames.front().captured)},
+                                 {"last", to_iso8601(recording.frames.back().captured)},
+                                 {"notes", recording.notes}});
+  }
+  return out;
+}
+
+void print_summary(const importers::ImportedSet& set, const std::vector<fs::path>& written) {
+  std::vector<std::vector<std::string>> rows{
+      {"sensor", "frames", "seconds", "first capture", "device"}};
+  for (const auto& recording : set.recordings) {
+    const auto& frames = recording.frames;
+    rows.push_back({recording.sensor.str(), std::to_string(frames.size()),
+                    shown(seconds(frames.back().captured - frames.front().captured), 2),
+                    to_iso8601(frames.front().captured), recording.device});
+  }
+  std::cout << table(rows);
+  for (const auto& recording : set.recordings) {
+    for (const char* note : {"time", "states", "repeated", "unfitted"}) {
+      if (const auto found = recording.notes.find(note); found != recording.notes.end())
+        std::cout << fmt::format("{}: {}\n", recording.sensor.str(), found->second);
+    }
+  }
+  for (const fs::path& file : written) std::cout << "wrote " << file.string() << '\n';
+}
+
+Result<int> run_import(const ImportArguments& arguments) {
+  importers::ImportOptions options;  // the texts were checked while parsing
+  if (!arguments.floor.empty()) options.floor = importers::parse_floor(arguments.floor).value();
+  if (!arguments.start.empty()) options.start = parse_iso8601(arguments.start).value();
+  if (!arguments.sensor.empty()) options.sensor = SensorId::parse(arguments.sensor).value();
+  const auto format = importers::format_named(arguments.format);
+  const auto set =
+      importers::import_files(*format, {arguments.inputs.begin(), arguments.inputs.end()}, options);
+  if (!set) return pass(set);
+  const auto written = write_set(arguments.out, *set);
+  if (!written) return pass(written);
+  warn_of_strangers(arguments.out, *written);
+  if (arguments.json) {
+    std::cout << summary_json(*set, *written).dump(2) << '\n';
+  } else {
+    print_summary(*set, *written);
+  }
+  return kExitOk;
+}
+
+}  // namespace
+
+Run add_import(CLI::App& options) {
+  const auto arguments = std::make_shared<ImportArguments>();
+  std::string formats = "One of:";
+  for (const auto& row : importers::kFormats)
+    formats += fmt::format("\n{}: {}", row.name, row.reads);
+  options.add_option("format", arguments->format, formats)->required()->check(check_format);
+  options
+      .add_option("input", arguments->inputs, "Files of one take, one sensor each; or the folder")
+      ->required();
+  options.add_option("--out", arguments->out, "Folder for the recordings; made if absent")
+      ->required();
+  options
+      .add_option("--floor", arguments->floor,
+                  "Floor plane a,b,c,d in sensor space [m]: a x + b y + c z + d = 0")
+      ->check(readable_by(importers::parse_floor));
+  options
+      .add_option("--start", arguments->start,
+                  "UTC of the first frame where the files have none (2020-01-01T00:00:00Z)")
+      ->check(readable_by(parse_iso8601));
+  options.add_option("--sensor", arguments->sensor, "Name of the sensor, for a single input")
+      ->check(readable_by(SensorId::parse));
+  options.add_flag("--json", arguments->json, "Report as JSON");
+  return [arguments] { return run_import(*arguments); };
+}
+
+}  // namespace chorus::ctl

@@ -1,0 +1,36 @@
+#include "services/ctl/offline_options.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "fusion-server/server/fusion_config.h"
+
+namespace chorus::ctl {
+
+void add_offline_options(CLI::App& app, OfflineOptions& options) {
+  app.add_option("--config", options.config, "The fusion server's configuration (its defaults)");
+  app.add_option("--set", options.overrides, "Override one key of it: path=value; may be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
+  app.add_option("--method", options.method, "How the views become one body")
+      ->check(CLI::IsMember({"otto", "mean", "best-view", "inverse-variance"}));
+  app.add_option("--joints", options.joints, "What registration goes by")
+      ->check(CLI::IsMember({"neck", "core", "all"}));
+}
+
+Result<pipeline::OfflineConfig> offline_config(const OfflineOptions& options) {
+  std::vector<std::string> overrides = options.overrides;
+  if (!options.method.empty()) overrides.push_back("fusion.method=" + options.method);
+  if (!options.joints.empty()) overrides.push_back("registration.joints=" + options.joints);
+  const auto read = options.config.empty()
+                        ? server::read_fusion_config("{}", "command line", overrides)
+                        : server::load_fusion_config(options.config, overrides);
+  if (!read) return pass(read);
+  pipeline::OfflineConfig config;
+  config.pipeline = read->pipeline;
+  config.registration = read->registration;
+  config.rate_hz = read->output.rate_hz;
+  return config;
+}
+
+}  // namespace chorus::ctl

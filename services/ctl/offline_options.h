@@ -1,0 +1,28 @@
+// The options by which offline fusion is configured: the fusion server's own config file and
+// overrides.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/base/result.h"
+#include "fusion-server/pipeline/offline.h"
+
+namespace CLI {
+class App;
+}
+
+namespace chorus::ctl {
+
+struct OfflineOptions {
+  std::string config;  ///< Empty: the documented defaults.
+  std::vector<std::string> overrides;
+  std::string method;  ///< Empty: as configured.
+  std::string joints;  ///< Empty: as configured.
+};
+
+void add_offline_options(CLI::App& app, OfflineOptions& options);
+
+[[nodiscard]] Result<pipeline::OfflineConfig> offline_config(const OfflineOptions& options);
+
+}  // namespace chorus::ctl

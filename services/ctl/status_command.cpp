@@ -1,0 +1,84 @@
+// chorus status: sensors, registration and fused bodies of a fusion server, once.
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "services/ctl/command.h"
+#include "services/ctl/console.h"
+#include "services/ctl/registration_report.h"
+#include "services/ctl/service_client.h"
+
+namespace chorus::ctl {
+namespace {
+
+struct StatusArguments {
+  std::string url = kDefaultServer;
+  bool json = false;
+};
+
+std::string sensors_report(const nlohmann::json& sensors) {
+  std::vector<std::vector<std::string>> rows{
+      {"sensor", "state", "age [ms]", "rate [Hz]", "clock offset [ms]", "bodies", "weight", "url"}};
+  for (const auto& [name, sensor] : part_at(sensors, "sensors").items()) {
+    rows.push_back({name, text_at(sensor, "state"), shown(number_at(sensor, "ageMilliseconds"), 1),
+                    shown(number_at(sensor, "rateHz"), 1),
+                    shown(number_at(sensor, "clockOffsetMilliseconds"), 3),
+                    shown(number_at(sensor, "bodies"), 0), shown(number_at(sensor, "weight"), 2),
+                    text_at(sensor, "url")});
+  }
+  std::string text = rows.size() > 1 ? table(rows) : "no sensors are configured\n";
+  for (const auto& [name, sensor] : part_at(sensors, "sensors").items()) {
+    const std::string error = text_at(sensor, "lastError", "");
+    if (!error.empty()) text += fmt::format("{}: {}\n", name, error);
+  }
+  return text;
+}
+
+std::string bodies_report(const nlohmann::json& frame) {
+  const auto& bodies = part_at(frame, "bodies");
+  std::string text =
+      fmt::format("fused bodies: {}, captured {}\n", bodies.size(), text_at(frame, "captured"));
+  for (const auto& body : bodies) {
+    const auto& head = part_at(part_at(body, "joints"), "Head");
+    text += fmt::format("  body {}: head at {} {} {}\n", shown(number_at(body, "bodyId"), 0),
+                        shown(number_at(head, "x"), 3), shown(number_at(head, "y"), 3),
+                        shown(number_at(head, "z"), 3));
+  }
+  return text;
+}
+
+Result<int> run_status(const StatusArguments& arguments) {
+  const auto server = ServiceClient::of(arguments.url);
+  if (!server) return pass(server);
+  const auto sensors = server->get("/sensors/");
+  if (!sensors) return pass(sensors);
+  const auto registration = server->get("/registration");
+  if (!registration) return pass(registration);
+  // Before the first fused frame the server has none to give (503): that is a state, not a failure.
+  const auto frame = server->get("/frame");
+  const nlohmann::json shown_frame = frame ? *frame : nlohmann::json();
+  if (arguments.json) {
+    std::cout << nlohmann::json{{"sensors", part_at(*sensors, "sensors")},
+                                {"registration", *registration},
+                                {"frame", shown_frame}}
+                     .dump(2)
+              << '\n';
+    return kExitOk;
+  }
+  std::cout << sensors_report(*sensors) << registration_report(*registration)
+            << (frame ? bodies_report(shown_frame) : "no fused frame yet\n");
+  return kExitOk;
+}
+
+}  // namespace
+
+Run add_status(CLI::App& options) {
+  const auto arguments = std::make_shared<StatusArguments>();
+  options.add_option("--url", arguments->url, "The fusion server")->capture_default_str();
+  options.add_flag("--json", arguments->json, "Report as JSON");
+  return [arguments] { return run_status(*arguments); };
+}
+
+}  // namespace chorus::ctl

@@ -1,0 +1,41 @@
+#include "services/ctl/child_processes.h"
+
+#include <csignal>
+
+#include <gmock/gmock.h>
+
+#include "tests/support/matchers.h"
+
+namespace chorus::ctl {
+namespace {
+
+using ::testing::HasSubstr;
+
+const Child kLasting{"lasting", {"sleep", "60"}};
+
+TEST(ChildProcesses, EndWithTheFirstThatEnds) {
+  EXPECT_THAT(run_children({{"short", {"true"}}, kLasting}), testing::IsOk());
+  const auto failed = run_children({kLasting, {"bad", {"sh", "-c", "exit 3"}}});
+  ASSERT_FALSE(failed.has_value());
+  EXPECT_THAT(to_string(failed.error()), HasSubstr("bad: ended with exit code 3"));
+}
+
+TEST(ChildProcesses, SayWhenAProgramCannotBeStarted) {
+  const auto missing = run_children({kLasting, {"gone", {"/nowhere/chorus-sensor"}}});
+  ASSERT_FALSE(missing.has_value());
+  EXPECT_THAT(to_string(missing.error()), HasSubstr("could not be started"));
+}
+
+TEST(ChildProcesses, StopAllWhenWeAreToldToStop) {
+  // The child tells its parent, which is us, to stop: as Ctrl-C would.
+  const Child teller{"teller", {"sh", "-c", "kill -INT $PPID; sleep 60"}};
+  EXPECT_THAT(run_children({kLasting, teller}), testing::IsOk());
+}
+
+TEST(SiblingProgram, IsNextToOursOrLeftToThePath) {
+  EXPECT_TRUE(std::filesystem::exists(sibling_program("ctl.child_processes_test")));
+  EXPECT_EQ(sibling_program("no-such-program"), "no-such-program");
+}
+
+}  // namespace
+}  // namespace chorus::ctl

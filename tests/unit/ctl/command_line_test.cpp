@@ -1,0 +1,62 @@
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include "services/ctl/command.h"
+
+namespace chorus::ctl {
+namespace {
+
+using ::testing::HasSubstr;
+
+struct Outcome {
+  int code = 0;
+  std::string out;
+  std::string error;
+};
+
+Outcome run(std::vector<const char*> arguments) {
+  arguments.insert(arguments.begin(), "chorus");
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  Outcome outcome;
+  outcome.code = run_command_line(static_cast<int>(arguments.size()), arguments.data());
+  outcome.out = ::testing::internal::GetCapturedStdout();
+  outcome.error = ::testing::internal::GetCapturedStderr();
+  return outcome;
+}
+
+TEST(CommandLine, TeachesWithExamplesInEveryHelp) {
+  EXPECT_EQ(run({"--help"}).code, kExitOk);
+  for (const Command& command : commands()) {
+    const Outcome help = run({command.name.data(), "--help"});
+    EXPECT_EQ(help.code, kExitOk) << command.name;
+    EXPECT_THAT(help.out, HasSubstr("Examples:\n  chorus " + std::string(command.name)));
+  }
+}
+
+TEST(CommandLine, NamesTheCommandThatWasMeant) {
+  const Outcome wrong = run({"improt"});
+  EXPECT_EQ(wrong.code, kExitUsage);
+  EXPECT_THAT(wrong.error, HasSubstr("did you mean \"import\"?"));
+  const Outcome strange = run({"xyzzyplugh"});
+  EXPECT_EQ(strange.code, kExitUsage);
+  EXPECT_THAT(strange.error, HasSubstr("The commands are: import, register"));
+}
+
+TEST(CommandLine, TellsWrongUsageFromFailure) {
+  EXPECT_EQ(run({}).code, kExitUsage);
+  EXPECT_EQ(run({"import"}).code, kExitUsage);
+  EXPECT_EQ(run({"import", "foo", "x", "--out", "y"}).code, kExitUsage);
+  EXPECT_EQ(run({"import", "ntu", "x", "--out", "y", "--start", "yesterday"}).code, kExitUsage);
+  EXPECT_EQ(run({"import", "ntu", "x", "--out", "y", "--floor", "1,2,3"}).code, kExitUsage);
+  EXPECT_EQ(run({"fuse", "x", "--out", "y", "--method", "magic"}).code, kExitUsage);
+  EXPECT_EQ(run({"register", "--seconds", "0"}).code, kExitUsage);
+  EXPECT_EQ(run({"replay", "x", "--port", "70000"}).code, kExitUsage);
+  EXPECT_EQ(run({"fuse", "/nowhere", "--out", "y"}).code, kExitFailed);
+  EXPECT_EQ(run({"import", "ntu", "/nowhere", "--out", "y"}).code, kExitFailed);
+  EXPECT_EQ(run({"status", "--url", "ftp://x/"}).code, kExitFailed);
+}
+
+}  // namespace
+}  // namespace chorus::ctl
