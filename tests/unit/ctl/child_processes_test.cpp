@@ -28,7 +28,7 @@ TEST(ChildProcesses, SayWhenAProgramCannotBeStarted) {
 
 TEST(ChildProcesses, StopAllWhenWeAreToldToStop) {
   // The child tells its parent, which is us, to stop: as Ctrl-C would.
-  const Child teller{"teller", {"sh", "-c", "kill -INT $PPID; sleep 60"}};
+  const Child teller{"teller", {"sh", "-c", "kill -INT $PPID; exec sleep 60"}};
   EXPECT_THAT(run_children({kLasting, teller}), testing::IsOk());
 }
 
