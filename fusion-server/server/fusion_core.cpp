@@ -1,5 +1,6 @@
 #include "fusion-server/server/fusion_core.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace chorus::server {
@@ -108,7 +109,15 @@ std::optional<SolveJob> FusionCore::due_job(Timestamp now) {
   const auto kind = session_.due();
   if (!kind) return std::nullopt;
   solving_ = true;
-  return SolveJob{session_number_, *kind, session_.walk(), config_.registration};
+  SolveJob job{session_number_, *kind, session_.walk(), config_.registration};
+  // The world must not jump from solve to solve: the master stays while it takes part.
+  const SensorId& master = registration_.master;
+  const bool walks = std::any_of(job.walk.begin(), job.walk.end(),
+                                 [&](const auto& track) { return track.sensor == master; });
+  if (!job.config.master && walks && registration_.sensors.contains(master)) {
+    job.config.master = master;
+  }
+  return job;
 }
 
 std::vector<std::string> FusionCore::shortfalls(const Registration& candidate) const {

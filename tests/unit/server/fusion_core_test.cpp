@@ -210,6 +210,29 @@ TEST(FusionCore, ASolutionOfACancelledSessionIsIgnored) {
   EXPECT_TRUE(core.registration().sensors.empty());
 }
 
+TEST(FusionCore, TheMasterStaysWhileItTakesPartUnlessTheConfigNamesOne) {
+  Registration placed = ring();
+  placed.master = sensor_id("s2");
+  FusionCore core(config(), placed);
+  ASSERT_TRUE(core.start_session(seconds(8)));
+  (void)run(core, Duration{0}, seconds(7));
+  const auto job = core.due_job(kStart + seconds(7));
+  ASSERT_TRUE(job);
+  EXPECT_EQ(job->config.master, sensor_id("s2"));
+
+  CoreConfig chosen = config();
+  chosen.registration.master = sensor_id("s3");
+  FusionCore other(chosen, placed);
+  ASSERT_TRUE(other.start_session(seconds(8)));
+  (void)run(other, Duration{0}, seconds(7));
+  EXPECT_EQ(other.due_job(kStart + seconds(7))->config.master, sensor_id("s3"));
+
+  FusionCore without(config(), placed);
+  ASSERT_TRUE(without.start_session(seconds(8)));
+  (void)run(without, Duration{0}, seconds(7), 1);
+  EXPECT_FALSE(without.due_job(kStart + seconds(7))->config.master);
+}
+
 TEST(FusionCore, ASensorTakenOutOfTheConfigNoLongerBindsTheRegistration) {
   FusionCore core(config(), ring());
   CoreConfig fewer = config();

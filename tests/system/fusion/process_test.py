@@ -1,0 +1,119 @@
+"""chorus-fusion as a program: configuration, signals, exit codes, self-description."""
+import json
+import pathlib
+import signal
+import socket
+import time
+import unittest
+
+from rig import BIN, ROOT, Process, Rig, free_port, get, get_json, wait_for
+
+
+class Program(Rig):
+    def run_to_end(self, *arguments):
+        process = Process("chorus-fusion", *arguments)
+        self.processes.append(process)
+        return process.child.wait(timeout=20), process.text()
+
+    def write(self, name, text):
+        path = pathlib.Path(self.folder.name) / name
+        path.write_text(text)
+        return str(path)
+
+    def test_bad_configurations_end_with_2_and_one_clear_message(self):
+        cases = {
+            "missing": ("no-such-file.json", "cannot be read"),
+            "broken": (self.write("broken.json", "{ nope"), "broken.json"),
+            "unknown": (self.write("unknown.json", '{"outptu": {}}'), "output"),
+            "range": (self.write("range.json", '{"output": {"rate_hz": 0}}'), "output.rate_hz"),
+            "url": (self.write("url.json", '{"sensors": [{"id": "s1", "url": "ftp://x"}]}'), "sensors.0.url"),
+            "twice": (self.write("twice.json", '{"sensors": [{"id": "s1", "url": "http://a/"}, {"id": "s1", "url": "http://b/"}]}'), "sensors.1.id"),
+            "extrinsics": (self.write("given.json", '{"registration": {"file": "no-such-registration.json"}}'),
+                           "no-such-registration.json"),
+        }
+        for name, (path, expected) in cases.items():
+            code, text = self.run_to_end("--config", path, "--set", "http.port=0")
+            self.assertEqual(code, 2, f"{name}: {text}")
+            self.assertIn(expected, text, name)
+            self.assertNotIn("terminate", text)
+
+    def test_a_port_in_use_ends_with_2(self):
+        with socket.socket() as taken:
+            taken.bind(("127.0.0.1", 0))
+            taken.listen()
+            port = taken.getsockname()[1]
+            code, text = self.run_to_end("--config", "deploy/config/fusion.json", "--set", f"http.port={port}")
+        self.assertEqual(code, 2, text)
+        self.assertIn(str(port), text)
+        self.assertIn("in use", text.lower())
+
+    def test_a_corrupt_stored_registration_is_reported_and_survived(self):
+        state = pathlib.Path(self.folder.name) / "state"
+        state.mkdir()
+        for content in ("{", "[]", '{"sensors": {"s1": {"x": "NaN"}}}', "", "[" * 20000):
+            (state / "registration.json").write_text(content)
+            fusion = self.fusion({}, state_dir=state)
+            self.assertIn("stored registration not used", fusion.text())
+            self.assertEqual(get_json(fusion.url + "registration")["verdict"], "None")
+            self.assertEqual(fusion.stop(), 0)
+
+    def test_reload_takes_the_new_file_and_keeps_the_old_one_when_it_is_wrong(self):
+        config = self.write("fusion.json", '{"sensors": [{"id": "a", "url": "http://127.0.0.1:1/"}]}')
+        port = free_port()
+        fusion = Process("chorus-fusion", "--config", config, "--set", f"http.port={port}")
+        self.processes.append(fusion)
+        url = f"http://127.0.0.1:{port}/"
+        sensors = lambda: sorted(get_json(url + "sensors/")["sensors"])
+        self.assertEqual(wait_for("it answers", sensors), ["a"])
+        self.write("fusion.json", '{"sensors": [{"id": "a", "url": "http://127.0.0.1:1/"}, '
+                                  '{"id": "b", "url": "http://127.0.0.1:2/"}], "output": {"rate_hz": 60}}')
+        fusion.child.send_signal(signal.SIGHUP)
+        wait_for("the new sensor", lambda: sensors() == ["a", "b"])
+        self.assertEqual(get(url + "sensors/b")[0], 200)
+        self.write("fusion.json", '{"sensors": 7}')
+        fusion.child.send_signal(signal.SIGHUP)
+        wait_for("the refusal", lambda: "the old one stays" in fusion.text())
+        self.assertEqual(sensors(), ["a", "b"])
+        self.write("fusion.json", '{"sensors": [], "http": {"address": "0.0.0.0"}}')
+        fusion.child.send_signal(signal.SIGHUP)
+        wait_for("what waits is named", lambda: "changes wait for a restart" in fusion.text())
+        wait_for("no sensors", lambda: sensors() == [])
+        self.assertEqual(fusion.stop(), 0)
+
+    def test_sigterm_ends_with_0_even_with_long_polls_waiting(self):
+        fusion = self.fusion({"gone": "http://127.0.0.1:1/"})
+        tag = get(fusion.url + "registration")[1]["ETag"]
+        waiting = socket.create_connection(("127.0.0.1", fusion.port))
+        waiting.sendall(f"GET /registration HTTP/1.1\r\nHost: x\r\nIf-None-Match: {tag}\r\nPrefer: wait=30\r\n\r\n".encode())
+        begun = time.monotonic()
+        self.assertEqual(fusion.stop(), 0)
+        self.assertLess(time.monotonic() - begun, 2.5)
+        waiting.close()
+
+    def test_every_resource_answers_in_every_format(self):
+        fusion = self.fusion({"gone": "http://127.0.0.1:1/"}, viewer_dir=str(ROOT / "services/viewer"))
+        formats = ("text/turtle", "application/ld+json", "application/json", "application/n-triples")
+        for path in ("", "frame", "skeletons/", "floor-plane", "sensors/", "sensors/gone", "registration", "clock"):
+            for accept in formats:
+                status, headers, body = get(fusion.url + path, accept=accept)
+                self.assertEqual(status, 200, f"{path} {accept} {body[:200]}")
+                self.assertEqual(headers["Content-Type"].split(";")[0], accept)
+                self.assertTrue(headers["ETag"])
+                self.assertTrue(headers["Chorus-Clock"])
+                if "json" in accept:
+                    json.loads(body)
+        page = get(fusion.url, accept="text/html,application/xhtml+xml,*/*;q=0.8")
+        self.assertIn(b"viewer/", page[2])
+        self.assertEqual(get(fusion.url + "viewer/", accept="text/html")[0], 200)
+        self.assertEqual(get(fusion.url + "sensors/nobody")[0], 404)
+        self.assertEqual(get(fusion.url + "sensors/gone/frame")[0], 503)
+        self.assertEqual(get(fusion.url + "skeletons/1")[0], 404)
+        self.assertEqual(get(fusion.url + "frame", accept="image/png")[0], 406)
+        metrics = get(fusion.url + "metrics", accept="*/*")[2].decode()
+        for name in ("chorus_fused_frames_total", "chorus_sensor_up", "chorus_http_requests_total"):
+            self.assertIn(name, metrics)
+
+
+if __name__ == "__main__":
+    assert BIN.exists(), f"build chorus-fusion first ({BIN})"
+    unittest.main(verbosity=2)
