@@ -53,8 +53,11 @@ std::string entity_tag(const DocumentOptions& options, const Variant& variant, s
   return '"' + text + '"';
 }
 
+/// A line break in a value would begin another header field; it becomes a space.
 void add_line(std::string& out, std::string_view name, std::string_view value) {
-  out.append(name).append(": ").append(value).append("\r\n");
+  out.append(name).append(": ");
+  for (const char c : value) out += c == '\r' || c == '\n' ? ' ' : c;
+  out.append("\r\n");
 }
 
 constexpr std::string_view kLdp = "<http://www.w3.org/ns/ldp#";

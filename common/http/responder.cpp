@@ -88,6 +88,14 @@ Result<T> guarded(const RequestHead& head, const Call& call) {
   }
 }
 
+Answer complaint(Problem problem, const RequestHead& head, std::string_view route) {
+  problem.instance = head.path;
+  Answer answer = problem_answer(problem, is_head(head));
+  answer.route = route;
+  answer.close = head.content_length > 0;  // Its body has not been read.
+  return answer;
+}
+
 /// The resource that an action answers with, or that there is none.
 Result<Answer> answer_of(const ActionResult& done, std::string_view accept) {
   Answer answer;
@@ -220,11 +228,7 @@ Reaction Responder::write(const RequestHead& head, Router::Match match, const Pe
     constexpr int kMethodNotAllowed = 405;
     const std::string detail =
         "this resource answers " + allowed_methods(*match.entry) + " and no other method";
-    Answer answer =
-        problem_answer({kMethodNotAllowed, "unsupported", head.path, {}, detail}, is_head(head));
-    answer.route = route;
-    answer.close = head.content_length > 0;
-    return to_answer(std::move(answer));
+    return to_answer(complaint({kMethodNotAllowed, "unsupported", {}, {}, detail}, head, route));
   }
   if (const auto refused = refuse_writing(head, peer, bearer_token_))
     return to_answer(fault(*refused, head, route));
@@ -274,11 +278,8 @@ Answer Responder::represent(const DocumentPtr& document, const RequestHead& head
   const auto chosen = document->choose(head.accept, *profile);
   if (!chosen && chosen.error().code == ErrorCode::NotAcceptable) {
     Problem problem = problem_of(chosen.error());
-    problem.instance = head.path;
     problem.available = document->media_types(*profile);
-    Answer answer = problem_answer(problem, is_head(head));
-    answer.route = route;
-    return answer;
+    return complaint(std::move(problem), head, route);
   }
   if (!chosen) return fault(chosen.error(), head, route);
   const Rendered& rendered = **chosen;
@@ -299,13 +300,9 @@ Answer Responder::represent(const DocumentPtr& document, const RequestHead& head
 
 Answer Responder::fault(const Error& error, const RequestHead& head, std::string_view route) const {
   if (error.code == ErrorCode::Internal) faults_->hit(to_string(error));
-  Problem problem = problem_of(error);
-  problem.instance = head.path;
-  Answer answer = problem_answer(problem, is_head(head));
-  answer.route = route;
+  Answer answer = complaint(problem_of(error), head, route);
   if (error.code == ErrorCode::Unauthorized)
     answer.extra = "WWW-Authenticate: Bearer realm=\"chorus\"\r\n";
-  answer.close = head.content_length > 0;  // Its body has not been read.
   return answer;
 }
 

@@ -6,6 +6,22 @@
 #include "common/http/server_core.h"
 
 namespace chorus::http {
+namespace {
+
+/// Until there is no more work.  Handlers catch what they can name; whatever else is thrown (no
+/// memory) costs the one connection it happened on, not the service.
+void run(net::io_context& io) {
+  while (true) {
+    try {
+      io.run();
+      return;
+    } catch (const std::exception& thrown) {
+      log::error("server handler failed", {{"what", thrown.what()}});
+    }
+  }
+}
+
+}  // namespace
 
 struct Server::Impl {
   std::shared_ptr<ServerCore> core;
@@ -28,7 +44,7 @@ Result<void> Server::start() {
   impl_->core->subscribe();
   impl_->core->accept();
   impl_->core->sweep();
-  impl_->thread = std::thread([core = impl_->core] { core->io.run(); });
+  impl_->thread = std::thread([core = impl_->core] { run(core->io); });
   return {};
 }
 

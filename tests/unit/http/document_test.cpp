@@ -129,6 +129,14 @@ TEST(Document, TagNeverHoldsQuotesOrSpaces) {
   EXPECT_EQ((*make_document("image/png", "", options)->choose(""))->etag, "\"a__b__-v0\"");
 }
 
+TEST(Document, ALineBreakInAValueBeginsNoOtherHeader) {
+  DocumentOptions options;
+  options.content_location = "frames/1\r\nSet-Cookie: a";
+  const auto document = make_document("image/png", "", options);
+  EXPECT_THAT(std::string((*document->choose(""))->head()),
+              HasSubstr("Content-Location: frames/1  Set-Cookie: a\r\n"));
+}
+
 TEST(Document, WithoutVariantsNothingIsAcceptable) {
   const Document empty({}, {});
   EXPECT_EQ(empty.choose("").error().code, ErrorCode::NotFound);
