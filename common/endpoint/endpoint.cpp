@@ -3,6 +3,7 @@
 #include <string_view>
 #include <utility>
 
+#include "common/resource/clock_resource.h"
 #include "common/resource/node.h"
 #include "common/resource/place.h"
 #include "common/time/ntp_status.h"
@@ -51,20 +52,9 @@ DocumentOptions fleeting(Timestamp now) {
   return options;
 }
 
-/// What the kernel knows of this host's clock, and what the clock says (proto/README.md 7).
 DocumentPtr clock_document(const Clock& clock) {
-  constexpr int kPpmDigits = 3;
-  const NtpStatus ntp = read_ntp_status();
-  const Timestamp now = clock.now();
-  resource::Node node{"", {"Clock"}, {}};
-  node.properties = {{"now", now},
-                     {"nowNanoseconds", std::int64_t{to_unix_ns(now)}},
-                     {"synchronised", ntp.synchronised},
-                     {"offsetNanoseconds", std::int64_t{ntp.offset.count()}},
-                     {"maxErrorNanoseconds", std::int64_t{ntp.max_error.count()}},
-                     {"estimatedErrorNanoseconds", std::int64_t{ntp.est_error.count()}},
-                     {"frequencyPpm", resource::Decimal{ntp.frequency_ppm, kPpmDigits}}};
-  return resource::document_of(std::move(node), fleeting(now), {"clock"});
+  const resource::ClockState state{clock.now(), read_ntp_status()};
+  return resource::document_of(resource::clock_node(state), fleeting(state.now), {"clock"});
 }
 
 Result<DocumentPtr> health_document(const Health& health, Timestamp now) {
