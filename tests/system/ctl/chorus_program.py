@@ -1,0 +1,14 @@
+"""Runs the real `chorus` program: what its tests share."""
+
+import os
+import subprocess
+from pathlib import Path
+
+BIN = Path(os.environ.get("CHORUS_BIN", "build/dev/bin"))
+CAMERAS = "tests/data/pose2sim_mediapipe"
+
+
+def chorus(*arguments, seconds=60):
+    """(exit code, standard output, standard error)"""
+    done = subprocess.run([BIN / "chorus", *map(str, arguments)], capture_output=True, text=True, timeout=seconds)
+    return done.returncode, done.stdout, done.stderr

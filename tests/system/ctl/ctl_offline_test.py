@@ -1,0 +1,146 @@
+"""chorus import and fuse, as a person runs them: from the shipped recordings to fused frames."""
+
+import json
+import statistics
+import tempfile
+import unittest
+from pathlib import Path
+
+from chorus_program import CAMERAS, chorus
+
+PLAIN_MEAN_M = 0.104  # what fusion has to beat (tests/data/README.md)
+SETTINGS = ["--config", f"{CAMERAS}/fusion.json"]
+
+
+def frames_of(file):
+    return [json.loads(line) for line in Path(file).read_text().splitlines()]
+
+
+def median_error(fused, truth):
+    """Over all joints of all frames that have a truth at the very same instant [m]."""
+    truth_at = {frame["capturedNanoseconds"]: frame["bodies"][0]["joints"] for frame in truth}
+    errors = []
+    for frame in fused:
+        wanted = truth_at.get(frame["capturedNanoseconds"])
+        for body in frame["bodies"] if wanted else []:
+            for name, joint in body["joints"].items():
+                if "x" in joint and "x" in wanted.get(name, {}):
+                    errors.append(sum((joint[axis] - wanted[name][axis]) ** 2 for axis in "xyz") ** 0.5)
+    return statistics.median(errors), len(errors)
+
+
+class Offline(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.at = Path(cls.folder.name)
+        cls.recordings = cls.at / "cameras"
+        cls.imported = chorus("import", "pose2sim", CAMERAS, "--out", cls.recordings, "--json")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def fuse(self, out, *options):
+        return chorus("fuse", self.recordings, "--out", self.at / out, *options)
+
+    def test_import_reports_what_it_wrote(self):
+        code, out, _ = self.imported
+        self.assertEqual(code, 0)
+        report = json.loads(out)
+        self.assertEqual([r["sensor"] for r in report["recordings"]], ["cam01", "cam02", "cam03", "cam04"])
+        self.assertEqual({r["frames"] for r in report["recordings"]}, {100})
+        for file in report["files"]:
+            self.assertTrue(Path(file).is_file(), file)
+        registration = json.loads((self.recordings / "registration.json").read_text())
+        self.assertEqual(set(registration["sensors"]), {"cam01", "cam02", "cam03", "cam04"})
+        self.assertEqual(len(frames_of(self.recordings / "truth.ndjson")), 100)
+
+    def test_importing_twice_gives_the_same_bytes(self):
+        again = self.at / "again"
+        self.assertEqual(chorus("import", "pose2sim", CAMERAS, "--out", again)[0], 0)
+        for file in sorted(self.recordings.iterdir()):
+            self.assertEqual(file.read_bytes(), (again / file.name).read_bytes(), file.name)
+
+    def test_fusing_with_published_extrinsics_beats_the_plain_mean_twice_with_the_same_bytes(self):
+        given = [*SETTINGS, "--registration", self.recordings / "registration.json"]
+        for out in ("a.ndjson", "b.ndjson"):
+            self.assertEqual(self.fuse(out, *given)[0], 0)
+        self.assertEqual((self.at / "a.ndjson").read_bytes(), (self.at / "b.ndjson").read_bytes())
+        error, joints = median_error(frames_of(self.at / "a.ndjson"), frames_of(self.recordings / "truth.ndjson"))
+        self.assertGreater(joints, 1000)
+        self.assertLess(error, PLAIN_MEAN_M / 2)
+
+    def test_every_method_answers_and_the_worse_ones_are_worse(self):
+        given = [*SETTINGS, "--registration", self.recordings / "registration.json"]
+        truth = frames_of(self.recordings / "truth.ndjson")
+        error = {}
+        for method in ("otto", "mean", "best-view", "inverse-variance"):
+            self.assertEqual(self.fuse(f"{method}.ndjson", *given, "--method", method)[0], 0, method)
+            error[method], _ = median_error(frames_of(self.at / f"{method}.ndjson"), truth)
+        self.assertEqual(min(error, key=error.get), "inverse-variance", error)
+
+    def test_registering_from_the_person_alone_is_deterministic_and_reported(self):
+        code, out, error = self.fuse("own.ndjson", *SETTINGS, "--json", "--save-registration", self.at / "own.json")
+        self.assertEqual((code, out), (0, ""))
+        summary = json.loads(error)
+        self.assertEqual(summary["sensors"], 4)
+        self.assertEqual(set(summary["registration"]["sensors"]), {"cam01", "cam02", "cam03", "cam04"})
+        self.assertIn(summary["registration"]["verdict"], ("Good", "Provisional"))
+        self.assertEqual(self.fuse("own2.ndjson", *SETTINGS, "--save-registration", self.at / "own2.json")[0], 0)
+        self.assertEqual((self.at / "own.ndjson").read_bytes(), (self.at / "own2.ndjson").read_bytes())
+        self.assertEqual((self.at / "own.json").read_bytes(), (self.at / "own2.json").read_bytes())
+
+    def test_frames_go_to_standard_output_alone(self):
+        code, out, error = chorus("fuse", self.recordings, "--out", "-", *SETTINGS)
+        self.assertEqual(code, 0)
+        self.assertEqual({json.loads(line)["@type"] for line in out.splitlines()}, {"Frame"})
+        self.assertIn("registration: ", error)
+
+    def test_a_kinect_recording_with_floor_and_start(self):
+        source = "tests/data/kinect2_labanotation/Ges04_comehere.csv"
+        code, out, _ = chorus("import", "labanotation", source, "--out", self.at / "kinect", "--floor", "0,1,0,0.9",
+                              "--start", "2026-11-21T07:30:00Z", "--sensor", "s1")
+        self.assertEqual(code, 0)
+        self.assertIn("2026-11-21T07:30:00.000000000Z", out)
+        self.assertIn("not UTC", out)
+        self.assertTrue((self.at / "kinect" / "s1.mcap").is_file())
+
+    def test_bad_input_is_named(self):
+        bad = self.at / "bad.csv"
+        bad.write_text("1,2,3\n")
+        code, _, error = chorus("import", "labanotation", bad, "--out", self.at / "none")
+        self.assertEqual(code, 1)
+        self.assertIn("bad.csv:1: holds 3 values", error)
+        self.assertFalse((self.at / "none").exists(), "nothing is written for a bad input")
+        broken = self.at / "broken.mcap"
+        broken.write_bytes(b"no recording")
+        code, _, error = chorus("fuse", broken, "--out", self.at / "x")
+        self.assertEqual(code, 1)
+        self.assertIn("broken.mcap", error)
+        registration = self.at / "registration.json"
+        registration.write_text('{"sensors": {"cam01": {"x": 1}}}')
+        code, _, error = self.fuse("x", "--registration", registration)
+        self.assertEqual(code, 1)
+        self.assertIn("sensors.cam01", error)
+        copy = self.recordings / "cam01.mcap"
+        code, _, error = chorus("fuse", self.recordings, copy, "--out", self.at / "x")
+        self.assertEqual(code, 1)
+        self.assertIn("is a recording of sensor cam01, and so is", error)
+        code, _, error = self.fuse("no/such/folder/x", *SETTINGS)
+        self.assertEqual(code, 1)
+        self.assertIn("is its folder there?", error)
+        code, _, error = self.fuse("x", "--set", "fusion.metod=otto")
+        self.assertEqual(code, 1)
+        self.assertIn("metod", error)
+
+    def test_recordings_of_an_older_import_are_pointed_out(self):
+        stale = self.at / "stale"
+        stale.mkdir()
+        (stale / "old.mcap").write_bytes(b"")
+        _, _, error = chorus("import", "pose2sim", CAMERAS, "--out", stale)
+        self.assertIn("old.mcap was there before", error)
+
+
+if __name__ == "__main__":
+    unittest.main()

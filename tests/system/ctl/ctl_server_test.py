@@ -1,0 +1,234 @@
+"""chorus register, status and replay against servers: a stand-in that plays the fusion server's part, and
+real chorus-sensor processes."""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import tempfile
+import threading
+import time
+import unittest
+import urllib.request
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+
+from chorus_program import BIN, CAMERAS, chorus
+
+PLACE = {"x": 1.0, "y": 1.5, "z": 0.0, "qx": 0, "qy": 0, "qz": 0, "qw": 1, "error": 0.012, "chain": ["s1", "s2"]}
+
+
+class FusionStandIn:
+    """Answers as proto/README.md says; a session is over after three looks at it."""
+
+    def __init__(self, verdict="Good", reasons=(), shortcomings=()):
+        self.calls = []
+        self.looks = 99
+        self.final = {"@type": "Registration", "verdict": verdict, "reasons": list(reasons), "master": "s1",
+                      "session": {"state": "idle", "elapsedSeconds": 5, "targetSeconds": 5,
+                                  "reasons": list(shortcomings)},
+                      "sensors": {"s2": PLACE}, "edges": []}
+        stand_in = self
+
+        class Handler(BaseHTTPRequestHandler):
+            def answer(self, status, body):
+                content = json.dumps(body).encode()
+                self.send_response(status)
+                self.send_header("Content-Type", "application/json")
+                self.send_header("Content-Length", str(len(content)))
+                self.end_headers()
+                self.wfile.write(content)
+
+            def do_GET(self):
+                self.answer(*stand_in.get(self.path))
+
+            def do_POST(self):
+                body = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
+                stand_in.calls.append(("POST", self.path, body))
+                self.answer(*stand_in.post())
+
+            def do_DELETE(self):
+                stand_in.calls.append(("DELETE", self.path))
+                self.answer(200, {})
+
+            def log_message(self, *_):
+                pass
+
+        self.server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+        self.url = f"http://127.0.0.1:{self.server.server_port}/"
+        threading.Thread(target=self.server.serve_forever, daemon=True).start()
+
+    def post(self):
+        self.looks = 0
+        return 202, {}
+
+    def get(self, path):
+        if path == "/sensors/":
+            return 200, {"sensors": {"s1": {"state": "live", "ageMilliseconds": 12.5, "rateHz": 29.97, "bodies": 1,
+                                            "weight": 0.5, "clockOffsetMilliseconds": -0.25,
+                                            "url": "http://127.0.0.1:8081/"},
+                                     "s2": {"state": "lost", "lastError": "connection refused"}}}
+        if path == "/frame":
+            return 200, {"captured": "2026-11-21T07:30:00Z",
+                         "bodies": [{"bodyId": 7, "joints": {"Head": {"x": 0.1, "y": 1.6, "z": 2.5}}}]}
+        self.looks += 1
+        if self.looks <= 3:
+            return 200, {**self.final, "verdict": "None",
+                         "session": {"state": "collecting", "elapsedSeconds": self.looks, "targetSeconds": 5}}
+        return 200, self.final
+
+    def close(self):
+        self.server.shutdown()
+        self.server.server_close()
+
+
+class Server(unittest.TestCase):
+    def stand_in(self, *arguments, **settings):
+        server = FusionStandIn(*arguments, **settings)
+        self.addCleanup(server.close)
+        return server
+
+    def test_register_follows_the_session_to_its_verdict(self):
+        server = self.stand_in()
+        code, out, error = chorus("register", "--url", server.url, "--seconds", "5", "--fresh")
+        self.assertEqual(code, 0, error)
+        self.assertEqual(server.calls, [("DELETE", "/registration"), ("POST", "/registration", {"seconds": 5.0})])
+        self.assertIn("registration: Good, master s1", out)
+        self.assertIn("s1 > s2", out)
+        self.assertIn("walk through the room: 20% None\n", error)
+        self.assertNotIn("\r", error, "plain lines where there is no terminal")
+
+    def test_register_fails_with_the_reasons(self):
+        server = self.stand_in("Refused", ["sensors s3 and s4 never saw the person together"])
+        code, out, _ = chorus("register", "--url", server.url)
+        self.assertEqual(code, 1)
+        self.assertIn("sensors s3 and s4 never saw the person together", out)
+        kept = self.stand_in("Good", shortcomings=["walk further out"])
+        code, _, error = chorus("register", "--url", kept.url)
+        self.assertEqual(code, 1, "the good verdict is the old registration's")
+        self.assertIn("walk further out", error)
+
+    def test_register_passes_on_why_the_server_refuses(self):
+        server = self.stand_in()
+        server.post = lambda: (409, {"title": "Conflict", "detail": "a session is running already"})
+        code, _, error = chorus("register", "--url", server.url)
+        self.assertEqual(code, 1)
+        self.assertIn("a session is running already", error)
+
+    def test_register_and_status_speak_json(self):
+        server = self.stand_in()
+        code, out, _ = chorus("register", "--url", server.url, "--json")
+        self.assertEqual((code, json.loads(out)["verdict"]), (0, "Good"))
+        code, out, _ = chorus("status", "--url", server.url, "--json")
+        status = json.loads(out)
+        self.assertEqual((code, status["sensors"]["s2"]["state"]), (0, "lost"))
+        self.assertEqual(status["registration"]["verdict"], "Good")
+        self.assertEqual(status["frame"]["bodies"][0]["bodyId"], 7)
+
+    def test_status_shows_sensors_registration_and_bodies(self):
+        code, out, _ = chorus("status", "--url", self.stand_in().url)
+        self.assertEqual(code, 0)
+        for text in ("live", "12.5", "30.0", "-0.250", "s2: connection refused", "registration: Good",
+                     "fused bodies: 1", "body 7: head at 0.100 1.600 2.500"):
+            self.assertIn(text, out)
+
+    def test_status_before_the_first_frame_and_without_a_server(self):
+        server = self.stand_in()
+        answers = server.get
+        server.get = lambda path: (503, {"title": "no frame yet"}) if path == "/frame" else answers(path)
+        code, out, _ = chorus("status", "--url", server.url)
+        self.assertEqual(code, 0)
+        self.assertIn("no fused frame yet", out)
+        with socket.socket() as unused:
+            unused.bind(("127.0.0.1", 0))
+            port = unused.getsockname()[1]
+        code, _, error = chorus("status", "--url", f"http://127.0.0.1:{port}/")
+        self.assertEqual(code, 1)
+        self.assertIn("is chorus-fusion running there?", error)
+
+
+def free_ports(count):
+    """The first of `count` neighbouring free ports."""
+    for first in range(20000 + os.getpid() % 20000, 60000, count):
+        sockets = [socket.socket() for _ in range(count)]
+        try:
+            for i, each in enumerate(sockets):
+                each.bind(("127.0.0.1", first + i))
+            return first
+        except OSError:
+            continue
+        finally:
+            for each in sockets:
+                each.close()
+    raise unittest.SkipTest("no free ports")
+
+
+def frame_at(url):
+    request = urllib.request.Request(url + "frame", headers={"Accept": "application/json"})
+    with urllib.request.urlopen(request, timeout=2) as answer:
+        return json.load(answer)
+
+
+def eventually(look, seconds=20):
+    """The first true answer; errors count as not yet."""
+    deadline = time.monotonic() + seconds
+    while True:
+        try:
+            if found := look():
+                return found
+        except OSError:
+            pass
+        if time.monotonic() > deadline:
+            return None
+        time.sleep(0.1)
+
+
+@unittest.skipUnless((BIN / "chorus-sensor").exists(), "chorus-sensor is not part of this build")
+class Replay(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.recordings = Path(folder.name)
+        self.assertEqual(chorus("import", "pose2sim", CAMERAS, "--out", self.recordings)[0], 0)
+
+    def start(self, *options):
+        process = subprocess.Popen([BIN / "chorus", "replay", self.recordings, *options], text=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+        self.addCleanup(process.stdout.close)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def test_one_sensor_per_recording_in_step_until_told_to_stop(self):
+        port = free_ports(4)
+        process = self.start("--port", str(port), "--loop")
+        lines = [process.stdout.readline().split() for _ in range(4)]
+        self.assertEqual([line[:3] for line in lines],
+                         [[f"cam0{i + 1}", "at", f"http://127.0.0.1:{port + i}/"] for i in range(4)])
+        for i in range(4):
+            frame = eventually(lambda i=i: frame_at(f"http://127.0.0.1:{port + i}/"))
+            self.assertIsNotNone(frame, f"no frame of cam0{i + 1}")
+            self.assertEqual(frame["source"], f"cam0{i + 1}")
+        # In step: captures of all four lie on one 60 Hz grid.
+        phases = [int(frame_at(f"http://127.0.0.1:{port + i}/")["capturedNanoseconds"]) % 16_666_667 for i in range(4)]
+        spread = max(phases) - min(phases)
+        self.assertLess(min(spread, 16_666_667 - spread), 1_000_000, phases)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=20), 0)
+        for i in range(4):
+            with self.assertRaises(OSError):
+                frame_at(f"http://127.0.0.1:{port + i}/")
+
+    def test_a_port_in_use_ends_all_of_them(self):
+        port = free_ports(4)
+        with socket.socket() as taken:
+            taken.bind(("127.0.0.1", port + 2))
+            taken.listen()
+            process = self.start("--port", str(port))
+            self.assertEqual(process.wait(timeout=30), 1)
+        self.assertIsNone(eventually(lambda: frame_at(f"http://127.0.0.1:{port}/"), seconds=1))
+
+
+if __name__ == "__main__":
+    unittest.main()
