@@ -48,7 +48,7 @@ read_arguments() {
 
 # --- what we started, and stopping it -------------------------------------------------------------
 
-children=()
+children=() sensor_processes=0
 # start NAME COMMAND...: in the background, logging to NAME.log, and dead when this script is.
 start() {
   local name=$1; shift
@@ -60,8 +60,12 @@ stop_all() {
   trap - EXIT
   trap '' INT TERM
   (( ${#children[@]} > 0 )) || return 0
-  kill -TERM "${children[@]}" 2>/dev/null || true
   local i
+  # The fusion server came last and goes first: it need not see its sensors vanish.
+  for (( i = ${#children[@]} - 1; i >= 0; --i )); do
+    kill -TERM "${children[i]}" 2>/dev/null || true
+    (( i != sensor_processes )) || sleep 0.2
+  done
   for (( i = 0; i < 50; ++i )); do
     any_alive || break
     sleep 0.1
@@ -194,6 +198,7 @@ trap 'exit 130' INT
 trap 'exit 143' TERM
 step "start"
 if [[ -n "$recording" ]]; then start_replays; else start_simulated; fi
+sensor_processes=${#children[@]}
 for sensor in "${sensors[@]}"; do
   url=${sensor##*\"url\":\"}; url=${url%%\"*}
   wait_for "${url}healthz" "the sensor at $url"
