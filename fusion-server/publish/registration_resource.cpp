@@ -28,7 +28,7 @@ Node sensor_node(const SensorId& id, const Extrinsics& place) {
   const Eigen::Quaterniond q(place.world_from_sensor.rotation());
   constexpr int kPlaceDigits = 4;  // 0.1 mm
   constexpr int kRotationDigits = 5;
-  Node node{"sensors/" + id.str(), {}, {{"sensorId", id.str()}}};
+  Node node{"sensors/" + id.str(), {"RegisteredSensor"}, {{"sensorId", id.str()}}};
   const auto put = [&](const char* key, double value, int digits) {
     node.properties.emplace_back(key, Decimal{value, digits});
   };
@@ -47,7 +47,7 @@ Node sensor_node(const SensorId& id, const Extrinsics& place) {
 Node edge_node(const PairwiseRegistration& edge) {
   constexpr int kDigits = 4;
   return {"_",
-          {},
+          {"RegistrationEdge"},
           {{"target", edge.target.str()},
            {"source", edge.source.str()},
            {"rms", Decimal{edge.rms, kDigits}},
@@ -58,7 +58,7 @@ Node edge_node(const PairwiseRegistration& edge) {
 Node session_node(const SessionStatus& session) {
   constexpr int kDigits = 1;
   return {"_",
-          {},
+          {"RegistrationSession"},
           {{"state", std::string(session.collecting ? "collecting" : "idle")},
            {"elapsedSeconds", Decimal{session.elapsed, kDigits}},
            {"targetSeconds", Decimal{session.target, kDigits}},

@@ -43,7 +43,7 @@ SensorResources::SensorResources(RestContext context, const std::vector<SensorId
 }
 
 void SensorResources::publish(const std::vector<SensorStatus>& sensors) {
-  resource::Node node{"", {"ldp:BasicContainer", "ldp:Container"}, {}};
+  resource::Node node{"", {"SensorList", "ldp:BasicContainer", "ldp:Container"}, {}};
   std::vector<resource::Ref> contains;
   std::vector<resource::Node> members;
   for (const SensorStatus& sensor : sensors) {

@@ -6,7 +6,7 @@ import { test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 
 import jsonld from 'jsonld';
-import { Parser } from 'n3';
+import { Parser, Writer } from 'n3';
 
 const proto = fileURLToPath(new URL('../../proto/', import.meta.url));
 const base = 'http://localhost/frame';
@@ -51,3 +51,17 @@ for (const name of names) {
     assert.deepEqual(JSON.parse(read('json')), linked);
   });
 }
+
+// A document with everything that nodes can hold: blank nodes, a list, an indexed container, terms that mean something else in a type.
+test('documents/registration: JSON-LD is the graph of the Turtle', async () => {
+  const read = (extension) => readFileSync(`${proto}golden/documents/registration.${extension}`, 'utf8');
+  const options = { base: 'http://localhost/registration', documentLoader };
+  const nquads = await jsonld.toRDF(JSON.parse(read('jsonld')), { ...options, format: 'application/n-quads' });
+  const turtle = await new Promise((resolve, reject) => {
+    const writer = new Writer({ format: 'N-Quads' });
+    writer.addQuads(new Parser({ baseIRI: options.base }).parse(read('ttl')));
+    writer.end((error, text) => (error ? reject(error) : resolve(text)));
+  });
+  const canonical = (text) => jsonld.canonize(text, { algorithm: 'URDNA2015', inputFormat: 'application/n-quads' });
+  assert.equal(await canonical(nquads), await canonical(turtle));
+});

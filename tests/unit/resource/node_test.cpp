@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -82,6 +84,19 @@ TEST(Node, JsonLdHasTheContextAndTypedDecimals) {
   EXPECT_EQ(json.at("@context"), "../context.jsonld");
   EXPECT_EQ(json.at("sensors").at("s1").at("x"), "1.2346");
   EXPECT_EQ(json.at("undeclared"), Json({{"@type", "xsd:decimal"}, {"@value", "0.5"}}));
+}
+
+std::string golden(const std::string& name) {
+  std::ifstream file("proto/golden/documents/" + name, std::ios::binary);
+  EXPECT_TRUE(file) << name;
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(Node, GoldenDocumentsAreWrittenByteForByte) {
+  const Place place{"registration", "", "http://localhost/"};
+  EXPECT_EQ(write(registration(), Format::Turtle, place), golden("registration.ttl"));
+  EXPECT_EQ(write(registration(), Format::JsonLd, place), golden("registration.jsonld"));
+  EXPECT_EQ(write(registration(), Format::Json, place), golden("registration.json"));
 }
 
 TEST(Node, TextFromElsewhereCannotBreakADocument) {
