@@ -141,8 +141,11 @@ class Session : public std::enable_shared_from_this<Session> {
   }
 
   void tell(const Notice& notice) const {
-    const auto level = notice.warning ? log::Level::Warn : log::Level::Info;
-    log::event(level, notice.event,
+    if (notice.reason.empty()) {
+      log::info(notice.event, {{"sensor", sensor_.id.str()}, {"url", sensor_.url}});
+      return;
+    }
+    log::event(notice.warning ? log::Level::Warn : log::Level::Info, notice.event,
                {{"sensor", sensor_.id.str()}, {"url", sensor_.url}, {"reason", notice.reason}});
   }
 

@@ -63,8 +63,7 @@ http::DocumentPtr floor_document(const RestContext& context) {
 }  // namespace
 
 resource::Node service_node(const std::string& title, bool with_viewer) {
-  resource::Node node{
-      "", {"Tracker", "dcat:DataService", "ldp:BasicContainer", "ldp:Container"}, {}};
+  resource::Node node{"", {"Tracker", "dcat:DataService", "ldp:BasicContainer"}, {}};
   auto& out = node.properties;
   out.emplace_back("title", title);
   out.emplace_back("description",

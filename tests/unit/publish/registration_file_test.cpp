@@ -127,6 +127,9 @@ TEST(RegistrationNode, UsesOnlyDeclaredTermsAndNamesTheVerdict) {
   const auto json = write(node, resource::Format::Json);
   EXPECT_NE(json.find("\"Provisional\""), std::string::npos);
   EXPECT_NE(json.find("\"collecting\""), std::string::npos);
+  const auto turtle = write(node, resource::Format::Turtle);
+  EXPECT_NE(turtle.find("ch:sessionState \"collecting\""), std::string::npos) << turtle;
+  EXPECT_NE(turtle.find("ch:verdict ch:Provisional"), std::string::npos);
 }
 
 TEST(Verdicts, HaveNamesBothWays) {
