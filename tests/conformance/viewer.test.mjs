@@ -1,0 +1,30 @@
+// The viewer shows the real fusion server in headless Chromium: six sensors, somebody walking, nothing complained about.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+
+import { colorsOnCanvas, launch, openViewer } from '../viewer/browser.mjs';
+
+const fusion = process.env.CHORUS_FUSION_URL;
+assert.ok(fusion, 'CHORUS_FUSION_URL names a running fusion server');
+
+test('the viewer shows the fused person and every raw one, live', async () => {
+  const browser = await launch();
+  try {
+    const { page, complaints } = await openViewer(browser, `${fusion}/viewer/`);
+    await page.waitForFunction(
+      () => window.chorusViewer?.fusedJoints >= 20 && Object.values(window.chorusViewer.rawBones).filter((n) => n > 0).length >= 2,
+      null, { timeout: 60000 });
+    const before = await page.evaluate(() => window.chorusViewer.fusedFrames);
+    await page.waitForTimeout(1000);
+    const shown = await page.evaluate(() => window.chorusViewer);
+    assert.ok(shown.fusedFrames > before + 5, 'frames keep coming');
+    assert.equal(shown.sensors, 6);
+    assert.match(await page.textContent('#headline'), /live/);
+    assert.equal(await page.locator('#sensors tr').count(), 6);
+    assert.ok(await colorsOnCanvas(page) > 50, 'something is drawn');
+    assert.deepEqual(complaints, []);
+    if (process.env.CHORUS_SCREENSHOT) await page.screenshot({ path: process.env.CHORUS_SCREENSHOT });
+  } finally {
+    await browser.close();
+  }
+});
