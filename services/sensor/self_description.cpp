@@ -119,7 +119,7 @@ std::string self_page(const Self& self) {
   return page.append("</table>\n").append(kPageEnd);
 }
 
-http::DocumentPtr self_document(const Self& self, const std::string& run) {
+http::DocumentPtr self_document(const Self& self, const Serving& serving) {
   const auto node = std::make_shared<const Node>(self_node(self));
   std::vector<http::Variant> variants;
   for (const Format format : resource::kFormats) {
@@ -128,7 +128,7 @@ http::DocumentPtr self_document(const Self& self, const std::string& run) {
   }
   variants.push_back({"text/html", [self] { return self_page(self); }});
   http::DocumentOptions options;
-  options.version = std::string(self.images ? "images" : "plain") + "." + run;
+  options.version = std::string(self.images ? "images" : "plain") + "." + serving.run;
   options.container = true;
   options.headers = {{"Link", "</openapi.json>; rel=\"service-desc\""}};
   return std::make_shared<const http::Document>(std::move(variants), std::move(options));

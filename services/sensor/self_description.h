@@ -5,6 +5,7 @@
 
 #include "common/base/strong_id.h"
 #include "common/http/document.h"
+#include "services/sensor/sight.h"
 #include "common/resource/node.h"
 #include "common/sensor/frame_source.h"
 
@@ -19,6 +20,6 @@ struct Self {
 [[nodiscard]] resource::Node self_node(const Self& self);
 /// A page for browsers; every text from outside is escaped.
 [[nodiscard]] std::string self_page(const Self& self);
-[[nodiscard]] http::DocumentPtr self_document(const Self& self, const std::string& run);
+[[nodiscard]] http::DocumentPtr self_document(const Self& self, const Serving& serving);
 
 }  // namespace chorus::sensor_service

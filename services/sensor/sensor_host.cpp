@@ -25,7 +25,9 @@ ServiceOptions service_options(const Setup& setup) {
   options.device = setup.device->describe();
   options.frames_kept = setup.config.frames_kept;
   options.images = setup.config.images;
-  options.run = run_name();
+  options.serving.run = run_name();
+  options.serving.root =
+      fmt::format("http://{}:{}/", setup.config.http.address, setup.config.http.port);
   return options;
 }
 

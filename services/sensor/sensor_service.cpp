@@ -41,7 +41,7 @@ void SensorService::on_capture(Capture capture) {
   }
   const SightPtr now = see(std::move(capture), before.get());
   const std::uint64_t sequence = now->frame->sequence;
-  recent_.add(sequence, numbered_frame(*now, options_.run));
+  recent_.add(sequence, numbered_frame(*now, options_.serving));
   {
     const std::lock_guard lock(mutex_);
     counters_.captured += 1;
@@ -50,7 +50,7 @@ void SensorService::on_capture(Capture capture) {
     sight_ = now;
     last_capture_ = options_.steady_now();
   }
-  live_->publish(latest_frame(*now, options_.run));
+  live_->publish(latest_frame(*now, options_.serving));
   images_.offer(now);
 }
 
@@ -85,7 +85,7 @@ Result<SightPtr> SensorService::sight() const {
 }
 
 SensorService::Answer SensorService::self() const {
-  return self_document({options_.id, options_.device, images_.allowed()}, options_.run);
+  return self_document({options_.id, options_.device, images_.allowed()}, options_.serving);
 }
 
 SensorService::Answer SensorService::image(std::shared_ptr<const LazyImage> Sight::*which) {
@@ -93,13 +93,13 @@ SensorService::Answer SensorService::image(std::shared_ptr<const LazyImage> Sigh
   if (!pictured) return pass(pictured);
   const auto& image = **pictured.*which;
   if (!image) return fail(ErrorCode::NotFound, "images", "this device has no such images");
-  return image_document(*image, (*pictured)->frame->sequence, options_.run);
+  return image_document(*image, (*pictured)->frame->sequence, options_.serving);
 }
 
 void SensorService::add_image_routes(http::Router& router) {
   router.get("/images/", [this](const Request&, const PathParams&) -> Answer {
     return images_.ask().map(
-        [this](const SightPtr& now) { return image_list(*now, options_.run); });
+        [this](const SightPtr& now) { return image_list(*now, options_.serving); });
   });
   router.get("/images/color",
              [this](const Request&, const PathParams&) { return image(&Sight::color); });
@@ -108,21 +108,21 @@ void SensorService::add_image_routes(http::Router& router) {
 }
 
 void SensorService::add_routes(http::Router& router) {
-  const std::string& run = options_.run;
   router.live("/frame", live_);
   router.get("/", [this](const Request&, const PathParams&) { return self(); });
   router.get("/frames/{seq}", [this](const Request&, const PathParams& path) {
     return recent_.find(path.at("seq"));
   });
-  router.get("/skeletons/", [this, run](const Request&, const PathParams&) -> Answer {
-    return sight().map([&](const SightPtr& now) { return skeleton_list(*now, run); });
+  router.get("/skeletons/", [this](const Request&, const PathParams&) -> Answer {
+    return sight().map([&](const SightPtr& now) { return skeleton_list(*now, options_.serving); });
   });
-  router.get("/skeletons/{id}", [this, run](const Request&, const PathParams& path) -> Answer {
+  router.get("/skeletons/{id}", [this](const Request&, const PathParams& path) -> Answer {
     return sight().and_then(
-        [&](const SightPtr& now) { return skeleton(*now, path.at("id"), run); });
+        [&](const SightPtr& now) { return skeleton(*now, path.at("id"), options_.serving); });
   });
-  router.get("/floor-plane", [this, run](const Request&, const PathParams&) -> Answer {
-    return sight().and_then([&](const SightPtr& now) { return floor_plane(*now, run); });
+  router.get("/floor-plane", [this](const Request&, const PathParams&) -> Answer {
+    return sight().and_then(
+        [&](const SightPtr& now) { return floor_plane(*now, options_.serving); });
   });
   add_image_routes(router);
 }

@@ -27,7 +27,7 @@ struct ServiceOptions {
   std::size_t frames_kept = 90;  ///< For /frames/{seq}: three seconds at 30 Hz.
   bool images = false;           ///< They show people: off unless somebody wants them.
   Duration stall_after = std::chrono::seconds(2);  ///< Without a capture for so long: not ready.
-  std::string run;  ///< Distinguishes this run from earlier ones in every ETag.
+  Serving serving;
   SteadyNow steady_now = [] { return std::chrono::steady_clock::now(); };
 };
 

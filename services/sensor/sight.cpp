@@ -35,9 +35,9 @@ std::shared_ptr<const LazyImage> lazy(std::function<Result<CameraImage>()> encod
 }
 
 /// Of everything that changes with each frame.
-DocumentOptions options_of(const Sight& sight, const std::string& run) {
+DocumentOptions options_of(const Sight& sight, const Serving& serving) {
   DocumentOptions options;
-  options.version = std::to_string(sight.frame->sequence) + "." + run;
+  options.version = std::to_string(sight.frame->sequence) + "." + serving.run;
   options.captured = sight.frame->captured;
   return options;
 }
@@ -80,67 +80,70 @@ SightPtr see(Capture capture, const Sight* before) {
   return sight;
 }
 
-DocumentPtr latest_frame(const Sight& sight, const std::string& run) {
-  return resource::frame_document(sight.frame, {.path = "frame"},
-                                  resource::latest_options(*sight.frame, run));
+DocumentPtr latest_frame(const Sight& sight, const Serving& serving) {
+  return resource::frame_document(sight.frame, {.path = "frame", .root = serving.root},
+                                  resource::latest_options(*sight.frame, serving.run));
 }
 
-DocumentPtr numbered_frame(const Sight& sight, const std::string& run) {
-  DocumentOptions options = resource::kept_options(*sight.frame, run);
+DocumentPtr numbered_frame(const Sight& sight, const Serving& serving) {
+  DocumentOptions options = resource::kept_options(*sight.frame, serving.run);
   options.cache_control = kImmutable;
-  const Place place{.path = "frames/" + std::to_string(sight.frame->sequence)};
+  const Place place{.path = "frames/" + std::to_string(sight.frame->sequence),
+                    .root = serving.root};
   return resource::frame_document(sight.frame, place, std::move(options));
 }
 
-DocumentPtr skeleton_list(const Sight& sight, const std::string& run) {
-  return resource::skeletons_document(*sight.frame, {.path = "skeletons/"}, options_of(sight, run));
+DocumentPtr skeleton_list(const Sight& sight, const Serving& serving) {
+  return resource::skeletons_document(*sight.frame, {.path = "skeletons/", .root = serving.root},
+                                      options_of(sight, serving));
 }
 
-Result<DocumentPtr> skeleton(const Sight& sight, const std::string& id, const std::string& run) {
+Result<DocumentPtr> skeleton(const Sight& sight, const std::string& id, const Serving& serving) {
   std::uint64_t wanted = 0;
   const auto [end, error] = std::from_chars(id.data(), id.data() + id.size(), wanted);
   const bool number = error == std::errc{} && end == id.data() + id.size();
   if (number && id == std::to_string(wanted)) {
-    const Place place{.path = "skeletons/" + id};
+    const Place place{.path = "skeletons/" + id, .root = serving.root};
     if (auto found =
-            resource::skeleton_document(sight.frame, wanted, place, options_of(sight, run))) {
+            resource::skeleton_document(sight.frame, wanted, place, options_of(sight, serving))) {
       return found;
     }
   }
   return fail(ErrorCode::NotFound, "/skeletons/" + id, bodies_in(*sight.frame));
 }
 
-Result<DocumentPtr> floor_plane(const Sight& sight, const std::string& run) {
+Result<DocumentPtr> floor_plane(const Sight& sight, const Serving& serving) {
   if (!sight.floor) {
     return fail(ErrorCode::NotFound, "/floor-plane",
                 "this sensor does not know where the floor is");
   }
   DocumentOptions options;
-  options.version = std::to_string(sight.floor_version) + "." + run;
+  options.version = std::to_string(sight.floor_version) + "." + serving.run;
   return resource::document_of(resource::floor_plane_node(*sight.floor, sight.frame->space),
-                               std::move(options), {.path = "floor-plane"});
+                               std::move(options), {.path = "floor-plane", .root = serving.root});
 }
 
-DocumentPtr image_list(const Sight& sight, const std::string& run) {
+DocumentPtr image_list(const Sight& sight, const Serving& serving) {
   const auto shared = std::make_shared<const Sight>(sight);
-  DocumentOptions options = options_of(sight, run);
+  DocumentOptions options = options_of(sight, serving);
   options.container = true;
   std::vector<http::Variant> variants;
   for (const Format format : resource::kFormats) {
-    variants.push_back({std::string(resource::media_type(format)), [shared, format] {
-                          return resource::write(image_list_node(*shared), format,
-                                                 {.path = "images/"});
-                        }});
+    variants.push_back(
+        {std::string(resource::media_type(format)), [shared, format, root = serving.root] {
+           return resource::write(image_list_node(*shared), format,
+                                  {.path = "images/", .root = root});
+         }});
   }
   return std::make_shared<const http::Document>(std::move(variants), std::move(options));
 }
 
 Result<DocumentPtr> image_document(const LazyImage& image, std::uint64_t sequence,
-                                   const std::string& run) {
+                                   const Serving& serving) {
   const auto& encoded = image.get();
   if (!encoded) return pass(encoded);
   DocumentOptions options;
-  options.version = std::to_string(sequence) + "." + run;
+  options.version = std::to_string(sequence) + "." + serving.run;
   options.rdf_source = false;
   options.captured = encoded->captured;
   options.headers = {{"Link", "</images/>; rel=\"describedby\""}};

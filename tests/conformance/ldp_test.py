@@ -14,7 +14,7 @@ TURTLE = "text/turtle"
 
 def links(answer, rel):
     found = []
-    for part in (answer.headers.get("Link") or "").split(","):
+    for part in ", ".join(answer.headers.get_all("Link") or []).split(","):
         if f'rel="{rel}"' in part or f"rel={rel}" in part:
             found.append(part[part.find("<") + 1 : part.find(">")])
     return found

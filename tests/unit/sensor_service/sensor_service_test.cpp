@@ -27,7 +27,7 @@ class SensorServiceTest : public ::testing::Test {
     out.id = chorus::testing::sensor_id("s1");
     out.device = {"simulated", "a <test> device", {}, 30.0};
     out.frames_kept = 5;
-    out.run = "0a0b0c";
+    out.serving.run = "0a0b0c";
     out.steady_now = [now] { return *now; };
     return out;
   }
