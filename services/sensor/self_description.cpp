@@ -123,8 +123,10 @@ http::DocumentPtr self_document(const Self& self, const Serving& serving) {
   const auto node = std::make_shared<const Node>(self_node(self));
   std::vector<http::Variant> variants;
   for (const Format format : resource::kFormats) {
-    variants.push_back({std::string(resource::media_type(format)),
-                        [node, format] { return resource::write(*node, format); }});
+    variants.push_back(
+        {std::string(resource::media_type(format)), [node, format, root = serving.root] {
+           return resource::write(*node, format, {.root = root});
+         }});
   }
   variants.push_back({"text/html", [self] { return self_page(self); }});
   http::DocumentOptions options;

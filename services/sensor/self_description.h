@@ -5,9 +5,9 @@
 
 #include "common/base/strong_id.h"
 #include "common/http/document.h"
-#include "services/sensor/sight.h"
 #include "common/resource/node.h"
 #include "common/sensor/frame_source.h"
+#include "services/sensor/sight.h"
 
 namespace chorus::sensor_service {
 

@@ -27,7 +27,7 @@ ServiceOptions service_options(const Setup& setup) {
   options.images = setup.config.images;
   options.serving.run = run_name();
   options.serving.root =
-      fmt::format("http://{}:{}/", setup.config.http.address, setup.config.http.port);
+      "http://" + setup.config.http.address + ":" + std::to_string(setup.config.http.port) + "/";
   return options;
 }
 
