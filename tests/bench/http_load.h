@@ -56,7 +56,7 @@ struct LongPollLoad {
 /// ns>".
 struct LongPollAges {
   std::vector<double> ages;
-  std::uint64_t answers = 0;
+  std::uint64_t answers = 0;             ///< All, those of the warm-up too.
   std::uint64_t repeated_or_missed = 0;  ///< Versions that did not follow their predecessor.
 };
 
