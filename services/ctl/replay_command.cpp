@@ -44,7 +44,7 @@ Result<int> run_replay(const ReplayArguments& arguments) {
   if (!recordings) return pass(recordings);
   if (arguments.port + static_cast<int>(files->size()) - 1 > kLastPort)
     return fail(ErrorCode::InvalidArgument, "--port", "leaves too few ports above it.");
-  const Timestamp epoch = SystemClock().now() + kHeadStart;
+  const Timestamp epoch = std::chrono::ceil<std::chrono::seconds>(SystemClock().now() + kHeadStart);
   std::vector<Child> children;
   for (std::size_t i = 0; i < files->size(); ++i) {
     const int port = arguments.port + static_cast<int>(i);
