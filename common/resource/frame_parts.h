@@ -45,6 +45,7 @@ class Pen {
     at_ = text_.data() + used;
   }
   void put(std::string_view text) {
+    if (text.empty()) return;  // memcpy takes no null, not even for nothing
     std::memcpy(at_, text.data(), text.size());
     at_ += text.size();
   }
