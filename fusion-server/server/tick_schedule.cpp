@@ -50,9 +50,13 @@ Tick TickSchedule::next(Timestamp now) {
   return {grid_instant(index_, config_.rate_hz), sequence_};
 }
 
+Duration TickSchedule::spacing() const {
+  return std::min(config_.min_spacing, Duration(kSecond / config_.rate_hz / 2));
+}
+
 Duration TickSchedule::wait(Timestamp now, bool ready) const {
   const Timestamp instant = grid_instant(index_, config_.rate_hz);
-  const Timestamp earliest = std::max(instant, last_answer_ + config_.min_spacing);
+  const Timestamp earliest = std::max(instant, last_answer_ + spacing());
   if (now < earliest) return earliest - now;
   const Timestamp latest = std::max(earliest, instant + config_.alignment_delay);
   return ready || now >= latest ? Duration{0} : latest - now;

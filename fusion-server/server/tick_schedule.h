@@ -13,8 +13,9 @@ struct TickConfig {
   int rate_hz = 30;
   Duration alignment_delay =
       std::chrono::milliseconds(80);  ///< Latest time after the instant to answer it.
-  /// Between two answers, so that a reader of the latest frame sees both when one was late.
-  Duration min_spacing = std::chrono::milliseconds(6);
+  /// Between two answers, but at most half an interval: after a stall the late ones come one by
+  /// one, so that whoever polls the latest frame sees each of them.
+  Duration min_spacing = std::chrono::milliseconds(13);
   Duration max_lag =
       std::chrono::seconds(1);  ///< Further behind (suspended host): skip, and say so.
 
@@ -50,6 +51,8 @@ class TickSchedule {
   [[nodiscard]] std::uint64_t skipped() const noexcept { return skipped_; }
 
  private:
+  [[nodiscard]] Duration spacing() const;
+
   TickConfig config_;
   std::int64_t index_ = 0;  ///< Of the pending instant; zero: not started.
   std::uint64_t sequence_;

@@ -75,6 +75,20 @@ TEST(TickSchedule, LateAnswersAreSpacedSoThatReadersSeeEachOfThem) {
   EXPECT_EQ(schedule.wait(late + TickConfig{}.min_spacing, true), Duration{0});
 }
 
+TEST(TickSchedule, TheSpacingNeverSlowsAFastOutputDown) {
+  TickConfig fast;
+  fast.rate_hz = 240;
+  TickSchedule schedule(fast);
+  Timestamp now = schedule.next(kT0).instant;
+  for (int i = 0; i < 240; ++i) {
+    while (schedule.wait(now, true) > Duration{0}) now += schedule.wait(now, true);
+    schedule.answered(now);
+    (void)schedule.next(now);
+  }
+  EXPECT_LE(now - kT0, std::chrono::milliseconds(1010));
+  EXPECT_EQ(schedule.skipped(), 0u);
+}
+
 TEST(TickSchedule, ASuspendedHostSkipsAndCountsWhatItSkipped) {
   TickSchedule schedule({});
   const Tick before = schedule.next(kT0);
