@@ -6,8 +6,6 @@
 namespace chorus::server {
 namespace {
 
-// A sensor silent for longer is not waited for: its history goes, and with it the Pending answers.
-constexpr Duration kSilence = std::chrono::seconds(1);
 // A body seen within this time counts as "somebody is there".
 constexpr Duration kSeenLately = std::chrono::seconds(2);
 
@@ -55,18 +53,10 @@ std::optional<Snapshot> FusionCore::tick(Timestamp now) {
 }
 
 Duration FusionCore::idle(Timestamp now) {
-  forget_silent(now);
   const Tick tick = schedule_.next(now);
   const bool ready = pipeline::ready({tick.instant, now, tick.sequence}, histories_, registration_,
                                      config_.pipeline);
   return schedule_.wait(now, ready);
-}
-
-void FusionCore::forget_silent(Timestamp now) {
-  std::erase_if(histories_, [&](const auto& entry) {
-    const auto& frames = entry.second.frames();
-    return frames.empty() || now - frames.back().received > kSilence;
-  });
 }
 
 Result<void> FusionCore::start_session(Duration target) {

@@ -70,7 +70,6 @@ class FusionCore {
   [[nodiscard]] std::uint64_t skipped() const noexcept { return schedule_.skipped(); }
 
  private:
-  void forget_silent(Timestamp now);
   void start_by_itself(Timestamp now);
   [[nodiscard]] std::vector<std::string> shortfalls(const Registration& candidate) const;
 

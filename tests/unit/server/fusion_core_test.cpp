@@ -48,10 +48,14 @@ SensorFrame sight(int sensor, Duration t) {
       {testing::body_seen_from(testing::ring_sensor(sensor, kSensors), person, captured)});
 }
 
+struct Answers : std::vector<Snapshot> {
+  Duration worst{0};  ///< Longest time from an instant to its answer.
+};
+
 /// Runs the core from `from` for `length` as the server would: sensors with a phase each, one
 /// millisecond at a time.  `dead` is a sensor that says nothing.
-std::vector<Snapshot> run(FusionCore& core, Duration from, Duration length, int dead = -1) {
-  std::vector<Snapshot> out;
+Answers run(FusionCore& core, Duration from, Duration length, int dead = -1) {
+  Answers out;
   for (Duration t = from; t < from + length; t += milliseconds(1)) {
     for (int i = 0; i < kSensors; ++i) {
       const Duration phase = milliseconds(7 * i);
@@ -59,7 +63,10 @@ std::vector<Snapshot> run(FusionCore& core, Duration from, Duration length, int 
         core.take(sight(i, t));
       }
     }
-    while (auto snapshot = core.tick(kStart + t)) out.push_back(std::move(*snapshot));
+    while (auto snapshot = core.tick(kStart + t)) {
+      out.worst = std::max(out.worst, kStart + t - snapshot->instant);
+      out.push_back(std::move(*snapshot));
+    }
   }
   return out;
 }
@@ -85,23 +92,19 @@ TEST(FusionCore, FusesEveryInstantOnceAndKnowsWhoContributed) {
 TEST(FusionCore, AnswersWithoutWaitingForTheDelayWhenAllSensorsHavePassed) {
   FusionCore core(config(), ring());
   (void)run(core, Duration{0}, seconds(1));
-  Duration worst{0};
-  for (Duration t = seconds(1); t < seconds(2); t += milliseconds(1)) {
-    for (int i = 0; i < kSensors; ++i) {
-      if ((t - milliseconds(7 * i)) % milliseconds(33) < milliseconds(1)) core.take(sight(i, t));
-    }
-    if (const auto snapshot = core.tick(kStart + t)) {
-      worst = std::max(worst, kStart + t - snapshot->instant);
-    }
-  }
-  EXPECT_LT(worst, milliseconds(45));  // one frame interval and the phases, not the 80 ms
+  // One frame interval and the phases, not the 80 ms.
+  EXPECT_LT(run(core, seconds(1), seconds(1)).worst, milliseconds(50));
 }
 
-TEST(FusionCore, ADeadSensorDelaysOnlyUntilItIsForgotten) {
+TEST(FusionCore, ADeadSensorDelaysOnlyUntilItsGapIsTooWide) {
   FusionCore core(config(), ring());
   (void)run(core, Duration{0}, seconds(1));
-  const auto during = run(core, seconds(1), seconds(3), 1);
+  const auto waiting = run(core, seconds(1), milliseconds(200), 1);
+  EXPECT_GT(waiting.worst, milliseconds(70));
+  EXPECT_LT(waiting.worst, milliseconds(90));
+  const auto during = run(core, milliseconds(1200), milliseconds(2800), 1);
   expect_gapless(during);
+  EXPECT_LT(during.worst, milliseconds(50));
   ASSERT_EQ(during.back().bodies.size(), 1u);
   EXPECT_EQ(during.back().bodies[0].contributors[index_of(JointId::Neck)], 0b101u);
   const auto after = run(core, seconds(4), seconds(1));
