@@ -9,6 +9,7 @@
 
 #include "common/base/units.h"
 #include "common/geometry/plane.h"
+#include "common/synthetic/occluder.h"
 #include "common/synthetic/walker.h"
 #include "common/time/timestamp.h"
 
@@ -18,6 +19,7 @@ struct Scene {
   Timestamp epoch;  ///< People's time counts from here.
   std::vector<Walker> people;
   std::vector<Eigen::Isometry3d> world_from_sensor;
+  std::vector<Occluder> occluders = {};
 };
 
 /// Sensors evenly on a circle, all looking at its centre.

@@ -1,0 +1,42 @@
+// When frames are taken and arrive, which are lost, and what the host's clock says.  Seconds.
+#pragma once
+
+#include <cstdint>
+
+#include "common/synthetic/kinect/joint_error.h"
+#include "common/time/timestamp.h"
+
+namespace chorus::synthetic::kinect {
+
+/// One host's clock against the true one: host = true + offset + drift * (true - origin) + step
+/// after step_at.
+struct HostClock {
+  double offset = 0.0;  ///< [s]
+  double drift = 0.0;   ///< [s/s]
+  double step = 0.0;    ///< [s]
+  Timestamp origin{};
+  Timestamp step_at = Timestamp::max();
+
+  [[nodiscard]] Timestamp host_time(Timestamp true_time) const;
+};
+
+/// A host's clock drawn from the profile.
+[[nodiscard]] HostClock draw_clock(const ClockError& clock, Timestamp origin,
+                                   const ErrorKeys& keys);
+
+/// When frame `number` (periods since the epoch) is truly exposed.
+[[nodiscard]] Timestamp exposure(const Delivery& delivery, std::uint64_t number,
+                                 const ErrorKeys& keys);
+/// The first frame exposed at or after the instant.
+[[nodiscard]] std::uint64_t first_frame(const Delivery& delivery, Timestamp instant,
+                                        const ErrorKeys& keys);
+/// Lost on the way.
+[[nodiscard]] bool is_dropped(const Delivery& delivery, std::uint64_t number,
+                              const ErrorKeys& keys);
+/// The tracker has lost this person for the moment.
+[[nodiscard]] bool is_lost(const Delivery& delivery, double time, const ErrorKeys& keys);
+/// Exposure to arrival.
+[[nodiscard]] Duration latency(const Delivery& delivery, std::uint64_t number,
+                               const ErrorKeys& keys);
+
+}  // namespace chorus::synthetic::kinect

@@ -1,0 +1,53 @@
+// Random joint error and the tracked / inferred flag: coloured, white, teleports.
+//
+// Time enters as seconds since the epoch; everything but the Ornstein-Uhlenbeck state is a pure
+// function of the keys.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "common/body/skeleton.h"
+#include "common/synthetic/kinect/profile.h"
+
+namespace chorus::synthetic::kinect {
+
+/// Who errs: one sensor looking at one person.
+struct ErrorKeys {
+  std::uint64_t seed = 1;
+  std::uint64_t sensor = 0;
+  std::uint64_t person = 0;
+};
+
+/// The coloured error's memory: unit-variance processes, three axes per joint and three shared by
+/// the core.
+struct ColouredState {
+  std::array<Eigen::Vector3d, kJointCount> joint{};
+  Eigen::Vector3d core = Eigen::Vector3d::Zero();
+  bool started = false;
+};
+
+/// How the body stands: what scales the error.
+struct Stand {
+  double facing = 0.0;    ///< [rad]
+  double distance = 2.5;  ///< Sensor to neck [m]
+};
+
+/// Smooth unit-variance noise, correlated over about `tau` [s]; a pure function of key and time.
+[[nodiscard]] Eigen::Vector3d lattice_noise(std::initializer_list<std::uint64_t> key, double time,
+                                            double tau);
+
+/// Tracked or inferred, in runs of about `state_hold`; occluded joints mostly inferred, core joints
+/// never when visible.
+[[nodiscard]] JointState shown_state(JointId id, double visible_share, double time,
+                                     const Visibility& visibility, const ErrorKeys& keys);
+
+/// One frame further: moves the coloured processes on by dt [s].
+void advance(ColouredState& state, double time, double dt, const ColouredError& coloured,
+             const ErrorKeys& keys);
+
+/// Adds coloured and white error and teleports to every seen joint.
+void add_errors(Skeleton<SensorSpace>& body, const ColouredState& state, const Stand& stand,
+                double time, const Profile& profile, const ErrorKeys& keys);
+
+}  // namespace chorus::synthetic::kinect

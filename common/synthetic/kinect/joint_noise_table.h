@@ -1,0 +1,52 @@
+// Standard deviations per joint at 2.5 m, facing, tracked: coloured (one figure) and white (x, y,
+// z).
+//
+// Millimetres, sensor space.  White: real Kinect v2 logs, third-difference, walking (statistics
+// only).  Coloured: bone-length variation of the same logs and Otto's figures.  Order of JointId;
+// profiles.json scales both tables as a whole.
+#pragma once
+
+#include <array>
+
+#include "common/body/skeleton.h"
+
+namespace chorus::synthetic::kinect {
+
+struct JointNoise {
+  double coloured;  ///< Per axis [mm]
+  double white_x;   ///< [mm]
+  double white_y;
+  double white_z;
+};
+
+// clang-format off
+inline constexpr std::array<JointNoise, kJointCount> kJointNoise{{
+    {12, 3.5, 2.7, 5.2},   // SpineBase
+    { 9, 1.8, 1.6, 4.1},   // SpineMid
+    { 7, 1.2, 1.3, 3.4},   // Neck
+    { 6, 1.5, 1.5, 3.0},   // Head
+    {14, 2.5, 2.2, 4.5},   // ShoulderLeft
+    {20, 3.0, 3.0, 5.0},   // ElbowLeft
+    {26, 5.0, 4.0, 6.0},   // WristLeft
+    {30, 7.0, 7.0, 9.0},   // HandLeft
+    {14, 2.5, 2.2, 4.5},   // ShoulderRight
+    {20, 3.0, 3.0, 5.0},   // ElbowRight
+    {26, 5.0, 4.0, 6.0},   // WristRight
+    {30, 7.0, 7.0, 9.0},   // HandRight
+    {16, 4.5, 3.6, 7.5},   // HipLeft
+    {26, 3.0, 6.0, 4.0},   // KneeLeft
+    {26, 4.0, 11.0, 7.0},  // AnkleLeft
+    {30, 8.5, 21.0, 17.0}, // FootLeft
+    {16, 4.5, 3.6, 7.5},   // HipRight
+    {26, 3.0, 6.0, 4.0},   // KneeRight
+    {26, 4.0, 11.0, 7.0},  // AnkleRight
+    {30, 8.5, 21.0, 17.0}, // FootRight
+    { 8, 1.3, 1.2, 3.4},   // SpineShoulder
+    {34, 11.0, 14.0, 13.0},  // HandTipLeft
+    {34, 11.0, 14.0, 13.0},  // ThumbLeft
+    {34, 11.0, 14.0, 13.0},  // HandTipRight
+    {34, 11.0, 14.0, 13.0},  // ThumbRight
+}};
+// clang-format on
+
+}  // namespace chorus::synthetic::kinect

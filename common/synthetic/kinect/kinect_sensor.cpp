@@ -1,0 +1,159 @@
+#include "common/synthetic/kinect/kinect_sensor.h"
+
+#include <cmath>
+#include <limits>
+
+#include "common/body/facing.h"
+#include "common/geometry/rotation.h"
+#include "common/synthetic/draw.h"
+#include "common/synthetic/kinect/joint_bias.h"
+
+namespace chorus::synthetic::kinect {
+namespace {
+
+enum Purpose : std::uint64_t { kFloorFixed = 981, kFloorNow };
+
+// Otto 7.3 sees at most 1.5 deg of pitch; real floor planes scatter by 0.1-0.2 deg (notes on
+// algorithms, 1.4).
+constexpr double kFloorTilt = deg(0.3);
+constexpr double kFloorOffset = 0.006;  // [m]
+constexpr double kFloorTiltNow = deg(0.1);
+constexpr double kFloorOffsetNow = 0.003;  // [m]
+
+double time_of(Timestamp t) { return seconds(t.time_since_epoch()); }
+
+void limit(Skeleton<SensorSpace>& body, const ViewLimits& view) {
+  for (Joint& joint : body.joints) {
+    const Eigen::Vector3d& p = joint.position;
+    const double range = p.norm();
+    const double outside = std::max(std::abs(std::atan2(p.x(), p.z())) - view.half_width,
+                                    std::abs(std::atan2(p.y(), p.z())) - view.half_height);
+    const bool in_range = range >= view.least_range && range <= view.most_range;
+    if (!in_range || !(outside <= view.margin)) {
+      joint = Joint{};
+    } else if (outside > 0) {
+      joint.state = JointState::Inferred;
+    }
+  }
+}
+
+/// The SDK reports a body when it has its trunk.
+bool is_reported(const Skeleton<SensorSpace>& body) {
+  return body[JointId::Neck].state == JointState::Tracked && body[JointId::SpineMid].seen();
+}
+
+}  // namespace
+
+KinectSensor::KinectSensor(const Scene& scene, KinectSetting setting, Timestamp start)
+    : scene_(&scene),
+      setting_(std::move(setting)),
+      clock_(setting_.own_clock ? draw_clock(setting_.profile.clock, start, keys(0)) : HostClock{}),
+      number_(first_frame(setting_.profile.delivery, start, keys(0))),
+      memory_(scene.people.size()),
+      ids_(keys(0), scene.people.size()) {}
+
+ErrorKeys KinectSensor::keys(std::size_t person) const {
+  return {setting_.seed, setting_.place, person};
+}
+
+Timestamp KinectSensor::next_exposure() const {
+  return exposure(setting_.profile.delivery, number_, keys(0));
+}
+
+void KinectSensor::look(Timestamp exposed) {
+  const Eigen::Isometry3d sensor_from_world = scene_->world_from_sensor[setting_.place].inverse();
+  bodies_.clear();
+  obstacles_.bodies.clear();
+  obstacles_.boxes.clear();
+  for (std::size_t person = 0; person < scene_->people.size(); ++person) {
+    bodies_.push_back(to_sensor(sensor_from_world, truth(*scene_, person, exposed)));
+    obstacles_.bodies.push_back(capsules_of(bodies_.back()));
+    for (Capsule& capsule : obstacles_.bodies.back()) {
+      capsule.radius *= setting_.profile.visibility.girth;
+    }
+  }
+  for (const Occluder& occluder : scene_->occluders) {
+    obstacles_.boxes.push_back(
+        {sensor_from_world * place_of(occluder, exposed - scene_->epoch), occluder.half});
+  }
+}
+
+std::optional<Skeleton<SensorSpace>> KinectSensor::shown(std::size_t person, Timestamp exposed) {
+  const Profile& profile = setting_.profile;
+  const double time = time_of(exposed);
+  const Skeleton<SensorSpace>& exact = bodies_[person];
+  const double facing = facing_angle(exact).value_or(0.0);
+  const auto visible = visible_share(exact, person, obstacles_, profile.visibility);
+
+  Memory& memory = memory_[person];
+  advance(memory.flip, facing, profile.delivery.period, profile.yaw);
+  advance(memory.coloured, time, profile.delivery.period, profile.coloured, keys(person));
+
+  Skeleton<SensorSpace> labelled = exact;
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    labelled.joints[i].state =
+        shown_state(static_cast<JointId>(i), visible[i], time, profile.visibility, keys(person));
+    labelled.joints[i].position += joint_bias(static_cast<JointId>(i), exact.joints[i].position,
+                                              facing, profile.bias, {setting_.seed, person});
+  }
+  Skeleton<SensorSpace> body = as_shown(labelled, facing, memory.flip, profile.yaw);
+  limit(body, profile.view);
+  if (!is_reported(body) || is_lost(profile.delivery, time, keys(person))) return std::nullopt;
+  merge_legs(body, profile.gross.leg_merge);
+  const Stand stand{facing, neck_distance(exact).value_or(2.5)};
+  add_errors(body, memory.coloured, stand, time, profile, keys(person));
+  return body;
+}
+
+FloorPlane KinectSensor::floor(std::uint64_t number) const {
+  Draw fixed{kFloorFixed, setting_.seed, setting_.place};
+  Draw now{kFloorNow, setting_.seed, setting_.place, number};
+  const Plane exact = floor_in_sensor(scene_->world_from_sensor[setting_.place]);
+  const Eigen::Vector3d tilt = kFloorTilt * fixed.gauss3() + kFloorTiltNow * now.gauss3();
+  return {exp_map(tilt) * exact.normal,
+          exact.offset + kFloorOffset * fixed.gauss() + kFloorOffsetNow * now.gauss()};
+}
+
+std::optional<SensorFrame> KinectSensor::next() {
+  const Profile& profile = setting_.profile;
+  const std::uint64_t number = number_++;
+  const Timestamp exposed = exposure(profile.delivery, number, keys(0));
+  look(exposed);
+  SensorFrame frame;
+  frame.sensor = setting_.id;
+  frame.sequence = number;
+  frame.captured = clock_.host_time(exposed);
+  frame.received = exposed + latency(profile.delivery, number, keys(0));
+  frame.floor = floor(number);
+  std::vector<Eigen::Vector3d> cores(
+      bodies_.size(), Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  std::vector<std::pair<std::size_t, Skeleton<SensorSpace>>> bodies;
+  for (std::size_t person = 0; person < bodies_.size(); ++person) {
+    if (auto body = shown(person, exposed)) {
+      cores[person] = (*body)[JointId::SpineMid].position;
+      bodies.emplace_back(person, *std::move(body));
+    }
+  }
+  ids_.look(cores, profile.gross.id_swap, time_of(exposed));
+  for (auto& [person, skeleton] : bodies) {
+    frame.bodies.push_back({ids_.id_of(person), frame.captured, std::move(skeleton)});
+  }
+  if (auto body = ghost(profile.gross, time_of(exposed), keys(0))) {
+    body->captured = frame.captured;
+    frame.bodies.push_back(*std::move(body));
+  }
+  if (is_dropped(profile.delivery, number, keys(0))) return std::nullopt;
+  return frame;
+}
+
+std::vector<SensorFrame> record(const Scene& scene, const KinectSetting& setting, Timestamp start,
+                                Timestamp end) {
+  KinectSensor sensor(scene, setting, start);
+  std::vector<SensorFrame> frames;
+  while (sensor.next_exposure() <= end) {
+    if (auto frame = sensor.next()) frames.push_back(*std::move(frame));
+  }
+  return frames;
+}
+
+}  // namespace chorus::synthetic::kinect

@@ -1,0 +1,67 @@
+// One body-tracking depth sensor of the workshop: every layer of error, in order, frame by frame.
+//
+// truth -> visibility -> yaw behaviour and flip -> view limits -> states -> bias -> coloured and
+// white error -> gross errors
+// -> drops, gaps, latency, clock.  Deterministic: the same room, place, profile, seed and start
+// give the same frames.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "common/sensor/sensor_frame.h"
+#include "common/synthetic/kinect/delivery.h"
+#include "common/synthetic/kinect/gross_error.h"
+#include "common/synthetic/kinect/profile.h"
+#include "common/synthetic/kinect/visibility.h"
+#include "common/synthetic/kinect/yaw_behaviour.h"
+#include "common/synthetic/scene.h"
+
+namespace chorus::synthetic::kinect {
+
+struct KinectSetting {
+  SensorId id;
+  std::size_t place = 0;  ///< Index into Scene::world_from_sensor.
+  Profile profile;
+  std::uint64_t seed = 1;  ///< The same for all sensors of a room: shared errors are shared.
+  bool own_clock = true;   ///< Stamps by the host's erring clock; false: true time.
+};
+
+class KinectSensor {
+ public:
+  /// `scene` must outlive the sensor.  The first frames are at or after `start`.
+  KinectSensor(const Scene& scene, KinectSetting setting, Timestamp start);
+
+  /// The next frame by exposure; none when it was dropped.  `captured` is by the host's clock,
+  /// `received` true time.
+  [[nodiscard]] std::optional<SensorFrame> next();
+
+  /// True exposure of the frame that next() will give.
+  [[nodiscard]] Timestamp next_exposure() const;
+  [[nodiscard]] const HostClock& clock() const noexcept { return clock_; }
+
+ private:
+  struct Memory {
+    FlipState flip;
+    ColouredState coloured;
+  };
+  void look(Timestamp exposed);
+  [[nodiscard]] std::optional<Skeleton<SensorSpace>> shown(std::size_t person, Timestamp exposed);
+  [[nodiscard]] ErrorKeys keys(std::size_t person) const;
+  [[nodiscard]] FloorPlane floor(std::uint64_t number) const;
+
+  const Scene* scene_;
+  KinectSetting setting_;
+  HostClock clock_;
+  std::uint64_t number_;
+  std::vector<Memory> memory_;
+  IdBook ids_;
+  std::vector<Skeleton<SensorSpace>> bodies_;  ///< Everybody, exactly, at the current exposure.
+  Obstacles obstacles_;
+};
+
+/// All frames of one sensor from start to end.
+[[nodiscard]] std::vector<SensorFrame> record(const Scene& scene, const KinectSetting& setting,
+                                              Timestamp start, Timestamp end);
+
+}  // namespace chorus::synthetic::kinect

@@ -1,0 +1,179 @@
+#include "common/synthetic/kinect/profile.h"
+
+#include <array>
+#include <cassert>
+#include <functional>
+
+#include <nlohmann/json.hpp>
+
+#include "common/synthetic/draw.h"
+#include "profiles_text.h"
+
+namespace chorus::synthetic::kinect {
+namespace {
+
+enum class Unit { One, Degrees, Milliseconds, Millimetres, PartsPerMillion };
+
+double in_our_units(double value, Unit unit) {
+  switch (unit) {
+    case Unit::One:
+      return value;
+    case Unit::Degrees:
+      return deg(value);
+    case Unit::Milliseconds:
+      return value * 1e-3;
+    case Unit::Millimetres:
+      return mm(value);
+    case Unit::PartsPerMillion:
+      return value * 1e-6;
+  }
+  return value;
+}
+
+struct Binding {
+  const char* key;
+  Unit unit;
+  double& (*field)(Profile&);
+};
+
+#define CHORUS_FIELD(member) [](Profile& p) -> double& { return p.member; }
+
+// One row per entry of profiles.json; a test holds the two lists against each other.
+constexpr std::array kBindings{
+    Binding{"view.half_width_deg", Unit::Degrees, CHORUS_FIELD(view.half_width)},
+    Binding{"view.half_height_deg", Unit::Degrees, CHORUS_FIELD(view.half_height)},
+    Binding{"view.margin_deg", Unit::Degrees, CHORUS_FIELD(view.margin)},
+    Binding{"view.least_range_m", Unit::One, CHORUS_FIELD(view.least_range)},
+    Binding{"view.most_range_m", Unit::One, CHORUS_FIELD(view.most_range)},
+    Binding{"delivery.period_ms", Unit::Milliseconds, CHORUS_FIELD(delivery.period)},
+    Binding{"delivery.jitter_ms", Unit::Milliseconds, CHORUS_FIELD(delivery.jitter)},
+    Binding{"delivery.drop_share", Unit::One, CHORUS_FIELD(delivery.drop_share)},
+    Binding{"delivery.gaps_per_minute", Unit::One, CHORUS_FIELD(delivery.gaps_per_minute)},
+    Binding{"delivery.gap_least_s", Unit::One, CHORUS_FIELD(delivery.gap_least)},
+    Binding{"delivery.gap_most_s", Unit::One, CHORUS_FIELD(delivery.gap_most)},
+    Binding{"delivery.latency_ms", Unit::Milliseconds, CHORUS_FIELD(delivery.latency)},
+    Binding{"delivery.latency_jitter_ms", Unit::Milliseconds,
+            CHORUS_FIELD(delivery.latency_jitter)},
+    Binding{"visibility.rays", Unit::One, CHORUS_FIELD(visibility.rays)},
+    Binding{"visibility.girth", Unit::One, CHORUS_FIELD(visibility.girth)},
+    Binding{"visibility.inferred_visible", Unit::One, CHORUS_FIELD(visibility.inferred_visible)},
+    Binding{"visibility.inferred_occluded", Unit::One, CHORUS_FIELD(visibility.inferred_occluded)},
+    Binding{"visibility.state_hold_s", Unit::One, CHORUS_FIELD(visibility.state_hold)},
+    Binding{"yaw.reliable_deg", Unit::Degrees, CHORUS_FIELD(yaw.reliable)},
+    Binding{"yaw.shoulder_slope", Unit::One, CHORUS_FIELD(yaw.shoulder_slope)},
+    Binding{"yaw.hip_slope", Unit::One, CHORUS_FIELD(yaw.hip_slope)},
+    Binding{"yaw.flip_to_rear_deg", Unit::Degrees, CHORUS_FIELD(yaw.flip_to_rear)},
+    Binding{"yaw.flip_to_front_deg", Unit::Degrees, CHORUS_FIELD(yaw.flip_to_front)},
+    Binding{"yaw.flip_s", Unit::One, CHORUS_FIELD(yaw.flip_time)},
+    Binding{"bias.core_mm", Unit::Millimetres, CHORUS_FIELD(bias.core)},
+    Binding{"bias.head_forward_mm", Unit::Millimetres, CHORUS_FIELD(bias.head_forward)},
+    Binding{"bias.hip_radial_mm", Unit::Millimetres, CHORUS_FIELD(bias.hip_radial)},
+    Binding{"bias.vertical_mm", Unit::Millimetres, CHORUS_FIELD(bias.vertical)},
+    Binding{"bias.limb_factor", Unit::One, CHORUS_FIELD(bias.limb_factor)},
+    Binding{"bias.common_share", Unit::One, CHORUS_FIELD(bias.common_share)},
+    Binding{"coloured.core_tau_s", Unit::One, CHORUS_FIELD(coloured.core_tau)},
+    Binding{"coloured.limb_tau_s", Unit::One, CHORUS_FIELD(coloured.limb_tau)},
+    Binding{"coloured.scale", Unit::One, CHORUS_FIELD(coloured.scale)},
+    Binding{"coloured.depth_factor", Unit::One, CHORUS_FIELD(coloured.depth_factor)},
+    Binding{"coloured.turn_growth", Unit::One, CHORUS_FIELD(coloured.turn_growth)},
+    Binding{"coloured.distance_growth", Unit::One, CHORUS_FIELD(coloured.distance_growth)},
+    Binding{"coloured.inferred_factor", Unit::One, CHORUS_FIELD(coloured.inferred_factor)},
+    Binding{"coloured.inferred_least_mm", Unit::Millimetres, CHORUS_FIELD(coloured.inferred_least)},
+    Binding{"coloured.inferred_pull", Unit::One, CHORUS_FIELD(coloured.inferred_pull)},
+    Binding{"coloured.core_correlation", Unit::One, CHORUS_FIELD(coloured.core_correlation)},
+    Binding{"coloured.sensor_correlation", Unit::One, CHORUS_FIELD(coloured.sensor_correlation)},
+    Binding{"coloured.student_nu", Unit::One, CHORUS_FIELD(coloured.student_nu)},
+    Binding{"white.scale", Unit::One, CHORUS_FIELD(white_scale)},
+    Binding{"gross.teleports_per_joint_s", Unit::One, CHORUS_FIELD(gross.teleports)},
+    Binding{"gross.teleport_m", Unit::One, CHORUS_FIELD(gross.teleport_size)},
+    Binding{"gross.ghosts_per_minute", Unit::One, CHORUS_FIELD(gross.ghosts_per_minute)},
+    Binding{"gross.ghost_s", Unit::One, CHORUS_FIELD(gross.ghost_time)},
+    Binding{"gross.id_swap_per_contact", Unit::One, CHORUS_FIELD(gross.id_swap)},
+    Binding{"gross.leg_merge", Unit::One, CHORUS_FIELD(gross.leg_merge)},
+    Binding{"clock.offset_ms", Unit::Milliseconds, CHORUS_FIELD(clock.offset)},
+    Binding{"clock.drift_ppm", Unit::PartsPerMillion, CHORUS_FIELD(clock.drift)},
+    Binding{"clock.step_ms", Unit::Milliseconds, CHORUS_FIELD(clock.step)},
+};
+#undef CHORUS_FIELD
+
+const nlohmann::json& parameters() {
+  // The text is part of the program and read by a test; it cannot fail at run time.
+  static const nlohmann::json parsed = nlohmann::json::parse(kProfilesText, nullptr, true, true);
+  return parsed;
+}
+
+/// Fills every field; `scale(spread)` says by which factor a value is drawn away from its nominal
+/// one.
+Profile filled(std::string_view name, const std::function<double(double)>& scale) {
+  Profile profile;
+  profile.name = name;
+  for (const Binding& binding : kBindings) {
+    const nlohmann::json& entry = parameters().at(binding.key);
+    const double nominal = entry.at(std::string(name)).get<double>();
+    const double spread = entry.at("spread").get<double>();
+    binding.field(profile) = in_our_units(nominal * scale(spread), binding.unit);
+  }
+  return profile;
+}
+
+void silence(YawBehaviour& yaw) {
+  yaw.reliable = deg(180);
+  yaw.flip_to_rear = deg(360);  // never
+}
+
+}  // namespace
+
+Profile nominal_profile(std::string_view name) {
+  return filled(name, [](double) { return 1.0; });
+}
+
+Profile draw_profile(std::string_view name, std::uint64_t seed) {
+  constexpr std::uint64_t kPurpose = 901;
+  Draw draw{seed, kPurpose};
+  return filled(name, [&draw](double spread) { return 1.0 + draw.uniform(-spread, spread); });
+}
+
+Profile with_source(Profile profile, Source source, double factor) {
+  switch (source) {
+    case Source::Visibility:
+      profile.visibility.inferred_visible *= factor;
+      if (factor <= 0) profile.visibility.rays = 0;
+      break;
+    case Source::Yaw:
+      if (factor <= 0) silence(profile.yaw);
+      break;
+    case Source::Bias:
+      for (double* each : {&profile.bias.core, &profile.bias.head_forward, &profile.bias.hip_radial,
+                           &profile.bias.vertical}) {
+        *each *= factor;
+      }
+      break;
+    case Source::Coloured:
+      profile.coloured.scale *= factor;
+      profile.coloured.inferred_least *= factor;
+      break;
+    case Source::White:
+      profile.white_scale *= factor;
+      break;
+    case Source::Gross:
+      profile.gross.teleports *= factor;
+      profile.gross.ghosts_per_minute *= factor;
+      profile.gross.id_swap = std::min(1.0, profile.gross.id_swap * factor);
+      profile.gross.leg_merge = std::min(1.0, profile.gross.leg_merge * factor);
+      break;
+    case Source::Delivery:
+      profile.delivery.drop_share = std::min(0.9, profile.delivery.drop_share * factor);
+      profile.delivery.gaps_per_minute *= factor;
+      profile.delivery.jitter *= factor;
+      break;
+    case Source::Clock:
+      profile.clock.offset *= factor;
+      profile.clock.drift *= factor;
+      break;
+  }
+  return profile;
+}
+
+std::string frozen_hash() { return kProfilesHash; }
+
+}  // namespace chorus::synthetic::kinect

@@ -1,0 +1,97 @@
+// The parameters of the body-tracking sensor model, read from profiles.json; frozen by hash.
+//
+// Metres, radians, seconds inside.  A profile is one draw: the nominal values, or each value drawn
+// from its interval.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "common/base/result.h"
+#include "common/base/units.h"
+
+namespace chorus::synthetic::kinect {
+
+struct ViewLimits {
+  double half_width = 0, half_height = 0, margin = 0;  ///< [rad]
+  double least_range = 0, most_range = 0;              ///< [m]
+};
+
+struct Delivery {
+  double period = 0, jitter = 0;  ///< [s]
+  double drop_share = 0;
+  double gaps_per_minute = 0, gap_least = 0, gap_most = 0;  ///< [s]
+  double latency = 0, latency_jitter = 0;                   ///< [s]
+};
+
+struct Visibility {
+  double rays = 0, girth = 0;
+  double inferred_visible = 0, inferred_occluded = 0;  ///< Probabilities.
+  double state_hold = 0;                               ///< [s]
+};
+
+struct YawBehaviour {
+  double reliable = 0;  ///< [rad]
+  double shoulder_slope = 0, hip_slope = 0;
+  double flip_to_rear = 0, flip_to_front = 0;  ///< [rad]
+  double flip_time = 0;                        ///< [s]
+};
+
+struct JointBias {
+  double core = 0, head_forward = 0, hip_radial = 0, vertical = 0;  ///< [m]
+  double limb_factor = 0, common_share = 0;
+};
+
+struct ColouredError {
+  double core_tau = 0, limb_tau = 0;  ///< [s]
+  double scale = 0, depth_factor = 0, turn_growth = 0, distance_growth = 0;
+  double inferred_factor = 0, inferred_least = 0, inferred_pull = 0;
+  double core_correlation = 0, sensor_correlation = 0;
+  double student_nu = 0;  ///< 0: Gaussian.
+};
+
+struct GrossError {
+  double teleports = 0;      ///< Per joint and second.
+  double teleport_size = 0;  ///< [m]
+  double ghosts_per_minute = 0, ghost_time = 0;
+  double id_swap = 0;    ///< Probability per contact.
+  double leg_merge = 0;  ///< Share of the distance closed.
+};
+
+struct ClockError {
+  double offset = 0;  ///< Standard deviation over hosts [s]
+  double drift = 0;   ///< Standard deviation [s/s]
+  double step = 0;    ///< [s]
+};
+
+struct Profile {
+  std::string name;
+  ViewLimits view;
+  Delivery delivery;
+  Visibility visibility;
+  YawBehaviour yaw;
+  JointBias bias;
+  ColouredError coloured;
+  double white_scale = 1.0;
+  GrossError gross;
+  ClockError clock;
+};
+
+/// The nominal values of "A" or "B".
+[[nodiscard]] Profile nominal_profile(std::string_view name);
+
+/// Every parameter drawn uniformly from its interval; the same seed gives the same draw.
+[[nodiscard]] Profile draw_profile(std::string_view name, std::uint64_t seed);
+
+/// The error sources that stress sweeps and ablations turn up, down or off.
+enum class Source { Visibility, Yaw, Bias, Coloured, White, Gross, Delivery, Clock };
+
+/// The profile with one source of error multiplied: 0 switches it off, 1 leaves it.
+[[nodiscard]] Profile with_source(Profile profile, Source source, double factor);
+
+/// First 12 hex digits of the SHA-256 of profiles.json and the joint table: printed with every
+/// result.
+[[nodiscard]] std::string frozen_hash();
+
+}  // namespace chorus::synthetic::kinect

@@ -1,0 +1,31 @@
+// What the SDK makes of a body that turns: it believes that everybody looks at the camera (Otto
+// Figs. 5-6).
+//
+// Up to `reliable` the yaw is right; beyond, shoulders and hips lag; past flip_to_rear the skeleton
+// is shown as if it faced the sensor, so left and right are exchanged, and it stays so until the
+// yaw is back below flip_to_front (hysteresis).
+#pragma once
+
+#include "common/body/skeleton.h"
+#include "common/synthetic/kinect/profile.h"
+
+namespace chorus::synthetic::kinect {
+
+/// Memory of one body in one sensor.
+struct FlipState {
+  bool rear = false;   ///< Labels are exchanged.
+  double blend = 0.0;  ///< 0 front ... 1 rear, moving while the SDK changes its mind.
+};
+
+/// The yaw the SDK shows for a true yaw [rad] with this slope; odd, continuous, front only.
+[[nodiscard]] double shown_yaw(double yaw, double slope, const YawBehaviour& behaviour);
+
+/// One frame further: decides the flip from the true facing angle (0 = squarely facing).
+void advance(FlipState& state, double facing, double dt, const YawBehaviour& behaviour);
+
+/// The skeleton as the SDK would show it: trunk and limbs turned about the spine, labels exchanged
+/// when flipped.
+[[nodiscard]] Skeleton<SensorSpace> as_shown(const Skeleton<SensorSpace>& body, double facing,
+                                             const FlipState& state, const YawBehaviour& behaviour);
+
+}  // namespace chorus::synthetic::kinect
