@@ -36,22 +36,23 @@ std::vector<Eigen::Isometry3d> ring_places(const Ring& ring) {
   return places;
 }
 
-std::vector<Walker> make_people(const WalkerScript& script, std::size_t count) {
-  std::vector<Walker> people;
+std::vector<Person> make_people(const WalkerScript& script, std::size_t count) {
+  std::vector<Person> people;
   for (std::size_t i = 0; i < count; ++i) {
     WalkerScript own = script;
     if (i > 0) {
       own.seed = Draw{script.seed, i}.bits();
       own.body_scale *= 1.0 + Draw{script.seed, kDrawBuild, i}.uniform(-kBuildSpread, kBuildSpread);
     }
-    people.emplace_back(own);
+    people.emplace_back(
+        [walker = Walker(own)](Duration since_epoch) { return walker.at(since_epoch); });
   }
   return people;
 }
 
 Skeleton<WorldSpace> truth(const Scene& scene, std::size_t person, Timestamp instant) {
   if (person >= scene.people.size()) return {};
-  return scene.people[person].at(instant - scene.epoch);
+  return scene.people[person](instant - scene.epoch);
 }
 
 Plane floor_in_sensor(const Eigen::Isometry3d& world_from_sensor) {

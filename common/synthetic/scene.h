@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "common/base/units.h"
@@ -15,9 +16,12 @@
 
 namespace chorus::synthetic {
 
+/// Where somebody truly is, so long after the scene's epoch.
+using Person = std::function<Skeleton<WorldSpace>(Duration since_epoch)>;
+
 struct Scene {
   Timestamp epoch;  ///< People's time counts from here.
-  std::vector<Walker> people;
+  std::vector<Person> people;
   std::vector<Eigen::Isometry3d> world_from_sensor;
   std::vector<Occluder> occluders = {};
 };
@@ -39,7 +43,7 @@ struct Ring {
 [[nodiscard]] std::vector<Eigen::Isometry3d> ring_places(const Ring& ring);
 
 /// `count` people with different seeds, paths and builds out of one script.
-[[nodiscard]] std::vector<Walker> make_people(const WalkerScript& script, std::size_t count);
+[[nodiscard]] std::vector<Person> make_people(const WalkerScript& script, std::size_t count);
 
 /// Where a person truly is.
 [[nodiscard]] Skeleton<WorldSpace> truth(const Scene& scene, std::size_t person, Timestamp instant);

@@ -85,6 +85,26 @@ Eigen::Vector3d lattice_noise(std::initializer_list<std::uint64_t> key, double t
          std::sqrt((1.0 - s) * (1.0 - s) + s * s);
 }
 
+Eigen::Vector3d field_noise(std::initializer_list<std::uint64_t> key, const Eigen::Vector2d& place,
+                            double cell) {
+  constexpr double kOffset = 1000.0;  // keeps cell numbers positive anywhere in a building
+  const Eigen::Vector2d at = place / std::max(cell, 1e-3) + Eigen::Vector2d::Constant(kOffset);
+  const Eigen::Vector2d base = at.array().floor();
+  const Eigen::Vector2d s = at - base;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double squares = 0.0;
+  for (const int dx : {0, 1}) {
+    for (const int dz : {0, 1}) {
+      const double weight = (dx == 1 ? s.x() : 1.0 - s.x()) * (dz == 1 ? s.y() : 1.0 - s.y());
+      const auto cell_x = static_cast<std::uint64_t>(base.x() + dx);
+      const auto cell_z = static_cast<std::uint64_t>(base.y() + dz);
+      sum += weight * node(key, (cell_x << 20) + cell_z);
+      squares += weight * weight;
+    }
+  }
+  return sum / std::sqrt(squares);
+}
+
 JointState shown_state(JointId id, double visible_share, double time, const Visibility& visibility,
                        const ErrorKeys& keys) {
   const double visible = is_core(id) ? 0.0 : visibility.inferred_visible;
@@ -95,26 +115,62 @@ JointState shown_state(JointId id, double visible_share, double time, const Visi
   return draw.uniform() < chance ? JointState::Inferred : JointState::Tracked;
 }
 
-void advance(ColouredState& state, double time, double dt, const ColouredError& coloured,
-             const ErrorKeys& keys) {
-  const auto stamp = static_cast<std::uint64_t>(std::max(0.0, time * 1e6));
-  const auto move = [&](Eigen::Vector3d& value, double tau, Draw draw) {
-    const double keep = state.started ? std::exp(-dt / std::max(tau, 1e-3)) : 0.0;
+double activity(double speed, const ColouredError& coloured) {
+  const double moving = std::clamp(speed / std::max(coloured.moving_speed, 1e-3), 0.0, 1.0);
+  return coloured.rest_share + (1.0 - coloured.rest_share) * moving;
+}
+
+void advance(ColouredState& state, const Stand& stand, const Moment& moment,
+             const ColouredError& coloured, const ErrorKeys& keys) {
+  const auto stamp = static_cast<std::uint64_t>(std::max(0.0, moment.time * 1e6));
+  const auto move = [&](Eigen::Vector3d& value, double passed, double tau, Draw draw) {
+    const double keep = state.started ? std::exp(-passed / std::max(tau, 1e-3)) : 0.0;
     value = keep * value + std::sqrt(1.0 - keep * keep) * draw.gauss3();
   };
   for (std::size_t i = 0; i < kJointCount; ++i) {
     const double tau = is_core(static_cast<JointId>(i)) ? coloured.core_tau : coloured.limb_tau;
-    move(state.joint[i], tau, Draw{kOwn, keys.seed, keys.sensor, keys.person, i, stamp});
+    move(state.joint[i], moment.dt * activity(stand.speed[i], coloured), tau,
+         Draw{kOwn, keys.seed, keys.sensor, keys.person, i, stamp});
   }
-  move(state.core, coloured.core_tau, Draw{kCore, keys.seed, keys.sensor, keys.person, stamp});
+  move(state.core, moment.dt * activity(stand.speed[index_of(JointId::SpineShoulder)], coloured),
+       coloured.core_tau, Draw{kCore, keys.seed, keys.sensor, keys.person, stamp});
   state.started = true;
 }
+
+namespace {
+
+/// The unit-variance coloured error of one joint: shared by all sensors, by the core, and its own.
+Eigen::Vector3d coloured_unit(std::size_t i, const ColouredState& state, const Stand& stand,
+                              const ColouredError& coloured, const ErrorKeys& keys) {
+  const double shared = coloured.sensor_correlation;
+  const double core =
+      is_core(static_cast<JointId>(i)) ? coloured.core_correlation * (1.0 - shared) : 0.0;
+  return std::sqrt(shared) *
+             field_noise({kShared, keys.seed, keys.person, i}, stand.place, coloured.shared_cell) +
+         std::sqrt(core) * state.core +
+         std::sqrt(std::max(0.0, 1.0 - shared - core)) * state.joint[i];
+}
+
+Eigen::Vector3d white_error(std::size_t i, const Stand& stand, const Profile& profile,
+                            const Eigen::Vector3d& draw) {
+  const JointNoise& row = kJointNoise[i];
+  const double size = std::abs(stand.facing);
+  const double side = std::sin(std::min(size, deg(180)));
+  const double ends = size < deg(90) ? row.rest_front : row.rest_rear;
+  const double rest = ends + side * side * (row.rest_side - ends);
+  const double moving = activity(stand.speed[i], profile.coloured);
+  const Eigen::Vector3d walking(row.white_x, row.white_y, row.white_z);
+  const Eigen::Vector3d sigma =
+      Eigen::Vector3d::Constant(rest) + moving * (walking - Eigen::Vector3d::Constant(rest));
+  return mm(profile.white_scale) * sigma.cwiseProduct(draw);
+}
+
+}  // namespace
 
 void add_errors(Skeleton<SensorSpace>& body, const ColouredState& state, const Stand& stand,
                 double time, const Profile& profile, const ErrorKeys& keys) {
   const ColouredError& coloured = profile.coloured;
   const double grown = growth(stand, coloured);
-  const double shared_part = std::sqrt(coloured.sensor_correlation);
   const Skeleton<SensorSpace> exact = body;
   Draw white{kWhite, keys.seed, keys.sensor, keys.person,
              static_cast<std::uint64_t>(std::max(0.0, time * 1e6))};
@@ -124,28 +180,17 @@ void add_errors(Skeleton<SensorSpace>& body, const ColouredState& state, const S
     Joint& joint = body.joints[i];
     if (!joint.seen()) continue;
     const bool guessed = joint.state == JointState::Inferred;
-    const double core_part =
-        is_core(id) ? std::sqrt(coloured.core_correlation * (1.0 - coloured.sensor_correlation))
-                    : 0.0;
-    const double own_part =
-        std::sqrt(std::max(0.0, 1.0 - shared_part * shared_part - core_part * core_part));
-    const double tau = is_core(id) ? coloured.core_tau : coloured.limb_tau;
-    const Eigen::Vector3d unit =
-        shared_part * lattice_noise({kShared, keys.seed, keys.person, i}, time, tau) +
-        core_part * state.core + own_part * state.joint[i];
     double sigma = mm(kJointNoise[i].coloured) * coloured.scale * grown;
     if (guessed) {
       sigma = std::max(sigma * coloured.inferred_factor, coloured.inferred_least);
       joint.position += coloured.inferred_pull * (resting_place(exact, id) - joint.position);
     }
+    const Eigen::Vector3d unit = coloured_unit(i, state, stand, coloured, keys);
     const Eigen::Vector3d ray = exact.joints[i].position.stableNormalized();
     const Eigen::Vector3d along = ray.dot(unit) * ray;
-    const double tail = tail_scale(coloured.student_nu, time, keys, i);
-    joint.position += sigma * tail * (unit + (coloured.depth_factor - 1.0) * along);
-    const Eigen::Vector3d white_sigma(kJointNoise[i].white_x, kJointNoise[i].white_y,
-                                      kJointNoise[i].white_z);
-    joint.position += mm(1.0) * profile.white_scale * (guessed ? kWhiteInferred : 1.0) *
-                      white_sigma.cwiseProduct(white_draw);
+    joint.position += sigma * tail_scale(coloured.student_nu, time, keys, i) *
+                      (unit + (coloured.depth_factor - 1.0) * along);
+    joint.position += (guessed ? kWhiteInferred : 1.0) * white_error(i, stand, profile, white_draw);
     joint.position += teleport(id, time, profile.gross, keys);
   }
 }

@@ -27,24 +27,40 @@ struct ColouredState {
   bool started = false;
 };
 
-/// How the body stands: what scales the error.
+/// How the body stands and moves: what scales the error.
 struct Stand {
-  double facing = 0.0;    ///< [rad]
-  double distance = 2.5;  ///< Sensor to neck [m]
+  double facing = 0.0;                              ///< [rad]
+  double distance = 2.5;                            ///< Sensor to neck [m]
+  Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< Of the neck on the floor, world x, z [m]
+  std::array<double, kJointCount> speed{};          ///< Of each joint [m/s]
 };
 
-/// Smooth unit-variance noise, correlated over about `tau` [s]; a pure function of key and time.
+/// Smooth unit-variance noise over one coordinate (time [s]) with correlation length `tau`; pure.
 [[nodiscard]] Eigen::Vector3d lattice_noise(std::initializer_list<std::uint64_t> key, double time,
                                             double tau);
+
+/// The same over the floor; pure.
+[[nodiscard]] Eigen::Vector3d field_noise(std::initializer_list<std::uint64_t> key,
+                                          const Eigen::Vector2d& place, double cell);
+
+/// Share of time that passes for the error of a joint of this speed: rest_share at rest, 1 when
+/// moving.
+[[nodiscard]] double activity(double speed, const ColouredError& coloured);
 
 /// Tracked or inferred, in runs of about `state_hold`; occluded joints mostly inferred, core joints
 /// never when visible.
 [[nodiscard]] JointState shown_state(JointId id, double visible_share, double time,
                                      const Visibility& visibility, const ErrorKeys& keys);
 
-/// One frame further: moves the coloured processes on by dt [s].
-void advance(ColouredState& state, double time, double dt, const ColouredError& coloured,
-             const ErrorKeys& keys);
+/// One frame: when it is and how long after the one before [s].
+struct Moment {
+  double time = 0.0;
+  double dt = 0.033;
+};
+
+/// One frame further.
+void advance(ColouredState& state, const Stand& stand, const Moment& moment,
+             const ColouredError& coloured, const ErrorKeys& keys);
 
 /// Adds coloured and white error and teleports to every seen joint.
 void add_errors(Skeleton<SensorSpace>& body, const ColouredState& state, const Stand& stand,

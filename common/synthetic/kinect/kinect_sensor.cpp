@@ -82,12 +82,14 @@ std::optional<Skeleton<SensorSpace>> KinectSensor::shown(std::size_t person, Tim
   const Profile& profile = setting_.profile;
   const double time = time_of(exposed);
   const Skeleton<SensorSpace>& exact = bodies_[person];
-  const double facing = facing_angle(exact).value_or(0.0);
+  const Stand stand = stand_of(person);
+  const double facing = stand.facing;
   const auto visible = visible_share(exact, person, obstacles_, profile.visibility);
 
   Memory& memory = memory_[person];
   advance(memory.flip, facing, profile.delivery.period, profile.yaw);
-  advance(memory.coloured, time, profile.delivery.period, profile.coloured, keys(person));
+  advance(memory.coloured, stand, {time, profile.delivery.period}, profile.coloured, keys(person));
+  memory.before = exact;
 
   Skeleton<SensorSpace> labelled = exact;
   for (std::size_t i = 0; i < kJointCount; ++i) {
@@ -100,9 +102,25 @@ std::optional<Skeleton<SensorSpace>> KinectSensor::shown(std::size_t person, Tim
   limit(body, profile.view);
   if (!is_reported(body) || is_lost(profile.delivery, time, keys(person))) return std::nullopt;
   merge_legs(body, profile.gross.leg_merge);
-  const Stand stand{facing, neck_distance(exact).value_or(2.5)};
   add_errors(body, memory.coloured, stand, time, profile, keys(person));
   return body;
+}
+
+Stand KinectSensor::stand_of(std::size_t person) const {
+  const Skeleton<SensorSpace>& exact = bodies_[person];
+  Stand stand;
+  stand.facing = facing_angle(exact).value_or(0.0);
+  stand.distance = neck_distance(exact).value_or(0.0);
+  const Eigen::Vector3d neck_in_world =
+      scene_->world_from_sensor[setting_.place] * exact[JointId::Neck].position;
+  stand.place = {neck_in_world.x(), neck_in_world.z()};
+  if (const auto& before = memory_[person].before) {
+    for (std::size_t i = 0; i < kJointCount; ++i) {
+      stand.speed[i] = (exact.joints[i].position - before->joints[i].position).norm() /
+                       setting_.profile.delivery.period;
+    }
+  }
+  return stand;
 }
 
 FloorPlane KinectSensor::floor(std::uint64_t number) const {

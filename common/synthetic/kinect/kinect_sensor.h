@@ -44,9 +44,11 @@ class KinectSensor {
   struct Memory {
     FlipState flip;
     ColouredState coloured;
+    std::optional<Skeleton<SensorSpace>> before;  ///< One frame ago, exactly.
   };
   void look(Timestamp exposed);
   [[nodiscard]] std::optional<Skeleton<SensorSpace>> shown(std::size_t person, Timestamp exposed);
+  [[nodiscard]] Stand stand_of(std::size_t person) const;
   [[nodiscard]] ErrorKeys keys(std::size_t person) const;
   [[nodiscard]] FloorPlane floor(std::uint64_t number) const;
 

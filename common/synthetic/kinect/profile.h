@@ -44,7 +44,10 @@ struct JointBias {
 };
 
 struct ColouredError {
-  double core_tau = 0, limb_tau = 0;  ///< [s]
+  double core_tau = 0, limb_tau = 0;  ///< While moving [s]
+  double moving_speed = 0;            ///< Joint speed from which on time passes in full [m/s]
+  double rest_share = 0;              ///< Of time that passes at rest.
+  double shared_cell = 0;             ///< [m]
   double scale = 0, depth_factor = 0, turn_growth = 0, distance_growth = 0;
   double inferred_factor = 0, inferred_least = 0, inferred_pull = 0;
   double core_correlation = 0, sensor_correlation = 0;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/body/bones.h"
+
 namespace chorus::synthetic::kinect {
 namespace {
 
@@ -17,13 +19,21 @@ double distance_to_axis(const Capsule& capsule, const Eigen::Vector3d& point) {
   return (point - (capsule.from + s * axis)).norm();
 }
 
-bool is_blocked(const Eigen::Vector3d& end, const Eigen::Vector3d& joint, std::size_t self,
+/// Whose joint it is; real logs: the trunk's own limbs hardly ever make it "inferred" (0-3 %).
+struct Self {
+  std::size_t index;
+  bool is_core;
+};
+
+bool is_blocked(const Eigen::Vector3d& end, const Eigen::Vector3d& joint, const Self& self,
                 const Obstacles& obstacles) {
   const double range = end.norm();
   const Eigen::Vector3d ray = end / range;
   for (std::size_t body = 0; body < obstacles.bodies.size(); ++body) {
     for (const Capsule& capsule : obstacles.bodies[body]) {
-      if (body == self && distance_to_axis(capsule, joint) < capsule.radius + kSkin) continue;
+      const bool own = body == self.index;
+      if (own && (self.is_core || distance_to_axis(capsule, joint) < capsule.radius + kSkin))
+        continue;
       const auto distance = hit(capsule, ray);
       if (distance && *distance < range - kSkin) return true;
     }
@@ -76,7 +86,8 @@ std::array<double, kJointCount> visible_share(const Skeleton<SensorSpace>& body,
     if (!body.joints[i].seen() || joint.norm() < 1e-6) continue;
     int arrived = 0;
     for (int ray = 0; ray < rays; ++ray) {
-      if (!is_blocked(ray_end(joint, ray), joint, self, obstacles)) ++arrived;
+      const Self whose{self, mirror(static_cast<JointId>(i)) == static_cast<JointId>(i)};
+      if (!is_blocked(ray_end(joint, ray), joint, whose, obstacles)) ++arrived;
     }
     share[i] = static_cast<double>(arrived) / rays;
   }
