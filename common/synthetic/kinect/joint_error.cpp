@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "common/body/bones.h"
-#include "common/synthetic/draw.h"
 #include "common/synthetic/kinect/joint_noise_table.h"
 
 namespace chorus::synthetic::kinect {
@@ -115,6 +115,23 @@ JointState shown_state(JointId id, double visible_share, double time, const Visi
   return draw.uniform() < chance ? JointState::Inferred : JointState::Tracked;
 }
 
+void SmoothNoise::advance(double passed, double tau, Draw draw) {
+  const Eigen::Vector3d fresh = draw.gauss3();
+  if (!started_) {  // drawn from the stationary distribution
+    first_ = fresh;
+    second_ = 0.5 * (fresh + draw.gauss3());
+    started_ = true;
+    return;
+  }
+  const double keep = std::exp(-passed / std::max(0.5 * tau, 1e-3));
+  first_ = keep * first_ + std::sqrt(1.0 - keep * keep) * fresh;
+  second_ = keep * second_ + (1.0 - keep) * first_;
+}
+
+Eigen::Vector3d SmoothNoise::value() const {
+  return std::numbers::sqrt2 * second_;  // two lags halve the variance
+}
+
 double activity(double speed, const ColouredError& coloured) {
   const double moving = std::clamp(speed / std::max(coloured.moving_speed, 1e-3), 0.0, 1.0);
   return coloured.rest_share + (1.0 - coloured.rest_share) * moving;
@@ -123,18 +140,14 @@ double activity(double speed, const ColouredError& coloured) {
 void advance(ColouredState& state, const Stand& stand, const Moment& moment,
              const ColouredError& coloured, const ErrorKeys& keys) {
   const auto stamp = static_cast<std::uint64_t>(std::max(0.0, moment.time * 1e6));
-  const auto move = [&](Eigen::Vector3d& value, double passed, double tau, Draw draw) {
-    const double keep = state.started ? std::exp(-passed / std::max(tau, 1e-3)) : 0.0;
-    value = keep * value + std::sqrt(1.0 - keep * keep) * draw.gauss3();
-  };
   for (std::size_t i = 0; i < kJointCount; ++i) {
     const double tau = is_core(static_cast<JointId>(i)) ? coloured.core_tau : coloured.limb_tau;
-    move(state.joint[i], moment.dt * activity(stand.speed[i], coloured), tau,
-         Draw{kOwn, keys.seed, keys.sensor, keys.person, i, stamp});
+    state.joint[i].advance(moment.dt * activity(stand.speed[i], coloured), tau,
+                           Draw{kOwn, keys.seed, keys.sensor, keys.person, i, stamp});
   }
-  move(state.core, moment.dt * activity(stand.speed[index_of(JointId::SpineShoulder)], coloured),
-       coloured.core_tau, Draw{kCore, keys.seed, keys.sensor, keys.person, stamp});
-  state.started = true;
+  const double core_speed = stand.speed[index_of(JointId::SpineShoulder)];
+  state.core.advance(moment.dt * activity(core_speed, coloured), coloured.core_tau,
+                     Draw{kCore, keys.seed, keys.sensor, keys.person, stamp});
 }
 
 namespace {
@@ -147,8 +160,8 @@ Eigen::Vector3d coloured_unit(std::size_t i, const ColouredState& state, const S
       is_core(static_cast<JointId>(i)) ? coloured.core_correlation * (1.0 - shared) : 0.0;
   return std::sqrt(shared) *
              field_noise({kShared, keys.seed, keys.person, i}, stand.place, coloured.shared_cell) +
-         std::sqrt(core) * state.core +
-         std::sqrt(std::max(0.0, 1.0 - shared - core)) * state.joint[i];
+         std::sqrt(core) * state.core.value() +
+         std::sqrt(std::max(0.0, 1.0 - shared - core)) * state.joint[i].value();
 }
 
 Eigen::Vector3d white_error(std::size_t i, const Stand& stand, const Profile& profile,

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "common/body/skeleton.h"
+#include "common/synthetic/draw.h"
 #include "common/synthetic/kinect/profile.h"
 
 namespace chorus::synthetic::kinect {
@@ -19,14 +20,26 @@ struct ErrorKeys {
   std::uint64_t person = 0;
 };
 
-/// The coloured error's memory: unit-variance processes, three axes per joint and three shared by
-/// the core.
-struct ColouredState {
-  std::array<Eigen::Vector3d, kJointCount> joint{};
-  Eigen::Vector3d core = Eigen::Vector3d::Zero();
-  bool started = false;
+/// A smooth coloured process of unit variance, three axes: two equal first-order lags, one after
+/// the other.  Correlation after a lag L is (1 + L/a) exp(-L/a) with a = tau / 2; unlike one lag
+/// alone it adds nothing to white noise.
+class SmoothNoise {
+ public:
+  void advance(double passed, double tau, Draw draw);
+  [[nodiscard]] Eigen::Vector3d value() const;
+
+ private:
+  Eigen::Vector3d first_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d second_ = Eigen::Vector3d::Zero();
+  bool started_ = false;
 };
 
+/// The coloured error's memory: one process per joint and one shared by the core.
+struct ColouredState {
+  std::array<SmoothNoise, kJointCount> joint{};
+  SmoothNoise core;
+};
+  Eigen::Vector3d core = Eigen::Vector3d::Zero();
 /// How the body stands and moves: what scales the error.
 struct Stand {
   double facing = 0.0;                              ///< [rad]

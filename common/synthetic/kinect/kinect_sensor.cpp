@@ -96,7 +96,7 @@ std::optional<Skeleton<SensorSpace>> KinectSensor::shown(std::size_t person, Tim
     labelled.joints[i].state =
         shown_state(static_cast<JointId>(i), visible[i], time, profile.visibility, keys(person));
     labelled.joints[i].position += joint_bias(static_cast<JointId>(i), exact.joints[i].position,
-                                              facing, profile.bias, {setting_.seed, person});
+                                              facing, profile.bias, {setting_.bias_seed, person});
   }
   Skeleton<SensorSpace> body = as_shown(labelled, facing, memory.flip, profile.yaw);
   limit(body, profile.view);

@@ -23,8 +23,9 @@ struct KinectSetting {
   SensorId id;
   std::size_t place = 0;  ///< Index into Scene::world_from_sensor.
   Profile profile;
-  std::uint64_t seed = 1;  ///< The same for all sensors of a room: shared errors are shared.
-  bool own_clock = true;   ///< Stamps by the host's erring clock; false: true time.
+  std::uint64_t seed = 1;       ///< The same for all sensors of a room: shared errors are shared.
+  std::uint64_t bias_seed = 1;  ///< SDK and people: the same person errs the same way in every run.
+  bool own_clock = true;        ///< Stamps by the host's erring clock; false: true time.
 };
 
 class KinectSensor {
