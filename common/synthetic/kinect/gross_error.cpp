@@ -24,6 +24,7 @@ double bearing(const Eigen::Vector3d& x) { return std::atan2(x.x(), x.z()); }
 }  // namespace
 
 void merge_legs(Skeleton<SensorSpace>& body, double share) {
+  if (!(share > 0)) return;
   for (std::size_t i = 0; i < kLeft.size(); ++i) {
     Joint& left = body[kLeft[i]];
     Joint& right = body[kRight[i]];

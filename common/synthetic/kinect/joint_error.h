@@ -39,7 +39,7 @@ struct ColouredState {
   std::array<SmoothNoise, kJointCount> joint{};
   SmoothNoise core;
 };
-  Eigen::Vector3d core = Eigen::Vector3d::Zero();
+
 /// How the body stands and moves: what scales the error.
 struct Stand {
   double facing = 0.0;                              ///< [rad]

@@ -1,7 +1,6 @@
 #include "common/synthetic/kinect/profile.h"
 
 #include <array>
-#include <cassert>
 #include <functional>
 
 #include <nlohmann/json.hpp>
@@ -119,11 +118,6 @@ Profile filled(std::string_view name, const std::function<double(double)>& scale
   return profile;
 }
 
-void silence(YawBehaviour& yaw) {
-  yaw.reliable = deg(180);
-  yaw.flip_to_rear = deg(360);  // never
-}
-
 }  // namespace
 
 Profile nominal_profile(std::string_view name) {
@@ -136,45 +130,10 @@ Profile draw_profile(std::string_view name, std::uint64_t seed) {
   return filled(name, [&draw](double spread) { return 1.0 + draw.uniform(-spread, spread); });
 }
 
-Profile with_source(Profile profile, Source source, double factor) {
-  switch (source) {
-    case Source::Visibility:
-      profile.visibility.inferred_visible *= factor;
-      if (factor <= 0) profile.visibility.rays = 0;
-      break;
-    case Source::Yaw:
-      if (factor <= 0) silence(profile.yaw);
-      break;
-    case Source::Bias:
-      for (double* each : {&profile.bias.core, &profile.bias.head_forward, &profile.bias.hip_radial,
-                           &profile.bias.vertical}) {
-        *each *= factor;
-      }
-      break;
-    case Source::Coloured:
-      profile.coloured.scale *= factor;
-      profile.coloured.inferred_least *= factor;
-      break;
-    case Source::White:
-      profile.white_scale *= factor;
-      break;
-    case Source::Gross:
-      profile.gross.teleports *= factor;
-      profile.gross.ghosts_per_minute *= factor;
-      profile.gross.id_swap = std::min(1.0, profile.gross.id_swap * factor);
-      profile.gross.leg_merge = std::min(1.0, profile.gross.leg_merge * factor);
-      break;
-    case Source::Delivery:
-      profile.delivery.drop_share = std::min(0.9, profile.delivery.drop_share * factor);
-      profile.delivery.gaps_per_minute *= factor;
-      profile.delivery.jitter *= factor;
-      break;
-    case Source::Clock:
-      profile.clock.offset *= factor;
-      profile.clock.drift *= factor;
-      break;
-  }
-  return profile;
+std::vector<Parameter> parameters_of(Profile profile) {
+  std::vector<Parameter> all;
+  for (const Binding& binding : kBindings) all.push_back({binding.key, binding.field(profile)});
+  return all;
 }
 
 std::string frozen_hash() { return kProfilesHash; }

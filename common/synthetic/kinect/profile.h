@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/base/result.h"
 #include "common/base/units.h"
@@ -87,11 +88,12 @@ struct Profile {
 /// Every parameter drawn uniformly from its interval; the same seed gives the same draw.
 [[nodiscard]] Profile draw_profile(std::string_view name, std::uint64_t seed);
 
-/// The error sources that stress sweeps and ablations turn up, down or off.
-enum class Source { Visibility, Yaw, Bias, Coloured, White, Gross, Delivery, Clock };
-
-/// The profile with one source of error multiplied: 0 switches it off, 1 leaves it.
-[[nodiscard]] Profile with_source(Profile profile, Source source, double factor);
+/// A parameter by its name in profiles.json, in the units of this header.
+struct Parameter {
+  std::string_view name;
+  double value;
+};
+[[nodiscard]] std::vector<Parameter> parameters_of(Profile profile);
 
 /// First 12 hex digits of the SHA-256 of profiles.json and the joint table: printed with every
 /// result.

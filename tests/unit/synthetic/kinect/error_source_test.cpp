@@ -1,0 +1,112 @@
+#include "common/synthetic/kinect/error_source.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/unit/synthetic/kinect/room.h"
+
+namespace chorus::synthetic::kinect {
+namespace {
+
+/// Names of the parameters that differ.
+std::set<std::string> changed(Source source, double factor) {
+  const auto before = parameters_of(nominal_profile("B"));
+  const auto after = parameters_of(with_source(nominal_profile("B"), source, factor));
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (std::abs(before[i].value - after[i].value) > 1e-12) names.emplace(before[i].name);
+  }
+  return names;
+}
+
+TEST(WithSource, OneLeavesEverything) {
+  for (const Source source : kAllSources) EXPECT_TRUE(changed(source, 1.0).empty());
+}
+
+TEST(WithSource, TouchesItsOwnParametersOnly) {
+  const std::array<const char*, 8> prefixes{"visibility.", "yaw.",   "bias.",     "coloured.",
+                                            "white.",      "gross.", "delivery.", "clock."};
+  for (std::size_t i = 0; i < kAllSources.size(); ++i) {
+    for (const double factor : {0.0, 0.5, 2.0, 3.0}) {
+      const auto names = changed(kAllSources[i], factor);
+      EXPECT_FALSE(names.empty()) << prefixes[i] << factor;
+      for (const std::string& name : names) EXPECT_TRUE(name.starts_with(prefixes[i])) << name;
+    }
+  }
+}
+
+/// Worst distance of a seen joint from the truth of its own label [m]; only `source` is on.
+struct Effect {
+  double worst = 0.0;
+  std::size_t inferred = 0;
+  std::size_t frames = 0;
+  std::size_t bodies = 0;
+  double clock = 0.0;
+};
+
+Effect effect_of(const Profile& profile) {
+  const Scene scene = room();
+  KinectSensor sensor(scene, setting(profile), kStart);
+  const Eigen::Isometry3d sensor_from_world = scene.world_from_sensor[0].inverse();
+  Effect effect;
+  while (sensor.next_exposure() < kStart + std::chrono::seconds(60)) {
+    const Timestamp exposed = sensor.next_exposure();
+    const auto frame = sensor.next();
+    if (!frame) continue;
+    ++effect.frames;
+    effect.bodies += frame->bodies.size();
+    effect.clock = std::max(effect.clock, std::abs(seconds(frame->captured - exposed)));
+    if (frame->bodies.empty()) continue;
+    const auto exact = to_sensor(sensor_from_world, truth(scene, 0, exposed));
+    for (std::size_t i = 0; i < kJointCount; ++i) {
+      const Joint& joint = frame->bodies[0].skeleton.joints[i];
+      if (!joint.seen()) continue;
+      effect.worst = std::max(effect.worst, (joint.position - exact.joints[i].position).norm());
+      effect.inferred += joint.state == JointState::Inferred;
+    }
+  }
+  return effect;
+}
+
+TEST(WithSource, AllOffIsThePlainTruth) {
+  const Effect none = effect_of(perfect());
+  EXPECT_LT(none.worst, 1e-9);
+  EXPECT_LT(none.clock, 1e-9);
+  EXPECT_GT(none.frames, 1800u) << "every frame arrives";
+  EXPECT_GT(none.bodies, none.frames * 9 / 10) << "only outside the view is nobody";
+}
+
+/// Everything off but this.
+Profile only(Source source) {
+  Profile profile = nominal_profile("B");
+  for (const Source each : kAllSources) {
+    if (each != source) profile = with_source(std::move(profile), each, 0.0);
+  }
+  return profile;
+}
+
+TEST(WithSource, EachAloneDoesItsOwnHarm) {
+  const Effect none = effect_of(perfect());
+  EXPECT_GT(effect_of(only(Source::Visibility)).inferred, 10 * none.inferred + 100);
+  EXPECT_LT(effect_of(only(Source::Visibility)).worst, 1e-9) << "states only";
+  EXPECT_GT(effect_of(only(Source::Yaw)).worst, 0.2) << "exchanged labels";
+  const double bias = effect_of(only(Source::Bias)).worst;
+  EXPECT_GT(bias, mm(15));
+  EXPECT_LT(bias, mm(150));
+  EXPECT_GT(effect_of(only(Source::Coloured)).worst, mm(50));
+  const double white = effect_of(only(Source::White)).worst;
+  EXPECT_GT(white, mm(20));
+  EXPECT_LT(white, mm(250));
+  EXPECT_GT(effect_of(only(Source::Gross)).worst, 0.2);
+  const Effect delivery = effect_of(only(Source::Delivery));
+  EXPECT_LT(delivery.frames, none.frames);
+  EXPECT_LT(delivery.bodies, delivery.frames);
+  EXPECT_LT(delivery.worst, 1e-9);
+  const Effect clock = effect_of(only(Source::Clock));
+  EXPECT_GT(clock.clock, 1e-4);
+  EXPECT_LT(clock.worst, 1e-9) << "the stamp errs, not the place";
+}
+
+}  // namespace
+}  // namespace chorus::synthetic::kinect

@@ -1,0 +1,107 @@
+#include "common/synthetic/kinect/yaw_behaviour.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/body/bones.h"
+#include "common/body/facing.h"
+#include "common/geometry/rotation.h"
+#include "tests/support/builders.h"
+
+namespace chorus::synthetic::kinect {
+namespace {
+
+using enum JointId;
+
+const YawBehaviour kBehaviour = nominal_profile("A").yaw;
+
+Skeleton<SensorSpace> turned(double facing) {
+  const Eigen::Isometry3d world_from_sensor = testing::sensor_pose({0, 1, 0}, 0.0);
+  return to_sensor(world_from_sensor.inverse(),
+                   testing::standing_person({0, 0, 2.3}, deg(180) + facing));
+}
+
+/// The state after turning slowly from `from` to `to`.
+FlipState turn(FlipState state, double from, double to) {
+  const double step = to > from ? deg(0.5) : -deg(0.5);
+  for (int i = 0; i <= static_cast<int>(std::abs(to - from) / deg(0.5)); ++i) {
+    advance(state, wrap_angle(from + i * step), 0.033, kBehaviour);
+  }
+  return state;
+}
+
+TEST(YawBehaviour, IsRightUpToFortyDegreesAndLagsBeyond) {
+  for (const double yaw : {-40.0, -20.0, 0.0, 39.0}) {
+    EXPECT_DOUBLE_EQ(shown_yaw(deg(yaw), kBehaviour.shoulder_slope, kBehaviour), deg(yaw));
+  }
+  const double shoulders = shown_yaw(deg(90), kBehaviour.shoulder_slope, kBehaviour);
+  const double hips = shown_yaw(deg(90), kBehaviour.hip_slope, kBehaviour);
+  EXPECT_NEAR(shoulders, deg(40) + kBehaviour.shoulder_slope * deg(50), 1e-12);
+  EXPECT_LT(hips, shoulders) << "hips lag more";
+  EXPECT_GT(hips, deg(40));
+  EXPECT_DOUBLE_EQ(shown_yaw(deg(-90), 0.55, kBehaviour), -shown_yaw(deg(90), 0.55, kBehaviour));
+}
+
+TEST(YawBehaviour, FlipsAtOneAngleAndBackAtAnother) {
+  EXPECT_FALSE(turn({}, 0, deg(129)).rear);
+  const FlipState rear = turn({}, 0, deg(131));
+  EXPECT_TRUE(rear.rear);
+  EXPECT_TRUE(turn(rear, deg(131), deg(101)).rear) << "hysteresis: it stays";
+  EXPECT_FALSE(turn(rear, deg(131), deg(99)).rear);
+  EXPECT_TRUE(turn({}, 0, deg(-131)).rear) << "the same to the other side";
+  EXPECT_FALSE(turn(rear, deg(131), deg(261)).rear) << "all the way round: 260 is 100 from front";
+}
+
+TEST(YawBehaviour, ChangesItsMindOverSomeFrames) {
+  FlipState state;
+  advance(state, deg(140), 0.033, kBehaviour);
+  EXPECT_TRUE(state.rear);
+  EXPECT_GT(state.blend, 0.0);
+  EXPECT_LT(state.blend, 0.5);
+  for (int i = 0; i < 6; ++i) advance(state, deg(140), 0.033, kBehaviour);
+  EXPECT_EQ(state.blend, 1.0);
+}
+
+TEST(YawBehaviour, FromTheFrontTheBodyIsUnchanged) {
+  const auto body = turned(deg(30));
+  const auto shown = as_shown(body, facing_angle(body).value(), {}, kBehaviour);
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    EXPECT_NEAR((shown.joints[i].position - body.joints[i].position).norm(), 0, 1e-9);
+  }
+}
+
+TEST(YawBehaviour, FromBehindLeftAndRightAreExchangedInPlace) {
+  const auto body = turned(deg(180));
+  const FlipState rear{true, 1.0};
+  const auto shown = as_shown(body, facing_angle(body).value(), rear, kBehaviour);
+  for (const auto& [left, right] : kMirrorPairs) {
+    EXPECT_NEAR((shown[left].position - body[right].position).norm(), 0, 1e-6) << name_of(left);
+    EXPECT_NEAR((shown[right].position - body[left].position).norm(), 0, 1e-6) << name_of(left);
+  }
+  for (const JointId id : kCoreJoints) {
+    EXPECT_EQ(shown[id].position, body[id].position) << name_of(id);
+  }
+  EXPECT_NEAR(facing_angle(shown).value(), 0.0, deg(1)) << "it is shown as if it faced the sensor";
+}
+
+TEST(YawBehaviour, AtNinetyDegreesTheShouldersAreShownTurnedLess) {
+  for (const double side : {1.0, -1.0}) {
+    const auto body = turned(side * deg(90));
+    const auto shown = as_shown(body, facing_angle(body).value(), {}, kBehaviour);
+    const double expected = side * shown_yaw(deg(90), kBehaviour.shoulder_slope, kBehaviour);
+    const double before = facing_angle(body).value();
+    EXPECT_NEAR(before, side * deg(90), deg(1));
+    EXPECT_NEAR(facing_angle(shown).value(), expected, deg(2));
+  }
+}
+
+TEST(YawBehaviour, WhileItFlipsTheLimbsAreInferred) {
+  const auto body = turned(deg(135));
+  const auto between = as_shown(body, deg(135), {true, 0.5}, kBehaviour);
+  EXPECT_EQ(between[ShoulderLeft].state, JointState::Inferred);
+  EXPECT_EQ(between[Neck].state, JointState::Tracked);
+}
+
+}  // namespace
+}  // namespace chorus::synthetic::kinect
