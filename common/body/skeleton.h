@@ -15,7 +15,7 @@
 namespace chorus {
 
 struct SensorSpace;  ///< Origin at the depth camera's focal point, +z into the scene.
-struct WorldSpace;   ///< Master sensor levelled to its floor plane: y = 0 is the floor.
+struct WorldSpace;   ///< y = 0 is the floor that the sensors see; yaw of the master sensor.
 
 /// Joints in Kinect v2 order (Otto et al., Fig. 2); the value is its VRPN and DTrack number.
 // clang-format off

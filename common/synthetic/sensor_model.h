@@ -44,9 +44,9 @@ struct GaussianNoise {
 
 /// The floor plane the sensor estimates: a fixed error per sensor and a little per frame.
 struct FloorNoise {
-  double fixed_tilt = deg(0.05);  ///< Standard deviation per axis [rad]
-  double fixed_offset = 0.002;    ///< [m]
-  double tilt = deg(0.2);         ///< Per frame [rad]
+  double fixed_tilt = deg(0.15);  ///< Standard deviation per axis [rad]
+  double fixed_offset = 0.003;    ///< [m]
+  double tilt = deg(0.1);         ///< Per frame [rad]
   double offset = 0.003;          ///< [m]
 };
 

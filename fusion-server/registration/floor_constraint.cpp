@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "common/base/units.h"
 #include "common/geometry/rotation.h"
 
 namespace chorus::registration {
@@ -16,7 +17,9 @@ constexpr double kFeetBelow = 0.25;    // [m] feet deeper than this contradict t
 constexpr double kFeetAbove = 0.60;    // [m] feet that never come lower than this contradict it too
 constexpr double kLowestShare = 0.10;  // percentile that counts as "touching the floor"
 constexpr double kViewIsVertical =
-    0.05;  // horizontal part of the view below which yaw is left alone
+    0.05;                              // horizontal part of the view below which yaw is left alone
+constexpr double kFarTilt = deg(1.5);  // floors tilted further off the median are left out
+constexpr double kFarHeight = 0.05;    // [m] the same for heights
 constexpr double kFootJointHeight = 0.05;  // [m] the lowest foot joint over the sole
 
 constexpr std::array kFeet{JointId::AnkleLeft, JointId::AnkleRight, JointId::FootLeft,
@@ -99,6 +102,39 @@ std::optional<FloorPlane> floor_from_body(const WalkTrack& walk) {
   const auto feet = lowest_feet(walk, floor);
   floor.offset = feet ? kFootJointHeight - *feet : 0.0;
   return floor;
+}
+
+FloorPlane common_floor(const std::vector<PlacedFloor>& floors) {
+  std::array<std::vector<double>, 3> parts;
+  for (const PlacedFloor& each : floors) {
+    for (int axis = 0; axis < 3; ++axis) {
+      parts[static_cast<std::size_t>(axis)].push_back(each.floor.normal[axis]);
+    }
+  }
+  const Eigen::Vector3d middle(quantile(parts[0], 0.5), quantile(parts[1], 0.5),
+                               quantile(parts[2], 0.5));
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  for (const PlacedFloor& each : floors) {
+    if (std::atan2(each.floor.normal.cross(middle).norm(), each.floor.normal.dot(middle)) <
+        kFarTilt) {
+      normal += each.floor.normal;
+    }
+  }
+  normal = (normal.norm() > 0 ? normal : middle).normalized();
+  // Each floor is believed right under its own sensor, where its tilt does no harm.
+  std::vector<double> offsets;
+  for (const PlacedFloor& each : floors) {
+    offsets.push_back(each.floor.distance(each.eye) - normal.dot(each.eye));
+  }
+  const double median = quantile(offsets, 0.5);
+  double sum = 0.0;
+  int count = 0;
+  for (const double offset : offsets) {
+    if (std::abs(offset - median) > kFarHeight) continue;
+    sum += offset;
+    ++count;
+  }
+  return {normal, sum / count};
 }
 
 Eigen::Isometry3d world_from_master(const FloorPlane& floor_in_master) {

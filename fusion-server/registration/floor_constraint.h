@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "fusion-server/registration/registration.h"
 
@@ -21,6 +22,17 @@ struct FloorSight {
 /// For sensors without a floor plane: people walk upright, so the mean direction from hips to neck
 /// is up, and the lowest feet touch the floor.  Good to a few degrees.
 [[nodiscard]] std::optional<FloorPlane> floor_from_body(const WalkTrack& walk);
+
+/// One sensor's floor and place, both in a common space.
+struct PlacedFloor {
+  FloorPlane floor;
+  Eigen::Vector3d eye = Eigen::Vector3d::Zero();  ///< Where the sensor is [m].
+};
+
+/// The floor all of them mean: tilt and height averaged, floors far off the median left out.  A
+/// floor plane errs by tenths of a degree, which is centimetres at the far side of the room; N of
+/// them err by a root of N less.  `floors` must not be empty.
+[[nodiscard]] FloorPlane common_floor(const std::vector<PlacedFloor>& floors);
 
 /// level() of the plane, then turned about +y so that +z is the viewing direction projected on the
 /// floor.

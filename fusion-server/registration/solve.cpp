@@ -95,26 +95,20 @@ void choose_master(Work& work) {
   work.result.master = best_master(work);
 }
 
-/// The master's own floor; else the nearest sensor's, brought over; else the upright body's.
+/// The floor that all linked sensors together mean; without any, the upright body's.
 FloorPlane floor_in_master(Work& work, const std::map<SensorId, Chain>& chains) {
-  const SensorId& master = work.result.master;
-  const FloorSight& own = work.walkers.at(master).floor;
-  if (work.config.use_floor && own.floor) return *own.floor;
-  if (work.config.use_floor) {
-    const SensorId* lender = nullptr;
-    for (const auto& [sensor, chain] : chains) {
-      if (!work.walkers.at(sensor).floor.floor) continue;
-      if (!lender || chain.error < chains.at(*lender).error) lender = &sensor;
-    }
-    if (lender) {
-      const Eigen::Isometry3d& master_from_lender = chains.at(*lender).master_from_sensor;
-      const FloorPlane& lent = *work.walkers.at(*lender).floor.floor;
-      const Eigen::Vector3d normal = master_from_lender.linear() * lent.normal;
-      return {normal, lent.offset - normal.dot(master_from_lender.translation())};
-    }
+  std::vector<PlacedFloor> floors;
+  for (const auto& [sensor, chain] : chains) {
+    const FloorSight& own = work.walkers.at(sensor).floor;
+    if (!work.config.use_floor || !own.floor) continue;
+    const Eigen::Isometry3d& master_from_sensor = chain.master_from_sensor;
+    const Eigen::Vector3d normal = master_from_sensor.linear() * own.floor->normal;
+    const Eigen::Vector3d eye = master_from_sensor.translation();
+    floors.push_back({{normal, own.floor->offset - normal.dot(eye)}, eye});
   }
+  if (!floors.empty()) return common_floor(floors);
   work.doubt("no usable floor plane: the floor was guessed from the upright body and its feet");
-  return floor_from_body(*work.tracks.at(master)).value_or(FloorPlane{});
+  return floor_from_body(*work.tracks.at(work.result.master)).value_or(FloorPlane{});
 }
 
 /// "would hang head down", or nothing when the place is possible.

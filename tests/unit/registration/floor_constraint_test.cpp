@@ -43,6 +43,34 @@ TEST(FloorFromBody, StandsUnderTheFeetOfAnUprightPerson) {
   EXPECT_FALSE(floor_from_body({sensor(1), {}}));
 }
 
+/// A floor tilted by so many degrees about z, meant right under a sensor at x.
+PlacedFloor tilted_floor(double degrees, double x, double height_error = 0.0) {
+  const double angle = deg(degrees);
+  const Eigen::Vector3d normal(std::sin(angle), std::cos(angle), 0);
+  const Eigen::Vector3d eye(x, 1.5, 0);
+  return {{normal, 1.5 + height_error - normal.dot(eye)}, eye};
+}
+
+TEST(CommonFloor, AveragesTiltAndHeight) {
+  const FloorPlane floor =
+      common_floor({tilted_floor(0.3, 0), tilted_floor(-0.3, 6), tilted_floor(0.0, 3, 0.006)});
+  EXPECT_NEAR(std::acos(floor.normal.y()), 0.0, deg(0.01));
+  EXPECT_NEAR(floor.offset, 0.002, 1e-4);
+}
+
+TEST(CommonFloor, LeavesOutWhatIsFarOffTheOthers) {
+  const FloorPlane floor = common_floor(
+      {tilted_floor(0.1, 0), tilted_floor(-0.1, 3), tilted_floor(8, 6, 0.4), tilted_floor(0, 1)});
+  EXPECT_NEAR(std::acos(floor.normal.y()), 0.0, deg(0.05));
+  EXPECT_NEAR(floor.offset, 0.0, 0.005);
+}
+
+TEST(CommonFloor, OfOneIsItself) {
+  const PlacedFloor only = tilted_floor(2, 1);
+  EXPECT_TRUE(common_floor({only}).normal.isApprox(only.floor.normal, 1e-12));
+  EXPECT_NEAR(common_floor({only}).offset, only.floor.offset, 1e-12);
+}
+
 TEST(WorldFromMaster, PutsTheFloorAtZeroAndTheViewAlongZ) {
   const Eigen::Isometry3d rolled = kPlace * Eigen::AngleAxisd(deg(7), Eigen::Vector3d::UnitZ());
   const Eigen::Isometry3d world = world_from_master(plane_in_sensor({}, rolled));

@@ -44,16 +44,16 @@ TEST(Solve, SixSensorsInARingAfterThirtySeconds) {
   }
 }
 
-TEST(Solve, TheWorldIsTheMasterLevelledOnItsFloor) {
+TEST(Solve, TheWorldIsUnderTheMasterAndLevelOnTheCommonFloor) {
   RegistrationConfig config;
   config.master = sensor(2);
   const Registration registration = solve(ring(4, {}), kWalkStart, config);
   EXPECT_EQ(registration.master, sensor(2));
   const Eigen::Isometry3d& world_from_master = registration.sensors.at(sensor(2)).world_from_sensor;
-  EXPECT_LT((world_from_master.translation() - Eigen::Vector3d(0, 1.8, 0)).norm(), 1e-6);
+  EXPECT_LT((world_from_master.translation() - Eigen::Vector3d(0, 1.8, 0)).norm(), 5e-3);
   const Eigen::Vector3d view = world_from_master.linear() * Eigen::Vector3d::UnitZ();
-  EXPECT_NEAR(view.x(), 0.0, 1e-9);
-  EXPECT_NEAR(view.z(), std::cos(deg(15)), 1e-9);
+  EXPECT_NEAR(view.x(), 0.0, 1e-3);
+  EXPECT_NEAR(view.z(), std::cos(deg(15)), 1e-3);
   EXPECT_EQ(registration.sensors.at(sensor(2)).error, 0.0);
 }
 
