@@ -28,6 +28,8 @@ struct PollTimings {
   Duration first_backoff = std::chrono::milliseconds(100);
   Duration max_backoff = std::chrono::seconds(5);
   Duration floor_interval = std::chrono::seconds(10);  ///< How often the floor plane is asked for.
+
+  bool operator==(const PollTimings&) const = default;
 };
 
 enum class SensorState {

@@ -206,6 +206,7 @@ std::string needs_restart(const FusionConfig& now, const FusionConfig& next) {
   };
   add(!same_address(now.http, next.http), "http");
   add(now.title != next.title, "title");
+  add(now.poll != next.poll, "poll");
   add(now.history != next.history, "output.history_s");
   add(now.state_dir != next.state_dir, "state_dir");
   add(now.viewer_dir != next.viewer_dir, "viewer_dir");

@@ -21,6 +21,7 @@ struct Arguments {
   std::vector<std::string> overrides;
   std::string log_format = "text";
   std::string log_level = "info";
+  bool check = false;
 };
 
 int refuse(const Error& error) {
@@ -53,6 +54,10 @@ int run(const Arguments& arguments) {
   log::configure(*level, *format);
   const auto config = server::load_fusion_config(arguments.config, arguments.overrides);
   if (!config) return refuse(config.error());
+  if (arguments.check) {
+    std::printf("%s is good: %zu sensors\n", arguments.config.c_str(), config->sensors.size());
+    return 0;
+  }
 
   const sigset_t signals = block_signals();
   server::FusionServer fusion(*config, std::make_shared<SystemClock>());
@@ -79,6 +84,7 @@ int main(int argc, char** argv) {
       ->take_all();
   app.add_option("--log-format", arguments.log_format, "text or json");
   app.add_option("--log-level", arguments.log_level, "debug, info, warn or error");
+  app.add_flag("--check", arguments.check, "Say whether the configuration is good, and end");
   app.footer("SIGHUP reloads the configuration, SIGTERM stops.");
   CLI11_PARSE(app, argc, argv);
   return run(arguments);

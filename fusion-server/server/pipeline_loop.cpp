@@ -1,6 +1,7 @@
 #include "fusion-server/server/pipeline_loop.h"
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 #include "common/base/log.h"
@@ -26,6 +27,18 @@ std::string joined(const std::vector<std::string>& reasons) {
 
 std::string_view name_of(SolveKind kind) {
   return kind == SolveKind::Final ? "final" : "provisional";
+}
+
+/// Whatever a library throws over strange clouds, the worker lives and the session learns of it.
+Registration solution_of(const SolveJob& job, Timestamp now) {
+  try {
+    return registration::solve(job.walk, now, job.config);
+  } catch (const std::exception& thrown) {
+    Registration failed;
+    failed.verdict = Verdict::Refused;
+    failed.reasons = {std::string("the walk could not be solved: ") + thrown.what()};
+    return failed;
+  }
 }
 
 void save(const RegistrationStore& store, const Registration& registration) {
@@ -102,8 +115,7 @@ void PipelineLoop::solve(SolveJob job) {
     log::debug("registration solving", {{"sensors", job.walk.size()}});
   }
   worker_.post([this, job = std::move(job)] {
-    solutions_.give(
-        {job.session, job.kind, registration::solve(job.walk, options_.clock->now(), job.config)});
+    solutions_.give({job.session, job.kind, solution_of(job, options_.clock->now())});
   });
 }
 

@@ -37,6 +37,12 @@ class Program(Rig):
             self.assertIn(expected, text, name)
             self.assertNotIn("terminate", text)
 
+    def test_check_judges_a_file_and_starts_nothing(self):
+        code, text = self.run_to_end("--config", "deploy/config/fusion.json", "--check")
+        self.assertEqual((code, "is good: 6 sensors" in text), (0, True), text)
+        code, text = self.run_to_end("--config", self.write("bad.json", '{"prot": 1}'), "--check")
+        self.assertEqual(code, 2, text)
+
     def test_a_port_in_use_ends_with_2(self):
         with socket.socket() as taken:
             taken.bind(("127.0.0.1", 0))

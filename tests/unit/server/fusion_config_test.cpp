@@ -89,10 +89,11 @@ TEST(FusionConfig, TwoSensorsOfOneNameOrTooManyAreRefused) {
 
 TEST(FusionConfig, NamesWhatNeedsARestart) {
   const auto a = read("{}");
-  const auto b = read(R"({"http": {"port": 1}, "state_dir": "x", "output": {"rate_hz": 60}})");
+  const auto b = read(R"({"http": {"port": 1}, "state_dir": "x", "output": {"rate_hz": 60},
+      "poll": {"wait_s": 5}})");
   ASSERT_TRUE(a && b);
   EXPECT_EQ(needs_restart(*a, *a), "");
-  EXPECT_EQ(needs_restart(*a, *b), "http, state_dir");
+  EXPECT_EQ(needs_restart(*a, *b), "http, poll, state_dir");
 }
 
 TEST(FusionConfig, AMissingFileSaysSo) {
