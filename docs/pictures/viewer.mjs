@@ -7,7 +7,7 @@ const [url, file] = process.argv.slice(2);
 if (!file) throw new Error('usage: node viewer.mjs URL FILE');
 const browser = await launch();
 const { page, complaints } = await openViewer(browser, url);
-await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 20, null, { timeout: 60000 });
+await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 150, null, { timeout: 60000 });
 await page.screenshot({ path: file });
 await browser.close();
 if (complaints.length > 0) throw new Error(complaints.join('\n'));
