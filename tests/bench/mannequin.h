@@ -1,0 +1,33 @@
+// Otto's experiments with a mannequin on a robot arm (Sect. 3), before a simulated sensor.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "common/body/skeleton.h"
+#include "common/synthetic/kinect/profile.h"
+
+namespace chorus::bench {
+
+/// One frame of an experiment.
+struct MannequinSample {
+  double angle = 0.0;  ///< True yaw of the mannequin away from facing the sensor [rad]
+  Skeleton<SensorSpace> shown;
+  Skeleton<SensorSpace> exact;
+};
+
+/// 360 deg about its own vertical axis at 2.3 m, sensor level at 1 m height (Fig. 4A).
+[[nodiscard]] std::vector<MannequinSample> turn_full(const synthetic::kinect::Profile& profile,
+                                                     std::uint64_t seed);
+
+/// 0 to 85 deg about a vertical axis behind its back, so that the body travels on a circle (Fig.
+/// 4B).
+[[nodiscard]] std::vector<MannequinSample> swing_85(const synthetic::kinect::Profile& profile,
+                                                    std::uint64_t seed);
+
+/// Mean displacement from frame to frame of one joint where the true yaw is within these bounds
+/// [m]; Otto Fig. 7.  From second differences, so that the slow turn itself does not count.
+[[nodiscard]] double jitter(const std::vector<MannequinSample>& samples, JointId joint,
+                            double least_angle, double most_angle);
+
+}  // namespace chorus::bench
