@@ -10,7 +10,7 @@ namespace {
 
 enum Purpose : std::uint64_t { kGhost = 941, kGhostPlace, kSwap, kIds };
 
-constexpr double kMergeAngle = deg(2.5);  // legs closer than this, as seen, are one blob
+constexpr double kMergeAngle = deg(1.5);  // legs closer than this, as seen, are one blob
 constexpr double kContact = 0.5;          // people nearer than this touch [m]
 constexpr std::uint64_t kGhostId = 900'000;
 constexpr std::uint64_t kMaxId = 800'000;

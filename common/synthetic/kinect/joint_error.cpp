@@ -57,8 +57,12 @@ double growth(const Stand& stand, const ColouredError& coloured) {
   return (1.0 + coloured.turn_growth * turned) * (1.0 + coloured.distance_growth * off * off);
 }
 
-/// Where a guess is drawn to: the bone hanging straight down from its parent.
+/// Where a guess is drawn to: the bone hanging straight down from its parent; shoulders and hips
+/// have no such rest.
 Eigen::Vector3d resting_place(const Skeleton<SensorSpace>& body, JointId id) {
+  using enum JointId;
+  if (id == ShoulderLeft || id == ShoulderRight || id == HipLeft || id == HipRight)
+    return body[id].position;
   for (const Bone& bone : kBones) {
     if (bone.child != id || !body[bone.parent].seen()) continue;
     const Eigen::Vector3d& parent = body[bone.parent].position;

@@ -2,8 +2,8 @@
 // z).
 //
 // Millimetres, sensor space.  White: real Kinect v2 logs, third-difference, walking (statistics
-// only).  Coloured: bone-length variation of the same logs and Otto's figures.  Order of JointId;
-// profiles.json scales both tables as a whole.
+// only).  Coloured: bone-length variation of the same logs; the neck by Otto's Table 1.  Order of
+// JointId; profiles.json scales both tables as a whole.
 #pragma once
 
 #include <array>
@@ -25,26 +25,26 @@ struct JointNoise {
 // clang-format off
 inline constexpr std::array<JointNoise, kJointCount> kJointNoise{{
     {12, 3.5, 2.7, 5.2, 0.15, 1.8, 0.5},  // SpineBase
-    { 9, 1.8, 1.6, 4.1, 0.15, 1.8, 0.5},  // SpineMid
-    { 7, 1.2, 1.3, 3.4, 0.08, 0.15, 0.22},  // Neck
-    { 6, 1.5, 1.5, 3.0, 0.03, 0.03, 0.03},  // Head
-    {14, 2.5, 2.2, 4.5, 0.4, 1.0, 0.8},  // ShoulderLeft
+    {13, 1.8, 1.6, 4.1, 0.15, 1.8, 0.5},  // SpineMid
+    {2.2, 1.2, 1.3, 3.4, 0.08, 0.15, 0.22},  // Neck
+    { 9, 1.5, 1.5, 3.0, 0.03, 0.03, 0.03},  // Head
+    { 9, 2.5, 2.2, 4.5, 0.4, 1.0, 0.8},  // ShoulderLeft
     {20, 3.0, 3.0, 5.0, 0.8, 1.6, 1.6},  // ElbowLeft
     {26, 5.0, 4.0, 6.0, 0.8, 1.6, 1.6},  // WristLeft
     {30, 7.0, 7.0, 9.0, 2.0, 3.0, 3.0},  // HandLeft
-    {14, 2.5, 2.2, 4.5, 0.4, 1.0, 0.8},  // ShoulderRight
+    { 9, 2.5, 2.2, 4.5, 0.4, 1.0, 0.8},  // ShoulderRight
     {20, 3.0, 3.0, 5.0, 0.8, 1.6, 1.6},  // ElbowRight
     {26, 5.0, 4.0, 6.0, 0.8, 1.6, 1.6},  // WristRight
     {30, 7.0, 7.0, 9.0, 2.0, 3.0, 3.0},  // HandRight
     {16, 4.5, 3.6, 7.5, 0.4, 1.0, 0.8},  // HipLeft
-    {26, 3.0, 6.0, 4.0, 0.8, 1.6, 1.6},  // KneeLeft
-    {26, 4.0, 11.0, 7.0, 0.8, 1.6, 1.6},  // AnkleLeft
+    {22, 3.0, 6.0, 4.0, 0.8, 1.6, 1.6},  // KneeLeft
+    {20, 4.0, 11.0, 7.0, 0.8, 1.6, 1.6},  // AnkleLeft
     {30, 8.5, 21.0, 17.0, 2.0, 3.0, 3.0},  // FootLeft
     {16, 4.5, 3.6, 7.5, 0.4, 1.0, 0.8},  // HipRight
-    {26, 3.0, 6.0, 4.0, 0.8, 1.6, 1.6},  // KneeRight
-    {26, 4.0, 11.0, 7.0, 0.8, 1.6, 1.6},  // AnkleRight
+    {22, 3.0, 6.0, 4.0, 0.8, 1.6, 1.6},  // KneeRight
+    {20, 4.0, 11.0, 7.0, 0.8, 1.6, 1.6},  // AnkleRight
     {30, 8.5, 21.0, 17.0, 2.0, 3.0, 3.0},  // FootRight
-    { 8, 1.3, 1.2, 3.4, 0.08, 0.15, 0.22},  // SpineShoulder
+    { 6, 1.3, 1.2, 3.4, 0.08, 0.15, 0.22},  // SpineShoulder
     {34, 11.0, 14.0, 13.0, 2.0, 3.0, 3.0},  // HandTipLeft
     {34, 11.0, 14.0, 13.0, 2.0, 3.0, 3.0},  // ThumbLeft
     {34, 11.0, 14.0, 13.0, 2.0, 3.0, 3.0},  // HandTipRight

@@ -1,5 +1,6 @@
 #include "common/synthetic/kinect/kinect_sensor.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -119,6 +120,9 @@ Stand KinectSensor::stand_of(std::size_t person) const {
       stand.speed[i] = (exact.joints[i].position - before->joints[i].position).norm() /
                        setting_.profile.delivery.period;
     }
+    // A joint is no calmer than the trunk: a walker's standing foot errs as much as the other one.
+    const double trunk = stand.speed[index_of(JointId::SpineShoulder)];
+    for (double& speed : stand.speed) speed = std::max(speed, trunk);
   }
   return stand;
 }

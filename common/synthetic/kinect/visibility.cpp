@@ -25,12 +25,20 @@ struct Self {
   bool is_core;
 };
 
+/// Cheap and safe: the ball around the capsule lies beside the ray.
+bool is_beside(const Capsule& capsule, const Eigen::Vector3d& ray) {
+  const Eigen::Vector3d middle = 0.5 * (capsule.from + capsule.to);
+  const double reach = 0.5 * (capsule.to - capsule.from).norm() + capsule.radius;
+  return (middle - middle.dot(ray) * ray).squaredNorm() > reach * reach;
+}
+
 bool is_blocked(const Eigen::Vector3d& end, const Eigen::Vector3d& joint, const Self& self,
                 const Obstacles& obstacles) {
   const double range = end.norm();
   const Eigen::Vector3d ray = end / range;
   for (std::size_t body = 0; body < obstacles.bodies.size(); ++body) {
     for (const Capsule& capsule : obstacles.bodies[body]) {
+      if (is_beside(capsule, ray)) continue;
       const bool own = body == self.index;
       if (own && (self.is_core || distance_to_axis(capsule, joint) < capsule.radius + kSkin))
         continue;
