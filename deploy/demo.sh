@@ -204,6 +204,7 @@ for sensor in "${sensors[@]}"; do
   wait_for "${url}healthz" "the sensor at $url"
 done
 start_fusion
+fusion_pid=${children[-1]}
 wait_for "http://127.0.0.1:$port/healthz" "the fusion server"
 
 base=http://127.0.0.1:$port
@@ -223,11 +224,20 @@ watcher=(python3 -B deploy/watch_tracker.py --base "$base")
 setpriv --pdeathsig TERM "${watcher[@]}" &
 watch_pid=$!
 children+=("$watch_pid")
-# Whoever ends first decides: the watcher with its verdict, or a service that should not have ended.
-verdict=0
-wait -n -p ended "${children[@]}" || verdict=$?
-if [[ "$ended" != "$watch_pid" ]]; then
-  show_logs
-  fail "a program ended by itself with code $verdict; logs in $logs/"
-fi
-exit "$verdict"
+# The watcher decides with its verdict, or the fusion server by ending.  A sensor that dies is only told: the
+# tracker lives on without it, as it would in a workshop.
+while true; do
+  verdict=0
+  wait -n -p ended "${children[@]}" || verdict=$?
+  if [[ "$ended" == "$watch_pid" ]]; then exit "$verdict"; fi
+  if [[ "$ended" == "$fusion_pid" ]]; then
+    show_logs
+    fail "the fusion server ended by itself with code $verdict; logs in $logs/"
+  fi
+  echo "a sensor ended with code $verdict; the tracker goes on without it (see $base/sensors/)"
+  remaining=()
+  for child in "${children[@]}"; do
+    [[ "$child" == "$ended" ]] || remaining+=("$child")
+  done
+  children=("${remaining[@]}")
+done

@@ -51,6 +51,18 @@ class Demo(unittest.TestCase):
         self.assertIn("6 sensors", output)
         self.assertIn(f"http://127.0.0.1:{self.port}/viewer/", output)
 
+    def test_a_killed_sensor_costs_only_itself(self):
+        process = demo(self.port, "--seconds", str(RUN_S))
+        deadline = time.monotonic() + START_WITHIN_S
+        while not is_listening(self.port) and time.monotonic() < deadline:
+            time.sleep(0.1)
+        killed = subprocess.run(["pkill", "-KILL", "-f", f"http.port={self.port + 2}"])
+        self.assertEqual(killed.returncode, 0, "there was a sensor to kill")
+        output, _ = process.communicate(timeout=RUN_S + START_WITHIN_S)
+        self.assertEqual(process.returncode, 0, output)
+        self.assertIn("goes on without it", output)
+        self.assert_nothing_left(process)
+
     def test_the_real_cameras_become_one_tracker(self):
         output = self.run_to_its_end("--seconds", "10", "--recording")
         self.assertIn("4 sensors", output)
