@@ -227,17 +227,20 @@ children+=("$watch_pid")
 # The watcher decides with its verdict, or the fusion server by ending.  A sensor that dies is only told: the
 # tracker lives on without it, as it would in a workshop.
 while true; do
-  verdict=0
+  alive=()
+  for child in "${children[@]}"; do
+    if kill -0 "$child" 2>/dev/null; then
+      alive+=("$child")
+    else
+      echo "a sensor ended; the tracker goes on without it (see $base/sensors/)"
+    fi
+  done
+  children=("${alive[@]}")
+  verdict=0 ended=''
   wait -n -p ended "${children[@]}" || verdict=$?
   if [[ "$ended" == "$watch_pid" ]]; then exit "$verdict"; fi
-  if [[ "$ended" == "$fusion_pid" ]]; then
+  if ! kill -0 "$fusion_pid" 2>/dev/null; then
     show_logs
     fail "the fusion server ended by itself with code $verdict; logs in $logs/"
   fi
-  echo "a sensor ended with code $verdict; the tracker goes on without it (see $base/sensors/)"
-  remaining=()
-  for child in "${children[@]}"; do
-    [[ "$child" == "$ended" ]] || remaining+=("$child")
-  done
-  children=("${remaining[@]}")
 done
