@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <netinet/in.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -91,6 +92,20 @@ void send_all(int to, const void* bytes, std::size_t size) {
 
 }  // namespace
 
+void keep_to_side(Side side) {
+  cpu_set_t allowed;
+  if (::sched_getaffinity(0, sizeof allowed, &allowed) != 0 || CPU_COUNT(&allowed) < 2) return;
+  int skip = side == Side::Server ? 0 : 1;
+  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
+    if (!CPU_ISSET(cpu, &allowed) || skip-- > 0) continue;
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(cpu, &one);
+    ::sched_setaffinity(0, sizeof one, &one);
+    return;
+  }
+}
+
 Result<ServingProcess> ServingProcess::fork(const Serve& serve) {
   std::array<int, 2> port_pipe{};
   std::array<int, 2> life_pipe{};
@@ -99,6 +114,7 @@ Result<ServingProcess> ServingProcess::fork(const Serve& serve) {
   const pid_t pid = ::fork();
   if (pid < 0) return fail(ErrorCode::Io, "fork", "cannot start a process");
   if (pid == 0) {
+    keep_to_side(Side::Server);
     ::close(port_pipe[0]);
     ::close(life_pipe[1]);
     serve([&](std::uint16_t port) { send_all(port_pipe[1], &port, sizeof port); },
@@ -132,6 +148,7 @@ Result<ServingProcess> ServingProcess::nginx(const std::string& body) {
   process.port_ = port;
   process.pid_ = ::fork();
   if (process.pid_ == 0) {
+    keep_to_side(Side::Server);
     ::execlp("nginx", "nginx", "-e", errors.c_str(), "-p", folder->c_str(), "-c", config.c_str(),
              nullptr);
     ::execl("/usr/sbin/nginx", "nginx", "-e", errors.c_str(), "-p", folder->c_str(), "-c",
@@ -176,10 +193,15 @@ double ServingProcess::cpu_seconds() const {
 }
 
 Result<WrkResult> run_wrk(std::uint16_t port, int connections, int run_seconds) {
+  // popen() starts its shell with our own affinity: ours is moved and put back.
+  cpu_set_t before;
+  ::sched_getaffinity(0, sizeof before, &before);
+  keep_to_side(Side::Load);
   const std::string command = "wrk -t1 -c" + std::to_string(connections) + " -d" +
                               std::to_string(run_seconds) +
                               "s http://127.0.0.1:" + std::to_string(port) + "/frame 2>&1";
   const std::unique_ptr<FILE, int (*)(FILE*)> output(::popen(command.c_str(), "r"), ::pclose);
+  ::sched_setaffinity(0, sizeof before, &before);
   if (!output) return fail(ErrorCode::Io, "wrk", "cannot start wrk");
   WrkResult result;
   std::array<char, 256> line{};

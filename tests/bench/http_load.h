@@ -38,6 +38,11 @@ class ServingProcess {
   std::string folder_ = {};  ///< nginx's; removed at the end.
 };
 
+/// Servers run on one core and the load on another, the same for every server; what runs on one
+/// core only is left alone.  Called in a child before it starts.
+enum class Side { Server, Load };
+void keep_to_side(Side side);
+
 struct WrkResult {
   double requests_per_s = 0.0;
   double requests = 0.0;

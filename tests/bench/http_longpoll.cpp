@@ -151,6 +151,7 @@ Result<LongPollAges> run_long_polls(const LongPollLoad& load) {
   const pid_t child = ::fork();
   if (child < 0) return fail(ErrorCode::Io, "fork", "cannot start a process");
   if (child == 0) {
+    keep_to_side(Side::Load);
     const LongPollAges ages = poll_all(load);
     const std::array<std::uint64_t, 3> counts{ages.ages.size(), ages.answers,
                                               ages.repeated_or_missed};
