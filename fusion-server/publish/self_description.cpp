@@ -3,35 +3,13 @@
 #include <memory>
 #include <utility>
 
+#include "common/http/html.h"
 #include "common/resource/floor_plane_resource.h"
 
 namespace chorus::publish {
 namespace {
 
 using resource::Ref;
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 http::DocumentPtr root_document(const RestContext& context, const std::string& title, bool viewer) {
   const auto node = std::make_shared<const resource::Node>(service_node(title, viewer));
@@ -84,7 +62,7 @@ resource::Node service_node(const std::string& title, bool with_viewer) {
 }
 
 std::string landing_page(const std::string& title, bool with_viewer) {
-  const std::string name = escaped(title);
+  const std::string name = http::escaped_html(title);
   std::string page = "<!doctype html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>" +
                      name +
                      "</title>\n<meta name=\"viewport\" content=\"width=device-width\">\n"

@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/http/html.h"
+
 namespace chorus::sensor_service {
 
 namespace {
@@ -46,29 +48,6 @@ std::vector<Resource> resources_of(const Self& self) {
   return shown;
 }
 
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
 constexpr std::string_view kPageStart =
     "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
     "<meta name=\"viewport\" content=\"width=device-width\">\n"
@@ -108,9 +87,9 @@ Node self_node(const Self& self) {
 
 std::string self_page(const Self& self) {
   std::string page(kPageStart);
-  const std::string name = escaped(self.id.str());
+  const std::string name = http::escaped_html(self.id.str());
   page += "<title>Sensor " + name + "</title></head><body>\n<h1>Sensor " + name + "</h1>\n<p>";
-  page += escaped(self.device.label) + "</p>\n<table>\n";
+  page += http::escaped_html(self.device.label) + "</p>\n<table>\n";
   for (const Resource& one : resources_of(self)) {
     const std::string path(one.path);
     page += "<tr><td><a href=\"" + path + "\">/" + path + "</a></td><td>" + std::string(one.what) +

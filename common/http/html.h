@@ -1,0 +1,12 @@
+// Text from outside in a page for browsers.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace chorus::http {
+
+/// Safe between tags and in quoted attributes: & < > " become entities.
+[[nodiscard]] std::string escaped_html(std::string_view text);
+
+}  // namespace chorus::http
