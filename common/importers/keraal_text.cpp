@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "common/importers/kinect_orientation.h"
+#include "common/importers/text_recording.h"
 #include "common/importers/text_rows.h"
 #include "common/importers/uniform_clock.h"
 
@@ -54,22 +55,12 @@ Result<void> read_rows(LineReader& lines, const ImportOptions& options,
 
 Result<record::FrameRecording> read_keraal_text(const std::filesystem::path& file,
                                                 const ImportOptions& options) {
-  const auto text = read_bounded(file, options.limits.max_text_bytes);
-  if (!text) return pass(text);
-  const auto sensor = sensor_for(file, options);
-  if (!sensor) return pass(sensor);
-  record::FrameRecording recording;
-  recording.sensor = *sensor;
-  recording.device = "Kinect v2 (KERAAL text)";
-  recording.floor = options.floor;
-  recording.notes = {{"origin", file.filename().string()},
-                     {"time", kUniformTimeNote},
-                     {"states", "none in the file; every joint counts as tracked"}};
-  LineReader lines(*text, file.string());
-  if (const auto read = read_rows(lines, options, recording); !read) return pass(read);
-  if (recording.frames.empty())
-    return fail(ErrorCode::Malformed, file.string(), "holds no row at all.");
-  return recording;
+  return read_text_recording(
+      file, options,
+      {"Kinect v2 (KERAAL text)",
+       {{"time", kUniformTimeNote}, {"states", "none in the file; every joint counts as tracked"}},
+       "row",
+       read_rows});
 }
 
 }  // namespace chorus::importers

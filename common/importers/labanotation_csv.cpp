@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "common/importers/text_recording.h"
 #include "common/importers/text_rows.h"
 
 namespace chorus::importers {
@@ -120,20 +121,8 @@ Result<void> read_rows(LineReader& lines, const ImportOptions& options,
 
 Result<record::FrameRecording> read_labanotation_csv(const std::filesystem::path& file,
                                                      const ImportOptions& options) {
-  const auto text = read_bounded(file, options.limits.max_text_bytes);
-  if (!text) return pass(text);
-  const auto sensor = sensor_for(file, options);
-  if (!sensor) return pass(sensor);
-  record::FrameRecording recording;
-  recording.sensor = *sensor;
-  recording.device = "Kinect v2 (LabanotationSuite csv)";
-  recording.floor = options.floor;
-  recording.notes["origin"] = file.filename().string();
-  LineReader lines(*text, file.string());
-  if (const auto read = read_rows(lines, options, recording); !read) return pass(read);
-  if (recording.frames.empty())
-    return fail(ErrorCode::Malformed, file.string(), "holds no row at all.");
-  return recording;
+  return read_text_recording(file, options,
+                             {"Kinect v2 (LabanotationSuite csv)", {}, "row", read_rows});
 }
 
 }  // namespace chorus::importers

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "common/importers/kinect_orientation.h"
+#include "common/importers/text_recording.h"
 #include "common/importers/text_rows.h"
 #include "common/importers/uniform_clock.h"
 
@@ -112,22 +113,12 @@ Result<void> read_frames(LineReader& lines, const ImportOptions& options,
 
 Result<record::FrameRecording> read_ntu_skeleton(const std::filesystem::path& file,
                                                  const ImportOptions& options) {
-  const auto text = read_bounded(file, options.limits.max_text_bytes);
-  if (!text) return pass(text);
-  const auto sensor = sensor_for(file, options);
-  if (!sensor) return pass(sensor);
-  record::FrameRecording recording;
-  recording.sensor = *sensor;
-  recording.device = "Kinect v2 (NTU .skeleton)";
-  recording.floor = options.floor;
-  recording.notes = {{"origin", file.filename().string()},
-                     {"time", kUniformTimeNote},
-                     {"bodies", "ids renumbered from 1 in order of appearance"}};
-  LineReader lines(*text, file.string());
-  if (const auto read = read_frames(lines, options, recording); !read) return pass(read);
-  if (recording.frames.empty())
-    return fail(ErrorCode::Malformed, file.string(), "holds no frame at all.");
-  return recording;
+  return read_text_recording(
+      file, options,
+      {"Kinect v2 (NTU .skeleton)",
+       {{"time", kUniformTimeNote}, {"bodies", "ids renumbered from 1 in order of appearance"}},
+       "frame",
+       read_frames});
 }
 
 }  // namespace chorus::importers

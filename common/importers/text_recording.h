@@ -1,0 +1,26 @@
+// What all line-by-line formats share: reading the file, naming the sensor, an empty file refused.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "common/importers/import_options.h"
+#include "common/importers/text_rows.h"
+#include "common/record/frame_recording.h"
+
+namespace chorus::importers {
+
+struct TextFormat {
+  std::string device;                        ///< FrameRecording::device
+  std::map<std::string, std::string> notes;  ///< "origin" is added.
+  std::string unit;                          ///< What an empty file is told to hold none of.
+  std::function<Result<void>(LineReader&, const ImportOptions&, record::FrameRecording&)> read;
+};
+
+[[nodiscard]] Result<record::FrameRecording> read_text_recording(const std::filesystem::path& file,
+                                                                 const ImportOptions& options,
+                                                                 const TextFormat& format);
+
+}  // namespace chorus::importers
