@@ -13,6 +13,8 @@
 #include <sstream>
 #include <utility>
 
+#include "tests/bench/process_time.h"
+
 namespace chorus::bench {
 
 Result<ChildProcess> ChildProcess::start(const std::string& program,
@@ -55,20 +57,7 @@ bool ChildProcess::alive() const {
          what.si_pid == 0;
 }
 
-double ChildProcess::cpu_seconds() const {
-  std::ifstream stat("/proc/" + std::to_string(pid_) + "/stat");
-  std::string line;
-  std::getline(stat, line);
-  // Fields 14 and 15 (proc(5)), counted behind the name, which may hold spaces.
-  std::istringstream fields(line.substr(std::min(line.rfind(')') + 1, line.size())));
-  std::string skipped;
-  constexpr int kFieldsBeforeUserTime = 11;
-  for (int i = 0; i < kFieldsBeforeUserTime; ++i) fields >> skipped;
-  double user = 0.0;
-  double kernel = 0.0;
-  fields >> user >> kernel;
-  return (user + kernel) / static_cast<double>(::sysconf(_SC_CLK_TCK));
-}
+double ChildProcess::cpu_seconds() const { return cpu_seconds_of(pid_); }
 
 std::uint16_t unused_port() {
   const int fd = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);

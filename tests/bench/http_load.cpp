@@ -19,6 +19,8 @@
 #include <sstream>
 #include <thread>
 
+#include "tests/bench/process_time.h"
+
 namespace chorus::bench {
 namespace {
 
@@ -177,20 +179,7 @@ ServingProcess::~ServingProcess() {
   if (!folder_.empty()) fs::remove_all(folder_, ignored);
 }
 
-double ServingProcess::cpu_seconds() const {
-  std::ifstream stat("/proc/" + std::to_string(pid_) + "/stat");
-  std::string line;
-  std::getline(stat, line);
-  // Fields 14 and 15 (proc(5)) are counted behind the name, which may hold spaces.
-  std::istringstream fields(line.substr(std::min(line.rfind(')') + 1, line.size())));
-  std::string skipped;
-  constexpr int kFieldsBeforeUserTime = 11;
-  for (int i = 0; i < kFieldsBeforeUserTime; ++i) fields >> skipped;
-  double user = 0.0;
-  double system = 0.0;
-  fields >> user >> system;
-  return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
-}
+double ServingProcess::cpu_seconds() const { return cpu_seconds_of(pid_); }
 
 Result<WrkResult> run_wrk(std::uint16_t port, int connections, int run_seconds) {
   // popen() starts its shell with our own affinity: ours is moved and put back.

@@ -291,7 +291,8 @@ Result<void> run_real(Report& report) {
       "the same rays "
       "comes near it by construction, so the last millimetres are agreement, not accuracy");
   report.note(
-      "joint_p90_mm: around the middle of the recording views mix up left and right; truth and "
+      "joint_p90_mm: around the middle of the recording views seem to mix up left and right; truth "
+      "and "
       "fusion then "
       "differ by decimetres and neither is known to be right");
   report.note("shape_median_mm: after the best rigid motion onto the truth");
