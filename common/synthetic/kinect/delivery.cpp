@@ -14,11 +14,6 @@ constexpr double kGapBlock = 10.0;  // at most one gap starts in each [s]
 
 }  // namespace
 
-Timestamp HostClock::host_time(Timestamp true_time) const {
-  const double since = seconds(true_time - origin);
-  return true_time + from_seconds(offset + drift * since + (true_time >= step_at ? step : 0.0));
-}
-
 HostClock draw_clock(const ClockError& clock, Timestamp origin, const ErrorKeys& keys) {
   Draw draw{kClock, keys.seed, keys.sensor};
   HostClock host;

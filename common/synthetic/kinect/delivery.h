@@ -3,22 +3,11 @@
 
 #include <cstdint>
 
+#include "common/synthetic/host_clock.h"
 #include "common/synthetic/kinect/joint_error.h"
 #include "common/time/timestamp.h"
 
 namespace chorus::synthetic::kinect {
-
-/// One host's clock against the true one: host = true + offset + drift * (true - origin) + step
-/// after step_at.
-struct HostClock {
-  double offset = 0.0;  ///< [s]
-  double drift = 0.0;   ///< [s/s]
-  double step = 0.0;    ///< [s]
-  Timestamp origin{};
-  Timestamp step_at = Timestamp::max();
-
-  [[nodiscard]] Timestamp host_time(Timestamp true_time) const;
-};
 
 /// A host's clock drawn from the profile.
 [[nodiscard]] HostClock draw_clock(const ClockError& clock, Timestamp origin,

@@ -171,11 +171,7 @@ std::optional<SensorFrame> KinectSensor::next() {
 std::vector<SensorFrame> record(const Scene& scene, const KinectSetting& setting, Timestamp start,
                                 Timestamp end) {
   KinectSensor sensor(scene, setting, start);
-  std::vector<SensorFrame> frames;
-  while (sensor.next_exposure() <= end) {
-    if (auto frame = sensor.next()) frames.push_back(*std::move(frame));
-  }
-  return frames;
+  return synthetic::record(sensor, end);
 }
 
 }  // namespace chorus::synthetic::kinect

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/sensor/sensor_frame.h"
+#include "common/synthetic/body_sensor.h"
 #include "common/synthetic/kinect/delivery.h"
 #include "common/synthetic/kinect/gross_error.h"
 #include "common/synthetic/kinect/profile.h"
@@ -28,18 +28,14 @@ struct KinectSetting {
   bool own_clock = true;        ///< Stamps by the host's erring clock; false: true time.
 };
 
-class KinectSensor {
+class KinectSensor final : public BodySensor {
  public:
   /// `scene` must outlive the sensor.  The first frames are at or after `start`.
   KinectSensor(const Scene& scene, KinectSetting setting, Timestamp start);
 
-  /// The next frame by exposure; none when it was dropped.  `captured` is by the host's clock,
-  /// `received` true time.
-  [[nodiscard]] std::optional<SensorFrame> next();
-
-  /// True exposure of the frame that next() will give.
-  [[nodiscard]] Timestamp next_exposure() const;
-  [[nodiscard]] const HostClock& clock() const noexcept { return clock_; }
+  [[nodiscard]] std::optional<SensorFrame> next() override;
+  [[nodiscard]] Timestamp next_exposure() const override;
+  [[nodiscard]] const HostClock& clock() const noexcept override { return clock_; }
 
  private:
   struct Memory {

@@ -1,0 +1,38 @@
+// The seam of every simulated body-tracking sensor: frames, one after the other, and the clock that
+// stamps them.
+//
+// Deterministic: the same scene, choice and start give the same frames.  sensor_choice.h makes one
+// by the name of its profile.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "common/sensor/sensor_frame.h"
+#include "common/synthetic/host_clock.h"
+
+namespace chorus::synthetic {
+
+class BodySensor {
+ public:
+  virtual ~BodySensor() = default;
+
+  /// The next frame by exposure; none when it was dropped.  `captured` is by the host's clock,
+  /// `received` true time.
+  [[nodiscard]] virtual std::optional<SensorFrame> next() = 0;
+
+  /// True exposure of the frame that next() will give.
+  [[nodiscard]] virtual Timestamp next_exposure() const = 0;
+
+  [[nodiscard]] virtual const HostClock& clock() const noexcept = 0;
+
+ protected:
+  BodySensor() = default;
+  BodySensor(const BodySensor&) = default;
+  BodySensor& operator=(const BodySensor&) = default;
+};
+
+/// All frames from where the sensor stands to `end` (true time).
+[[nodiscard]] std::vector<SensorFrame> record(BodySensor& sensor, Timestamp end);
+
+}  // namespace chorus::synthetic

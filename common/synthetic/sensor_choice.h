@@ -1,0 +1,60 @@
+// A simulated sensor by the name of its profile: "A" and "B" draw their errors (kinect/), in "C"
+// they emerge from depth images and a body fitter (depth/).
+//
+// Parameters are the nominal ones or one draw from their intervals; any source of error can be
+// turned up, down or off on top.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/synthetic/body_sensor.h"
+#include "common/synthetic/kinect/error_source.h"
+#include "common/synthetic/scene.h"
+
+namespace chorus::synthetic {
+
+using kinect::Source;
+
+/// One source of error multiplied: 0 switches it off, 1 leaves it.
+struct Stress {
+  Source source = Source::White;
+  double factor = 1.0;
+};
+
+struct SensorChoice {
+  SensorId id;
+  std::size_t place = 0;              ///< Index into Scene::world_from_sensor.
+  std::string profile = "A";          ///< "A", "B" or "C"
+  std::optional<std::uint64_t> draw;  ///< Parameters drawn by this seed; none: the nominal ones.
+  std::vector<Stress> stress = {};
+  std::uint64_t seed = 1;       ///< The same for all sensors of a room: shared errors are shared.
+  std::uint64_t bias_seed = 1;  ///< SDK and people: the same person errs the same way in every run.
+  bool own_clock = true;        ///< Stamps by the host's erring clock; false: true time.
+};
+
+/// Does this source exist in the profile?  In "C" neither yaw, coloured error nor visibility is a
+/// number that could be multiplied.
+[[nodiscard]] bool has_source(std::string_view profile, Source source);
+
+/// `scene` must outlive the sensor.  First frames at or after `start`.  Refuses an unknown profile
+/// and a place that the scene does not have.
+[[nodiscard]] Result<std::unique_ptr<BodySensor>> make_sensor(const Scene& scene,
+                                                              const SensorChoice& choice,
+                                                              Timestamp start);
+
+/// All frames of one sensor from start to end.
+[[nodiscard]] Result<std::vector<SensorFrame>> record(const Scene& scene,
+                                                      const SensorChoice& choice, Timestamp start,
+                                                      Timestamp end);
+
+/// First 12 hex digits of the SHA-256 of what defines the profile: printed with every result; empty
+/// for an unknown one.
+[[nodiscard]] std::string frozen_hash(std::string_view profile);
+
+}  // namespace chorus::synthetic
