@@ -9,6 +9,13 @@ std::optional<JointId> joint_named(std::string_view name) {
   return std::nullopt;
 }
 
+JointId parent_of(JointId id) {
+  for (const Bone& bone : kBones) {
+    if (bone.child == id) return bone.parent;
+  }
+  return id;
+}
+
 JointId mirror(JointId id) {
   for (const auto& [left, right] : kMirrorPairs) {
     if (id == left) return right;

@@ -30,18 +30,18 @@ struct Bone {
 
 /// Every joint but SpineBase hangs on one parent; parents come before children.
 inline constexpr std::array<Bone, kJointCount - 1> kBones{{
-    {JointId::SpineBase, JointId::SpineMid},       {JointId::SpineMid, JointId::SpineShoulder},
-    {JointId::SpineShoulder, JointId::Neck},       {JointId::Neck, JointId::Head},
-    {JointId::SpineShoulder, JointId::ShoulderLeft}, {JointId::ShoulderLeft, JointId::ElbowLeft},
-    {JointId::ElbowLeft, JointId::WristLeft},      {JointId::WristLeft, JointId::HandLeft},
-    {JointId::HandLeft, JointId::HandTipLeft},     {JointId::WristLeft, JointId::ThumbLeft},
+    {JointId::SpineBase, JointId::SpineMid},          {JointId::SpineMid, JointId::SpineShoulder},
+    {JointId::SpineShoulder, JointId::Neck},          {JointId::Neck, JointId::Head},
+    {JointId::SpineShoulder, JointId::ShoulderLeft},  {JointId::ShoulderLeft, JointId::ElbowLeft},
+    {JointId::ElbowLeft, JointId::WristLeft},         {JointId::WristLeft, JointId::HandLeft},
+    {JointId::HandLeft, JointId::HandTipLeft},        {JointId::WristLeft, JointId::ThumbLeft},
     {JointId::SpineShoulder, JointId::ShoulderRight}, {JointId::ShoulderRight, JointId::ElbowRight},
-    {JointId::ElbowRight, JointId::WristRight},    {JointId::WristRight, JointId::HandRight},
-    {JointId::HandRight, JointId::HandTipRight},   {JointId::WristRight, JointId::ThumbRight},
-    {JointId::SpineBase, JointId::HipLeft},        {JointId::HipLeft, JointId::KneeLeft},
-    {JointId::KneeLeft, JointId::AnkleLeft},       {JointId::AnkleLeft, JointId::FootLeft},
-    {JointId::SpineBase, JointId::HipRight},       {JointId::HipRight, JointId::KneeRight},
-    {JointId::KneeRight, JointId::AnkleRight},     {JointId::AnkleRight, JointId::FootRight},
+    {JointId::ElbowRight, JointId::WristRight},       {JointId::WristRight, JointId::HandRight},
+    {JointId::HandRight, JointId::HandTipRight},      {JointId::WristRight, JointId::ThumbRight},
+    {JointId::SpineBase, JointId::HipLeft},           {JointId::HipLeft, JointId::KneeLeft},
+    {JointId::KneeLeft, JointId::AnkleLeft},          {JointId::AnkleLeft, JointId::FootLeft},
+    {JointId::SpineBase, JointId::HipRight},          {JointId::HipRight, JointId::KneeRight},
+    {JointId::KneeRight, JointId::AnkleRight},        {JointId::AnkleRight, JointId::FootRight},
 }};
 
 struct MirrorPair {
@@ -62,11 +62,14 @@ inline constexpr std::array<MirrorPair, 10> kMirrorPairs{{
     {JointId::FootLeft, JointId::FootRight},
 }};
 
+/// The joint this one hangs on; SpineBase hangs on itself.
+[[nodiscard]] JointId parent_of(JointId id);
+
 /// The joint on the other side; a centre joint is its own mirror.
 [[nodiscard]] JointId mirror(JointId id);
 
 /// Joints on the body's centre axis: the same seen from the front and from behind (Otto 3.2).
-inline constexpr std::array kCoreJoints{JointId::SpineBase, JointId::SpineMid, JointId::SpineShoulder,
-                                        JointId::Neck, JointId::Head};
+inline constexpr std::array kCoreJoints{JointId::SpineBase, JointId::SpineMid,
+                                        JointId::SpineShoulder, JointId::Neck, JointId::Head};
 
 }  // namespace chorus

@@ -6,12 +6,14 @@
 
 #include <utility>
 
+#include <boost/asio/basic_datagram_socket.hpp>
 #include <boost/asio/basic_socket_acceptor.hpp>
 #include <boost/asio/basic_stream_socket.hpp>
 #include <boost/asio/basic_waitable_timer.hpp>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/multicast.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ip/udp.hpp>
 #include <boost/asio/post.hpp>
@@ -24,10 +26,12 @@ namespace chorus::http {
 
 namespace net = boost::asio;
 using tcp = net::ip::tcp;
+using udp = net::ip::udp;
 using boost::system::error_code;
 
 using Executor = net::io_context::executor_type;
 using Socket = net::basic_stream_socket<tcp, Executor>;
+using DatagramSocket = net::basic_datagram_socket<udp, Executor>;
 using Acceptor = net::basic_socket_acceptor<tcp, Executor>;
 using Resolver = net::ip::basic_resolver<tcp, Executor>;
 using Timer = net::basic_waitable_timer<std::chrono::steady_clock,

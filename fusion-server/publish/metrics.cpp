@@ -31,9 +31,25 @@ void add_sensor(endpoint::MetricsText& out, const SensorStatus& s) {
               number(s.failures), labels);
 }
 
+void add_output(endpoint::MetricsText& out, const Sink& sink) {
+  const endpoint::Labels labels{{"output", std::string(sink.name())}};
+  const SinkCounters counters = sink.counters();
+  out.counter({"chorus_output_frames_total", "Fused frames handed to the protocol."},
+              number(counters.frames), labels);
+  out.counter({"chorus_output_dropped_total",
+               "Fused frames left out because the output did not keep up (the oldest go first)."},
+              number(counters.dropped), labels);
+  out.counter({"chorus_output_failed_total", "Sends the operating system refused."},
+              number(counters.failed), labels);
+  out.counter({"chorus_output_refused_total", "Clients or messages turned away."},
+              number(counters.refused), labels);
+  out.gauge({"chorus_output_clients", "Clients connected."}, number(counters.clients), labels);
+}
+
 }  // namespace
 
-std::string metrics_text(const Status& status, const http::ServerCounters& http) {
+std::string metrics_text(const Status& status, const std::vector<std::unique_ptr<Sink>>& outputs,
+                         const http::ServerCounters& http) {
   endpoint::MetricsText out;
   const Counters& counters = status.counters;
   out.counter({"chorus_fused_frames_total", "Fused frames published."}, number(counters.ticks));
@@ -51,6 +67,7 @@ std::string metrics_text(const Status& status, const http::ServerCounters& http)
   out.gauge({"chorus_registered_sensors", "Sensors with a place."},
             number(status.registration.sensors.size()));
   for (const SensorStatus& sensor : status.sensors) add_sensor(out, sensor);
+  for (const auto& sink : outputs) add_output(out, *sink);
   endpoint::add_server(out, http);
   return out.text();
 }

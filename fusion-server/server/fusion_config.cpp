@@ -181,6 +181,7 @@ Result<FusionConfig> read_fusion_config(std::string_view text, std::string_view 
   read_fusion(root->child("fusion"), config.pipeline.fusion);
   read_sensors(*root, config);
   read_registration(root->child("registration"), config);
+  publish::read_outputs(root->child("outputs"), config.outputs);
   root->read("state_dir", config.state_dir);
   root->read("viewer_dir", config.viewer_dir);
   if (auto ok = root->finish(); !ok) return pass(ok);
@@ -210,6 +211,7 @@ std::string needs_restart(const FusionConfig& now, const FusionConfig& next) {
   add(now.history != next.history, "output.history_s");
   add(now.state_dir != next.state_dir, "state_dir");
   add(now.viewer_dir != next.viewer_dir, "viewer_dir");
+  add(now.outputs != next.outputs, "outputs");
   add(now.registration_file != next.registration_file, "registration.file");
   return keys;
 }

@@ -9,6 +9,7 @@
 #include "common/http/server.h"
 #include "fusion-server/pipeline/pipeline.h"
 #include "fusion-server/poll/poller.h"
+#include "fusion-server/publish/outputs.h"
 #include "fusion-server/registration/registration.h"
 #include "fusion-server/server/registration_session.h"
 #include "fusion-server/server/tick_schedule.h"
@@ -25,6 +26,7 @@ struct FusionConfig {
   pipeline::PipelineConfig pipeline;
   registration::RegistrationConfig registration;
   SessionConfig session;
+  publish::OutputsConfig outputs;
   std::string registration_file;  ///< Given extrinsics; empty: registered from a walk.
   std::string state_dir;          ///< Where the registration survives a restart; empty: nowhere.
   std::string viewer_dir;         ///< Static files of /viewer/; empty: no viewer.

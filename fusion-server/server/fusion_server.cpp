@@ -99,7 +99,7 @@ struct FusionServer::Impl {
   FusionConfig config;
   std::shared_ptr<const Clock> clock;
   publish::RestContext context;
-  std::vector<std::unique_ptr<publish::Sink>> sinks;
+  std::vector<std::unique_ptr<publish::Sink>> sinks;  ///< Filled before the first request.
   mutable std::mutex mutex;
   publish::Status status;      ///< Guarded by mutex.
   bool session_asked = false;  ///< Guarded by mutex: a start is on its way to the pipeline.
@@ -130,7 +130,7 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   endpoint::EndpointOptions endpoint;
   endpoint.clock = clock;
   endpoint.health = [this] { return health_of(status_now()); };
-  endpoint.metrics = [this] { return publish::metrics_text(status_now(), http->counters()); };
+  endpoint.metrics = [this] { return publish::metrics_text(status_now(), sinks, http->counters()); };
   endpoint::add_routes(*router, endpoint);
   return router;
 }
@@ -159,14 +159,13 @@ FusionServer::FusionServer(FusionConfig config, std::shared_ptr<const Clock> clo
 
 FusionServer::~FusionServer() { stop(); }
 
-void FusionServer::add(std::unique_ptr<publish::Sink> sink) {
-  impl_->sinks.push_back(std::move(sink));
-}
-
 Result<void> FusionServer::start() {
   Impl& s = *impl_;
   auto registration = initial_registration(s.config);
   if (!registration) return pass(registration);
+  auto sinks = publish::open_outputs(s.config.outputs, s.clock);
+  if (!sinks) return pass(sinks);
+  s.sinks = std::move(*sinks);
   http::ServerConfig http = s.config.http;
   http.clock = s.clock;
   s.http = std::make_unique<http::Server>(http, s.make_router());
@@ -225,6 +224,7 @@ void FusionServer::stop() {
   if (s.http) s.http->stop();
   if (s.poller) s.poller->stop();
   s.loop.reset();
+  s.sinks.clear();
 }
 
 }  // namespace chorus::server

@@ -7,7 +7,6 @@
 
 #include "common/base/result.h"
 #include "common/time/clock.h"
-#include "fusion-server/publish/sink.h"
 #include "fusion-server/server/fusion_config.h"
 
 namespace chorus::server {
@@ -16,9 +15,6 @@ class FusionServer {
  public:
   FusionServer(FusionConfig config, std::shared_ptr<const Clock> clock);
   ~FusionServer();  ///< stop()s.
-
-  /// Another output; before start().
-  void add(std::unique_ptr<publish::Sink> sink);
 
   /// Binds and starts everything.  Fails when the address is taken or given extrinsics cannot be
   /// read.

@@ -183,7 +183,7 @@ TEST(Metrics, NameEverySensorAndEveryCounterOnce) {
   Status all;
   all.sensors = {status("s1"), status("s2")};
   all.counters.ticks = 42;
-  const std::string text = metrics_text(all, {});
+  const std::string text = metrics_text(all, {}, {});
   EXPECT_NE(text.find("chorus_fused_frames_total 42"), std::string::npos);
   EXPECT_NE(text.find("chorus_sensor_up{sensor=\"s2\"} 1"), std::string::npos);
   EXPECT_NE(text.find("chorus_frame_age_seconds{sensor=\"s1\"} 0.012"), std::string::npos);

@@ -1,0 +1,54 @@
+// UDP to a list of targets: "127.0.0.1:5000", "239.255.42.99:1511", "[::1]:39539", "host:9000".
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/config_reader.h"
+#include "common/base/result.h"
+
+namespace chorus::publish {
+
+/// Host and port of a target, unresolved.
+struct Target {
+  std::string host;
+  std::uint16_t port = 0;
+};
+
+/// InvalidArgument names what is wrong with it.
+[[nodiscard]] Result<Target> parse_target(std::string_view text);
+
+/// The key "targets"; each one must be as above.
+void read_targets(ConfigReader& reader, std::vector<std::string>& out);
+
+struct DatagramOptions {
+  std::vector<std::string> targets;
+  std::uint16_t source_port = 0;  ///< 0: any.
+  int multicast_hops = 1;         ///< Routers a multicast datagram may pass, plus one.
+};
+
+/// Never blocks: what the operating system does not take at once is lost and counted.
+class DatagramSender {
+ public:
+  /// Resolves the targets.  Io or InvalidArgument names the target.
+  [[nodiscard]] static Result<std::unique_ptr<DatagramSender>> open(const DatagramOptions& options);
+  ~DatagramSender();
+
+  /// One datagram to every target.
+  void send(std::span<const char> datagram);
+  /// Datagrams lost on sending.  Any thread.
+  [[nodiscard]] std::uint64_t failed() const noexcept { return failed_; }
+
+ private:
+  DatagramSender();
+  struct Sockets;
+  std::unique_ptr<Sockets> sockets_;
+  std::atomic<std::uint64_t> failed_ = 0;
+};
+
+}  // namespace chorus::publish

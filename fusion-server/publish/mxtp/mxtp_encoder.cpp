@@ -1,0 +1,119 @@
+#include "fusion-server/publish/mxtp/mxtp_encoder.h"
+
+#include <array>
+#include <bit>
+#include <string_view>
+
+#include "common/body/bones.h"
+#include "fusion-server/publish/axes.h"
+
+namespace chorus::publish::mxtp {
+namespace {
+
+/// A segment's origin: `share` of the way from one joint to another; its rotation is that of
+/// `turns`.
+struct Segment {
+  JointId from;
+  JointId to;
+  double share;
+  JointId turns;
+};
+
+using enum JointId;
+
+// Order and meaning of the ids 1..23: wire-formats, Xsens MVN real-time network streaming.
+constexpr std::array<Segment, kSegments> kTable{{
+    {SpineBase, SpineBase, 0.0, SpineBase},              // Pelvis
+    {SpineBase, SpineMid, 1.0 / 3.0, SpineBase},         // L5
+    {SpineBase, SpineMid, 2.0 / 3.0, SpineMid},          // L3
+    {SpineMid, SpineMid, 0.0, SpineMid},                 // T12
+    {SpineMid, SpineShoulder, 0.5, SpineShoulder},       // T8
+    {SpineShoulder, Neck, 0.5, Neck},                    // Neck
+    {Neck, Neck, 0.0, Head},                             // Head: its origin is the top of the neck
+    {SpineShoulder, ShoulderRight, 0.3, ShoulderRight},  // RightShoulder
+    {ShoulderRight, ShoulderRight, 0.0, ElbowRight},     // RightUpperArm
+    {ElbowRight, ElbowRight, 0.0, WristRight},           // RightForearm
+    {WristRight, WristRight, 0.0, HandRight},            // RightHand
+    {SpineShoulder, ShoulderLeft, 0.3, ShoulderLeft},    // LeftShoulder
+    {ShoulderLeft, ShoulderLeft, 0.0, ElbowLeft},        // LeftUpperArm
+    {ElbowLeft, ElbowLeft, 0.0, WristLeft},              // LeftForearm
+    {WristLeft, WristLeft, 0.0, HandLeft},               // LeftHand
+    {HipRight, HipRight, 0.0, KneeRight},                // RightUpperLeg
+    {KneeRight, KneeRight, 0.0, AnkleRight},             // RightLowerLeg
+    {AnkleRight, AnkleRight, 0.0, FootRight},            // RightFoot
+    {FootRight, FootRight, 0.0, FootRight},              // RightToe
+    {HipLeft, HipLeft, 0.0, KneeLeft},                   // LeftUpperLeg
+    {KneeLeft, KneeLeft, 0.0, AnkleLeft},                // LeftLowerLeg
+    {AnkleLeft, AnkleLeft, 0.0, FootLeft},               // LeftFoot
+    {FootLeft, FootLeft, 0.0, FootLeft},                 // LeftToe
+}};
+
+constexpr std::string_view kMagic = "MXTP02";
+constexpr std::uint8_t kOnlyDatagram = 0x80;
+
+class Bytes {
+ public:
+  explicit Bytes(std::size_t size) { bytes_.reserve(size); }
+  void text(std::string_view value) { bytes_.insert(bytes_.end(), value.begin(), value.end()); }
+  template <class Unsigned>
+  void big_endian(Unsigned value) {
+    for (int shift = 8 * (static_cast<int>(sizeof value) - 1); shift >= 0; shift -= 8) {
+      bytes_.push_back(static_cast<char>((value >> shift) & 0xFFU));
+    }
+  }
+  void real(double value) { big_endian(std::bit_cast<std::uint32_t>(static_cast<float>(value))); }
+  [[nodiscard]] std::vector<char> take() { return std::move(bytes_); }
+
+ private:
+  std::vector<char> bytes_;
+};
+
+std::uint32_t time_code(const TrackerFrame& frame) {
+  return static_cast<std::uint32_t>(static_cast<std::uint64_t>(to_unix_ns(frame.instant)) /
+                                    1'000'000U);  // modulo 2^32, as the field is
+}
+
+/// Where a joint is, or where the nearest tracked joint towards the pelvis is: every datagram
+/// carries all segments, so an unseen limb hangs at its parent.
+const TrackerJoint& shown(const TrackerBody& body, JointId id) {
+  const TrackerJoint* joint = &body[id];
+  while (!joint->tracked && id != SpineBase) {
+    id = parent_of(id);
+    joint = &body[id];
+  }
+  return *joint;
+}
+
+void add_header(Bytes& out, const TrackerFrame& frame, const TrackerBody& body) {
+  out.text(kMagic);
+  out.big_endian(static_cast<std::uint32_t>(frame.sequence));
+  out.big_endian(kOnlyDatagram);
+  out.big_endian(static_cast<std::uint8_t>(kSegments));
+  out.big_endian(time_code(frame));
+  out.big_endian(static_cast<std::uint8_t>(body.slot));
+  out.big_endian(static_cast<std::uint8_t>(kSegments));  // body segments
+  out.big_endian(std::uint8_t{0});                       // props
+  out.big_endian(std::uint8_t{0});                       // finger segments
+  out.big_endian(std::uint16_t{0});                      // reserved
+  out.big_endian(static_cast<std::uint16_t>(kDatagramBytes - 24));
+}
+
+}  // namespace
+
+std::vector<char> encode(const TrackerFrame& frame, const TrackerBody& body) {
+  if (!body[SpineBase].tracked || !body[Head].tracked) return {};
+  Bytes out(kDatagramBytes);
+  add_header(out, frame, body);
+  std::uint32_t id = 0;
+  for (const Segment& segment : kTable) {
+    const Eigen::Vector3d x_in_world = (1.0 - segment.share) * shown(body, segment.from).position +
+                                       segment.share * shown(body, segment.to).position;
+    const Eigen::Vector3d p = xsens_axes().position(x_in_world);
+    const Eigen::Quaterniond q = xsens_axes().quaternion(shown(body, segment.turns).orientation);
+    out.big_endian(++id);
+    for (const double value : {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}) out.real(value);
+  }
+  return out.take();
+}
+
+}  // namespace chorus::publish::mxtp

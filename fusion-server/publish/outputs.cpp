@@ -1,0 +1,69 @@
+#include "fusion-server/publish/outputs.h"
+
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace chorus::publish {
+namespace {
+
+constexpr int kMostPersons = 20;
+
+void read_common(ConfigReader& reader, OutputSetting& out) {
+  reader.read("enabled", out.enabled);
+  std::size_t latency = static_cast<std::size_t>(out.latency);
+  reader.read_choice("latency", latency, {"exact", "predicted"});
+  out.latency = static_cast<Latency>(latency);
+  reader.read("max_persons", out.max_persons, 1, kMostPersons);
+}
+
+/// The list of all outputs: their key, and where their settings are.
+template <class Config, class Visitor>
+void for_each_output(Config& config, const Visitor& visit) {
+  visit("mxtp", config.mxtp);
+}
+
+struct Opening {
+  std::shared_ptr<const Clock> clock;
+  std::vector<std::unique_ptr<Sink>> sinks;
+  Result<void> outcome;
+};
+
+template <class Setting>
+void open_one(std::string_view key, const Setting& output, Opening& opening) {
+  if (!output.common.enabled || !opening.outcome) return;
+  auto outlet = open_outlet(output.protocol);  // found in the protocol's namespace
+  if (!outlet) {
+    Error error = outlet.error();
+    error.context = "outputs." + std::string(key) + ": " + error.context;
+    opening.outcome = tl::unexpected<Error>(std::move(error));
+    return;
+  }
+  OutletTiming timing;
+  timing.latency = output.common.latency;
+  timing.slots = static_cast<std::size_t>(output.common.max_persons);
+  timing.clock = opening.clock;
+  opening.sinks.push_back(std::make_unique<OutletSink>(std::move(*outlet), std::move(timing)));
+}
+
+}  // namespace
+
+void read_outputs(ConfigReader reader, OutputsConfig& out) {
+  for_each_output(out, [&reader](std::string_view key, auto& output) {
+    ConfigReader child = reader.child(key);
+    read_common(child, output.common);
+    read_settings(child, output.protocol);
+  });
+}
+
+Result<std::vector<std::unique_ptr<Sink>>> open_outputs(const OutputsConfig& config,
+                                                        const std::shared_ptr<const Clock>& clock) {
+  Opening opening{clock, {}, {}};
+  for_each_output(config, [&opening](std::string_view key, const auto& output) {
+    open_one(key, output, opening);
+  });
+  if (!opening.outcome) return pass(opening.outcome);
+  return std::move(opening.sinks);
+}
+
+}  // namespace chorus::publish

@@ -1,0 +1,49 @@
+// All outputs beside REST, as the configuration's section "outputs" switches them on.
+//
+// One folder per protocol: NAME_encoder.h (pure: bytes from a TrackerFrame) and NAME_outlet.h (the
+// thin sender, its settings, its factory).  outputs.cpp is the only list of them.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "common/base/config_reader.h"
+#include "common/base/result.h"
+#include "common/time/clock.h"
+#include "fusion-server/publish/mxtp/mxtp_outlet.h"
+#include "fusion-server/publish/outlet.h"
+
+namespace chorus::publish {
+
+/// What every output can say.
+struct OutputSetting {
+  bool enabled = false;
+  Latency latency = Latency::Exact;
+  int max_persons = 6;
+
+  bool operator==(const OutputSetting&) const = default;
+};
+
+template <class ProtocolSettings>
+struct Output {
+  OutputSetting common;
+  ProtocolSettings protocol;
+
+  bool operator==(const Output&) const = default;
+};
+
+struct OutputsConfig {
+  Output<mxtp::Settings> mxtp;
+
+  bool operator==(const OutputsConfig&) const = default;
+};
+
+/// Mistakes are reported by the reader's finish().
+void read_outputs(ConfigReader reader, OutputsConfig& out);
+
+/// Opens what is enabled.  The first that cannot be opened is the error; its context begins with
+/// "outputs.NAME".
+[[nodiscard]] Result<std::vector<std::unique_ptr<Sink>>> open_outputs(
+    const OutputsConfig& config, const std::shared_ptr<const Clock>& clock);
+
+}  // namespace chorus::publish

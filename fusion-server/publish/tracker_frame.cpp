@@ -1,0 +1,105 @@
+#include "fusion-server/publish/tracker_frame.h"
+
+#include <algorithm>
+#include <set>
+
+#include "common/base/duration.h"
+#include "common/body/bones.h"
+#include "common/geometry/rotation.h"
+
+namespace chorus::publish {
+namespace {
+
+constexpr Duration kLongestPrediction = std::chrono::milliseconds(50);
+/// A gap longer than this is a new beginning: no velocity across it.
+constexpr Duration kLongestStep = std::chrono::milliseconds(250);
+/// Share of the newest difference in the velocity; the rest is the velocity before.
+constexpr double kNewest = 0.5;
+
+TrackerBody body_of(const FusedBody& fused, std::size_t slot) {
+  TrackerBody body;
+  body.slot = slot;
+  body.person = fused.id;
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    const Joint& from = fused.skeleton.joints[i];
+    TrackerJoint& to = body.joints[i];
+    to.position = from.position;
+    to.tracked = from.state != JointState::NotTracked && from.position.allFinite();
+    if (is_unit(from.orientation)) to.orientation = from.orientation.normalized();
+  }
+  for (const Bone& bone : kBones) {  // parents come first
+    if (is_unit(fused.skeleton[bone.child].orientation)) continue;
+    body.joints[index_of(bone.child)].orientation = body[bone.parent].orientation;
+  }
+  return body;
+}
+
+void set_velocity(TrackerJoint& now, const TrackerJoint& before, double dt) {
+  if (!now.tracked || !before.tracked) return;
+  const Eigen::Vector3d linear = (now.position - before.position) / dt;
+  const Eigen::Vector3d angular = log_map(now.orientation * before.orientation.conjugate()) / dt;
+  now.velocity = kNewest * linear + (1.0 - kNewest) * before.velocity;
+  now.angular_velocity = kNewest * angular + (1.0 - kNewest) * before.angular_velocity;
+}
+
+}  // namespace
+
+void TrackerState::release_absent(const Snapshot& snapshot) {
+  std::set<PersonId> here;
+  for (const FusedBody& body : snapshot.bodies) here.insert(body.id);
+  for (auto& person : taken_) {
+    if (person && !here.contains(*person)) person.reset();
+  }
+  std::erase_if(before_, [&](const auto& entry) { return !here.contains(entry.first); });
+}
+
+std::optional<std::size_t> TrackerState::slot_of(PersonId person) {
+  auto found = std::find(taken_.begin(), taken_.end(), std::optional(person));
+  if (found == taken_.end()) found = std::find(taken_.begin(), taken_.end(), std::nullopt);
+  if (found == taken_.end()) return std::nullopt;
+  *found = person;
+  return static_cast<std::size_t>(found - taken_.begin());
+}
+
+TrackerFrame TrackerState::advance(const Snapshot& snapshot) {
+  release_absent(snapshot);
+  TrackerFrame frame;
+  frame.sequence = snapshot.sequence;
+  frame.instant = snapshot.instant;
+  frame.slots = taken_.size();
+  const Duration step = snapshot.instant - instant_;
+  const bool continues = step > Duration{0} && step <= kLongestStep;
+  for (const FusedBody& fused : snapshot.bodies) {
+    const auto slot = slot_of(fused.id);
+    if (!slot) continue;
+    TrackerBody body = body_of(fused, *slot);
+    const auto before = before_.find(fused.id);
+    if (continues && before != before_.end()) {
+      for (std::size_t i = 0; i < kJointCount; ++i) {
+        set_velocity(body.joints[i], before->second.joints[i], seconds(step));
+      }
+    }
+    before_[fused.id] = body;
+    frame.bodies.push_back(std::move(body));
+  }
+  std::sort(frame.bodies.begin(), frame.bodies.end(),
+            [](const TrackerBody& a, const TrackerBody& b) { return a.slot < b.slot; });
+  instant_ = snapshot.instant;
+  return frame;
+}
+
+TrackerFrame predicted(TrackerFrame frame, Timestamp then) {
+  const Duration ahead = std::min<Duration>(then - frame.instant, kLongestPrediction);
+  if (ahead <= Duration{0}) return frame;
+  const double dt = seconds(ahead);
+  for (TrackerBody& body : frame.bodies) {
+    for (TrackerJoint& joint : body.joints) {
+      joint.position += dt * joint.velocity;
+      joint.orientation = (exp_map(dt * joint.angular_velocity) * joint.orientation).normalized();
+    }
+  }
+  frame.instant += ahead;
+  return frame;
+}
+
+}  // namespace chorus::publish

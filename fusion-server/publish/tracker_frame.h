@@ -1,0 +1,63 @@
+// What an output protocol sends: fused bodies in numbered slots, every joint with a full pose.
+//
+// World space, metres, radians, seconds; encoders go through axes.h.  A value: encoders are pure
+// functions of it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "fusion-server/flow.h"
+
+namespace chorus::publish {
+
+struct TrackerJoint {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  /// Always a unit quaternion: a joint without an orientation of its own has that of the next joint
+  /// towards the pelvis that has one, else none is known and it is the identity.
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          ///< [m/s]
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< World axes [rad/s]
+  bool tracked = false;  ///< False: nobody knows where it is; do not send a pose.
+};
+
+struct TrackerBody {
+  std::size_t slot = 0;  ///< 0 .. slots - 1; a person keeps it while tracked.
+  PersonId person;
+  std::array<TrackerJoint, kJointCount> joints;
+
+  [[nodiscard]] const TrackerJoint& operator[](JointId id) const { return joints[index_of(id)]; }
+};
+
+struct TrackerFrame {
+  std::uint64_t sequence = 0;  ///< Protocols with 32 bits send it modulo 2^32.
+  Timestamp instant;      ///< What the poses stand for: the fused instant, or later if predicted.
+  std::size_t slots = 0;  ///< So many persons at most.
+  std::vector<TrackerBody> bodies;  ///< In order of slot.
+};
+
+/// Gives persons their slots and joints their velocities, snapshot after snapshot.
+class TrackerState {
+ public:
+  explicit TrackerState(std::size_t slots) : taken_(slots) {}
+
+  /// Persons beyond the last slot are left out (the oldest stay).  A repeated or older instant
+  /// gives zero velocities.
+  [[nodiscard]] TrackerFrame advance(const Snapshot& snapshot);
+
+ private:
+  void release_absent(const Snapshot& snapshot);
+  [[nodiscard]] std::optional<std::size_t> slot_of(PersonId person);
+
+  std::vector<std::optional<PersonId>> taken_;
+  std::map<PersonId, TrackerBody> before_;
+  Timestamp instant_{};
+};
+
+/// The same frame as it will be at `then`, at constant velocity.  Limited to 50 ms (limbs gain more
+/// error than they save beyond); an earlier time changes nothing.
+[[nodiscard]] TrackerFrame predicted(TrackerFrame frame, Timestamp then);
+
+}  // namespace chorus::publish

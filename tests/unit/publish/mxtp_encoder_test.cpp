@@ -1,0 +1,118 @@
+// MXTP02 read back by a decoder written from the format's table, not from the encoder.
+#include "fusion-server/publish/mxtp/mxtp_encoder.h"
+
+#include <cstring>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "common/base/units.h"
+#include "common/geometry/rotation.h"
+#include "tests/support/builders.h"
+#include "tests/support/matchers.h"
+
+namespace chorus::publish::mxtp {
+namespace {
+
+using testing::VectorNear;
+
+struct Read {
+  explicit Read(const std::vector<char>& bytes) : b(bytes) {}
+  [[nodiscard]] std::uint32_t u(std::size_t at, std::size_t n) const {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      value = value * 256 + static_cast<unsigned char>(b.at(at + i));
+    return value;
+  }
+  [[nodiscard]] double f(std::size_t at) const {
+    const std::uint32_t bits = u(at, 4);
+    float value = 0;
+    std::memcpy(&value, &bits, 4);
+    return static_cast<double>(value);
+  }
+  [[nodiscard]] std::size_t item(std::uint32_t segment) const { return 24 + 32 * (segment - 1); }
+  [[nodiscard]] Eigen::Vector3d place(std::uint32_t segment) const {
+    const std::size_t at = item(segment) + 4;
+    return {f(at), f(at + 4), f(at + 8)};
+  }
+  [[nodiscard]] Eigen::Quaterniond turn(std::uint32_t segment) const {
+    const std::size_t at = item(segment) + 16;
+    return {f(at), f(at + 4), f(at + 8), f(at + 12)};
+  }
+  const std::vector<char>& b;
+};
+
+TrackerFrame frame_of(const Skeleton<WorldSpace>& skeleton) {
+  Snapshot s;
+  s.sequence = 0x1'0000'0007;  // more than the field holds
+  s.instant = from_unix_ns(1'700'000'000'123'000'000);
+  s.bodies.resize(1);
+  s.bodies[0].skeleton = skeleton;
+  TrackerState state(3);
+  return state.advance(s);
+}
+
+constexpr std::uint32_t kPelvis = 1, kL5 = 2, kRightHand = 11, kLeftHand = 15, kToe = 23;
+
+TEST(Mxtp, HeaderSaysWhatFollows) {
+  const TrackerFrame frame = frame_of(testing::standing_person({0, 0, 0}));
+  const auto bytes = encode(frame, frame.bodies.at(0));
+  ASSERT_EQ(bytes.size(), 760u);
+  const Read read(bytes);
+  EXPECT_EQ(std::string(bytes.begin(), bytes.begin() + 6), "MXTP02");
+  EXPECT_EQ(read.u(6, 4), 7u);
+  EXPECT_EQ(read.u(10, 1), 0x80u);
+  EXPECT_EQ(read.u(11, 1), 23u);
+  EXPECT_EQ(read.u(12, 4), static_cast<std::uint32_t>(1'700'000'000'123ULL));
+  EXPECT_EQ(read.u(16, 1), 0u);
+  EXPECT_EQ(read.u(17, 1), 23u);
+  EXPECT_EQ(read.u(22, 2), 736u);
+  for (std::uint32_t id = 1; id <= 23; ++id) EXPECT_EQ(read.u(read.item(id), 4), id);
+}
+
+TEST(Mxtp, PlacesAreZUpAndXForward) {
+  Skeleton<WorldSpace> body = testing::standing_person({0, 0, 0});
+  body[JointId::SpineBase].position = {1, 2, 3};
+  body[JointId::SpineMid].position = {1, 2.3, 3};
+  body[JointId::HandRight].position = {9, 9, 9};
+  body[JointId::WristRight].position = {4, 5, 6};
+  body[JointId::WristLeft].position = {7, 8, 9};
+  const TrackerFrame frame = frame_of(body);
+  const auto bytes = encode(frame, frame.bodies.at(0));
+  const Read read(bytes);
+  EXPECT_THAT(read.place(kPelvis), VectorNear(Eigen::Vector3d(3, 1, 2), 1e-5));
+  EXPECT_THAT(read.place(kL5), VectorNear(Eigen::Vector3d(3, 1, 2.1), 1e-5));
+  EXPECT_THAT(read.place(kRightHand), VectorNear(Eigen::Vector3d(6, 4, 5), 1e-5));
+  EXPECT_THAT(read.place(kLeftHand), VectorNear(Eigen::Vector3d(9, 7, 8), 1e-5));
+}
+
+TEST(Mxtp, AYawIsATurnAboutZ) {
+  Skeleton<WorldSpace> body = testing::standing_person({0, 0, 0});
+  body[JointId::SpineBase].orientation = about_y(deg(30));
+  const TrackerFrame frame = frame_of(body);
+  const auto bytes = encode(frame, frame.bodies.at(0));
+  const Eigen::Quaterniond expected(Eigen::AngleAxisd(deg(30), Eigen::Vector3d::UnitZ()));
+  EXPECT_LT(angular_distance(Read(bytes).turn(kPelvis), expected), 1e-5);
+}
+
+TEST(Mxtp, AnUnseenLimbHangsAtItsParentAndNothingIsNotANumber) {
+  Skeleton<WorldSpace> body = testing::standing_person({0, 0, 0});
+  body[JointId::AnkleLeft].position = {1, 0.1, 2};
+  testing::hide(body[JointId::FootLeft]);
+  body[JointId::FootLeft].position.setConstant(std::nan(""));
+  const TrackerFrame frame = frame_of(body);
+  const auto bytes = encode(frame, frame.bodies.at(0));
+  EXPECT_THAT(Read(bytes).place(kToe), VectorNear(Eigen::Vector3d(2, 1, 0.1), 1e-5));
+}
+
+TEST(Mxtp, ABodyWithoutPelvisOrHeadIsNotSent) {
+  for (const JointId missing : {JointId::SpineBase, JointId::Head}) {
+    Skeleton<WorldSpace> body = testing::standing_person({0, 0, 0});
+    testing::hide(body[missing]);
+    const TrackerFrame frame = frame_of(body);
+    EXPECT_TRUE(encode(frame, frame.bodies.at(0)).empty());
+  }
+}
+
+}  // namespace
+}  // namespace chorus::publish::mxtp

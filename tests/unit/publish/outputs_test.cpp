@@ -1,0 +1,73 @@
+// The configuration's section "outputs": everything off by default, every mistake named.
+#include "fusion-server/publish/outputs.h"
+
+#include <gtest/gtest.h>
+
+#include "fusion-server/publish/datagram_sender.h"
+#include "tests/support/matchers.h"
+
+namespace chorus::publish {
+namespace {
+
+using testing::FailsWith;
+using testing::IsOk;
+
+Result<OutputsConfig> read(std::string_view text) {
+  auto root = ConfigReader::parse(text, "test.json");
+  if (!root) return pass(root);
+  OutputsConfig config;
+  read_outputs(root->child("outputs"), config);
+  if (auto ok = root->finish(); !ok) return pass(ok);
+  return config;
+}
+
+TEST(Outputs, AreAllOffByDefault) {
+  const auto config = read("{}");
+  ASSERT_THAT(config, IsOk());
+  const auto sinks = open_outputs(*config, std::make_shared<SystemClock>());
+  ASSERT_THAT(sinks, IsOk());
+  EXPECT_TRUE(sinks->empty());
+}
+
+TEST(Outputs, AreSwitchedOnOneByOne) {
+  const auto config = read(
+      R"({"outputs": {"mxtp": {"enabled": true, "latency": "predicted", "targets": ["127.0.0.1:9"]}}})");
+  ASSERT_THAT(config, IsOk());
+  EXPECT_EQ(config->mxtp.common.latency, Latency::Predicted);
+  const auto sinks = open_outputs(*config, std::make_shared<SystemClock>());
+  ASSERT_THAT(sinks, IsOk());
+  ASSERT_EQ(sinks->size(), 1u);
+  EXPECT_EQ(sinks->front()->name(), "mxtp");
+}
+
+TEST(Outputs, NameAnUnknownProtocolAndABadTarget) {
+  const auto unknown = read(R"({"outputs": {"mxpt": {"enabled": true}}})");
+  ASSERT_FALSE(unknown);
+  EXPECT_NE(to_string(unknown.error()).find("outputs.mxpt"), std::string::npos);
+  const auto bad = read(R"({"outputs": {"mxtp": {"targets": ["localhost"]}}})");
+  ASSERT_FALSE(bad);
+  EXPECT_NE(to_string(bad.error()).find("HOST:PORT"), std::string::npos);
+}
+
+TEST(Outputs, AnUnknownHostFailsWithTheOutputsName) {
+  auto config =
+      read(R"({"outputs": {"mxtp": {"enabled": true, "targets": ["no.such.invalid:9763"]}}})");
+  ASSERT_THAT(config, IsOk());
+  const auto sinks = open_outputs(*config, std::make_shared<SystemClock>());
+  ASSERT_FALSE(sinks);
+  EXPECT_NE(sinks.error().context.find("outputs.mxtp"), std::string::npos);
+}
+
+TEST(Targets, AreHostAndPort) {
+  const auto v6 = parse_target("[::1]:39539");
+  ASSERT_THAT(v6, IsOk());
+  EXPECT_EQ(v6->host, "::1");
+  EXPECT_EQ(v6->port, 39539);
+  for (const char* wrong :
+       {"", ":5000", "host", "host:", "host:0", "host:65536", "host:5000x", "[]:5"}) {
+    EXPECT_THAT(parse_target(wrong), FailsWith(ErrorCode::InvalidArgument)) << wrong;
+  }
+}
+
+}  // namespace
+}  // namespace chorus::publish
