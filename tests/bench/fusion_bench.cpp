@@ -6,10 +6,12 @@
 #include <limits>
 
 #include "common/base/units.h"
+#include "common/synthetic/sensor_model.h"
 #include "fusion-server/pipeline/offline.h"
+#include "tests/bench/joint_error.h"
+#include "tests/bench/judge.h"
 #include "tests/bench/report.h"
 #include "tests/bench/statistics.h"
-#include "tests/bench/workshop.h"
 
 namespace chorus::bench {
 namespace {
@@ -35,19 +37,26 @@ struct Run {
 
 /// The best of the sensors, chosen knowing the truth: harder to beat than any sensor one could
 /// choose.
-double best_sensor(const Workshop& workshop, const std::vector<registration::WalkTrack>& tracks,
-                   const Registration& registration) {
+double best_sensor(const Workshop& workshop, const Registration& registration) {
   double best = std::numeric_limits<double>::infinity();
-  for (const registration::WalkTrack& track : tracks) {
-    const double mean = raw_error(workshop, track, registration).mean();
+  for (std::size_t sensor = 0; sensor < workshop.tracks.size(); ++sensor) {
+    const double mean = raw_error(workshop, sensor, registration).mean();
     if (mean < best) best = mean;
   }
   return best;
 }
 
+Setting gauss_of(std::uint64_t seed) {
+  Setting setting;
+  setting.profile = synthetic::kGaussProfile;
+  setting.seed = seed;
+  setting.length = kWalk;
+  return setting;
+}
+
 Result<Run> one_run(std::uint64_t seed) {
-  const Workshop workshop = make_workshop(seed, ring_places(synthetic::Ring{}));
-  const auto tracks = walk(workshop, kWalk);
+  const Workshop workshop = draw_workshop(gauss_of(seed));
+  const auto& tracks = workshop.tracks;
   const Registration registration =
       solve(tracks, workshop.begin, registration::RegistrationConfig{});
   Run run;
@@ -60,9 +69,9 @@ Result<Run> one_run(std::uint64_t seed) {
     run.fused_mm[i] = to_mm(error.mean());
     run.coverage_percent[i] = 100.0 * error.coverage();
   }
-  run.best_sensor_mm = to_mm(best_sensor(workshop, tracks, registration));
+  run.best_sensor_mm = to_mm(best_sensor(workshop, registration));
   run.best_true_sensor_mm =
-      to_mm(best_sensor(workshop, tracks, true_registration(workshop, registration.master)));
+      to_mm(best_sensor(workshop, true_registration(workshop, registration.master)));
   return run;
 }
 
@@ -92,9 +101,8 @@ void add_rows(Report& report, const std::vector<Run>& runs, const std::string& b
 
 /// How much faster than the sensors themselves their simulation is, by CPU time.
 void measure_simulator(Report& report) {
-  const Workshop workshop = make_workshop(report.seed(), ring_places(synthetic::Ring{}));
   const std::clock_t begin = std::clock();
-  const auto tracks = walk(workshop, kWalk);
+  const Workshop workshop = draw_workshop(gauss_of(report.seed()));
   const double cpu = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   report.row("simulate-6", "times_real_time", seconds(kWalk) / cpu, "x");
 }

@@ -2,9 +2,10 @@
 #include <fmt/format.h>
 
 #include "common/base/units.h"
+#include "tests/bench/judge.h"
+#include "tests/bench/place_error.h"
 #include "tests/bench/report.h"
 #include "tests/bench/statistics.h"
-#include "tests/bench/workshop.h"
 
 namespace chorus::bench {
 namespace {
@@ -41,27 +42,25 @@ registration::RegistrationConfig config_of(PairMethod method) {
   return config;
 }
 
-void ring_run(const Workshop& workshop, const std::vector<registration::WalkTrack>& tracks,
-              PairMethod method, Errors& errors) {
+void ring_run(const Workshop& workshop, PairMethod method, Errors& errors) {
   registration::RegistrationConfig config = config_of(method);
-  config.master = workshop.sensors.front().id;
-  const Registration solved = solve(tracks, workshop.begin, config);
-  for (const synthetic::SimulatedSensor& sensor : workshop.sensors) {
-    if (sensor.id == solved.master) continue;  // its place is the world's by definition
-    const auto found = solved.sensors.find(sensor.id);
+  config.master = workshop.tracks.front().sensor;
+  const Registration solved = solve(workshop.tracks, workshop.begin, config);
+  for (const registration::WalkTrack& track : workshop.tracks) {
+    if (track.sensor == solved.master) continue;  // its place is the world's by definition
+    const auto found = solved.sensors.find(track.sensor);
     if (found == solved.sensors.end()) {
       errors.add_failure();
     } else {
       errors.add(place_error(found->second.world_from_sensor,
-                             true_place(workshop, sensor.id, solved.master)));
+                             true_place(workshop, track.sensor, solved.master)));
     }
   }
 }
 
-void pair_run(const Workshop& workshop, const std::vector<registration::WalkTrack>& tracks,
-              PairMethod method, Errors& errors) {
+void pair_run(const Workshop& workshop, PairMethod method, Errors& errors) {
   const auto& places = workshop.scene.world_from_sensor;
-  const auto edge = register_pair(tracks[0], tracks[1], config_of(method));
+  const auto edge = register_pair(workshop.tracks[0], workshop.tracks[1], config_of(method));
   if (!edge) {
     errors.add_failure();
   } else {
@@ -89,8 +88,7 @@ void add_rows(Report& report, const std::string& name, const Errors& ours, const
   report.row(name, "icp_over_100mm_percent", over_100mm_percent(icp), "%");
 }
 
-using Run = void (*)(const Workshop&, const std::vector<registration::WalkTrack>&, PairMethod,
-                     Errors&);
+using Run = void (*)(const Workshop&, PairMethod, Errors&);
 
 struct Case {
   std::string name;
@@ -104,10 +102,12 @@ Errors measure(Report& report, const Case& each) {
   Errors icp;
   const std::size_t runs = report.quick() ? kQuickRuns : kRuns;
   for (std::size_t i = 0; i < runs; ++i) {
-    const Workshop workshop = make_workshop(report.seed() + i, each.places);
-    const auto tracks = walk(workshop, each.duration);
-    each.run(workshop, tracks, PairMethod::TimedRobust, ours);
-    each.run(workshop, tracks, PairMethod::IcpOnly, icp);
+    const Workshop workshop = draw_workshop({.profile = "gauss",
+                                             .seed = report.seed() + i,
+                                             .places = each.places,
+                                             .length = each.duration});
+    each.run(workshop, PairMethod::TimedRobust, ours);
+    each.run(workshop, PairMethod::IcpOnly, icp);
   }
   add_rows(report, each.name, ours, icp);
   return ours;
@@ -116,7 +116,7 @@ Errors measure(Report& report, const Case& each) {
 }  // namespace
 
 Result<void> run_registration(Report& report) {
-  report.profile(std::string(synthetic::kGaussProfile));
+  report.profile(described({"gauss"}));
   constexpr double kMostPosition = 20.0;  // [mm]  what issue A asks of the ring
   constexpr double kMostAngle = 1.0;      // [deg]
   const Errors ring = measure(report, {"ring6-30s-gauss", ring_places(synthetic::Ring{}),

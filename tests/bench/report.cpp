@@ -12,37 +12,100 @@
 namespace chorus::bench {
 namespace {
 
-constexpr std::size_t kColumns = 6;
-using Cells = std::array<std::string, kColumns>;
-constexpr std::array<bool, kColumns> kRightAligned{false, false, true, false, false, true};
+/// One column of the printed table; an optional one is left out while it is empty everywhere.
+struct Column {
+  const char* title;
+  bool right_aligned;
+  bool optional;
+};
+constexpr std::array kColumns{
+    Column{"case", false, false},     Column{"metric", false, false}, Column{"value", true, false},
+    Column{"unit", false, false},     Column{"5-95 %", false, true},  Column{"failed", false, true},
+    Column{"baseline", false, false}, Column{"5-95 %", false, true},  Column{"failed", false, true},
+    Column{"ratio", true, false},     Column{"won", true, true}};
+using Cells = std::array<std::string, kColumns.size()>;
 
 std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.4g}", value) : std::string("-");
 }
 
-/// "icp 10.5": what stands beside, and its own value as the ratio tells it.
+std::string range_of(const std::optional<Spread>& spread) {
+  return spread ? number(spread->low) + " .. " + number(spread->high) : std::string();
+}
+
+std::string failed_of(const std::optional<Spread>& spread) {
+  return spread ? fmt::format("{}/{}", spread->failed, spread->draws) : std::string();
+}
+
+/// "icp 10.5": what stands beside, and its own value where it is known.
+std::string baseline_of(const Row& row) {
+  if (row.beside) return row.baseline + " " + number(row.beside->median);
+  const double told = row.value / row.ratio;
+  return std::isfinite(row.ratio) && std::isfinite(told) ? row.baseline + " " + number(told)
+                                                         : row.baseline;
+}
+
 Cells cells_of(const Row& row) {
-  const bool compared = std::isfinite(row.ratio);
-  const double beside = row.value / row.ratio;
-  const bool told = compared && std::isfinite(beside);
+  const auto unless_none = [](double value, const char* unit) {
+    return std::isfinite(value) ? number(value) + unit : std::string();
+  };
   return {row.case_name,
           row.metric,
           number(row.value),
           row.unit,
-          told ? row.baseline + " " + number(beside) : row.baseline,
-          compared ? number(row.ratio) : std::string()};
+          range_of(row.spread),
+          failed_of(row.spread),
+          baseline_of(row),
+          range_of(row.beside),
+          failed_of(row.beside),
+          unless_none(row.ratio, ""),
+          unless_none(row.won_percent, " %")};
 }
 
 nlohmann::json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }
 
+nlohmann::ordered_json json_of(const Spread& spread) {
+  return {{"median", number_or_null(spread.median)},
+          {"p5", number_or_null(spread.low)},
+          {"p95", number_or_null(spread.high)},
+          {"failed", spread.failed},
+          {"draws", spread.draws}};
+}
+
+nlohmann::ordered_json json_of(const Row& row) {
+  nlohmann::ordered_json object{
+      {"case", row.case_name}, {"metric", row.metric},     {"value", number_or_null(row.value)},
+      {"unit", row.unit},      {"baseline", row.baseline}, {"ratio", number_or_null(row.ratio)}};
+  if (row.spread) object["spread"] = json_of(*row.spread);
+  if (row.beside) object["beside"] = json_of(*row.beside);
+  if (row.beside) object["won_percent"] = number_or_null(row.won_percent);
+  return object;
+}
+
+/// Width of each column; zero: left out.
+std::array<std::size_t, kColumns.size()> widths_of(const std::vector<Cells>& table) {
+  std::array<std::size_t, kColumns.size()> widths{};
+  for (const Cells& cells : table) {
+    for (std::size_t i = 0; i < kColumns.size(); ++i) {
+      widths[i] = std::max(widths[i], cells[i].size());
+    }
+  }
+  for (std::size_t i = 0; i < kColumns.size(); ++i) {
+    const std::size_t title = std::string_view(kColumns[i].title).size();
+    if (widths[i] > 0 || !kColumns[i].optional) widths[i] = std::max(widths[i], title);
+  }
+  return widths;
+}
+
 void print_line(std::ostream& out, const Cells& cells,
-                const std::array<std::size_t, kColumns>& widths) {
+                const std::array<std::size_t, kColumns.size()>& widths) {
   std::string line;
-  for (std::size_t i = 0; i < kColumns; ++i) {
-    line += kRightAligned[i] ? fmt::format("{:>{}}  ", cells[i], widths[i])
-                             : fmt::format("{:<{}}  ", cells[i], widths[i]);
+  for (std::size_t i = 0; i < kColumns.size(); ++i) {
+    if (widths[i] == 0) continue;
+    line += kColumns[i].right_aligned ? fmt::format("{:>{}}  ", cells[i], widths[i])
+                                      : fmt::format("{:<{}}  ", cells[i], widths[i]);
   }
   line.erase(line.find_last_not_of(' ') + 1);
   out << line << '\n';
@@ -62,12 +125,13 @@ void Report::condition(std::string sentence, bool holds) {
 }
 
 void Report::print(std::ostream& out) const {
-  std::vector<Cells> table{{"case", "metric", "value", "unit", "baseline", "ratio"}};
+  std::vector<Cells> table;
   for (const Row& each : rows_) table.push_back(cells_of(each));
-  std::array<std::size_t, kColumns> widths{};
-  for (const Cells& cells : table) {
-    for (std::size_t i = 0; i < kColumns; ++i) widths[i] = std::max(widths[i], cells[i].size());
-  }
+  const auto widths = widths_of(table);
+  Cells titles;
+  std::transform(kColumns.begin(), kColumns.end(), titles.begin(),
+                 [](const Column& column) { return column.title; });
+  print_line(out, titles, widths);
   for (const Cells& cells : table) print_line(out, cells, widths);
   out << fmt::format("\n{}  seed {}  built from {}{}{}\n", options_.name, options_.seed,
                      built_from(), profile_.empty() ? "" : "  profile " + profile_,
@@ -80,14 +144,7 @@ std::string Report::json() const {
                                   {"profile", profile_},     {"git", built_from()},
                                   {"quick", options_.quick}, {"rows", nlohmann::json::array()},
                                   {"notes", notes_}};
-  for (const Row& each : rows_) {
-    document["rows"].push_back(nlohmann::ordered_json{{"case", each.case_name},
-                                                      {"metric", each.metric},
-                                                      {"value", number_or_null(each.value)},
-                                                      {"unit", each.unit},
-                                                      {"baseline", each.baseline},
-                                                      {"ratio", number_or_null(each.ratio)}});
-  }
+  for (const Row& each : rows_) document["rows"].push_back(json_of(each));
   return document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

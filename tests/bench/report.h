@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <string_view>
@@ -18,6 +19,15 @@ namespace chorus::bench {
 
 inline constexpr double kNoRatio = std::numeric_limits<double>::quiet_NaN();
 
+/// One method over many draws.  A draw without a value counts as infinitely bad.
+struct Spread {
+  double median = kNoRatio;
+  double low = kNoRatio;   ///< 5 %
+  double high = kNoRatio;  ///< 95 %
+  std::size_t failed = 0;  ///< Draws without a value.
+  std::size_t draws = 0;
+};
+
 struct Row {
   std::string case_name;  ///< "ring6-30s-gauss"
   std::string metric;     ///< "position_mm"
@@ -25,6 +35,9 @@ struct Row {
   std::string unit;
   std::string baseline;     ///< What stands beside it; empty: nothing.
   double ratio = kNoRatio;  ///< Ours / baseline, from the same run; not finite: not given.
+  std::optional<Spread> spread = {};  ///< Of `value`, over draws.
+  std::optional<Spread> beside = {};  ///< Of the baseline, over the same draws.
+  double won_percent = kNoRatio;      ///< Draws in which `value` beats the baseline's.
 };
 
 struct Options {
@@ -42,6 +55,7 @@ class Report {
 
   void row(std::string case_name, std::string metric, double value, std::string unit,
            std::string baseline = "", double ratio = kNoRatio);
+  void row(Row each) { rows_.push_back(std::move(each)); }
   /// The sensor profile that the numbers come from ("gauss"); empty where none is involved.
   void profile(std::string name) { profile_ = std::move(name); }
   /// A sentence under the table: what the numbers are and are not.
@@ -53,7 +67,8 @@ class Report {
   [[nodiscard]] bool all_conditions_hold() const noexcept { return broken_ == 0; }
 
   void print(std::ostream& out) const;
-  /// {"name", "seed", "profile", "git", "rows": [...], "notes": [...]} as product.md fixes it.
+  /// {"name", "seed", "profile", "git", "rows": [...], "notes": [...]}; rows over draws carry
+  /// "spread", "beside" and "won_percent" too.
   [[nodiscard]] std::string json() const;
 
  private:

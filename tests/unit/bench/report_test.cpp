@@ -31,6 +31,25 @@ TEST(Report, TableIsAlignedAndNamesTheBaselinesValue) {
   EXPECT_THAT(out.str(), HasSubstr("quick: indicative only"));
 }
 
+TEST(Report, RowsOverDrawsShowRangesFailuresAndWins) {
+  Report report({"registration", 1, false});
+  Row row{"pair", "position_mm", 5.0, "mm", "icp", 0.5};
+  row.spread = Spread{5.0, 1.0, 9.0, 0, 20};
+  row.beside = Spread{10.0, 4.0, std::numeric_limits<double>::infinity(), 3, 20};
+  row.won_percent = 85.0;
+  report.row(row);
+  std::ostringstream out;
+  report.print(out);
+  EXPECT_THAT(out.str(),
+              HasSubstr("pair  position_mm      5  mm    1 .. 9  0/20    icp 10    4 .. -  3/20"
+                        "      0.5  85 %\n"));
+  const auto json = nlohmann::json::parse(report.json());
+  EXPECT_EQ(json["rows"][0]["spread"]["p95"], 9.0);
+  EXPECT_TRUE(json["rows"][0]["beside"]["p95"].is_null());
+  EXPECT_EQ(json["rows"][0]["beside"]["failed"], 3);
+  EXPECT_EQ(json["rows"][0]["won_percent"], 85.0);
+}
+
 TEST(Report, JsonHasTheAgreedKeysAndNoNan) {
   const auto json = nlohmann::json::parse(two_rows().json());
   EXPECT_EQ(json["name"], "registration");
