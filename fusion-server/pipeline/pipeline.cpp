@@ -90,21 +90,31 @@ bool ready(const Inputs& in, const Histories& histories, const Registration& reg
   });
 }
 
-Step step(const Inputs& in, const Histories& histories, const Registration& registration,
-          const associate::Tracks& tracks, const PipelineConfig& config) {
+Perceived perceive(const Inputs& in, const Histories& histories, const Registration& registration,
+                   const associate::Tracks& tracks, const PipelineConfig& config) {
   const std::vector<AlignedSensor> aligned = align_all(in, histories, config);
   std::vector<SensorView> views = views_in_world(aligned, registration, config);
+  Perceived perceived;
+  perceived.reports = report(aligned, views, registration);
+  associate::Grouping grouping =
+      associate::group(std::move(views), in.instant, tracks, config.association);
+  perceived.people = std::move(grouping.people);
+  perceived.tracks = std::move(grouping.tracks);
+  return perceived;
+}
+
+Step step(const Inputs& in, const Histories& histories, const Registration& registration,
+          const associate::Tracks& tracks, const PipelineConfig& config) {
+  Perceived perceived = perceive(in, histories, registration, tracks, config);
   Step result;
   result.snapshot.sequence = in.sequence;
   result.snapshot.instant = in.instant;
   result.snapshot.sensors = registered_sensors(registration);
-  result.snapshot.reports = report(aligned, views, registration);
-  associate::Grouping grouping =
-      associate::group(std::move(views), in.instant, tracks, config.association);
-  for (const Person& person : grouping.people) {
+  result.snapshot.reports = std::move(perceived.reports);
+  for (const Person& person : perceived.people) {
     result.snapshot.bodies.push_back(fusion::fuse(person, result.snapshot.sensors, config.fusion));
   }
-  result.tracks = std::move(grouping.tracks);
+  result.tracks = std::move(perceived.tracks);
   return result;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <vector>
 
 #include "fusion-server/align/aligner.h"
 #include "fusion-server/associate/person_association.h"
@@ -27,6 +28,13 @@ struct Inputs {
   std::uint64_t sequence = 0;
 };
 
+/// Everything before fusion: who is there at an instant, each with all views of them.
+struct Perceived {
+  std::vector<Person> people;
+  std::vector<SensorReport> reports;
+  associate::Tracks tracks;
+};
+
 struct Step {
   Snapshot snapshot;
   associate::Tracks tracks;
@@ -35,6 +43,11 @@ struct Step {
 /// True when no sensor's answer for the instant is still pending: waiting longer cannot improve it.
 [[nodiscard]] bool ready(const Inputs& in, const Histories& histories,
                          const Registration& registration, const PipelineConfig& config);
+
+/// Alignment, facing, world, association: the views that `step` hands to fusion.
+[[nodiscard]] Perceived perceive(const Inputs& in, const Histories& histories,
+                                 const Registration& registration, const associate::Tracks& tracks,
+                                 const PipelineConfig& config);
 
 [[nodiscard]] Step step(const Inputs& in, const Histories& histories,
                         const Registration& registration, const associate::Tracks& tracks,

@@ -54,6 +54,26 @@ TEST(Step, EveryMethodAnswersForThePersonInTheMiddle) {
   }
 }
 
+TEST(Perceive, HandsOnTheViewsThatStepFuses) {
+  const Histories histories = ring_histories({.people = 2});
+  const Registration registration = ring_registration(6);
+  const Step last = run(histories, registration, 10);
+  const Timestamp next = last.snapshot.instant + milliseconds(33);
+  const Inputs in{next, next + milliseconds(80), 10};
+  const Perceived perceived = perceive(in, histories, registration, last.tracks, {});
+  const Step fused = step(in, histories, registration, last.tracks, {});
+  ASSERT_EQ(perceived.people.size(), 2u);
+  ASSERT_EQ(fused.snapshot.bodies.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(perceived.people[i].views.size(), 6u);
+    const FusedBody again = fusion::fuse(perceived.people[i], fused.snapshot.sensors, {});
+    EXPECT_EQ(again.id, fused.snapshot.bodies[i].id);
+    EXPECT_EQ(again.skeleton[JointId::Neck].position,
+              fused.snapshot.bodies[i].skeleton[JointId::Neck].position);
+  }
+  EXPECT_EQ(perceived.tracks.people.size(), fused.tracks.people.size());
+}
+
 TEST(Step, ThreePeopleSeenByTenSensorsAreThreePeople) {
   const Step last = run(ring_histories({.sensors = 10, .people = 3}), ring_registration(10), 20);
   EXPECT_EQ(last.snapshot.bodies.size(), 3u);

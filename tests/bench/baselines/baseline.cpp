@@ -1,0 +1,26 @@
+#include "tests/bench/baselines/baseline.h"
+
+#include <array>
+
+#include "tests/bench/baselines/averaging.h"
+#include "tests/bench/baselines/kalman.h"
+#include "tests/bench/baselines/selection.h"
+
+namespace chorus::bench::baselines {
+
+std::span<const Baseline> all() {
+  static constexpr std::array kAll{
+      Baseline{"best-skeleton", best_skeleton},
+      Baseline{"joint-counting", joint_counting},
+      Baseline{"substitution", substitution},
+      Baseline{"mean", [] { return product(fusion::Method::Mean); }},
+      Baseline{"tracked-mean", tracked_mean},
+      Baseline{"otto", [] { return product(fusion::Method::Otto); }},
+      Baseline{"otto-kalman", otto_kalman},
+      Baseline{"best-view", [] { return product(fusion::Method::BestView); }},
+      Baseline{"largest-cluster", largest_cluster},
+  };
+  return kAll;
+}
+
+}  // namespace chorus::bench::baselines

@@ -1,0 +1,169 @@
+#include "tests/bench/baselines/kalman.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "common/base/units.h"
+#include "common/body/bones.h"
+#include "fusion-server/associate/person_association.h"
+
+namespace chorus::bench::baselines {
+namespace {
+
+constexpr double kTrunkDensity = 3.0;
+constexpr double kLimbDensity = 40.0;
+constexpr double kFirstSpeed = 1.0;  // [m/s] standard deviation of a velocity not yet seen
+constexpr double kFullWeightSigma = mm(20);
+constexpr double kWeightFloor = 0.02;
+constexpr double kTrackedSigma = mm(25);
+constexpr double kInferredSigma = mm(75);
+
+template <std::size_t... I>
+std::array<PointFilter, kJointCount> filters(std::index_sequence<I...>) {
+  return {PointFilter(process_density(static_cast<JointId>(I)))...};
+}
+
+/// The filters of one person.
+struct BodyFilter {
+  std::array<PointFilter, kJointCount> joints = filters(std::make_index_sequence<kJointCount>{});
+  std::array<Timestamp, kJointCount> seen{};
+  std::array<JointState, kJointCount> state{};
+
+  void update(std::size_t joint, Timestamp instant, const Joint& sight, double variance) {
+    state[joint] = seen[joint] == instant ? std::max(state[joint], sight.state) : sight.state;
+    seen[joint] = instant;
+    joints[joint].update(instant, sight.position, variance);
+  }
+
+  /// Joints last seen at or after `since`, as they should be at `instant`.
+  [[nodiscard]] Body at(Timestamp instant, Timestamp since) const {
+    Body body;
+    for (std::size_t i = 0; i < kJointCount; ++i) {
+      const auto position = joints[i].at(instant);
+      if (!position || seen[i] < since) continue;
+      body.joints[i].position = *position;
+      body.joints[i].state = state[i];
+    }
+    return body;
+  }
+};
+
+/// Frames of all sensors in the order in which they arrive.
+std::vector<std::pair<const registration::WalkTrack*, const SensorFrame*>> by_arrival(
+    const std::vector<registration::WalkTrack>& sensors) {
+  std::vector<std::pair<const registration::WalkTrack*, const SensorFrame*>> frames;
+  for (const auto& track : sensors) {
+    for (const SensorFrame& frame : track.frames) frames.emplace_back(&track, &frame);
+  }
+  std::ranges::stable_sort(frames, {}, [](const auto& entry) { return entry.second->received; });
+  return frames;
+}
+
+std::vector<SensorView> views_of(const SensorFrame& frame, const SensorId& sensor,
+                                 const Eigen::Isometry3d& world_from_sensor) {
+  std::vector<SensorView> views;
+  for (const BodyFrame& body : frame.bodies) {
+    SensorView view;
+    view.sensor = sensor;
+    view.body = body.id;
+    view.skeleton = to_world(world_from_sensor, body.skeleton);
+    views.push_back(std::move(view));
+  }
+  return views;
+}
+
+void update(BodyFilter& filter, const Person& person, Timestamp arrived) {
+  for (const SensorView& view : person.views) {
+    for (std::size_t i = 0; i < kJointCount; ++i) {
+      const Joint& sight = view.skeleton.joints[i];
+      if (!sight.seen()) continue;
+      const double sigma = sight.state == JointState::Tracked ? kTrackedSigma : kInferredSigma;
+      filter.update(i, arrived, sight, sigma * sigma);
+    }
+  }
+}
+
+}  // namespace
+
+void PointFilter::predict(double dt) {
+  position_ += dt * velocity_;
+  Eigen::Matrix2d step;
+  step << 1, dt, 0, 1;
+  Eigen::Matrix2d noise;
+  noise << dt * dt * dt / 3, dt * dt / 2, dt * dt / 2, dt;
+  covariance_ = step * covariance_ * step.transpose() + density_ * noise;
+}
+
+void PointFilter::update(Timestamp instant, const Eigen::Vector3d& position, double variance) {
+  if (!updated_ || instant - *updated_ > kForgotten) {
+    position_ = position;
+    velocity_.setZero();
+    covariance_ << variance, 0, 0, kFirstSpeed * kFirstSpeed;
+    updated_ = instant;
+    return;
+  }
+  if (instant > *updated_) {
+    predict(seconds(instant - *updated_));
+    updated_ = instant;
+  }
+  const Eigen::Vector2d gain = covariance_.col(0) / (covariance_(0, 0) + variance);
+  const Eigen::Vector3d off = position - position_;
+  position_ += gain.x() * off;
+  velocity_ += gain.y() * off;
+  covariance_ = (covariance_ - gain * covariance_.row(0)).eval();
+}
+
+std::optional<Eigen::Vector3d> PointFilter::at(Timestamp instant) const {
+  if (!updated_) return std::nullopt;
+  return Eigen::Vector3d(position_ + std::max(0.0, seconds(instant - *updated_)) * velocity_);
+}
+
+double process_density(JointId joint) {
+  const bool trunk = std::ranges::find(kCoreJoints, joint) != kCoreJoints.end();
+  return trunk ? kTrunkDensity : kLimbDensity;
+}
+
+Method otto_kalman() {
+  return [filter = BodyFilter{}](const Person& person, Timestamp instant) mutable {
+    for (const SensorView& view : person.views) {
+      const double variance =
+          kFullWeightSigma * kFullWeightSigma / (std::max(0.0, view.weight) + kWeightFloor);
+      for (std::size_t i = 0; i < kJointCount; ++i) {
+        const Joint& sight = view.skeleton.joints[i];
+        if (sight.seen()) filter.update(i, instant, sight, variance);
+      }
+    }
+    return filter.at(instant, instant);
+  };
+}
+
+std::vector<Stated> arrival_kalman(const std::vector<registration::WalkTrack>& sensors,
+                                   const Registration& registration, double rate_hz) {
+  constexpr Duration kCoast =
+      std::chrono::milliseconds(100);  // a joint not seen for so long is gone
+  std::map<PersonId, BodyFilter> filters;
+  std::map<PersonId, Timestamp> stated;
+  associate::Tracks tracks;
+  std::vector<Stated> answers;
+  const Duration period = from_seconds(1.0 / rate_hz);
+  for (const auto& [track, frame] : by_arrival(sensors)) {
+    const auto place = registration.sensors.find(track->sensor);
+    if (place == registration.sensors.end()) continue;
+    const Timestamp arrived = frame->received;
+    auto grouping = associate::group(
+        views_of(*frame, track->sensor, place->second.world_from_sensor), arrived, tracks, {});
+    tracks = std::move(grouping.tracks);
+    for (const Person& person : grouping.people) {
+      BodyFilter& filter = filters[person.id];
+      update(filter, person, arrived);
+      Timestamp& last = stated[person.id];
+      if (arrived - last < period) continue;
+      last = arrived;
+      answers.push_back({arrived, person.id, filter.at(arrived, arrived - kCoast)});
+    }
+  }
+  return answers;
+}
+
+}  // namespace chorus::bench::baselines

@@ -1,0 +1,189 @@
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "common/base/units.h"
+#include "tests/bench/baselines/averaging.h"
+#include "tests/bench/baselines/kalman.h"
+#include "tests/bench/baselines/selection.h"
+#include "tests/unit/bench/person_builder.h"
+
+namespace chorus::bench::baselines {
+namespace {
+
+using enum JointId;
+
+Person person_of(std::vector<SensorView> views) { return {PersonId{1}, std::move(views)}; }
+
+double x_of(const Body& body, JointId joint) { return body[joint].position.x(); }
+
+TEST(SkeletonScore, IsTheTrackedSharePlusHowSquarelyTheBodyFacesTheSensor) {
+  EXPECT_DOUBLE_EQ(skeleton_score(view_of(1, 25, 0.0)), 2.0);
+  EXPECT_NEAR(skeleton_score(view_of(1, 5, deg(90))), 0.2 + 0.5, 1e-12);
+  EXPECT_NEAR(skeleton_score(view_of(1, 25, deg(180))), 1.0, 1e-12);
+  EXPECT_DOUBLE_EQ(skeleton_score(view_of(1, 0, std::numeric_limits<double>::quiet_NaN())), 0.5);
+}
+
+TEST(BestSkeleton, ChangesHandsOnlyAfterAnotherViewWasBetterForTheWholeHysteresis) {
+  Method method = best_skeleton();
+  const auto first = person_of({view_of(1, 25, 0, {1, 0, 0}), view_of(2, 20, 0, {2, 0, 0})});
+  const auto second = person_of({view_of(1, 20, 0, {1, 0, 0}), view_of(2, 25, 0, {2, 0, 0})});
+  EXPECT_EQ(x_of(method(first, at_frame(0)), Neck), 1);
+  EXPECT_EQ(x_of(method(second, at_frame(1)), Neck), 1);
+  EXPECT_EQ(x_of(method(second, at_frame(8)), Neck), 1);  // 280 ms
+  EXPECT_EQ(x_of(method(second, at_frame(9)), Neck), 2);  // 320 ms
+}
+
+TEST(BestSkeleton, ARivalThatWasWorseInBetweenBeginsAgain) {
+  Method method = best_skeleton();
+  const auto first = person_of({view_of(1, 25, 0, {1, 0, 0}), view_of(2, 20, 0, {2, 0, 0})});
+  const auto second = person_of({view_of(1, 20, 0, {1, 0, 0}), view_of(2, 25, 0, {2, 0, 0})});
+  (void)method(first, at_frame(0));
+  (void)method(second, at_frame(1));
+  (void)method(first, at_frame(5));
+  EXPECT_EQ(x_of(method(second, at_frame(9)), Neck), 1);
+}
+
+TEST(BestSkeleton, AViewThatIsGoneIsReplacedAtOnceAndNobodyGivesNoBody) {
+  Method method = best_skeleton();
+  (void)method(person_of({view_of(1, 25, 0, {1, 0, 0}), view_of(2, 20, 0, {2, 0, 0})}),
+               at_frame(0));
+  EXPECT_EQ(x_of(method(person_of({view_of(2, 20, 0, {2, 0, 0})}), at_frame(1)), Neck), 2);
+  EXPECT_FALSE(method(person_of({}), at_frame(2))[Neck].seen());
+}
+
+TEST(JointCounting, TakesTheMostTrackedJointsWhateverTheFacing) {
+  Method method = joint_counting();
+  const auto person = person_of({view_of(1, 20, 0, {1, 0, 0}), view_of(2, 21, deg(180), {2, 0, 0}),
+                                 view_of(3, 21, 0, {3, 0, 0})});
+  EXPECT_EQ(x_of(method(person, at_frame(0)), Neck), 2);  // of equals the least id
+  EXPECT_FALSE(method(person_of({}), at_frame(0))[Neck].seen());
+}
+
+TEST(Substitution, TakesWhatTheBestSkeletonDoesNotTrackFromTheNextBestThatDoes) {
+  auto best = view_of(1, 25, 0, {1, 0, 0});
+  best.skeleton[WristLeft] = inferred({1, 0, 0});
+  best.skeleton[FootLeft] = inferred({1, 0, 0});
+  auto second = view_of(2, 25, deg(60), {2, 0, 0});
+  second.skeleton[FootLeft] = inferred({2, 0, 0});
+  auto third = view_of(3, 25, deg(90), {3, 0, 0});
+  third.skeleton[FootLeft] = Joint{};
+  const Body body = substitution()(person_of({third, second, best}), at_frame(0));
+  EXPECT_EQ(x_of(body, Neck), 1);
+  EXPECT_EQ(x_of(body, WristLeft), 2);
+  EXPECT_EQ(x_of(body, FootLeft), 1);  // nobody tracks it: the guess stays
+  EXPECT_EQ(body[FootLeft].state, JointState::Inferred);
+}
+
+TEST(TrackedMean, LeavesGuessesOutWhereSomebodyTracks) {
+  auto one = view_of(1, 25, 0, {1, 0, 0});
+  auto two = view_of(2, 25, 0, {2, 0, 0});
+  auto three = view_of(3, 25, 0, {6, 0, 0});
+  three.skeleton[WristLeft] = inferred({6, 0, 0});
+  for (auto* view : {&one, &two, &three}) view->skeleton[FootLeft].state = JointState::Inferred;
+  const Body body = tracked_mean()(person_of({one, two, three}), at_frame(0));
+  EXPECT_NEAR(x_of(body, Neck), 3.0, 1e-12);
+  EXPECT_NEAR(x_of(body, WristLeft), 1.5, 1e-12);
+  EXPECT_NEAR(x_of(body, FootLeft), 3.0, 1e-12);
+}
+
+TEST(Clusters, AreLinkedByStepsAndTheLargestComesFirst) {
+  const std::vector<Eigen::Vector3d> points{
+      {0, 0, 0}, {1, 0, 0}, {1.09, 0, 0}, {1.18, 0, 0}, {0.05, 0, 0}};
+  const auto clusters = clusters_of(points, 0.1);
+  ASSERT_EQ(clusters.size(), 2u);
+  EXPECT_EQ(clusters[0].size(), 3u);  // a chain: its ends are 0.18 apart
+  EXPECT_EQ(clusters[1].size(), 2u);
+  EXPECT_TRUE(clusters_of({}, 0.1).empty());
+}
+
+TEST(Clusters, OfEqualSizeTheDenserComesFirst) {
+  const auto clusters = clusters_of({{0, 0, 0}, {0.09, 0, 0}, {1, 0, 0}, {1.01, 0, 0}}, 0.1);
+  ASSERT_EQ(clusters.size(), 2u);
+  EXPECT_GE(clusters[0].front(), 2u);
+}
+
+TEST(LargestCluster, IsTheMeanOfThoseWhoAgree) {
+  const auto person = person_of({view_of(1, 25, 0, {0, 0, 0}), view_of(2, 25, 0, {0.06, 0, 0}),
+                                 view_of(3, 25, 0, {0.5, 0, 0})});
+  EXPECT_NEAR(x_of(largest_cluster()(person, at_frame(0)), Neck), 0.03, 1e-12);
+}
+
+TEST(PointFilter, FirstUpdateIsTheMeasurementAndEqualOnesMeetInTheMiddle) {
+  PointFilter filter(3.0);
+  EXPECT_FALSE(filter.at(at_frame(0)));
+  filter.update(at_frame(0), {1, 0, 0}, 0.01);
+  EXPECT_EQ(filter.at(at_frame(0))->x(), 1);
+  filter.update(at_frame(0), {3, 0, 0}, 0.01);
+  EXPECT_NEAR(filter.at(at_frame(0))->x(), 2, 1e-12);
+  EXPECT_NEAR(filter.position_variance(), 0.005, 1e-12);
+}
+
+TEST(PointFilter, LearnsAVelocityAndForgetsAfterALongGap) {
+  PointFilter filter(3.0);
+  for (int i = 0; i < 100; ++i) filter.update(at_frame(i), {0.04 * i, 0, 0}, 1e-4);  // 1 m/s
+  EXPECT_NEAR(filter.at(at_frame(99))->x(), 3.96, 1e-3);
+  EXPECT_NEAR(filter.at(at_frame(104))->x(), 4.16, 5e-3);
+  EXPECT_NEAR(filter.at(at_frame(50))->x(), filter.at(at_frame(99))->x(), 1e-12);  // never back
+  filter.update(at_frame(200), {9, 0, 0}, 1e-4);
+  EXPECT_EQ(filter.at(at_frame(200))->x(), 9);
+}
+
+TEST(OttoKalman, WeighsViewsByTheirVarianceR0OverW) {
+  auto heavy = view_of(1, 25, 0, {0, 0, 0});
+  auto light = view_of(2, 25, 0, {1, 0, 0});
+  heavy.weight = 0.98;  // R0 / 1.00
+  light.weight = 0.23;  // R0 / 0.25
+  const Body body = otto_kalman()(person_of({heavy, light}), at_frame(0));
+  EXPECT_NEAR(x_of(body, Neck), 0.2, 1e-12);
+}
+
+TEST(OttoKalman, AJointNobodySeesNowIsNotAnswered) {
+  Method method = otto_kalman();
+  (void)method(person_of({view_of(1, 25, 0)}), at_frame(0));
+  EXPECT_FALSE(method(person_of({view_of(1, 3, 0)}), at_frame(1))[WristLeft].seen());
+}
+
+SensorFrame frame_of(int number, Duration late, const Eigen::Vector3d& place) {
+  SensorFrame frame;
+  frame.captured = at_frame(number);
+  frame.received = frame.captured + late;
+  BodyFrame body{BodyId{7}, frame.captured, {}};
+  for (Joint& joint : body.skeleton.joints) joint = tracked(place);
+  frame.bodies.push_back(body);
+  return frame;
+}
+
+TEST(ArrivalKalman, StatesTheTimeOfArrivalSoAWalkerIsWhereHeWas) {
+  registration::WalkTrack track{sensor(1), {}};
+  const Duration late = std::chrono::milliseconds(100);
+  for (int i = 0; i < 200; ++i) track.frames.push_back(frame_of(i, late, {0.04 * i, 0, 2}));
+  Registration registration;
+  registration.sensors[sensor(1)] = {};
+  const auto stated = arrival_kalman({track}, registration, 25.0);
+  ASSERT_GT(stated.size(), 100u);
+  const Stated& last = stated.back();
+  EXPECT_EQ(last.instant, at_frame(199) + late);
+  EXPECT_NEAR(x_of(last.body, Neck), 0.04 * 199, 0.01);  // 0.1 s, 100 mm behind its own stamp
+}
+
+TEST(ArrivalKalman, LeavesOutSensorsWithoutAPlace) {
+  const registration::WalkTrack track{sensor(1), {frame_of(0, Duration{0}, {0, 0, 2})}};
+  EXPECT_TRUE(arrival_kalman({track}, Registration{}, 25.0).empty());
+}
+
+TEST(Baselines, HaveDistinctNamesAndAllAnswerForASinglePerfectView) {
+  const auto person = person_of({view_of(1, 25, 0, {1, 2, 3})});
+  std::vector<std::string_view> names;
+  for (const Baseline& baseline : all()) {
+    EXPECT_EQ(std::count(names.begin(), names.end(), baseline.name), 0) << baseline.name;
+    names.push_back(baseline.name);
+    const Body body = baseline.begin()(person, at_frame(0));
+    EXPECT_LT((body[Neck].position - Eigen::Vector3d(1, 2, 3)).norm(), 1e-9) << baseline.name;
+  }
+  EXPECT_EQ(names.size(), 9u);
+}
+
+}  // namespace
+}  // namespace chorus::bench::baselines
