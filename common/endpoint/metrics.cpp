@@ -141,6 +141,7 @@ void add_server(MetricsText& text, const http::ServerCounters& counters) {
       Row{"chorus_http_connections", "Open connections.", counters.connections_open},
       Row{"chorus_http_longpoll_waiters", "Long polls waiting.", counters.long_polls_waiting},
       Row{"chorus_http_event_streams", "Open event streams.", counters.event_streams_open},
+      Row{"chorus_http_websockets", "Open WebSockets.", counters.websockets_open},
   };
   for (const Row& row : totals) text.counter({row.name, row.help}, static_cast<double>(row.value));
   for (const Row& row : now) text.gauge({row.name, row.help}, static_cast<double>(row.value));

@@ -5,6 +5,7 @@
 
 #include "common/http/problem.h"
 #include "common/http/server_core.h"
+#include "common/http/websocket.h"
 
 namespace chorus::http {
 namespace {
@@ -21,9 +22,9 @@ constexpr int kNotModified = 304;
 }  // namespace
 
 Connection::Connection(ServerCore& core, Socket socket, const tcp::endpoint& remote)
-    : core_(core),
+    : Session(remote.address().to_string()),
+      core_(core),
       socket_(std::move(socket)),
-      peer_address_(remote.address().to_string()),
       buffer_(std::make_unique_for_overwrite<char[]>(core.config.limits.max_header_bytes)),
       capacity_(core.config.limits.max_header_bytes) {
   error_code failed;
@@ -50,10 +51,9 @@ void Connection::turn_away() {
 void Connection::read() {
   if (reading_ || end_ == capacity_) return;
   reading_ = true;
-  socket_.async_read_some(net::buffer(buffer_.get() + end_, capacity_ - end_),
-                          [self = shared_from_this()](error_code failed, std::size_t size) {
-                            self->on_read(failed, size);
-                          });
+  socket_.async_read_some(
+      net::buffer(buffer_.get() + end_, capacity_ - end_),
+      [self = self()](error_code failed, std::size_t size) { self->on_read(failed, size); });
 }
 
 void Connection::on_read(error_code failed, std::size_t size) {
@@ -126,7 +126,18 @@ void Connection::serve(std::size_t head_size) {
       return begin_wait();
     case Reaction::Kind::Stream:
       return begin_stream();
+    case Reaction::Kind::Upgrade:
+      return upgrade();
   }
+}
+
+/// The socket and what has been read of it go to a session that speaks the other protocol.
+void Connection::upgrade() {
+  WebSocketOpening opening{std::move(socket_), std::string(unread()), peer_address(),
+                           reaction_.entry};
+  reaction_.entry = nullptr;
+  state_ = State::Closed;
+  core_.replace(this, open_websocket(core_, std::move(opening)));
 }
 
 void Connection::begin_body() {
@@ -137,7 +148,7 @@ void Connection::begin_body() {
   // The client holds the body back until it reads this; nothing else is being written now.
   static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
   net::async_write(socket_, net::buffer(kContinue),
-                   [self = shared_from_this()](error_code failed, std::size_t) {
+                   [self = self()](error_code failed, std::size_t) {
                      if (failed) return self->close();
                      if (self->state_ == State::Body) self->advance_body();
                    });
@@ -173,10 +184,9 @@ void Connection::send(Answer answer) {
   const std::array<net::const_buffer, 4> buffers{
       net::buffer(first_lines_), net::buffer(answer_.route), net::buffer(answer_.own),
       net::buffer(answer_.body)};
-  net::async_write(socket_, buffers,
-                   [self = shared_from_this()](error_code failed, std::size_t size) {
-                     self->on_sent(failed, size);
-                   });
+  net::async_write(socket_, buffers, [self = self()](error_code failed, std::size_t size) {
+    self->on_sent(failed, size);
+  });
 }
 
 void Connection::on_sent(error_code failed, std::size_t size) {

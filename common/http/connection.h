@@ -13,30 +13,23 @@
 
 #include "common/http/asio.h"
 #include "common/http/responder.h"
+#include "common/http/session.h"
 
 namespace chorus::http {
 
 struct ServerCore;
 
-using SteadyTime = std::chrono::steady_clock::time_point;
-
-class Connection : public std::enable_shared_from_this<Connection> {
+class Connection final : public Session {
  public:
   Connection(ServerCore& core, Socket socket, const tcp::endpoint& remote);
 
   void start();
   /// Answers 503 and closes: there are too many connections.
   void turn_away();
-  /// The document of the entry this connection waits for or streams has changed.
-  void wake();
-  /// The deadline has passed.
-  void expire();
-  /// The server stops: finish the answer under way, begin no other.
-  void stop();
-  void close();
-
-  [[nodiscard]] SteadyTime deadline() const { return deadline_; }
-  [[nodiscard]] const std::string& peer_address() const { return peer_address_; }
+  void wake() override;
+  void expire() override;
+  void stop() override;
+  void close() override;
 
  private:
   enum class State { Head, Body, Writing, Waiting, Streaming, Lingering, Closed };
@@ -58,15 +51,17 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void begin_stream();
   void push_event();
   void on_event_sent(error_code failed, std::size_t size);
+  void upgrade();
   void expire_in(std::chrono::seconds time);
+  [[nodiscard]] std::shared_ptr<Connection> self() {
+    return std::static_pointer_cast<Connection>(shared_from_this());
+  }
   [[nodiscard]] std::string_view unread() const { return {buffer_.get() + begin_, end_ - begin_}; }
 
   ServerCore& core_;
   Socket socket_;
   Peer peer_;
-  std::string peer_address_;
   State state_ = State::Head;
-  SteadyTime deadline_{};
   bool reading_ = false;
   bool end_of_input_ = false;
   bool close_after_ = false;

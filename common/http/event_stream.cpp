@@ -45,10 +45,9 @@ void Connection::push_event() {
   if (!event_) event_ = heartbeat();
   event_under_way_ = true;
   expire_in(core_.config.limits.write_timeout);
-  net::async_write(socket_, net::buffer(*event_),
-                   [self = shared_from_this()](error_code failed, std::size_t size) {
-                     self->on_event_sent(failed, size);
-                   });
+  net::async_write(
+      socket_, net::buffer(*event_),
+      [self = self()](error_code failed, std::size_t size) { self->on_event_sent(failed, size); });
 }
 
 void Connection::on_event_sent(error_code failed, std::size_t size) {

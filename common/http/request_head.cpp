@@ -53,6 +53,7 @@ constexpr std::array kKnown{
     KnownField{"prefer", &RequestHead::prefer, true},
     KnownField{"if-none-match", &RequestHead::if_none_match, true},
     KnownField{"connection", &RequestHead::connection, true},
+    KnownField{"upgrade", &RequestHead::upgrade, true},
     KnownField{"content-length", &RequestHead::length_text, false},
     KnownField{"transfer-encoding", &RequestHead::transfer_encoding, true},
     KnownField{"expect", &RequestHead::expect, false},

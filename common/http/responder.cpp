@@ -8,6 +8,7 @@
 #include "common/http/problem.h"
 #include "common/http/text.h"
 #include "common/http/uri.h"
+#include "common/http/websocket.h"
 
 namespace chorus::http {
 namespace {
@@ -118,6 +119,7 @@ Result<Answer> answer_of(const ActionResult& done, std::string_view accept) {
 
 Responder::Responder(const ServerConfig& config, std::shared_ptr<const Router> router)
     : bearer_token_(config.bearer_token),
+      allowed_origin_(config.allowed_origin),
       limits_(config.limits),
       router_(std::move(router)),
       any_route_(common_lines(config)),
@@ -184,6 +186,7 @@ Reaction Responder::read(const RequestHead& head, const Router::Match& match, co
 }
 
 Reaction Responder::read_live(const RequestHead& head, const Router::Entry& entry) const {
+  if (asks_for_websocket(head)) return upgrade(head, entry);
   const DocumentPtr document = entry.live->current();
   if (document == nullptr || head.accept.empty() || !wants_events(head, *document)) {
     Reaction reaction = to_answer(represent(document, head, route_lines(entry)));
@@ -204,6 +207,19 @@ Reaction Responder::read_live(const RequestHead& head, const Router::Entry& entr
   reaction.answer.own = "Content-Type: text/event-stream\r\nCache-Control: no-store\r\n\r\n";
   if (!is_head(head)) reaction.answer.body = "retry: 1000\n\n";  // Browsers come back after 1 s.
   reaction.answer.close = true;
+  return reaction;
+}
+
+Reaction Responder::upgrade(const RequestHead& head, const Router::Entry& entry) const {
+  if (!may_open(head, allowed_origin_)) {
+    return to_answer(
+        fault({ErrorCode::Forbidden, std::string(head.origin),
+               "pages of this origin may not open a WebSocket here; see http.allowed_origin"},
+              head, route_lines(entry)));
+  }
+  Reaction reaction;
+  reaction.kind = Reaction::Kind::Upgrade;
+  reaction.entry = &entry;
   return reaction;
 }
 

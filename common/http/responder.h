@@ -25,6 +25,7 @@ struct Reaction {
     ReadBody,  ///< Read content_length bytes, then ask act().
     Wait,      ///< Ask waited() after each publish of `entry`, and given_up() after `wait`.
     Stream,    ///< Send `answer`, then events of `entry` until the client leaves.
+    Upgrade,   ///< Hand the socket over to a WebSocket session of `entry`.
   };
   Kind kind = Kind::Answer;
   Answer answer = {};
@@ -61,6 +62,7 @@ class Responder {
   [[nodiscard]] Reaction read(const RequestHead& head, const Router::Match& match, const Peer& peer,
                               std::string_view path) const;
   [[nodiscard]] Reaction read_live(const RequestHead& head, const Router::Entry& entry) const;
+  [[nodiscard]] Reaction upgrade(const RequestHead& head, const Router::Entry& entry) const;
   [[nodiscard]] Reaction write(const RequestHead& head, Router::Match match,
                                const Peer& peer) const;
   [[nodiscard]] Reaction options(const std::string& route, std::string_view allowed) const;
@@ -71,6 +73,7 @@ class Responder {
   [[nodiscard]] std::string_view route_lines(const Router::Entry& entry) const;
 
   std::string bearer_token_;
+  std::string allowed_origin_;
   ServerLimits limits_;
   std::shared_ptr<const Router> router_;
   std::string any_route_;                 ///< Header lines of answers without a route.

@@ -43,7 +43,8 @@ struct ServerCounters {
   std::uint64_t connections_open = 0;
   std::uint64_t long_polls_waiting = 0;
   std::uint64_t event_streams_open = 0;
-  std::uint64_t events_skipped = 0;  ///< Frames a slow event-stream reader did not get.
+  std::uint64_t websockets_open = 0;
+  std::uint64_t events_skipped = 0;  ///< Frames a slow reader of a stream did not get.
   std::uint64_t bytes_sent = 0;
 };
 

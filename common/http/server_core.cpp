@@ -68,15 +68,15 @@ void ServerCore::on_accepted(error_code failed, Socket socket) {
 
 void ServerCore::welcome(Socket socket, const tcp::endpoint& remote) {
   const std::size_t most = config.limits.max_connections;
-  if (connections.size() >= most + kMaxTurnedAway) return;  // Closes it.
+  if (sessions.size() >= most + kMaxTurnedAway) return;  // Closes it.
   auto connection = std::make_shared<Connection>(*this, std::move(socket), remote);
   std::size_t& of_peer = per_peer[connection->peer_address()];
   const bool too_many =
-      connections.size() >= most || of_peer >= config.limits.max_connections_per_peer;
+      sessions.size() >= most || of_peer >= config.limits.max_connections_per_peer;
   ++of_peer;
-  connections.emplace(connection.get(), connection);
+  sessions.emplace(connection.get(), connection);
   count(counters.connections_total);
-  counters.connections_open.store(connections.size(), std::memory_order_relaxed);
+  counters.connections_open.store(sessions.size(), std::memory_order_relaxed);
   if (!too_many) return connection->start();
   count(counters.refused);
   connection->turn_away();
@@ -84,19 +84,19 @@ void ServerCore::welcome(Socket socket, const tcp::endpoint& remote) {
 
 void ServerCore::sweep() {
   now = std::chrono::steady_clock::now();
-  std::vector<std::shared_ptr<Connection>> expired;
+  std::vector<std::shared_ptr<Session>> expired;
   const bool out_of_time = stopping && now >= stop_deadline;
-  for (const auto& [key, connection] : connections) {
-    if (out_of_time || connection->deadline() <= now) expired.push_back(connection);
+  for (const auto& [key, session] : sessions) {
+    if (out_of_time || session->deadline() <= now) expired.push_back(session);
   }
-  for (const auto& connection : expired) {
+  for (const auto& session : expired) {
     if (out_of_time) {
-      connection->close();
+      session->close();
     } else {
-      connection->expire();
+      session->expire();
     }
   }
-  if (stopping && connections.empty()) return;
+  if (stopping && sessions.empty()) return;
   sweep_timer.expires_after(kSweepInterval);
   sweep_timer.async_wait([this](error_code cancelled) {
     if (!cancelled) sweep();
@@ -119,25 +119,31 @@ void ServerCore::post_wake(std::size_t entry) {
 
 void ServerCore::wake(std::size_t entry) {
   wake_posted[entry].store(false);
-  std::vector<std::shared_ptr<Connection>> woken;
+  std::vector<std::shared_ptr<Session>> woken;
   woken.swap(waiting[entry]);
-  for (const auto& connection : woken) connection->wake();
+  for (const auto& session : woken) session->wake();
 }
 
-void ServerCore::wait_for(std::size_t entry, std::shared_ptr<Connection> connection) {
-  waiting[entry].push_back(std::move(connection));
+void ServerCore::wait_for(std::size_t entry, std::shared_ptr<Session> session) {
+  waiting[entry].push_back(std::move(session));
 }
 
-void ServerCore::stop_waiting(std::size_t entry, const Connection* connection) {
-  std::erase_if(waiting[entry], [&](const auto& w) { return w.get() == connection; });
+void ServerCore::stop_waiting(std::size_t entry, const Session* session) {
+  std::erase_if(waiting[entry], [&](const auto& w) { return w.get() == session; });
 }
 
-void ServerCore::forget(const Connection* connection) {
-  const auto peer = per_peer.find(connection->peer_address());
+void ServerCore::forget(const Session* session) {
+  const auto peer = per_peer.find(session->peer_address());
   if (peer != per_peer.end() && --peer->second == 0) per_peer.erase(peer);
-  connections.erase(connection);
-  counters.connections_open.store(connections.size(), std::memory_order_relaxed);
-  if (stopping && connections.empty()) sweep_timer.cancel();
+  sessions.erase(session);
+  counters.connections_open.store(sessions.size(), std::memory_order_relaxed);
+  if (stopping && sessions.empty()) sweep_timer.cancel();
+}
+
+void ServerCore::replace(const Session* session, std::shared_ptr<Session> by) {
+  const Session* key = by.get();
+  sessions.emplace(key, std::move(by));
+  sessions.erase(session);
 }
 
 void ServerCore::begin_stop() {
@@ -146,10 +152,10 @@ void ServerCore::begin_stop() {
   error_code ignored;
   acceptor.close(ignored);
   accept_timer.cancel();
-  std::vector<std::shared_ptr<Connection>> all;
-  for (const auto& [key, connection] : connections) all.push_back(connection);
-  for (const auto& connection : all) connection->stop();
-  if (connections.empty()) sweep_timer.cancel();
+  std::vector<std::shared_ptr<Session>> all;
+  for (const auto& [key, session] : sessions) all.push_back(session);
+  for (const auto& session : all) session->stop();
+  if (sessions.empty()) sweep_timer.cancel();
 }
 
 }  // namespace chorus::http

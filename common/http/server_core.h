@@ -20,7 +20,8 @@ namespace chorus::http {
 struct AtomicCounters {
   using Count = std::atomic<std::uint64_t>;
   Count requests = 0, refused = 0, not_modified = 0, connections_total = 0, connections_open = 0,
-        long_polls_waiting = 0, event_streams_open = 0, events_skipped = 0, bytes_sent = 0;
+        long_polls_waiting = 0, event_streams_open = 0, websockets_open = 0, events_skipped = 0,
+        bytes_sent = 0;
 };
 
 /// One writer: a plain load and store is cheaper than a locked add.
@@ -40,9 +41,11 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   /// From any thread: wakes who waits for the entry, soon; many calls before that count as one.
   void post_wake(std::size_t entry);
   void wake(std::size_t entry);
-  void wait_for(std::size_t entry, std::shared_ptr<Connection> connection);
-  void stop_waiting(std::size_t entry, const Connection* connection);
-  void forget(const Connection* connection);
+  void wait_for(std::size_t entry, std::shared_ptr<Session> session);
+  void stop_waiting(std::size_t entry, const Session* session);
+  void forget(const Session* session);
+  /// The same client, which counts as one, in another session.
+  void replace(const Session* session, std::shared_ptr<Session> by);
   void begin_stop();
 
   net::io_context io{1};  // First member: destroyed last, after everything that uses it.
@@ -57,10 +60,10 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   SteadyTime now;  ///< Coarse: of the last sweep.
   bool stopping = false;
   SteadyTime stop_deadline{};
-  std::unordered_map<const Connection*, std::shared_ptr<Connection>> connections;
+  std::unordered_map<const Session*, std::shared_ptr<Session>> sessions;
   std::map<std::string, std::size_t> per_peer;
-  std::vector<std::vector<std::shared_ptr<Connection>>> waiting;  ///< By entry.
-  std::unique_ptr<std::atomic<bool>[]> wake_posted;               ///< By entry.
+  std::vector<std::vector<std::shared_ptr<Session>>> waiting;  ///< By entry.
+  std::unique_ptr<std::atomic<bool>[]> wake_posted;            ///< By entry.
 };
 
 }  // namespace chorus::http

@@ -44,7 +44,7 @@ STAGE_HEADERS = re.compile(
 STAGE_CLOCKS = re.compile(r"common/time/clock\.h|(system|steady|high_resolution)_clock::now")
 ASIO = re.compile(r"<boost/(asio|beast)")
 POINT_CLOUDS_AND_IMAGES = re.compile(r"<(pcl|opencv2)/")
-ASIO_DOORS = {"common/http/asio.h", "common/http/beast.h"}
+ASIO_DOORS = {"common/http/asio.h", "common/http/beast.h", "common/http/beast_websocket.h"}
 
 MAX_LINES = 400
 SOURCE_ENDINGS = {".h", ".cpp", ".py", ".mjs", ".js", ".sh"}

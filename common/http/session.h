@@ -1,0 +1,36 @@
+// One connected client, whatever it speaks: what the server knows of it.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+
+namespace chorus::http {
+
+using SteadyTime = std::chrono::steady_clock::time_point;
+
+/// Everything runs on the server's only thread.
+class Session : public std::enable_shared_from_this<Session> {
+ public:
+  explicit Session(std::string peer_address) : peer_address_(std::move(peer_address)) {}
+  virtual ~Session() = default;
+
+  /// The document of the entry this session waits for or streams has changed.
+  virtual void wake() = 0;
+  /// The deadline has passed.
+  virtual void expire() = 0;
+  /// The server stops: finish what is under way, begin nothing new.
+  virtual void stop() = 0;
+  virtual void close() = 0;
+
+  [[nodiscard]] SteadyTime deadline() const { return deadline_; }
+  [[nodiscard]] const std::string& peer_address() const { return peer_address_; }
+
+ protected:
+  SteadyTime deadline_{};
+
+ private:
+  std::string peer_address_;
+};
+
+}  // namespace chorus::http

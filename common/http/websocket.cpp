@@ -1,0 +1,177 @@
+#include "common/http/websocket.h"
+
+#include <optional>
+#include <utility>
+
+#include "common/http/beast_websocket.h"
+#include "common/http/server_core.h"
+#include "common/http/text.h"
+
+namespace chorus::http {
+namespace {
+
+namespace websocket = boost::beast::websocket;
+
+constexpr std::size_t kMostSaid = 4096;  ///< Bytes of one message from a client.
+constexpr int kSendBufferBytes =
+    64 * 1024;  // The kernel queues no more than this for a slow reader.
+/// Beast ends a broken or closed conversation by waiting for the client to hang up; we look that
+/// often whether one is over, and hang up ourselves.
+constexpr std::chrono::seconds kLook{1};
+constexpr std::string_view kMediaType = "application/json";
+
+bool names(std::string_view list, std::string_view word) {
+  while (!list.empty()) {
+    if (equal_ignoring_case(next_element(list, ','), word)) return true;
+  }
+  return false;
+}
+
+class WebSocketSession final : public Session {
+ public:
+  WebSocketSession(ServerCore& core, WebSocketOpening opening)
+      : Session(std::move(opening.peer_address)),
+        core_(core),
+        stream_(std::move(opening.socket)),
+        received_(std::move(opening.received)),
+        entry_(opening.entry) {}
+
+  void open();
+  void wake() override;
+  void expire() override;
+  void stop() override;
+  void close() override;
+
+ private:
+  enum class State { Opening, Open, Closing, Closed };
+
+  void listen();
+  void look_again() { deadline_ = core_.now + kLook; }
+  void push();
+  void on_pushed(error_code failed, std::size_t size);
+  [[nodiscard]] std::shared_ptr<WebSocketSession> self() {
+    return std::static_pointer_cast<WebSocketSession>(shared_from_this());
+  }
+
+  ServerCore& core_;
+  websocket::stream<Socket> stream_;
+  std::string received_;
+  const Router::Entry* entry_;
+  State state_ = State::Opening;
+  boost::beast::flat_buffer said_{kMostSaid};
+  DocumentPtr shown_;  ///< Last version sent, or being sent.
+  bool writing_ = false;
+  bool pending_ = false;
+};
+
+void WebSocketSession::open() {
+  const auto& limits = core_.config.limits;
+  websocket::stream_base::timeout patience{};
+  patience.handshake_timeout = limits.header_timeout;
+  patience.idle_timeout = limits.idle_timeout;
+  patience.keep_alive_pings = true;
+  stream_.set_option(patience);
+  stream_.read_message_max(kMostSaid);
+  stream_.text(true);
+  error_code ignored;
+  stream_.next_layer().set_option(net::socket_base::send_buffer_size(kSendBufferBytes), ignored);
+  deadline_ = core_.now + limits.header_timeout;
+  stream_.async_accept(net::buffer(received_), [me = self()](error_code failed) {
+    if (me->state_ != State::Opening) return;
+    if (failed) return me->close();
+    me->state_ = State::Open;
+    me->received_ = {};
+    me->look_again();
+    count(me->core_.counters.websockets_open);
+    me->core_.wait_for(me->entry_->index, me);
+    me->listen();
+    me->push();
+  });
+}
+
+void WebSocketSession::listen() {
+  stream_.async_read(said_, [me = self()](error_code failed, std::size_t) {
+    if (failed) return me->close();
+    me->said_.consume(me->said_.size());
+    me->listen();
+  });
+}
+
+void WebSocketSession::expire() {
+  if (state_ != State::Open || writing_ || !stream_.is_open()) return close();
+  look_again();
+}
+
+void WebSocketSession::wake() {
+  if (state_ != State::Open) return;
+  core_.wait_for(entry_->index, shared_from_this());
+  push();
+}
+
+void WebSocketSession::push() {
+  if (writing_) {
+    if (pending_) count(core_.counters.events_skipped);
+    pending_ = true;
+    return;
+  }
+  pending_ = false;
+  DocumentPtr next = entry_->live->current();
+  if (next == nullptr || next == shown_) return;
+  const auto chosen = next->choose(kMediaType);
+  if (!chosen) return;  // No such form, now or ever: an open socket that says nothing.
+  shown_ = std::move(next);
+  writing_ = true;
+  deadline_ = core_.now + core_.config.limits.write_timeout;
+  const std::string_view body = (*chosen)->body();
+  stream_.async_write(
+      net::buffer(body.data(), body.size()),
+      [me = self()](error_code failed, std::size_t size) { me->on_pushed(failed, size); });
+}
+
+void WebSocketSession::on_pushed(error_code failed, std::size_t size) {
+  writing_ = false;
+  if (state_ != State::Open) return;
+  if (failed) return close();
+  count(core_.counters.bytes_sent, size);
+  look_again();
+  if (pending_) push();
+}
+
+void WebSocketSession::stop() {
+  if (state_ != State::Open || writing_) return close();
+  state_ = State::Closing;
+  count(core_.counters.websockets_open, static_cast<std::uint64_t>(-1));
+  core_.stop_waiting(entry_->index, this);
+  stream_.async_close(websocket::close_code::going_away,
+                      [me = self()](error_code) { me->close(); });
+}
+
+void WebSocketSession::close() {
+  if (state_ == State::Closed) return;
+  const State before = std::exchange(state_, State::Closed);
+  const auto keep = shared_from_this();  // forget() drops what may be the last reference.
+  if (before == State::Open) count(core_.counters.websockets_open, static_cast<std::uint64_t>(-1));
+  core_.stop_waiting(entry_->index, this);
+  error_code ignored;
+  stream_.next_layer().close(ignored);
+  core_.forget(this);
+}
+
+}  // namespace
+
+bool asks_for_websocket(const RequestHead& head) {
+  return head.method == Method::Get && names(head.upgrade, "websocket") &&
+         names(head.connection, "upgrade");
+}
+
+bool may_open(const RequestHead& head, std::string_view allowed_origin) {
+  return !is_present(head.origin) || allowed_origin == "*" || head.origin == allowed_origin;
+}
+
+std::shared_ptr<Session> open_websocket(ServerCore& core, WebSocketOpening opening) {
+  auto session = std::make_shared<WebSocketSession>(core, std::move(opening));
+  session->open();
+  return session;
+}
+
+}  // namespace chorus::http

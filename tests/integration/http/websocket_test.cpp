@@ -1,0 +1,175 @@
+// WebSocket readers of a live document; frames are taken apart by hand (RFC 6455 5.2).
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "tests/integration/http/raw_client.h"
+#include "tests/integration/http/test_server.h"
+
+namespace chorus::http::test {
+namespace {
+
+using testing::HasSubstr;
+
+// The key and its answer are those of RFC 6455 1.3.
+std::string hello(const std::string& more = {}) {
+  return "GET /frame HTTP/1.1\r\nHost: x\r\nUpgrade: websocket\r\nConnection: keep-alive, "
+         "Upgrade\r\n"
+         "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
+         more + "\r\n";
+}
+
+std::string masked(int opcode, const std::string& payload) {
+  std::string frame{
+      static_cast<char>(0x80 | opcode), static_cast<char>(0x80 | payload.size()), 1, 2, 3, 4};
+  for (std::size_t i = 0; i < payload.size(); ++i) {
+    frame.push_back(static_cast<char>(payload[i] ^ static_cast<char>(i % 4 + 1)));
+  }
+  return frame;
+}
+
+/// One unmasked frame of less than 126 bytes.
+std::string text_frame(const std::string& payload) {
+  return std::string{static_cast<char>(0x81), static_cast<char>(payload.size())} + payload;
+}
+
+bool open_sockets(const Server& server, std::uint64_t sockets) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (server.counters().websockets_open != sockets) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::yield();
+  }
+  return true;
+}
+
+TEST(WebSocket, EachVersionIsOneTextMessage) {
+  TestServer service;
+  service.frame->publish(frame_document(1));
+  RawClient client(service.server.port());
+  client.say(hello());
+  const std::string first = client.hear_until(R"({"n":1})");
+  EXPECT_EQ(status_in(first), 101);
+  EXPECT_THAT(first, HasSubstr("s3pPLMBiTxaQ9kYGzzhZRbK+xOo="));
+  EXPECT_THAT(first, HasSubstr(text_frame(R"({"n":1})")));
+  for (int n = 2; n < 50; ++n) {
+    service.frame->publish(frame_document(n));
+    const std::string json = "{\"n\":" + std::to_string(n) + "}";
+    ASSERT_EQ(client.hear_until(json), text_frame(json));
+  }
+}
+
+TEST(WebSocket, WaitsForAFirstVersion) {
+  TestServer service;
+  RawClient client(service.server.port());
+  client.say(hello());
+  EXPECT_EQ(status_in(client.hear_until("\r\n\r\n")), 101);
+  service.frame->publish(frame_document(7));
+  EXPECT_EQ(client.hear_until("}"), text_frame(R"({"n":7})"));
+}
+
+TEST(WebSocket, AnswersPingAndCloseAndIgnoresTalk) {
+  TestServer service;
+  RawClient client(service.server.port());
+  client.say(hello());
+  (void)client.hear_until("\r\n\r\n");
+  client.say(masked(0x1, "s") + masked(0x9, "are you there"));
+  EXPECT_EQ(client.hear_until("there"), std::string("\x8A\x0D") + "are you there");
+  client.say(masked(0x8, std::string("\x03\xE8", 2)));
+  EXPECT_EQ(client.hear_all().substr(0, 1), "\x88");
+  EXPECT_TRUE(open_sockets(service.server, 0));
+}
+
+TEST(WebSocket, WhoLeavesIsForgotten) {
+  TestServer service;
+  {
+    RawClient client(service.server.port());
+    client.say(hello());
+    ASSERT_TRUE(open_sockets(service.server, 1));
+  }
+  EXPECT_TRUE(open_sockets(service.server, 0));
+}
+
+TEST(WebSocket, PagesOfOtherOriginsMayOpenItOnlyIfAllowed) {
+  ServerConfig config;
+  config.allowed_origin = "https://lab.example";
+  TestServer service(config);
+  RawClient stranger(service.server.port());
+  stranger.say(hello("Origin: https://evil.example\r\n"));
+  EXPECT_EQ(status_in(stranger.hear_until("\r\n\r\n")), 403);
+  RawClient friendly(service.server.port());
+  friendly.say(hello("Origin: https://lab.example\r\n"));
+  EXPECT_EQ(status_in(friendly.hear_until("\r\n\r\n")), 101);
+}
+
+TEST(WebSocket, OfAnythingElseIsAnOrdinaryAnswer) {
+  TestServer service;
+  RawClient client(service.server.port());
+  std::string request = hello();
+  request.replace(request.find("/frame"), 6, "/frames/1");
+  client.say(request);
+  EXPECT_EQ(status_in(client.hear_until("\r\n\r\n")), 200);
+}
+
+TEST(WebSocket, ABadHandshakeIsRefusedAndClosed) {
+  TestServer service;
+  RawClient client(service.server.port());
+  client.say("GET /frame HTTP/1.1\r\nHost: x\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\r\n");
+  EXPECT_EQ(status_in(client.hear_all()), 400);
+  EXPECT_TRUE(open_sockets(service.server, 0));
+}
+
+class HostileFrames : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(HostileFrames, EndTheConnectionAndNothingElse) {
+  TestServer service;
+  RawClient client(service.server.port());
+  client.say(hello());
+  ASSERT_TRUE(open_sockets(service.server, 1));
+  client.say(GetParam());
+  EXPECT_TRUE(open_sockets(service.server, 0));
+  EXPECT_EQ(service.ask("/frames/1").status, 200);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, HostileFrames,
+    ::testing::Values(std::string("\x81\x01x", 3),  // not masked
+                      std::string("\x81\xFF\x7F\xFF\xFF\xFF\xFF\xFF\xFF\xFF\x01\x02\x03\x04",
+                                  14),                             // 2^63 bytes
+                      std::string("\xF3\x80\x01\x02\x03\x04", 6),  // reserved bits
+                      std::string("\x83\x80\x01\x02\x03\x04", 6),  // unknown opcode
+                      masked(0x8, "x"),                            // close of one byte
+                      std::string("GET / HTTP/1.1\r\n\r\n")));
+
+TEST(WebSocket, AReaderThatStallsIsClosedAndOthersGoOn) {
+  ServerConfig config;
+  config.limits.write_timeout = std::chrono::seconds(1);
+  TestServer service(config);
+  const auto large = [](int n) {
+    return std::make_shared<const Document>(
+        std::vector<Variant>{
+            {"application/json", [n] { return std::string(1u << 20, 'x') + std::to_string(n); }}},
+        DocumentOptions{.version = std::to_string(n)});
+  };
+  RawClient stalled(service.server.port(), 4096);
+  stalled.say(hello());
+  ASSERT_TRUE(open_sockets(service.server, 1));
+  for (int n = 0; n < 20; ++n) service.frame->publish(large(n));
+  EXPECT_TRUE(open_sockets(service.server, 0));
+  EXPECT_EQ(service.ask("/frames/1").status, 200);
+}
+
+TEST(WebSocket, AStoppingServerSaysGoodbye) {
+  TestServer service;
+  RawClient client(service.server.port());
+  client.say(hello());
+  ASSERT_TRUE(open_sockets(service.server, 1));
+  (void)client.hear_until("\r\n\r\n");
+  std::thread stopping([&] { service.server.stop(); });
+  EXPECT_EQ(client.hear_until("\x03\xE9"), std::string("\x88\x02\x03\xE9"));
+  client.say(masked(0x8, std::string("\x03\xE9", 2)));
+  stopping.join();
+}
+
+}  // namespace
+}  // namespace chorus::http::test
