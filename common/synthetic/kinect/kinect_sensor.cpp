@@ -5,21 +5,11 @@
 #include <limits>
 
 #include "common/body/facing.h"
-#include "common/geometry/rotation.h"
-#include "common/synthetic/draw.h"
+#include "common/synthetic/kinect/floor_estimate.h"
 #include "common/synthetic/kinect/joint_bias.h"
 
 namespace chorus::synthetic::kinect {
 namespace {
-
-enum Purpose : std::uint64_t { kFloorFixed = 981, kFloorNow };
-
-// Otto 7.3 sees at most 1.5 deg of pitch; real floor planes scatter by 0.1-0.2 deg (notes on
-// algorithms, 1.4).
-constexpr double kFloorTilt = deg(0.3);
-constexpr double kFloorOffset = 0.006;  // [m]
-constexpr double kFloorTiltNow = deg(0.1);
-constexpr double kFloorOffsetNow = 0.003;  // [m]
 
 double time_of(Timestamp t) { return seconds(t.time_since_epoch()); }
 
@@ -127,15 +117,6 @@ Stand KinectSensor::stand_of(std::size_t person) const {
   return stand;
 }
 
-FloorPlane KinectSensor::floor(std::uint64_t number) const {
-  Draw fixed{kFloorFixed, setting_.seed, setting_.place};
-  Draw now{kFloorNow, setting_.seed, setting_.place, number};
-  const Plane exact = floor_in_sensor(scene_->world_from_sensor[setting_.place]);
-  const Eigen::Vector3d tilt = kFloorTilt * fixed.gauss3() + kFloorTiltNow * now.gauss3();
-  return {exp_map(tilt) * exact.normal,
-          exact.offset + kFloorOffset * fixed.gauss() + kFloorOffsetNow * now.gauss()};
-}
-
 std::optional<SensorFrame> KinectSensor::next() {
   const Profile& profile = setting_.profile;
   const std::uint64_t number = number_++;
@@ -146,7 +127,7 @@ std::optional<SensorFrame> KinectSensor::next() {
   frame.sequence = number;
   frame.captured = clock_.host_time(exposed);
   frame.received = exposed + latency(profile.delivery, number, keys(0));
-  frame.floor = floor(number);
+  frame.floor = estimated_floor(scene_->world_from_sensor[setting_.place], number, keys(0));
   std::vector<Eigen::Vector3d> cores(
       bodies_.size(), Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
   std::vector<std::pair<std::size_t, Skeleton<SensorSpace>>> bodies;

@@ -47,7 +47,6 @@ class KinectSensor final : public BodySensor {
   [[nodiscard]] std::optional<Skeleton<SensorSpace>> shown(std::size_t person, Timestamp exposed);
   [[nodiscard]] Stand stand_of(std::size_t person) const;
   [[nodiscard]] ErrorKeys keys(std::size_t person) const;
-  [[nodiscard]] FloorPlane floor(std::uint64_t number) const;
 
   const Scene* scene_;
   KinectSetting setting_;

@@ -63,6 +63,31 @@ TEST(SensorChoice, ProfilesDrawsAndSeedsDiffer) {
   EXPECT_NE(nominal, recorded(scene, other));
 }
 
+TEST(SensorChoice, ProfileCIsRenderedAndFitted) {
+  const Scene scene = room();
+  const auto nominal = recorded(scene, choice("C"));
+  ASSERT_GT(nominal.size(), 100u);
+  EXPECT_NE(nominal, recorded(scene, choice("A")));
+  SensorChoice drawn = choice("C");
+  drawn.draw = 7;
+  EXPECT_NE(nominal, recorded(scene, drawn));
+  SensorChoice quiet = choice("C");
+  quiet.stress = {{Source::White, 0.0}};
+  EXPECT_NE(nominal, recorded(scene, quiet));
+}
+
+TEST(SensorChoice, ErrorsOfCThatEmergeAreNoSources) {
+  for (const Source source : {Source::Yaw, Source::Coloured, Source::Visibility}) {
+    EXPECT_TRUE(has_source("A", source));
+    EXPECT_FALSE(has_source("C", source));
+  }
+  for (const Source source :
+       {Source::White, Source::Bias, Source::Gross, Source::Delivery, Source::Clock}) {
+    EXPECT_TRUE(has_source("B", source));
+    EXPECT_TRUE(has_source("C", source));
+  }
+}
+
 TEST(SensorChoice, StressMultipliesItsSourceAlone) {
   const Scene scene = room();
   SensorChoice stressed = choice("B");
@@ -86,6 +111,8 @@ TEST(SensorChoice, RefusesWhatItDoesNotHave) {
 
 TEST(SensorChoice, TellsWhichParametersMadeTheNumbers) {
   EXPECT_EQ(frozen_hash("A"), kinect::frozen_hash());
+  EXPECT_EQ(frozen_hash("C").size(), 12u);
+  EXPECT_NE(frozen_hash("C"), frozen_hash("A"));
   EXPECT_EQ(frozen_hash("Z"), "");
 }
 

@@ -1,0 +1,49 @@
+// The parameters of profile C: what a time-of-flight camera does to a depth image, and how people
+// differ from the generic body that is fitted to it.
+//
+// Metres, seconds.  The errors of joints are not in here: they emerge.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/synthetic/kinect/error_source.h"
+
+namespace chorus::synthetic::depth {
+
+struct TimeOfFlight {
+  double noise_near = 0;       ///< sigma(z) = near + square z^2 [m]
+  double noise_square = 0;     ///< [1/m]
+  double flying_share = 0;     ///< Of the pixels at a depth edge: somewhere between both sides.
+  double hole_share = 0;       ///< Of all pixels: no answer.
+  double dark_hole_share = 0;  ///< Of pixels on dark cloth or hair.
+  double least_range = 0, most_range = 0;  ///< [m]
+};
+
+struct BuildSpread {
+  double girth = 0;        ///< Radii of a person's segments differ by up to this share.
+  double clothing = 0;     ///< Cloth adds up to this to a radius [m]
+  double dark_chance = 0;  ///< Of hair, trunk, legs each to be dark.
+};
+
+struct DepthProfile {
+  TimeOfFlight camera;
+  BuildSpread build;
+  kinect::Delivery
+      delivery;  ///< Of profile A; its gaps are not used: people are lost by themselves.
+  kinect::ClockError clock;  ///< Of profile A.
+};
+
+[[nodiscard]] DepthProfile nominal_depth_profile();
+
+/// Every parameter drawn uniformly from its interval; the same seed gives the same draw.
+[[nodiscard]] DepthProfile draw_depth_profile(std::uint64_t seed);
+
+/// One source multiplied.  White: noise of depth.  Gross: flying pixels and holes.  Bias: girth and
+/// clothing.  Delivery and clock as in kinect/.  The other sources have no parameter here.
+[[nodiscard]] DepthProfile with_source(DepthProfile profile, kinect::Source source, double factor);
+
+/// First 12 hex digits of the SHA-256 of this folder's sources: errors emerge from all of them.
+[[nodiscard]] std::string frozen_depth_hash();
+
+}  // namespace chorus::synthetic::depth

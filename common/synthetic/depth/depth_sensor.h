@@ -1,0 +1,48 @@
+// Profile C: a sensor that renders depth images of the truth, measures them as a time-of-flight
+// camera would and fits a generic body to them.  Errors of joints emerge; none is drawn.
+//
+// When frames are taken, dropped and arrive, the floor plane and the host's clock are as in
+// kinect/.
+#pragma once
+
+#include <vector>
+
+#include "common/synthetic/body_sensor.h"
+#include "common/synthetic/depth/body_tracker.h"
+#include "common/synthetic/kinect/delivery.h"
+#include "common/synthetic/scene.h"
+
+namespace chorus::synthetic::depth {
+
+struct DepthSetting {
+  SensorId id;
+  std::size_t place = 0;  ///< Index into Scene::world_from_sensor.
+  DepthProfile profile;
+  std::uint64_t seed = 1;
+  std::uint64_t people_seed = 1;  ///< How people are built and dressed: the same for all sensors.
+  bool own_clock = true;          ///< Stamps by the host's erring clock; false: true time.
+};
+
+class DepthSensor final : public BodySensor {
+ public:
+  /// `scene` must outlive the sensor.  The first frames are at or after `start`.
+  DepthSensor(const Scene& scene, DepthSetting setting, Timestamp start);
+
+  [[nodiscard]] std::optional<SensorFrame> next() override;
+  [[nodiscard]] Timestamp next_exposure() const override;
+  [[nodiscard]] const HostClock& clock() const noexcept override { return clock_; }
+
+ private:
+  [[nodiscard]] View view(Timestamp exposed) const;
+  [[nodiscard]] kinect::ErrorKeys keys() const { return {setting_.seed, setting_.place, 0}; }
+
+  const Scene* scene_;
+  DepthSetting setting_;
+  HostClock clock_;
+  std::uint64_t number_;
+  std::vector<Build> builds_;
+  DepthCamera camera_;
+  BodyTracker tracker_;
+};
+
+}  // namespace chorus::synthetic::depth

@@ -1,0 +1,39 @@
+// Least squares over the points of the generic body: J^T W J and J^T W r, solved at once.
+#pragma once
+
+#include <span>
+
+#include "common/synthetic/depth/generic_body.h"
+
+namespace chorus::synthetic::depth {
+
+/// Coefficient of one node in a linear combination of nodes.
+struct Term {
+  Node node;
+  double coefficient;
+};
+
+class NormalEquations {
+ public:
+  NormalEquations();
+
+  /// The combination should move by `way` along the unit vector `direction`.
+  void move_along(std::span<const Term> combination, const Eigen::Vector3d& direction, double way,
+                  double weight);
+  /// The combination should move by `way`.
+  void move(std::span<const Term> combination, const Eigen::Vector3d& way, double weight);
+
+  /// The step of every node; zero when the equations have no finite solution.
+  [[nodiscard]] Nodes solve() const;
+
+ private:
+  static constexpr int kSize = 3 * kNodeCount;
+
+  void add(std::span<const Term> combination, const Eigen::Matrix3d& weight,
+           const Eigen::Vector3d& weighted_way);
+
+  Eigen::Matrix<double, kSize, kSize> left_;  ///< Lower blocks only.
+  Eigen::Matrix<double, kSize, 1> right_;
+};
+
+}  // namespace chorus::synthetic::depth
