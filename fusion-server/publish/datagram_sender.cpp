@@ -1,5 +1,6 @@
 #include "fusion-server/publish/datagram_sender.h"
 
+#include <array>
 #include <charconv>
 #include <optional>
 #include <utility>
@@ -58,33 +59,62 @@ void read_targets(ConfigReader& reader, std::vector<std::string>& out) {
 }
 
 struct DatagramSender::Sockets {
-  struct Way {
-    udp::endpoint target;
-    bool v6 = false;
-  };
   net::io_context io{1};
   std::optional<DatagramSocket> v4;
   std::optional<DatagramSocket> v6;
-  std::vector<Way> ways;
+  std::vector<udp::endpoint> targets;
+  bool loopback = true;  ///< Everybody we talk to is on this host.
 
-  [[nodiscard]] Result<void> open(std::optional<DatagramSocket>& socket, const udp& protocol,
-                                  const DatagramOptions& options);
+  [[nodiscard]] std::optional<DatagramSocket>& towards(const udp& protocol) {
+    return protocol == udp::v6() ? v6 : v4;
+  }
+  [[nodiscard]] Result<void> resolve_all(const DatagramOptions& options);
+  [[nodiscard]] Result<void> open(const udp& protocol, const DatagramOptions& options);
+  [[nodiscard]] bool lost(std::span<const char> datagram, const udp::endpoint& target);
 };
 
-Result<void> DatagramSender::Sockets::open(std::optional<DatagramSocket>& socket,
-                                           const udp& protocol, const DatagramOptions& options) {
+Result<void> DatagramSender::Sockets::resolve_all(const DatagramOptions& options) {
+  for (const std::string& text : options.targets) {
+    const auto target = parse_target(text);
+    if (!target) return pass(target);
+    const auto endpoint = resolve(io, *target);
+    if (!endpoint) return pass(endpoint);
+    targets.push_back(*endpoint);
+    loopback = loopback && endpoint->address().is_loopback();
+  }
+  if (options.listen_address.empty()) return {};
+  error_code error;
+  const auto address = net::ip::make_address(options.listen_address, error);
+  if (error) return bad_target(options.listen_address, "the address must be numeric");
+  loopback = loopback && address.is_loopback();
+  return {};
+}
+
+Result<void> DatagramSender::Sockets::open(const udp& protocol, const DatagramOptions& options) {
+  auto& socket = towards(protocol);
   if (socket) return {};
+  const bool v6_wanted = protocol == udp::v6();
+  const net::ip::address inside = v6_wanted ? net::ip::address(net::ip::address_v6::loopback())
+                                            : net::ip::address(net::ip::address_v4::loopback());
+  const udp::endpoint source = loopback ? udp::endpoint(inside, options.source_port)
+                                        : udp::endpoint(protocol, options.source_port);
   error_code error;
   socket.emplace(io);
   socket->open(protocol, error);
   if (!error) socket->non_blocking(true, error);
   if (!error) socket->set_option(net::ip::multicast::hops(options.multicast_hops), error);
   if (!error) socket->set_option(net::ip::multicast::enable_loopback(true), error);
-  if (!error && options.source_port != 0) {
-    socket->bind(udp::endpoint(protocol, options.source_port), error);
-  }
+  if (!error) socket->bind(source, error);
   if (!error) return {};
   return fail(ErrorCode::Io, "UDP port " + std::to_string(options.source_port), error.message());
+}
+
+bool DatagramSender::Sockets::lost(std::span<const char> datagram, const udp::endpoint& target) {
+  auto& socket = towards(target.protocol());
+  if (!socket) return true;
+  error_code error;
+  socket->send_to(net::buffer(datagram.data(), datagram.size()), target, 0, error);
+  return static_cast<bool>(error);
 }
 
 DatagramSender::DatagramSender() : sockets_(std::make_unique<Sockets>()) {}
@@ -92,28 +122,45 @@ DatagramSender::~DatagramSender() = default;
 
 Result<std::unique_ptr<DatagramSender>> DatagramSender::open(const DatagramOptions& options) {
   std::unique_ptr<DatagramSender> sender(new DatagramSender);
-  for (const std::string& text : options.targets) {
-    const auto target = parse_target(text);
-    if (!target) return pass(target);
-    const auto endpoint = resolve(sender->sockets_->io, *target);
-    if (!endpoint) return pass(endpoint);
-    const bool v6 = endpoint->protocol() == udp::v6();
-    auto& socket = v6 ? sender->sockets_->v6 : sender->sockets_->v4;
-    if (auto ok = sender->sockets_->open(socket, endpoint->protocol(), options); !ok) {
-      return pass(ok);
-    }
-    sender->sockets_->ways.push_back({*endpoint, v6});
+  Sockets& sockets = *sender->sockets_;
+  if (auto ok = sockets.resolve_all(options); !ok) return pass(ok);
+  if (!options.listen_address.empty()) {
+    if (auto ok = sockets.open(udp::v4(), options); !ok) return pass(ok);
+  }
+  for (const udp::endpoint& target : sockets.targets) {
+    if (auto ok = sockets.open(target.protocol(), options); !ok) return pass(ok);
   }
   return sender;
 }
 
 void DatagramSender::send(std::span<const char> datagram) {
-  for (const Sockets::Way& way : sockets_->ways) {
+  for (const udp::endpoint& target : sockets_->targets) count(sockets_->lost(datagram, target));
+}
+
+void DatagramSender::send_to(std::span<const char> datagram, const Target& to) {
+  error_code error;
+  const auto address = net::ip::make_address(to.host, error);
+  count(error || sockets_->lost(datagram, udp::endpoint(address, to.port)));
+}
+
+std::optional<Arrival> DatagramSender::receive() {
+  constexpr std::size_t kRead = 64;
+  for (auto* socket : {&sockets_->v4, &sockets_->v6}) {
+    if (!*socket) continue;
+    std::array<char, kRead> bytes{};
+    udp::endpoint from;
     error_code error;
-    auto& socket = way.v6 ? sockets_->v6 : sockets_->v4;
-    socket->send_to(net::buffer(datagram.data(), datagram.size()), way.target, 0, error);
-    if (error) ++failed_;
+    const std::size_t size = (*socket)->receive_from(net::buffer(bytes), from, 0, error);
+    // An answer "port unreachable" to what we sent arrives here too; it says nothing.
+    if (error) continue;
+    return Arrival{{from.address().to_string(), from.port()}, std::string(bytes.data(), size)};
   }
+  return std::nullopt;
+}
+
+std::uint16_t DatagramSender::source_port() const {
+  error_code error;
+  return sockets_->v4 ? sockets_->v4->local_endpoint(error).port() : std::uint16_t{0};
 }
 
 }  // namespace chorus::publish

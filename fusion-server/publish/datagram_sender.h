@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,8 +29,17 @@ void read_targets(ConfigReader& reader, std::vector<std::string>& out);
 
 struct DatagramOptions {
   std::vector<std::string> targets;
-  std::uint16_t source_port = 0;  ///< 0: any.
-  int multicast_hops = 1;         ///< Routers a multicast datagram may pass, plus one.
+  /// 0: any.  Bound to loopback when all targets and `listen_address` are there.
+  std::uint16_t source_port = 0;
+  /// Not empty: an IPv4 socket is open even without a target; where others may write from.
+  std::string listen_address = {};
+  int multicast_hops = 1;  ///< Routers a multicast datagram may pass, plus one.
+};
+
+/// What somebody sent us.
+struct Arrival {
+  Target sender;  ///< A numeric host.
+  std::string text;
 };
 
 /// Never blocks: what the operating system does not take at once is lost and counted.
@@ -41,12 +51,20 @@ class DatagramSender {
 
   /// One datagram to every target.
   void send(std::span<const char> datagram);
+  /// One datagram to somebody who is not among the targets; `to` has a numeric host.
+  void send_to(std::span<const char> datagram, const Target& to);
+  /// The next datagram that came to our source port, its first 64 bytes; none: nothing has come.
+  [[nodiscard]] std::optional<Arrival> receive();
+  /// The port we send IPv4 datagrams from; 0 before the first.
+  [[nodiscard]] std::uint16_t source_port() const;
   /// Datagrams lost on sending.  Any thread.
   [[nodiscard]] std::uint64_t failed() const noexcept { return failed_; }
 
  private:
   DatagramSender();
   struct Sockets;
+  void count(bool lost) noexcept { failed_ += lost ? 1 : 0; }
+
   std::unique_ptr<Sockets> sockets_;
   std::atomic<std::uint64_t> failed_ = 0;
 };

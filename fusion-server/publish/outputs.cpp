@@ -7,20 +7,22 @@
 namespace chorus::publish {
 namespace {
 
-constexpr int kMostPersons = 20;
-
 void read_common(ConfigReader& reader, OutputSetting& out) {
   reader.read("enabled", out.enabled);
   std::size_t latency = static_cast<std::size_t>(out.latency);
   reader.read_choice("latency", latency, {"exact", "predicted"});
   out.latency = static_cast<Latency>(latency);
-  reader.read("max_persons", out.max_persons, 1, kMostPersons);
+  reader.read("max_persons", out.max_persons, 1, kMostSlots);
 }
 
 /// The list of all outputs: their key, and where their settings are.
 template <class Config, class Visitor>
 void for_each_output(Config& config, const Visitor& visit) {
   visit("mxtp", config.mxtp);
+  visit("dtrack", config.dtrack);
+  visit("trackd", config.trackd);
+  visit("vmc", config.vmc);
+  visit("vrchat", config.vrchat);
 }
 
 struct Opening {

@@ -10,8 +10,12 @@
 #include "common/base/config_reader.h"
 #include "common/base/result.h"
 #include "common/time/clock.h"
+#include "fusion-server/publish/dtrack/dtrack_outlet.h"
 #include "fusion-server/publish/mxtp/mxtp_outlet.h"
 #include "fusion-server/publish/outlet.h"
+#include "fusion-server/publish/trackd/trackd_outlet.h"
+#include "fusion-server/publish/vmc/vmc_outlet.h"
+#include "fusion-server/publish/vrchat/vrchat_outlet.h"
 
 namespace chorus::publish {
 
@@ -34,6 +38,10 @@ struct Output {
 
 struct OutputsConfig {
   Output<mxtp::Settings> mxtp;
+  Output<dtrack::Settings> dtrack;
+  Output<trackd::Settings> trackd;
+  Output<vmc::Settings> vmc;
+  Output<vrchat::Settings> vrchat;
 
   bool operator==(const OutputsConfig&) const = default;
 };

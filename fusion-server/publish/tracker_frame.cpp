@@ -6,6 +6,7 @@
 #include "common/base/duration.h"
 #include "common/body/bones.h"
 #include "common/geometry/rotation.h"
+#include "common/resource/frame_resource.h"
 
 namespace chorus::publish {
 namespace {
@@ -24,7 +25,7 @@ TrackerBody body_of(const FusedBody& fused, std::size_t slot) {
     const Joint& from = fused.skeleton.joints[i];
     TrackerJoint& to = body.joints[i];
     to.position = from.position;
-    to.tracked = from.state != JointState::NotTracked && from.position.allFinite();
+    to.tracked = from.seen() && from.position.cwiseAbs().maxCoeff() <= resource::kMaxCoordinate;
     if (is_unit(from.orientation)) to.orientation = from.orientation.normalized();
   }
   for (const Bone& bone : kBones) {  // parents come first
@@ -43,6 +44,12 @@ void set_velocity(TrackerJoint& now, const TrackerJoint& before, double dt) {
 }
 
 }  // namespace
+
+const TrackerBody* in_slot(const TrackerFrame& frame, std::size_t slot) {
+  const auto found = std::find_if(frame.bodies.begin(), frame.bodies.end(),
+                                  [&](const TrackerBody& body) { return body.slot == slot; });
+  return found == frame.bodies.end() ? nullptr : &*found;
+}
 
 void TrackerState::release_absent(const Snapshot& snapshot) {
   std::set<PersonId> here;

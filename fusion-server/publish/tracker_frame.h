@@ -13,6 +13,9 @@
 
 namespace chorus::publish {
 
+/// Slots a configuration may ask for.
+inline constexpr int kMostSlots = 20;
+
 struct TrackerJoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   /// Always a unit quaternion: a joint without an orientation of its own has that of the next joint
@@ -20,7 +23,8 @@ struct TrackerJoint {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          ///< [m/s]
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< World axes [rad/s]
-  bool tracked = false;  ///< False: nobody knows where it is; do not send a pose.
+  /// False: nobody knows where it is (or it is absurdly far, as in /frame); do not send a pose.
+  bool tracked = false;
 };
 
 struct TrackerBody {
@@ -37,6 +41,9 @@ struct TrackerFrame {
   std::size_t slots = 0;  ///< So many persons at most.
   std::vector<TrackerBody> bodies;  ///< In order of slot.
 };
+
+/// The body in a slot, or nullptr.
+[[nodiscard]] const TrackerBody* in_slot(const TrackerFrame& frame, std::size_t slot);
 
 /// Gives persons their slots and joints their velocities, snapshot after snapshot.
 class TrackerState {

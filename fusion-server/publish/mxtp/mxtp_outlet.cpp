@@ -34,9 +34,7 @@ class MxtpOutlet final : public Outlet {
 void read_settings(ConfigReader& reader, Settings& out) { read_targets(reader, out.targets); }
 
 Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings) {
-  DatagramOptions options;
-  options.targets = settings.targets;
-  auto sender = DatagramSender::open(options);
+  auto sender = DatagramSender::open({.targets = settings.targets});
   if (!sender) return pass(sender);
   return std::make_unique<MxtpOutlet>(std::move(*sender));
 }

@@ -1,0 +1,256 @@
+#include "fusion-server/publish/dtrack/command_server.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <list>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "common/base/log.h"
+#include "common/http/asio.h"
+#include "fusion-server/publish/dtrack/dtrack_commands.h"
+
+namespace chorus::publish::dtrack {
+namespace {
+
+namespace net = http::net;
+using http::error_code;
+using http::tcp;
+using SteadyTime = std::chrono::steady_clock::time_point;
+
+constexpr std::size_t kMostWaiting = 4096;  ///< Bytes of answers that a client has not read.
+constexpr std::size_t kMostRefused = 64;    ///< Commands.
+constexpr std::chrono::milliseconds kSweep{250};
+constexpr std::chrono::milliseconds kPause{100};  ///< After a failed accept.
+
+struct Connection {
+  Connection(http::Socket accepted, std::uint64_t number)
+      : socket(std::move(accepted)), serial(number) {}
+
+  http::Socket socket;
+  std::uint64_t serial;
+  std::string host;
+  CommandReader reader;
+  Conversation conversation;
+  std::array<char, 1024> incoming{};
+  std::string waiting;  ///< Answers not handed to the system yet.
+  std::string writing;  ///< Those that are.
+  SteadyTime deadline;
+};
+using ConnectionPtr = std::shared_ptr<Connection>;
+
+/// Whatever a handler throws (no memory) costs what it was doing, not the program.
+void run(net::io_context& io) {
+  while (true) {
+    try {
+      io.run();
+      return;
+    } catch (const std::exception& thrown) {
+      log::error("command channel failed", {{"what", thrown.what()}});
+    }
+  }
+}
+
+}  // namespace
+
+struct CommandServer::Impl {
+  explicit Impl(CommandServerOptions settings) : options(std::move(settings)) {}
+
+  [[nodiscard]] Result<void> listen();
+  void accept();
+  void welcome(http::Socket socket);
+  void read(const ConnectionPtr& connection);
+  void obey(const ConnectionPtr& connection);
+  void write(const ConnectionPtr& connection);
+  void turn_away(const ConnectionPtr& connection);
+  void close(const ConnectionPtr& connection);
+  void sweep();
+  void stop();
+  void tell_controller();
+
+  const CommandServerOptions options;
+  net::io_context io{1};
+  http::Acceptor acceptor{io};
+  http::Timer sweeper{io};
+  http::Timer pause{io};
+  std::list<ConnectionPtr> connections;  ///< Oldest first: the first one is in control.
+  Device device;
+  std::uint64_t next_serial = 1;
+  std::atomic<std::uint64_t> refused = 0;
+  std::atomic<std::uint64_t> clients = 0;
+  mutable std::mutex mutex;
+  std::optional<Controller> controller;
+  std::uint16_t port = 0;
+  std::thread thread;
+};
+
+Result<void> CommandServer::Impl::listen() {
+  error_code error;
+  const auto address = net::ip::make_address(options.address, error);
+  const tcp::endpoint place(address, static_cast<std::uint16_t>(options.port));
+  if (!error) acceptor.open(place.protocol(), error);
+  if (!error) acceptor.set_option(net::socket_base::reuse_address(true), error);
+  if (!error) acceptor.bind(place, error);
+  if (!error) acceptor.listen(net::socket_base::max_listen_connections, error);
+  if (!error) port = acceptor.local_endpoint(error).port();
+  if (!error) return {};
+  return fail(ErrorCode::Io,
+              "command channel at " + options.address + ":" + std::to_string(options.port),
+              error.message());
+}
+
+void CommandServer::Impl::accept() {
+  acceptor.async_accept([this](error_code error, http::Socket socket) {
+    if (error == net::error::operation_aborted) return;
+    if (!error) {
+      welcome(std::move(socket));
+      return accept();
+    }
+    pause.expires_after(kPause);  // out of descriptors, for example
+    pause.async_wait([this](error_code aborted) {
+      if (!aborted) accept();
+    });
+  });
+}
+
+void CommandServer::Impl::welcome(http::Socket socket) {
+  error_code error;
+  const tcp::endpoint peer = socket.remote_endpoint(error);
+  if (error || connections.size() >= static_cast<std::size_t>(options.max_connections)) {
+    ++refused;
+    return;  // closes it
+  }
+  auto connection = std::make_shared<Connection>(std::move(socket), next_serial++);
+  connection->host = peer.address().to_string();
+  connection->deadline = std::chrono::steady_clock::now() + options.first_word;
+  connection->socket.set_option(tcp::no_delay(true), error);
+  connection->socket.set_option(net::socket_base::keep_alive(true), error);
+  connections.push_back(connection);
+  clients = connections.size();
+  read(connection);
+}
+
+void CommandServer::Impl::read(const ConnectionPtr& connection) {
+  connection->socket.async_read_some(
+      net::buffer(connection->incoming), [this, connection](error_code error, std::size_t size) {
+        if (!connection->socket.is_open()) return;
+        if (error) return close(connection);
+        if (!connection->reader.feed({connection->incoming.data(), size})) {
+          return turn_away(connection);
+        }
+        obey(connection);
+      });
+}
+
+void CommandServer::Impl::obey(const ConnectionPtr& connection) {
+  Conversation& conversation = connection->conversation;
+  const std::size_t answered = conversation.answered;
+  std::string command;
+  while (connection->reader.next(command)) {
+    conversation.in_control = connection == connections.front();
+    connection->waiting += answer(command, conversation, device);
+    if (conversation.refused > kMostRefused || connection->waiting.size() > kMostWaiting) {
+      return turn_away(connection);
+    }
+  }
+  if (conversation.answered > answered) {
+    connection->deadline = std::chrono::steady_clock::now() + options.idle;
+  }
+  tell_controller();
+  write(connection);
+  read(connection);
+}
+
+void CommandServer::Impl::write(const ConnectionPtr& connection) {
+  if (!connection->writing.empty() || connection->waiting.empty()) return;
+  connection->writing.swap(connection->waiting);
+  net::async_write(connection->socket, net::buffer(connection->writing),
+                   [this, connection](error_code error, std::size_t) {
+                     if (!connection->socket.is_open()) return;
+                     if (error) return close(connection);
+                     connection->writing.clear();
+                     write(connection);
+                   });
+}
+
+void CommandServer::Impl::turn_away(const ConnectionPtr& connection) {
+  ++refused;
+  close(connection);
+}
+
+void CommandServer::Impl::close(const ConnectionPtr& connection) {
+  error_code ignored;
+  connection->socket.close(ignored);
+  const bool was_in_control = !connections.empty() && connections.front() == connection;
+  connections.remove(connection);
+  clients = connections.size();
+  if (was_in_control) device.measuring = false;
+  tell_controller();
+}
+
+/// Closes whose time is over.
+void CommandServer::Impl::sweep() {
+  const SteadyTime now = std::chrono::steady_clock::now();
+  const std::list<ConnectionPtr> all = connections;
+  for (const ConnectionPtr& connection : all) {
+    if (connection->deadline < now) turn_away(connection);
+  }
+  sweeper.expires_after(kSweep);
+  sweeper.async_wait([this](error_code aborted) {
+    if (!aborted) sweep();
+  });
+}
+
+void CommandServer::Impl::stop() {
+  error_code ignored;
+  acceptor.close(ignored);
+  sweeper.cancel();
+  pause.cancel();
+  const std::list<ConnectionPtr> all = connections;
+  for (const ConnectionPtr& connection : all) close(connection);
+}
+
+void CommandServer::Impl::tell_controller() {
+  const std::scoped_lock lock(mutex);
+  controller.reset();
+  if (device.measuring && !connections.empty()) {
+    controller = Controller{connections.front()->host, connections.front()->serial};
+  }
+}
+
+CommandServer::CommandServer() = default;
+
+CommandServer::~CommandServer() {
+  if (!impl_ || !impl_->thread.joinable()) return;
+  net::post(impl_->io, [impl = impl_.get()] { impl->stop(); });
+  impl_->thread.join();
+}
+
+Result<std::unique_ptr<CommandServer>> CommandServer::start(const CommandServerOptions& options) {
+  std::unique_ptr<CommandServer> server(new CommandServer);
+  server->impl_ = std::make_unique<Impl>(options);
+  Impl& impl = *server->impl_;
+  if (auto ok = impl.listen(); !ok) return pass(ok);
+  impl.accept();
+  impl.sweep();
+  impl.thread = std::thread([&impl] { run(impl.io); });
+  return server;
+}
+
+std::uint16_t CommandServer::port() const { return impl_->port; }
+
+std::optional<Controller> CommandServer::controller() const {
+  const std::scoped_lock lock(impl_->mutex);
+  return impl_->controller;
+}
+
+SinkCounters CommandServer::counters() const {
+  SinkCounters counters;
+  counters.refused = impl_->refused;
+  counters.clients = impl_->clients;
+  return counters;
+}
+
+}  // namespace chorus::publish::dtrack

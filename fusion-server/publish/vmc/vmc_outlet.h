@@ -1,0 +1,26 @@
+// Sends the person of one slot by VMC over UDP: a performer has one body.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/base/config_reader.h"
+#include "common/base/result.h"
+#include "fusion-server/publish/outlet.h"
+
+namespace chorus::publish::vmc {
+
+struct Settings {
+  std::vector<std::string> targets{"127.0.0.1:39539"};
+  int slot = 0;           ///< Whose person.
+  bool trackers = false;  ///< Also as /VMC/Ext/Tra/Pos.
+
+  bool operator==(const Settings&) const = default;
+};
+
+void read_settings(ConfigReader& reader, Settings& out);
+
+[[nodiscard]] Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings);
+
+}  // namespace chorus::publish::vmc
