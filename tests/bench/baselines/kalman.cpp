@@ -139,14 +139,12 @@ Method otto_kalman() {
 }
 
 std::vector<Stated> arrival_kalman(const std::vector<registration::WalkTrack>& sensors,
-                                   const Registration& registration, double rate_hz) {
+                                   const Registration& registration) {
   constexpr Duration kCoast =
       std::chrono::milliseconds(100);  // a joint not seen for so long is gone
   std::map<PersonId, BodyFilter> filters;
-  std::map<PersonId, Timestamp> stated;
   associate::Tracks tracks;
   std::vector<Stated> answers;
-  const Duration period = from_seconds(1.0 / rate_hz);
   for (const auto& [track, frame] : by_arrival(sensors)) {
     const auto place = registration.sensors.find(track->sensor);
     if (place == registration.sensors.end()) continue;
@@ -157,9 +155,6 @@ std::vector<Stated> arrival_kalman(const std::vector<registration::WalkTrack>& s
     for (const Person& person : grouping.people) {
       BodyFilter& filter = filters[person.id];
       update(filter, person, arrived);
-      Timestamp& last = stated[person.id];
-      if (arrived - last < period) continue;
-      last = arrived;
       answers.push_back({arrived, person.id, filter.at(arrived, arrived - kCoast)});
     }
   }

@@ -52,11 +52,10 @@ struct Stated {
 };
 
 /// The way of OpenPTrack: each frame updates its person's joints as it arrives, by the time of
-/// arrival, and the result bears that time (peers A3, with the real elapsed time, not a fixed one,
-/// and noise to fit the sensors: 25 mm, 75 mm where inferred).  `rate_hz` thins the answers out.
-/// `received` of the frames must be set.
+/// arrival, and the answer bears that time (peers A3, but with the real elapsed time instead of a
+/// fixed one, and noise to fit the sensors: 25 mm, 75 mm where inferred).  One answer per frame and
+/// person, in order.  `received` of the frames must be set.
 [[nodiscard]] std::vector<Stated> arrival_kalman(
-    const std::vector<registration::WalkTrack>& sensors, const Registration& registration,
-    double rate_hz);
+    const std::vector<registration::WalkTrack>& sensors, const Registration& registration);
 
 }  // namespace chorus::bench::baselines

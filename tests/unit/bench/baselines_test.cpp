@@ -161,7 +161,7 @@ TEST(ArrivalKalman, StatesTheTimeOfArrivalSoAWalkerIsWhereHeWas) {
   for (int i = 0; i < 200; ++i) track.frames.push_back(frame_of(i, late, {0.04 * i, 0, 2}));
   Registration registration;
   registration.sensors[sensor(1)] = {};
-  const auto stated = arrival_kalman({track}, registration, 25.0);
+  const auto stated = arrival_kalman({track}, registration);
   ASSERT_GT(stated.size(), 100u);
   const Stated& last = stated.back();
   EXPECT_EQ(last.instant, at_frame(199) + late);
@@ -170,7 +170,7 @@ TEST(ArrivalKalman, StatesTheTimeOfArrivalSoAWalkerIsWhereHeWas) {
 
 TEST(ArrivalKalman, LeavesOutSensorsWithoutAPlace) {
   const registration::WalkTrack track{sensor(1), {frame_of(0, Duration{0}, {0, 0, 2})}};
-  EXPECT_TRUE(arrival_kalman({track}, Registration{}, 25.0).empty());
+  EXPECT_TRUE(arrival_kalman({track}, Registration{}).empty());
 }
 
 TEST(Baselines, HaveDistinctNamesAndAllAnswerForASinglePerfectView) {
