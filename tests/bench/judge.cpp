@@ -36,7 +36,8 @@ synthetic::Scene scene_of(const Setting& setting) {
         synthetic::Draw{setting.seed, kDrawBuild}.uniform(-kBuildSpread, kBuildSpread);
   }
   synthetic::Scene scene;
-  scene.people = synthetic::make_people(script, setting.persons);
+  scene.people =
+      setting.people.empty() ? synthetic::make_people(script, setting.persons) : setting.people;
   scene.world_from_sensor = setting.places;
   scene.occluders = setting.occluders;
   return scene;

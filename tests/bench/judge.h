@@ -23,6 +23,8 @@ struct Setting {
   std::vector<Eigen::Isometry3d> places = ring_places(synthetic::Ring{});
   synthetic::PathKind walk = synthetic::PathKind::Random;
   std::size_t persons = 1;
+  /// These instead of `persons` walkers; their time counts from 1970.
+  std::vector<synthetic::Person> people = {};
   std::vector<synthetic::Occluder> occluders = {};
   /// Beyond what the profile says, every host's clock is off by up to so much, uniformly [s].
   double clock_offset = 0.0;

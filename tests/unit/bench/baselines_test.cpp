@@ -6,6 +6,7 @@
 #include "common/base/units.h"
 #include "tests/bench/baselines/averaging.h"
 #include "tests/bench/baselines/kalman.h"
+#include "tests/bench/baselines/nearest_neighbour.h"
 #include "tests/bench/baselines/selection.h"
 #include "tests/unit/bench/person_builder.h"
 
@@ -171,6 +172,42 @@ TEST(ArrivalKalman, StatesTheTimeOfArrivalSoAWalkerIsWhereHeWas) {
 TEST(ArrivalKalman, LeavesOutSensorsWithoutAPlace) {
   const registration::WalkTrack track{sensor(1), {frame_of(0, Duration{0}, {0, 0, 2})}};
   EXPECT_TRUE(arrival_kalman({track}, Registration{}).empty());
+}
+
+/// A view of a body whose core stands at (x, z).
+SensorView at_place(int number, double x, double z) {
+  SensorView view = view_of(number, 25, 0, {x, 1, z});
+  view.body = BodyId{static_cast<std::uint64_t>(number)};
+  return view;
+}
+
+TEST(NearestNeighbour, TakesBodiesOfSeveralSensorsTogetherAndConfirmsAfterThreeInstants) {
+  NearestNeighbour neighbour;
+  const std::vector<SensorView> views{at_place(1, 0, 0), at_place(2, 0.3, 0), at_place(1, 2, 0)};
+  EXPECT_TRUE(neighbour.group(views, at_frame(0)).empty());
+  EXPECT_TRUE(neighbour.group(views, at_frame(1)).empty());
+  const auto people = neighbour.group(views, at_frame(2));
+  ASSERT_EQ(people.size(), 2u);
+  EXPECT_EQ(people[0].views.size(), 2u);
+  EXPECT_EQ(people[1].views.size(), 1u);
+}
+
+TEST(NearestNeighbour, DoesNotPredictSoWhoPassesCloserIsTakenForTheOther) {
+  NearestNeighbour neighbour;
+  for (int i = 0; i < 3; ++i)
+    (void)neighbour.group({at_place(1, 0, 0), at_place(1, 1, 0)}, at_frame(i));
+  // Only one is seen, half-way beyond the middle.
+  const auto people = neighbour.group({at_place(1, 0.55, 0)}, at_frame(3));
+  ASSERT_EQ(people.size(), 1u);
+  EXPECT_EQ(people[0].id, PersonId{2});
+}
+
+TEST(NearestNeighbour, ForgetsAfterASecondAndNeverGivesAnIdTwice) {
+  NearestNeighbour neighbour;
+  for (int i = 0; i < 3; ++i) (void)neighbour.group({at_place(1, 0, 0)}, at_frame(i));
+  for (int i = 40; i < 42; ++i)
+    EXPECT_TRUE(neighbour.group({at_place(1, 0, 0)}, at_frame(i)).empty());
+  EXPECT_EQ(neighbour.group({at_place(1, 0, 0)}, at_frame(42)).at(0).id, PersonId{2});
 }
 
 TEST(Baselines, HaveDistinctNamesAndAllAnswerForASinglePerfectView) {

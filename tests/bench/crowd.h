@@ -1,0 +1,37 @@
+// People who meet, hide one another, or work side by side: the scenes that association is judged
+// by.
+//
+// World: the workspace centre is the origin, metres.  Everybody is a function of time since 1970
+// and of the seed.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/synthetic/scene.h"
+
+namespace chorus::bench {
+
+/// `count` people (2, 4 or 6) who walk to and fro through the middle; two and two pass each other
+/// there with 0.5 m between their necks, again and again.
+[[nodiscard]] std::vector<synthetic::Person> crossing_people(std::size_t count, std::uint64_t seed);
+
+/// One stands in the middle, the other walks around them at 0.8 m: each hides the other from every
+/// sensor in turn.
+[[nodiscard]] std::vector<synthetic::Person> circled_person(std::uint64_t seed);
+
+/// `count` people (at most 6), each wandering in a place of their own around the middle, never
+/// closer than 0.4 m.
+[[nodiscard]] std::vector<synthetic::Person> people_at_work(std::size_t count, std::uint64_t seed);
+
+/// Two people walk around the middle opposite to each other at `radius` [m].
+[[nodiscard]] std::vector<synthetic::Person> people_around(double radius, std::uint64_t seed);
+
+/// One person on the spot who turns about the vertical, a full turn in 8 s.
+[[nodiscard]] std::vector<synthetic::Person> turning_person(std::uint64_t seed);
+
+[[nodiscard]] synthetic::Occluder car_body();  ///< In the middle, 1.8 m long, 1.2 m high.
+[[nodiscard]] synthetic::Occluder pillar();    ///< Beside the middle, 0.4 m wide, to the ceiling.
+[[nodiscard]] synthetic::Occluder table();     ///< In the middle, 1.2 x 0.8 m, 0.75 m high.
+
+}  // namespace chorus::bench

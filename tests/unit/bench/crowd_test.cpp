@@ -1,0 +1,89 @@
+#include "tests/bench/crowd.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "common/base/units.h"
+#include "common/geometry/rotation.h"
+
+namespace chorus::bench {
+namespace {
+
+Eigen::Vector2d neck_at(const synthetic::Person& person, double time) {
+  const Eigen::Vector3d neck = person(from_seconds(time))[JointId::Neck].position;
+  return {neck.x(), neck.z()};
+}
+
+/// Least distance of any two over two minutes.
+double least_distance(const std::vector<synthetic::Person>& people) {
+  double least = std::numeric_limits<double>::infinity();
+  for (double time = 0; time < 120; time += 0.1) {
+    for (std::size_t a = 0; a < people.size(); ++a) {
+      for (std::size_t b = a + 1; b < people.size(); ++b) {
+        least = std::min(least, (neck_at(people[a], time) - neck_at(people[b], time)).norm());
+      }
+    }
+  }
+  return least;
+}
+
+TEST(CrossingPeople, PassEachOtherAtHalfAMetreAgainAndAgain) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const auto people = crossing_people(2, seed);
+    ASSERT_EQ(people.size(), 2u);
+    EXPECT_NEAR(least_distance(people), 0.5, 0.1) << seed;
+    int passings = 0;
+    bool near = false;
+    for (double time = 0; time < 60; time += 0.05) {
+      const bool now = (neck_at(people[0], time) - neck_at(people[1], time)).norm() < 0.7;
+      passings += now && !near ? 1 : 0;
+      near = now;
+    }
+    EXPECT_GE(passings, 6) << seed;
+  }
+}
+
+TEST(CrossingPeople, OfSeveralPairsDoNotWalkThroughEachOther) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    EXPECT_EQ(crossing_people(6, seed).size(), 6u);
+    EXPECT_GT(least_distance(crossing_people(4, seed)), 0.3) << seed;
+    EXPECT_GT(least_distance(crossing_people(6, seed)), 0.3) << seed;
+  }
+}
+
+TEST(CircledPerson, StandsInTheMiddleOfTheOthersWay) {
+  const auto people = circled_person(1);
+  ASSERT_EQ(people.size(), 2u);
+  for (double time = 0; time < 20; time += 1) {
+    EXPECT_LT(neck_at(people[0], time).norm(), 0.2);
+    EXPECT_NEAR(neck_at(people[1], time).norm(), 0.8, 0.25);
+  }
+}
+
+TEST(PeopleAtWork, KeepApart) {
+  EXPECT_GT(least_distance(people_at_work(4, 1)), 0.3);
+  EXPECT_GT(least_distance(people_at_work(6, 1)), 0.3);
+}
+
+TEST(PeopleAround, AreOppositeToEachOther) {
+  EXPECT_GT(least_distance(people_around(1.5, 1)), 2.3);
+}
+
+TEST(TurningPerson, TurnsOnceInEightSecondsOnTheSpot) {
+  const auto person = turning_person(2).front();
+  const auto yaw = [&](double time) {
+    const auto body = person(from_seconds(time));
+    const Eigen::Vector3d left =
+        body[JointId::ShoulderLeft].position - body[JointId::ShoulderRight].position;
+    return std::atan2(-left.z(), left.x());
+  };
+  EXPECT_NEAR(wrap_angle(yaw(11) - yaw(10)), deg(45), deg(5));
+  EXPECT_NEAR(std::abs(wrap_angle(yaw(14) - yaw(10))), deg(180), deg(5));
+  EXPECT_LT((neck_at(person, 14) - neck_at(person, 10)).norm(), 0.4);
+}
+
+}  // namespace
+}  // namespace chorus::bench
