@@ -1,6 +1,7 @@
 #include "common/synthetic/path.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -26,9 +27,20 @@ constexpr double kShortestLegShare = 0.5;  // of the reach; shorter way-points a
 constexpr double kLeastAmplitude = 0.3;
 constexpr double kMostAmplitude = 1.4;
 constexpr int kRedraws = 20;
+constexpr double kTurnPause = 1.5;    // between full turns [s]
+constexpr int kStations = 3;          // of a workplace, beside each other
+constexpr double kStationStep = 0.4;  // from one to the next [m]
+constexpr int kReachesPerStation = 4;
+constexpr double kReachTime = 0.7;                           // a hand's way there, and back [s]
+constexpr double kLeastHold = 0.3;                           // [s]
+constexpr double kMostHold = 1.2;                            // [s]
+constexpr double kAsideSpeed = 0.35;                         // mean, stepping aside [m/s]
+constexpr double kReachForward = 0.42;                       // of the targets before the body [m]
+constexpr std::array kReachHeights{0.85, 1.10, 1.35, 1.60};  // [m]
 
 constexpr std::uint64_t kDrawWander = 101;
 constexpr std::uint64_t kDrawDirection = 102;
+constexpr std::uint64_t kDrawReach = 103;
 
 double smooth(double x) { return x * x * (3 - 2 * x); }
 /// Integral of smooth from 0.
@@ -50,6 +62,8 @@ Path::Path(const PathScript& script) : script_(script) {
   if (script_.kind == PathKind::Line) line();
   if (script_.kind == PathKind::Circle) circle();
   if (script_.kind == PathKind::Stand) pause(kStandLoop);
+  if (script_.kind == PathKind::Turn) turn_in_place();
+  if (script_.kind == PathKind::Assembly) assemble();
 }
 
 void Path::add(Leg leg) {
@@ -67,14 +81,36 @@ void Path::pause(double duration) {
 }
 
 void Path::turn_to(double heading) {
-  const double turn = wrap_angle(heading - heading_);
+  turn_by(wrap_angle(heading - heading_));
+  heading_ = wrap_angle(heading);  // exactly, whatever the sum rounds to
+}
+
+void Path::turn_by(double turn) {
   add({.move = Move::Turn,
        .duration = std::abs(turn) / kTurnRate + kTurnSettling,
        .from = place_,
        .to = place_,
        .heading = heading_,
        .turn = turn});
-  heading_ = wrap_angle(heading);
+  heading_ = wrap_angle(heading_ + turn);
+}
+
+void Path::step_aside(const Eigen::Vector2d& target) {
+  const double way = (target - place_).norm();
+  add({.move = Move::Aside,
+       .duration = way / kAsideSpeed + kTurnSettling,
+       .from = place_,
+       .to = target,
+       .heading = heading_});
+  place_ = target;
+}
+
+void Path::reach_for(bool left, const Eigen::Vector3d& target, double hold) {
+  Leg leg{.move = Move::Reach, .from = place_, .to = place_, .heading = heading_};
+  leg.ramp = kReachTime;
+  leg.duration = 2 * kReachTime + hold;
+  leg.reach = {left, 1.0, target};
+  add(leg);
 }
 
 void Path::walk_to(const Eigen::Vector2d& target) {
@@ -140,6 +176,37 @@ void Path::circle() {
   add(leg);
 }
 
+/// Once round to either side, with pauses in between.
+void Path::turn_in_place() {
+  for (const double turn : {2 * std::numbers::pi, -2 * std::numbers::pi}) {
+    turn_by(turn);
+    pause(kTurnPause);
+  }
+}
+
+/// Hands take turns at points of different heights, then one step aside to the next station and at
+/// last back to the first.
+void Path::assemble() {
+  Draw draw{script_.seed, kDrawReach};
+  const Eigen::Vector2d to_left(std::cos(heading_), -std::sin(heading_));
+  const double step = std::min(kStationStep, script_.reach);
+  const auto station = [&](int index) {
+    return Eigen::Vector2d(script_.centre + step * (index - kStations / 2) * to_left);
+  };
+  place_ = station(0);
+  for (int i = 0; i < kStations; ++i) {
+    for (int k = 0; k < kReachesPerStation; ++k) {
+      const bool left = k % 2 == 0;
+      const double aside = draw.uniform(-0.05, 0.35);  // across the middle to well outside [m]
+      const double height = kReachHeights[static_cast<std::size_t>(i + k) % kReachHeights.size()];
+      reach_for(left, {left ? aside : -aside, height, kReachForward},
+                draw.uniform(kLeastHold, kMostHold));
+    }
+    pause(kLinePause);
+    step_aside(station((i + 1) % kStations));
+  }
+}
+
 PathPoint Path::along(const Leg& leg, double time) const {
   PathPoint point{leg.from, leg.heading, cadence_ * time, 0.0};
   const double share = leg.duration > 0 ? std::clamp(time / leg.duration, 0.0, 1.0) : 1.0;
@@ -152,6 +219,13 @@ PathPoint Path::along(const Leg& leg, double time) const {
     point.place = leg.from + radius * Eigen::Vector2d(std::sin(angle), std::cos(angle));
     point.heading = wrap_angle(angle + std::numbers::pi / 2);
     point.amplitude = amplitude_;
+  } else if (leg.move == Move::Aside) {
+    point.place = leg.from + smooth(share) * (leg.to - leg.from);
+    point.amplitude = kTurnStep * amplitude_ * std::sin(std::numbers::pi * share);
+  } else if (leg.move == Move::Reach) {
+    point.reach = leg.reach;
+    point.reach.amount = std::min(smooth(std::clamp(time / leg.ramp, 0.0, 1.0)),
+                                  smooth(std::clamp((leg.duration - time) / leg.ramp, 0.0, 1.0)));
   } else if (leg.move == Move::Walk) {
     const double begin = std::clamp(time / leg.ramp, 0.0, 1.0);
     const double end = std::clamp((leg.duration - time) / leg.ramp, 0.0, 1.0);

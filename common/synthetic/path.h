@@ -5,16 +5,23 @@
 // that knows the script agrees where.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "common/base/duration.h"
+#include "common/synthetic/reach.h"
 
 namespace chorus::synthetic {
 
-enum class PathKind { Random, Circle, Line, Stand };
+enum class PathKind { Random, Circle, Line, Stand, Turn, Assembly };
+
+/// What configuration calls each kind; the order is that of the enumeration.
+inline constexpr std::array<std::string_view, 6> kPathNames{"random", "circle", "line",
+                                                            "stand",  "turn",   "assembly"};
 
 struct PathScript {
   PathKind kind = PathKind::Random;
@@ -31,6 +38,7 @@ struct PathPoint {
   double heading = 0.0;    ///< Walking direction as yaw about +y; 0 is +z [rad]
   double phase = 0.0;      ///< Of the gait, in cycles.
   double amplitude = 0.0;  ///< Of the strides: 0 standing, 1 as recorded.
+  Reach reach{};           ///< In the person's walk frame.
 };
 
 class Path {
@@ -41,7 +49,7 @@ class Path {
   [[nodiscard]] Duration loop() const noexcept { return from_seconds(loop_); }
 
  private:
-  enum class Move { Walk, Turn, Pause, Orbit };
+  enum class Move { Walk, Turn, Pause, Orbit, Aside, Reach };
   struct Leg {
     Move move = Move::Pause;
     double start = 0.0;     ///< [s] in the loop
@@ -51,16 +59,22 @@ class Path {
     double heading = 0.0;  ///< At the start.
     double turn = 0.0;     ///< Total turn [rad].
     double speed = 0.0;    ///< Cruising speed of this leg [m/s].
-    double ramp = 0.0;     ///< Time to reach it and to stop [s].
+    double ramp = 0.0;     ///< Time to reach it and to stop; of a hand, each way [s].
+    synthetic::Reach reach{};
   };
 
   void walk_to(const Eigen::Vector2d& target);
   void turn_to(double heading);
+  void turn_by(double turn);
+  void step_aside(const Eigen::Vector2d& target);
+  void reach_for(bool left, const Eigen::Vector3d& target, double hold);
   void pause(double duration);
   void add(Leg leg);
   void wander();
   void line();
   void circle();
+  void turn_in_place();
+  void assemble();
   [[nodiscard]] PathPoint along(const Leg& leg, double time) const;
 
   PathScript script_;

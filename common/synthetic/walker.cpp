@@ -42,6 +42,7 @@ Skeleton<WorldSpace> Walker::at(Duration since_epoch) const {
   const Eigen::Quaterniond world_from_walk = about_y(point.heading);
   const Eigen::Vector3d origin(point.place.x(), 0.0, point.place.y());
   Skeleton<WorldSpace> body = gait_->pose(point.phase, point.amplitude);
+  apply(point.reach, body);
   for (Joint& joint : body.joints) {
     Eigen::Vector3d in_walk = body_scale_ * joint.position;
     in_walk.x() += sway * in_walk.y();  // an upright body sways about its feet

@@ -1,7 +1,6 @@
 #include "services/sensor/device/simulated.h"
 
 #include <algorithm>
-#include <array>
 #include <condition_variable>
 #include <mutex>
 #include <utility>
@@ -22,7 +21,6 @@ constexpr Duration kLongestNap = std::chrono::milliseconds(20);
 constexpr double kFarthest = 100.0;  // of anything in a room from its origin [m]
 constexpr int kMostSensors = 64;
 constexpr int kMostSeed = 1'000'000'000;
-constexpr std::array kPaths{PathKind::Random, PathKind::Circle, PathKind::Line, PathKind::Stand};
 
 struct Simulation {
   Scene scene;  ///< One sensor in it: this one.
@@ -52,14 +50,14 @@ void read_scene(ConfigReader config, Scene& scene) {
   config.read("seed", seed, 0, kMostSeed);
   config.read_s("epoch_s", epoch, Duration::zero(), std::chrono::hours(24 * 365 * 200));
   config.read("people", people, 0, 6);
-  config.read_choice("path", path, {"random", "circle", "line", "stand"});
+  config.read_choice("path", path, {synthetic::kPathNames.begin(), synthetic::kPathNames.end()});
   config.read("reach_m", script.reach, 0.0, kFarthest);
   config.read("centre_x_m", script.centre.x(), -kFarthest, kFarthest);
   config.read("centre_z_m", script.centre.y(), -kFarthest, kFarthest);
   config.read("speed_m_per_s", script.speed, 0.1, 2.0);
   config.read("body_scale", script.body_scale, 0.5, 1.5);
   script.seed = static_cast<std::uint64_t>(seed);
-  script.path = kPaths[std::min(path, kPaths.size() - 1)];
+  script.path = static_cast<PathKind>(std::min(path, synthetic::kPathNames.size() - 1));
   scene.epoch = Timestamp(epoch);
   scene.people = synthetic::make_people(script, static_cast<std::size_t>(people));
 }

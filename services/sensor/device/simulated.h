@@ -5,7 +5,7 @@
 // brackets:
 //
 //   scene.seed [1]          scene.epoch_s [0 = 1970]   scene.people [1]
-//   scene.path [random | circle | line | stand]        scene.reach_m [1.2]
+//   scene.path [random | circle | line | stand | turn | assembly]    scene.reach_m [1.2]
 //   scene.centre_x_m [0]    scene.centre_z_m [0]       scene.speed_m_per_s [0.9]
 //   scene.body_scale [1]
 //   ring.index [0]    ring.count [6]    ring.radius_m [3]    ring.height_m [1.6]

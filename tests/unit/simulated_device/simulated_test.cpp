@@ -132,6 +132,22 @@ TEST(Simulated, AClockThatStepsNeitherFreezesNorFloodsIt) {
   EXPECT_LT(captured.size(), 200u) << "two hours were jumped, not played";
 }
 
+TEST(Simulated, EveryPathGoesByItsName) {
+  std::vector<Eigen::Vector3d> hands;
+  for (const std::string_view path : synthetic::kPathNames) {
+    auto source = device(R"({"scene": {"path": ")" + std::string(path) + R"("}})", "s1",
+                         std::make_shared<HastyClock>());
+    ASSERT_TRUE(source) << path;
+    const auto captures = first_captures(**source, 1);
+    ASSERT_EQ(captures.size(), 1u) << path;
+    ASSERT_EQ(captures[0].frame.bodies.size(), 1u) << path;
+    hands.push_back(captures[0].frame.bodies[0].skeleton[JointId::HandLeft].position);
+  }
+  for (std::size_t i = 0; i < hands.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) EXPECT_NE(hands[i], hands[j]) << i << " is not " << j;
+  }
+}
+
 TEST(Simulated, WrongConfigIsNamed) {
   const auto clock = std::make_shared<FakeClock>(kStart);
   const std::pair<std::string_view, std::string_view> cases[] = {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/base/units.h"
 #include "common/body/bones.h"
 #include "common/geometry/rotation.h"
 
@@ -71,7 +72,8 @@ TEST_P(EveryPath, IsAFunctionOfTimeAlone) {
 
 INSTANTIATE_TEST_SUITE_P(Paths, EveryPath,
                          testing::Combine(testing::Values(PathKind::Random, PathKind::Circle,
-                                                          PathKind::Line, PathKind::Stand),
+                                                          PathKind::Line, PathKind::Stand,
+                                                          PathKind::Turn, PathKind::Assembly),
                                           testing::Values(1, 2)));
 
 TEST(Walker, WalksForward) {
@@ -142,6 +144,80 @@ TEST(Walker, RandomWalkCoversItsAreaAndTurnsEverywhere) {
   }
   EXPECT_GT((most - least).minCoeff(), 1.2);
   for (const bool seen : headings) EXPECT_TRUE(seen);
+}
+
+TEST(Walker, TurnsInPlaceOnceRoundToEitherSideWithPauses) {
+  WalkerScript script;
+  script.path = PathKind::Turn;
+  script.centre = {0.4, -0.3};
+  const Walker walker(script);
+  double turned = 0, most = 0, least = 0, fastest = 0;
+  Duration still{};
+  for (Duration t{}; t < walker.path().loop(); t += kStep) {
+    const PathPoint now = walker.path().at(t);
+    ASSERT_TRUE(now.place.isApprox(script.centre)) << "stays where it is";
+    const double step = wrap_angle(walker.path().at(t + kStep).heading - now.heading);
+    turned += step;
+    most = std::max(most, turned);
+    least = std::min(least, turned);
+    fastest = std::max(fastest, std::abs(step) / seconds(kStep));
+    if (step == 0) still += kStep;
+  }
+  EXPECT_NEAR(most - least, 2 * std::numbers::pi, 0.01) << "a full turn";
+  EXPECT_NEAR(turned, 0.0, 0.01) << "and back";
+  EXPECT_GT(fastest, deg(100));
+  EXPECT_LT(fastest, deg(220)) << "human speed";
+  EXPECT_NEAR(seconds(still), 3.0, 0.3);
+}
+
+/// Time at which a hand is far before the body, and where it then is, for one loop of assembly.
+std::vector<std::pair<Duration, Eigen::Vector3d>> reaches(const Walker& walker, bool left) {
+  std::vector<std::pair<Duration, Eigen::Vector3d>> all;
+  for (Duration t{}; t < walker.path().loop(); t += kStep) {
+    const PathPoint point = walker.path().at(t);
+    if (point.reach.amount < 1 || point.reach.left != left) continue;
+    const auto body = walker.at(t);
+    all.emplace_back(t, body[left ? JointId::WristLeft : JointId::WristRight].position);
+  }
+  return all;
+}
+
+TEST(Walker, AtAWorkplaceHandsTakeTurnsAtPointsOfDifferentHeights) {
+  WalkerScript script;
+  script.path = PathKind::Assembly;
+  const Walker walker(script);
+  for (const bool left : {true, false}) {
+    double lowest = 9, highest = 0;
+    const auto held = reaches(walker, left);
+    ASSERT_FALSE(held.empty());
+    for (const auto& [time, wrist] : held) {
+      const auto body = walker.at(time);
+      const auto& other = body[left ? JointId::WristRight : JointId::WristLeft].position;
+      const auto& own = body[left ? JointId::ShoulderLeft : JointId::ShoulderRight].position;
+      EXPECT_GT((wrist - own).cross(Eigen::Vector3d::UnitY()).norm(), 0.25) << "stretched out";
+      EXPECT_LT(other.y(), 1.05) << "the other hand hangs";
+      lowest = std::min(lowest, wrist.y());
+      highest = std::max(highest, wrist.y());
+    }
+    EXPECT_GT(highest - lowest, 0.4);
+  }
+}
+
+TEST(Walker, AtAWorkplaceTheBodyStepsAsideWithoutTurning) {
+  WalkerScript script;
+  script.path = PathKind::Assembly;
+  const Walker walker(script);
+  const double heading = walker.path().at(Duration::zero()).heading;
+  const Eigen::Vector2d front(std::sin(heading), std::cos(heading));
+  const Eigen::Vector2d first = walker.path().at(Duration::zero()).place;
+  double farthest = 0;
+  for (Duration t{}; t < walker.path().loop(); t += kStep) {
+    const PathPoint point = walker.path().at(t);
+    ASSERT_EQ(point.heading, heading);
+    ASSERT_NEAR((point.place - first).dot(front), 0.0, 1e-9);
+    farthest = std::max(farthest, (point.place - first).norm());
+  }
+  EXPECT_NEAR(farthest, 0.8, 1e-6) << "three stations, 0.4 m apart";
 }
 
 TEST(Walker, AnyScriptIsSurvived) {
