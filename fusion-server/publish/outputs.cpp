@@ -23,6 +23,7 @@ void for_each_output(Config& config, const Visitor& visit) {
   visit("trackd", config.trackd);
   visit("vmc", config.vmc);
   visit("vrchat", config.vrchat);
+  visit("vrpn", config.vrpn);
 }
 
 struct Opening {
@@ -31,10 +32,22 @@ struct Opening {
   Result<void> outcome;
 };
 
+/// Found in the protocol's namespace.  Some announce their bodies beforehand: those are told how
+/// many.
+template <class ProtocolSettings>
+Result<std::unique_ptr<Outlet>> open_protocol(const ProtocolSettings& settings, std::size_t slots) {
+  if constexpr (requires { open_outlet(settings, slots); }) {
+    return open_outlet(settings, slots);
+  } else {
+    return open_outlet(settings);
+  }
+}
+
 template <class Setting>
 void open_one(std::string_view key, const Setting& output, Opening& opening) {
   if (!output.common.enabled || !opening.outcome) return;
-  auto outlet = open_outlet(output.protocol);  // found in the protocol's namespace
+  const auto slots = static_cast<std::size_t>(output.common.max_persons);
+  auto outlet = open_protocol(output.protocol, slots);
   if (!outlet) {
     Error error = outlet.error();
     error.context = "outputs." + std::string(key) + ": " + error.context;
@@ -43,7 +56,7 @@ void open_one(std::string_view key, const Setting& output, Opening& opening) {
   }
   OutletTiming timing;
   timing.latency = output.common.latency;
-  timing.slots = static_cast<std::size_t>(output.common.max_persons);
+  timing.slots = slots;
   timing.clock = opening.clock;
   opening.sinks.push_back(std::make_unique<OutletSink>(std::move(*outlet), std::move(timing)));
 }

@@ -16,6 +16,7 @@
 #include "fusion-server/publish/trackd/trackd_outlet.h"
 #include "fusion-server/publish/vmc/vmc_outlet.h"
 #include "fusion-server/publish/vrchat/vrchat_outlet.h"
+#include "fusion-server/publish/vrpn/vrpn_outlet.h"
 
 namespace chorus::publish {
 
@@ -42,6 +43,7 @@ struct OutputsConfig {
   Output<trackd::Settings> trackd;
   Output<vmc::Settings> vmc;
   Output<vrchat::Settings> vrchat;
+  Output<vrpn::Settings> vrpn;
 
   bool operator==(const OutputsConfig&) const = default;
 };

@@ -1,0 +1,315 @@
+#include "fusion-server/publish/vrpn/vrpn_server.h"
+
+#include <algorithm>
+#include <mutex>
+#include <thread>
+#include <unordered_map>
+#include <utility>
+
+#include "common/base/log.h"
+
+namespace chorus::publish::vrpn {
+namespace {
+
+namespace net = http::net;
+using http::error_code;
+using http::tcp;
+using http::udp;
+
+constexpr std::chrono::milliseconds kSweepInterval{250};
+constexpr std::chrono::milliseconds kConnectTime{2000};
+constexpr std::chrono::milliseconds kAcceptPause{
+    100};  // with no descriptors left, until some close
+constexpr int kPortAttempts = 16;
+constexpr std::size_t kLongestRequest = 512;
+
+/// A dotted quad for IPv4 whichever socket it came through: clients spell their address so.
+std::string text_of(const net::ip::address& address) {
+  if (address.is_v6() && address.to_v6().is_v4_mapped()) {
+    return net::ip::make_address_v4(net::ip::v4_mapped, address.to_v6()).to_string();
+  }
+  return address.to_string();
+}
+
+}  // namespace
+
+struct Server::Impl {
+  /// A connection that a datagram asked for and that is not made yet.
+  struct Attempt {
+    http::Socket socket;
+    std::string asker;
+    SteadyTime deadline;
+  };
+
+  Impl(ServerOptions o, std::shared_ptr<const Trackers> t)
+      : options(std::move(o)), trackers(std::move(t)) {}
+
+  Result<void> bind(std::uint16_t port);
+  Result<void> listen();
+  void run();
+  void accept();
+  void on_accepted(error_code failed, http::Socket socket);
+  void receive_request();
+  void on_request(error_code failed, std::size_t size);
+  void connect_back(const tcp::endpoint& to, const std::string& asker);
+  void on_connected(error_code failed, const std::shared_ptr<Attempt>& attempt);
+  void welcome(http::Socket socket, const std::string& asker);
+  void forget(const Connection* connection);
+  void sweep();
+  void deliver();
+  void stop();
+  void turn_away(const std::string& reason);
+  [[nodiscard]] bool full() const {
+    return clients.size() + attempts.size() >= options.max_clients;
+  }
+
+  struct Client {
+    std::shared_ptr<Connection> connection;
+    std::string asker;  ///< Empty: it came by itself.
+  };
+
+  net::io_context io{1};  // First member: destroyed last, after everything that uses it.
+  ServerOptions options;
+  std::shared_ptr<const Trackers> trackers;
+  http::Acceptor acceptor{io.get_executor()};
+  http::DatagramSocket datagrams{io.get_executor()};
+  http::Timer sweep_timer{io.get_executor()};
+  http::Timer accept_timer{io.get_executor()};
+  RateReport turned_away{"VRPN client turned away"};
+  RateReport accept_trouble{"VRPN accept failed"};
+  ServerCounters counters;
+  RequestGate gate;
+  std::array<char, kLongestRequest> request{};
+  udp::endpoint requester;
+  std::vector<std::shared_ptr<Attempt>> attempts;
+  std::unordered_map<const Connection*, Client> clients;
+  bool stopping = false;
+  std::mutex mutex;
+  std::shared_ptr<const Reports> newest;  ///< Guarded by mutex: not delivered yet.
+  std::thread thread;
+};
+
+Result<void> Server::Impl::bind(std::uint16_t port) {
+  const std::string where = options.address + ":" + std::to_string(port);
+  error_code failed;
+  const auto address = net::ip::make_address(options.address, failed);
+  if (failed) {
+    return fail(ErrorCode::InvalidArgument, where,
+                "the address to listen on is a numeric one, such as 127.0.0.1 or 0.0.0.0");
+  }
+  const tcp::endpoint endpoint(address, port);
+  acceptor = http::Acceptor(io.get_executor());
+  datagrams = http::DatagramSocket(io.get_executor());
+  acceptor.open(endpoint.protocol(), failed);
+  if (!failed) acceptor.set_option(net::socket_base::reuse_address(true), failed);
+  if (!failed) acceptor.bind(endpoint, failed);
+  if (!failed) acceptor.listen(net::socket_base::max_listen_connections, failed);
+  if (failed) return fail(ErrorCode::Io, where, "cannot listen (TCP): " + failed.message());
+  const udp::endpoint same(address, acceptor.local_endpoint(failed).port());
+  if (!failed) datagrams.open(same.protocol(), failed);
+  if (!failed) datagrams.non_blocking(true, failed);
+  if (!failed) datagrams.bind(same, failed);
+  if (failed) return fail(ErrorCode::Io, where, "cannot listen (UDP): " + failed.message());
+  return {};
+}
+
+Result<void> Server::Impl::listen() {
+  Result<void> bound = bind(options.port);
+  for (int i = 1; options.port == 0 && !bound && i < kPortAttempts; ++i) bound = bind(0);
+  return bound;
+}
+
+/// Whatever is thrown (no memory) costs the one event it happened on, not the output.
+void Server::Impl::run() {
+  while (true) {
+    try {
+      io.run();
+      return;
+    } catch (const std::exception& thrown) {
+      log::error("VRPN handler failed", {{"what", thrown.what()}});
+    }
+  }
+}
+
+void Server::Impl::turn_away(const std::string& reason) {
+  ++counters.refused;
+  turned_away.hit(reason);
+}
+
+void Server::Impl::accept() {
+  acceptor.async_accept(
+      [this](error_code failed, http::Socket socket) { on_accepted(failed, std::move(socket)); });
+}
+
+void Server::Impl::on_accepted(error_code failed, http::Socket socket) {
+  if (stopping) return;
+  if (failed) {
+    accept_trouble.hit(failed.message());
+    accept_timer.expires_after(kAcceptPause);
+    return accept_timer.async_wait([this](error_code cancelled) {
+      if (!cancelled && !stopping) accept();
+    });
+  }
+  if (full()) {
+    turn_away("there are max_clients of them already");
+  } else {
+    welcome(std::move(socket), {});
+  }
+  accept();
+}
+
+void Server::Impl::receive_request() {
+  datagrams.async_receive_from(
+      net::buffer(request), requester,
+      [this](error_code failed, std::size_t size) { on_request(failed, size); });
+}
+
+void Server::Impl::on_request(error_code failed, std::size_t size) {
+  if (stopping) return;
+  if (!failed) {  // else: an earlier datagram of ours met a closed port
+    const auto port = read_request({request.data(), size});
+    if (!port) {
+      turn_away(port.error().message);
+    } else {
+      const tcp::endpoint to(requester.address(), *port);
+      const std::string asker = text_of(to.address()) + ":" + std::to_string(*port);
+      const auto verdict = full() ? RequestGate::Verdict::Refused
+                                  : gate.ask(asker, std::chrono::steady_clock::now());
+      if (verdict == RequestGate::Verdict::Refused) turn_away("too many requests");
+      if (verdict == RequestGate::Verdict::Connect) connect_back(to, asker);
+    }
+  }
+  receive_request();
+}
+
+void Server::Impl::connect_back(const tcp::endpoint& to, const std::string& asker) {
+  auto attempt = std::make_shared<Attempt>(Attempt{
+      http::Socket(io.get_executor()), asker, std::chrono::steady_clock::now() + kConnectTime});
+  attempts.push_back(attempt);
+  attempt->socket.async_connect(
+      to, [this, attempt](error_code failed) { on_connected(failed, attempt); });
+}
+
+void Server::Impl::on_connected(error_code failed, const std::shared_ptr<Attempt>& attempt) {
+  std::erase(attempts, attempt);
+  if (stopping) return;
+  if (failed) {
+    gate.gone(attempt->asker);
+    return turn_away("it asked to be connected to and did not answer");
+  }
+  gate.connected(attempt->asker);
+  welcome(std::move(attempt->socket), attempt->asker);
+}
+
+void Server::Impl::welcome(http::Socket socket, const std::string& asker) {
+  error_code gone;
+  const auto remote = socket.remote_endpoint(gone);
+  if (gone) return gate.gone(asker);
+  Session session(trackers, {text_of(remote.address()), !asker.empty()});
+  const ConnectionContext context{&datagrams, options.clock.get(), &counters, &turned_away,
+                                  options.limits};
+  auto connection =
+      std::make_shared<Connection>(context, std::move(socket), std::move(session),
+                                   [this](const Connection* closed) { forget(closed); });
+  clients.emplace(connection.get(), Client{connection, asker});
+  counters.clients = clients.size();
+  connection->start();
+}
+
+void Server::Impl::forget(const Connection* connection) {
+  const auto found = clients.find(connection);
+  if (found == clients.end()) return;
+  gate.gone(found->second.asker);
+  clients.erase(found);
+  counters.clients = clients.size();
+}
+
+void Server::Impl::sweep() {
+  const SteadyTime now = std::chrono::steady_clock::now();
+  for (const auto& attempt : attempts) {
+    error_code ignored;
+    if (attempt->deadline <= now) attempt->socket.close(ignored);  // on_connected() learns of it
+  }
+  std::vector<std::shared_ptr<Connection>> all;
+  for (const auto& [key, client] : clients) all.push_back(client.connection);
+  for (const auto& connection : all) connection->sweep(now);
+  sweep_timer.expires_after(kSweepInterval);
+  sweep_timer.async_wait([this](error_code cancelled) {
+    if (!cancelled && !stopping) sweep();
+  });
+}
+
+void Server::Impl::deliver() {
+  std::shared_ptr<const Reports> reports;
+  {
+    const std::scoped_lock lock(mutex);
+    reports = std::exchange(newest, nullptr);
+  }
+  if (!reports || stopping) return;
+  std::vector<std::shared_ptr<Connection>> all;
+  for (const auto& [key, client] : clients) all.push_back(client.connection);
+  for (const auto& connection : all) connection->publish(reports);
+}
+
+void Server::Impl::stop() {
+  stopping = true;
+  error_code ignored;
+  acceptor.close(ignored);
+  datagrams.close(ignored);
+  sweep_timer.cancel();
+  accept_timer.cancel();
+  for (const auto& attempt : attempts) attempt->socket.close(ignored);
+  while (!clients.empty()) {
+    const auto connection = clients.begin()->second.connection;
+    connection->close();
+  }
+}
+
+Server::Server(ServerOptions options, std::shared_ptr<const Trackers> trackers)
+    : impl_(std::make_unique<Impl>(std::move(options), std::move(trackers))) {}
+
+Server::~Server() {
+  if (!impl_->thread.joinable()) return;
+  net::post(impl_->io, [impl = impl_.get()] { impl->stop(); });
+  impl_->thread.join();
+}
+
+Result<void> Server::start() {
+  Impl& s = *impl_;
+  if (auto bound = s.listen(); !bound) return bound;
+  s.accept();
+  s.receive_request();
+  s.sweep();
+  s.thread = std::thread([&s] { s.run(); });
+  return {};
+}
+
+std::uint16_t Server::port() const {
+  error_code failed;
+  return impl_->acceptor.local_endpoint(failed).port();
+}
+
+void Server::publish(std::shared_ptr<const Reports> reports) {
+  bool pending = false;
+  {
+    const std::scoped_lock lock(impl_->mutex);
+    pending = impl_->newest != nullptr;
+    impl_->newest = std::move(reports);
+  }
+  if (pending) {
+    ++impl_->counters.dropped;  // its delivery is already on its way and takes this one
+  } else {
+    net::post(impl_->io, [impl = impl_.get()] { impl->deliver(); });
+  }
+}
+
+SinkCounters Server::counters() const {
+  SinkCounters counters;
+  counters.dropped = impl_->counters.dropped;
+  counters.failed = impl_->counters.failed;
+  counters.refused = impl_->counters.refused;
+  counters.clients = impl_->counters.clients;
+  return counters;
+}
+
+}  // namespace chorus::publish::vrpn

@@ -1,0 +1,176 @@
+// Hostile and broken clients of the VRPN server: each is turned away or closed, and a good client
+// beside them goes on getting every frame.
+#include "tests/integration/publish/vrpn_rig.h"
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "tests/integration/http/raw_client.h"
+
+namespace chorus::publish::vrpn {
+namespace {
+
+using http::test::RawClient;
+using std::chrono::milliseconds;
+using testing::vrpn_cookie;
+using testing::vrpn_description;
+using testing::vrpn_message;
+using testing::VrpnClient;
+
+class HostileVrpn : public test::VrpnRig {
+ protected:
+  void SetUp() override {
+    ServerOptions options;
+    options.limits.handshake = milliseconds(600);
+    options.limits.stall = milliseconds(600);
+    options.max_clients = 20;
+    serve(options);
+    ASSERT_TRUE(good.connect(server->port()));
+    ASSERT_TRUE(good_is_served());
+  }
+  /// A frame published from now on reaches the good client.
+  bool good_is_served() {
+    const auto begun = static_cast<double>(sequence);
+    return publish_until([&] {
+      good.read();
+      bool served = false;
+      for (const auto& message : good.decoder.messages) {
+        const auto pose = pose_of(message);
+        served = served || (pose && pose->position.z() > begun);
+      }
+      good.decoder.messages.clear();
+      return served;
+    });
+  }
+  VrpnClient good{{"Body0_Neck"}};
+};
+
+TEST_F(HostileVrpn, WhatIsNoVrpnIsClosed) {
+  std::string shorter = vrpn_message(0, 0, "");
+  shorter[3] = 23;
+  std::string count = vrpn_description(-1, 0, "Body0");
+  count[24] = '\x7F';
+  const std::vector<std::string> bad{"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n",
+                                     std::string(24, '\0'),
+                                     vrpn_cookie() + shorter,
+                                     vrpn_cookie() + std::string("\x00\x00\xFA\x01", 4),  // 64001
+                                     vrpn_cookie() + std::string(64, '\xFF'),
+                                     vrpn_cookie() + count,
+                                     vrpn_cookie() + vrpn_description(-2, 1 << 20, "x"),
+                                     vrpn_cookie() + vrpn_description(-1, -7, "x")};
+  for (std::size_t i = 0; i < bad.size(); ++i) {
+    RawClient client(server->port());
+    ASSERT_TRUE(client.connected());
+    client.say(bad[i]);
+    (void)client.hear_all();
+    EXPECT_TRUE(client.ended()) << i;
+    EXPECT_TRUE(wait_until([&] { return server->counters().refused == i + 1; })) << i;
+  }
+  EXPECT_TRUE(good_is_served());
+}
+
+TEST_F(HostileVrpn, HalfACookieIsNotWaitedForLong) {
+  RawClient half(server->port());
+  RawClient silent(server->port());
+  half.say(vrpn_cookie().substr(0, 10));
+  for (RawClient* client : {&half, &silent}) {
+    (void)client->hear_all();
+    EXPECT_TRUE(client->ended());
+  }
+  EXPECT_EQ(server->counters().refused, 2u);
+  EXPECT_TRUE(good_is_served());
+}
+
+TEST_F(HostileVrpn, AClientThatNeverReadsIsClosedAndCostsNobodyElse) {
+  RawClient deaf(server->port(), 4096);
+  deaf.say(vrpn_cookie());
+  ASSERT_TRUE(wait_until([&] { return server->counters().clients == 2; }));
+  // Six persons for a client that wants everything: 55 kB a frame.
+  EXPECT_TRUE(publish_until(
+      [&] {
+        (void)good.next(milliseconds(1));
+        return server->counters().clients == 1;
+      },
+      6));
+  EXPECT_GE(server->counters().refused, 1u);
+  EXPECT_GT(server->counters().dropped, 0u);  // newest frame wins while it does not read
+  EXPECT_TRUE(good_is_served());
+}
+
+TEST_F(HostileVrpn, AClientThatPingsAndNeverReadsIsClosed) {
+  RawClient deaf(server->port(), 4096);
+  std::string pings = vrpn_cookie() + vrpn_description(-1, 0, "Body5") +
+                      vrpn_description(-2, 0, "vrpn_Base ping_message");
+  for (int i = 0; i < 100; ++i) pings += vrpn_message(0, 0, "");
+  const std::string ping = vrpn_message(0, 0, "");
+  std::string flood;
+  for (int i = 0; i < 1000; ++i) flood += ping;
+  deaf.say(pings);
+  ASSERT_TRUE(wait_until([&] { return server->counters().clients == 2; }));
+  // It says more until nobody listens; the server's memory for it is bounded, so that comes soon.
+  std::thread saying([&] {
+    while (deaf.say(flood)) {
+    }
+  });
+  EXPECT_TRUE(wait_until([&] { return server->counters().clients == 1; }));
+  saying.join();
+  EXPECT_TRUE(good_is_served());
+}
+
+TEST_F(HostileVrpn, TenThousandRequestsMakeFewConnections) {
+  const int asking = ::socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(server->port());
+  const auto say = [&](const std::string& text) {
+    ::sendto(asking, text.data(), text.size(), 0, reinterpret_cast<sockaddr*>(&address),
+             sizeof address);
+  };
+  for (int i = 0; i < 10'000; ++i) {
+    // Ports above those that the system gives to others.
+    say("127.0.0.1 " + std::to_string(61'000 + i % 4'500) + std::string(1, '\0'));
+    if (i % 100 == 0) say(std::string(static_cast<std::size_t>(i % 1400), '\xFF'));
+  }
+  EXPECT_TRUE(good_is_served());
+  EXPECT_GT(server->counters().refused, 100u);
+  EXPECT_LE(server->counters().clients, 20u);
+  EXPECT_TRUE(wait_until([&] { return server->counters().clients == 1; }));
+  ::close(asking);
+}
+
+TEST_F(HostileVrpn, ClientsBeyondTheLimitAreTurnedAway) {
+  std::vector<std::unique_ptr<VrpnClient>> clients;
+  for (int i = 0; i < 19; ++i) {
+    clients.push_back(std::make_unique<VrpnClient>(std::vector<std::string>{"Body0"}));
+    ASSERT_TRUE(clients.back()->connect(server->port()));
+  }
+  ASSERT_TRUE(wait_until([&] { return server->counters().clients == 20; }));
+  RawClient surplus(server->port());
+  (void)surplus.hear_all();
+  EXPECT_TRUE(surplus.ended());
+  EXPECT_EQ(server->counters().refused, 1u);
+  clients.pop_back();
+  ASSERT_TRUE(wait_until([&] { return server->counters().clients == 19; }));
+  VrpnClient next({"Body0"});
+  ASSERT_TRUE(next.connect(server->port()));
+  EXPECT_TRUE(wait_until([&] { return server->counters().clients == 20; }));
+}
+
+TEST_F(HostileVrpn, NoReplacedByteOfAGoodOpeningStopsTheServer) {
+  const std::string opening =
+      vrpn_cookie() + vrpn_message(5000, -3, std::string("127.0.0.1\0", 10)) +
+      vrpn_description(-1, 0, "Body0") + vrpn_description(-2, 0, "vrpn_Base ping_message") +
+      vrpn_message(0, 0, "");
+  for (std::size_t at = 0; at < opening.size(); at += 5) {
+    std::string changed = opening;
+    changed[at] = static_cast<char>(changed[at] ^ '\xA5');
+    RawClient client(server->port());
+    client.say(changed);
+  }
+  EXPECT_TRUE(good_is_served());
+}
+
+}  // namespace
+}  // namespace chorus::publish::vrpn
