@@ -1,5 +1,7 @@
 """VRPN out of a real chorus-fusion, fed by simulated sensors: every pose is that of GET /frame of the same instant."""
 import math
+import shutil
+import subprocess
 import unittest
 
 from rig import Rig, free_port, get, get_json, wait_for
@@ -84,6 +86,19 @@ class Vrpn(Rig):
             wait_for("the client is forgotten", lambda: 'chorus_output_clients{output="vrpn"} 0'
                      in get(self.server.url + "metrics", accept="*/*")[2].decode())
         self.assertEqual(self.server.stop(), 0)
+
+    @unittest.skipUnless(shutil.which("vrpn_print_devices"), "vrpn_print_devices is not installed; see docs/guide/verify.md")
+    def test_vrpn_reads_it_without_a_warning(self):
+        for name in (f"Body0@127.0.0.1:{self.port}", f"Body0@tcp://127.0.0.1:{self.port}",
+                     f"Body0_Head@127.0.0.1:{self.port}"):
+            seen = subprocess.run(["timeout", "-s", "INT", "5", "stdbuf", "-oL", "vrpn_print_devices", name],
+                                  capture_output=True, text=True)
+            self.assertEqual(seen.stderr, "", name)
+            joints = 1 if "_" in name else 25
+            poses = sum(" pos (" in line for line in seen.stdout.splitlines())
+            self.assertGreater(poses, 30 * joints, name)  # a few seconds at 30 Hz, starting included
+            for what in ("sensor 0:" if joints == 1 else "sensor 24:", " vel ("):
+                self.assertIn(what, seen.stdout)
 
     def test_a_port_in_use_ends_the_program_with_its_name(self):
         second = self.fusion({}, wait=False, **{"outputs.vrpn.enabled": "true", "outputs.vrpn.port": self.port})
