@@ -24,6 +24,7 @@ namespace chorus::importers {
 struct TruthFrame {
   std::uint64_t index = 0;
   Skeleton<WorldSpace> skeleton;
+  std::uint64_t person = 1;  ///< Several of one frame stand together.
 };
 
 /// {"frames": [frame][33] x [x, y, z] or null}, metres, world z up -> our joints in our world.

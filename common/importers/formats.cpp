@@ -8,6 +8,7 @@
 
 #include "common/importers/keraal_text.h"
 #include "common/importers/labanotation_csv.h"
+#include "common/importers/motion_file.h"
 #include "common/importers/ntu_skeleton.h"
 #include "common/importers/nw_ucla_json.h"
 
@@ -16,21 +17,43 @@ namespace {
 
 using FileReader = Result<record::FrameRecording> (*)(const std::filesystem::path&,
                                                       const ImportOptions&);
+using SetReader = Result<ImportedSet> (*)(const std::filesystem::path&, const ImportOptions&);
 
-FileReader reader_of(FileFormat format) {
-  switch (format) {
-    case FileFormat::Labanotation:
-      return &read_labanotation_csv;
-    case FileFormat::Ntu:
-      return &read_ntu_skeleton;
-    case FileFormat::NwUcla:
-      return &read_nw_ucla_json;
-    case FileFormat::Keraal:
-      return &read_keraal_text;
-    case FileFormat::Pose2Sim:
-      return nullptr;  // a folder, not a file: import_cameras
-  }
-  return nullptr;
+Result<ImportedSet> import_cameras(const std::filesystem::path& folder,
+                                   const ImportOptions& options);
+
+template <MotionFormat format>
+Result<ImportedSet> import_motion(const std::filesystem::path& file, const ImportOptions& options) {
+  auto motion = read_motion_file(file, format, options);
+  if (!motion) return pass(motion);
+  ImportedSet set;
+  set.world_from_sensor.emplace(motion->recording.sensor, Eigen::Isometry3d::Identity());
+  set.recordings.push_back(std::move(motion->recording));
+  set.truth = std::move(motion->truth);
+  return set;
+}
+
+/// Either a file is a sensor, or one input is the whole set.
+struct ReaderRow {
+  FileFormat format;
+  FileReader file = nullptr;
+  SetReader set = nullptr;
+};
+
+constexpr std::array<ReaderRow, kFormats.size()> kReaders{{
+    {FileFormat::Labanotation, &read_labanotation_csv},
+    {FileFormat::Ntu, &read_ntu_skeleton},
+    {FileFormat::NwUcla, &read_nw_ucla_json},
+    {FileFormat::Keraal, &read_keraal_text},
+    {FileFormat::Pose2Sim, nullptr, &import_cameras},
+    {FileFormat::C3d, nullptr, &import_motion<MotionFormat::C3d>},
+    {FileFormat::Bvh, nullptr, &import_motion<MotionFormat::Bvh>},
+    {FileFormat::Mvnx, nullptr, &import_motion<MotionFormat::Mvnx>},
+}};
+
+const ReaderRow& reader_of(FileFormat format) {
+  return *std::find_if(kReaders.begin(), kReaders.end(),
+                       [&](const ReaderRow& row) { return row.format == format; });
 }
 
 constexpr std::string_view kCamerasFile = "cameras.json";
@@ -116,14 +139,14 @@ Result<ImportedSet> import_files(FileFormat format,
                                  const ImportOptions& options) {
   if (inputs.empty())
     return fail(ErrorCode::InvalidArgument, "import", "needs at least one input.");
-  const FileReader read = reader_of(format);
-  if (read == nullptr && inputs.size() != 1)
+  const ReaderRow& read = reader_of(format);
+  if (read.set != nullptr && inputs.size() != 1)
     return fail(ErrorCode::InvalidArgument, "import",
-                "takes one folder of camera views at a time.");
+                "takes one folder of camera views, or one file of motion, at a time.");
   if (options.sensor && inputs.size() != 1)
     return fail(ErrorCode::InvalidArgument, "import", "can name the sensor of one input only.");
-  auto set = read != nullptr ? import_each(read, inputs, options)
-                             : import_cameras(inputs.front(), options);
+  auto set = read.set != nullptr ? read.set(inputs.front(), options)
+                                 : import_each(read.file, inputs, options);
   if (!set) return pass(set);
   if (const auto distinct = refuse_copies(set->recordings); !distinct) return pass(distinct);
   if (const auto named = refuse_repeated_sensors(set->recordings); !named) return pass(named);

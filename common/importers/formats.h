@@ -16,7 +16,7 @@
 
 namespace chorus::importers {
 
-enum class FileFormat { Labanotation, Ntu, NwUcla, Keraal, Pose2Sim };
+enum class FileFormat { Labanotation, Ntu, NwUcla, Keraal, Pose2Sim, C3d, Bvh, Mvnx };
 
 struct FormatRow {
   FileFormat format;
@@ -24,13 +24,16 @@ struct FormatRow {
   std::string_view reads;  ///< One line for --help.
 };
 
-inline constexpr std::array<FormatRow, 5> kFormats{{
+inline constexpr std::array<FormatRow, 8> kFormats{{
     {FileFormat::Labanotation, "labanotation",
      "LabanotationSuite csv, Kinect v2 with capture times"},
     {FileFormat::Ntu, "ntu", "NTU RGB+D .skeleton, Kinect v2, 30 Hz assumed"},
     {FileFormat::NwUcla, "nw-ucla", "Northwestern-UCLA json, Kinect v1, 30 Hz assumed"},
     {FileFormat::Keraal, "keraal", "KERAAL Kinect text, Kinect v2, 30 Hz assumed"},
     {FileFormat::Pose2Sim, "pose2sim", "a folder of camera landmarks with cameras.json"},
+    {FileFormat::C3d, "c3d", "C3D, points named as joints, joint centres or markers; as truth"},
+    {FileFormat::Bvh, "bvh", "Biovision BVH, the usual joint names; as truth"},
+    {FileFormat::Mvnx, "mvnx", "Xsens MVN XML; as truth"},
 }};
 
 [[nodiscard]] std::optional<FileFormat> format_named(std::string_view name);
@@ -42,7 +45,8 @@ struct ImportedSet {
   std::vector<TruthFrame> truth;                            ///< Published truth, if any.
 };
 
-/// One input is one sensor; for pose2sim one input is the folder.  Refuses sets in which two inputs
+/// One input is one sensor; for pose2sim one input is the folder, for c3d, bvh and mvnx one file,
+/// whose world becomes ours (motion_file.h).  Refuses sets in which two inputs
 /// would be the same sensor, or hold the same numbers.  Every recording's notes say when the set
 /// begins and how long it lasts (set_origin, set_period_ns), so that several replays loop in step.
 [[nodiscard]] Result<ImportedSet> import_files(FileFormat format,

@@ -32,6 +32,7 @@ struct ImportOptions {
   std::optional<SensorId> sensor;   ///< Default: named after the file.
   std::optional<FloorPlane> floor;  ///< In sensor space, put into every frame.
   Timestamp start = kDefaultStart;  ///< First frame, where the file has no UTC of its own.
+  double metres_per_unit = 0.01;    ///< Of BVH, which does not say: centimetres by custom.
   ImportLimits limits;
 };
 

@@ -127,6 +127,16 @@ std::optional<std::size_t> find_named(const Names& names, const BvhRow& row,
 /// Kinect joint -> BVH joint; kJointCount entries, empty where the file has none.
 using Sources = std::array<std::optional<std::size_t>, kJointCount>;
 
+/// Files with our own joint names (chorus export) say themselves what is what; "HandLeft" would be
+/// a wrist in other dialects.
+std::optional<Sources> match_own_names(const Bvh& bvh) {
+  Sources sources;
+  for (std::size_t i = 0; i < bvh.joints.size(); ++i) {
+    if (const auto joint = joint_named(bvh.joints[i].name)) sources[index_of(*joint)] = i;
+  }
+  return sources[index_of(JointId::SpineBase)] ? std::optional(sources) : std::nullopt;
+}
+
 Result<Sources> match_joints(const Bvh& bvh) {
   Names names;
   for (std::size_t i = 0; i < bvh.joints.size(); ++i) names.emplace(plain(bvh.joints[i].name), i);
@@ -211,7 +221,8 @@ Result<Motion> motion_from_amc(const AsfSkeleton& skeleton, const std::vector<Am
 }
 
 Result<Motion> motion_from_bvh(const Bvh& bvh) {
-  const Result<Sources> sources = match_joints(bvh);
+  const std::optional<Sources> own = match_own_names(bvh);
+  const Result<Sources> sources = own ? Result<Sources>(*own) : match_joints(bvh);
   if (!sources) return pass(sources);
   Motion motion{1.0 / bvh.frame_time, {}};
   motion.frames.reserve(bvh.frames.size());
@@ -222,7 +233,7 @@ Result<Motion> motion_from_bvh(const Bvh& bvh) {
       const auto& source = (*sources)[j];
       if (source) place(body, static_cast<JointId>(j), positions[*source], JointState::Tracked);
     }
-    infer_absent(body);
+    if (!own) infer_absent(body);
     orient_segments(body);
     motion.frames.push_back(std::move(body));
   }

@@ -27,6 +27,7 @@ struct ImportArguments {
   std::string floor;
   std::string start;
   std::string sensor;
+  std::string unit = "cm";
   bool json = false;
 };
 
@@ -62,30 +63,31 @@ Registration registration_of(const importers::ImportedSet& set) {
   return registration;
 }
 
-resource::FrameResource truth_frame(const importers::TruthFrame& truth, Timestamp captured) {
-  resource::FrameResource frame;
-  frame.sequence = truth.index + 1;
-  frame.captured = captured;
-  frame.source = "truth";
-  frame.space = resource::SpaceKind::World;
-  resource::BodyResource& body = frame.bodies.emplace_back();
-  body.id = 1;
+resource::BodyResource truth_body(const importers::TruthFrame& truth, Timestamp captured) {
+  resource::BodyResource body;
+  body.id = truth.person;
   body.captured = captured;
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const Joint& joint = truth.skeleton.joints[j];
     body.joints[j] = {joint.position, joint.orientation, joint.state, std::nullopt, 0};
   }
-  return frame;
+  return body;
 }
 
 /// One /frame document a line, at the capture times of the first recording.
 Result<void> write_truth(const fs::path& file, const importers::ImportedSet& set) {
   const auto& frames = set.recordings.front().frames;
   std::string text;
-  for (const auto& truth : set.truth) {
-    if (truth.index >= frames.size()) break;
-    std::string line =
-        resource::write(truth_frame(truth, frames[truth.index].captured), resource::Format::Json);
+  for (auto truth = set.truth.begin(); truth != set.truth.end();) {
+    if (truth->index >= frames.size()) break;
+    resource::FrameResource frame;
+    frame.sequence = truth->index + 1;
+    frame.captured = frames[truth->index].captured;
+    frame.source = "truth";
+    frame.space = resource::SpaceKind::World;
+    for (; truth != set.truth.end() && truth->index + 1 == frame.sequence; ++truth)
+      frame.bodies.push_back(truth_body(*truth, frame.captured));
+    std::string line = resource::write(frame, resource::Format::Json);
     while (line.ends_with('\n')) line.pop_back();
     text += line + "\n";
   }
@@ -152,7 +154,8 @@ void print_summary(const importers::ImportedSet& set, const std::vector<fs::path
   }
   std::cout << table(rows);
   for (const auto& recording : set.recordings) {
-    for (const char* note : {"time", "states", "repeated", "unfitted"}) {
+    for (const char* note :
+         {"time", "states", "repeated", "unfitted", "joints", "labels", "sensors"}) {
       if (const auto found = recording.notes.find(note); found != recording.notes.end())
         std::cout << fmt::format("{}: {}\n", recording.sensor.str(), found->second);
     }
@@ -165,6 +168,7 @@ Result<int> run_import(const ImportArguments& arguments) {
   if (!arguments.floor.empty()) options.floor = importers::parse_floor(arguments.floor).value();
   if (!arguments.start.empty()) options.start = parse_iso8601(arguments.start).value();
   if (!arguments.sensor.empty()) options.sensor = SensorId::parse(arguments.sensor).value();
+  options.metres_per_unit = arguments.unit == "m" ? 1.0 : 0.01;
   const auto format = importers::format_named(arguments.format);
   const auto set =
       importers::import_files(*format, {arguments.inputs.begin(), arguments.inputs.end()}, options);
@@ -203,6 +207,9 @@ Run add_import(CLI::App& options) {
       ->check(readable_by(parse_iso8601));
   options.add_option("--sensor", arguments->sensor, "Name of the sensor, for a single input")
       ->check(readable_by(SensorId::parse));
+  options.add_option("--unit", arguments->unit, "Of lengths in BVH, which does not say")
+      ->check(CLI::IsMember({"cm", "m"}))
+      ->capture_default_str();
   options.add_flag("--json", arguments->json, "Report as JSON");
   return [arguments] { return run_import(*arguments); };
 }

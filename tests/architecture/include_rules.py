@@ -14,7 +14,7 @@ ROWS = [
     ["common/sensor"],
     ["common/motion", "common/resource"],
     ["common/record"],
-    ["common/synthetic", "common/endpoint", "common/importers"],
+    ["common/synthetic", "common/endpoint", "common/importers", "common/exporters"],
     ["fusion-server/flow.h"],
     ["fusion-server/align", "fusion-server/facing", "fusion-server/associate", "fusion-server/fusion"],
     ["fusion-server/registration"],

@@ -1,0 +1,48 @@
+// Every format by name: what `chorus export` calls.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/exporters/take.h"
+
+namespace chorus::exporters {
+
+enum class ExportFormat { Bvh, C3d, Trc, Csv, Gltf };
+
+struct ExportRow {
+  ExportFormat format;
+  std::string_view name;    ///< As on the command line.
+  std::string_view writes;  ///< One line for --help.
+};
+
+inline constexpr std::array<ExportRow, 5> kExportFormats{{
+    {ExportFormat::Bvh, "bvh", "hierarchy and rotations, one file a person"},
+    {ExportFormat::C3d, "c3d", "points, float, millimetres, missing joints marked"},
+    {ExportFormat::Trc, "trc", "points as a table, as OpenSim reads it"},
+    {ExportFormat::Csv, "csv", "one row a joint, with states, orientations and deviations"},
+    {ExportFormat::Gltf, "gltf", "animated skinned skeletons, binary (.glb)"},
+}};
+
+struct ExportOptions {
+  std::string file_name = "chorus";  ///< Stands in TRC; the name of the file without its folder.
+  double units_per_metre = 100.0;    ///< Of BVH.
+};
+
+struct ExportedFile {
+  std::string suffix;  ///< "" or "-p3": before the file name's ending.
+  std::string bytes;
+};
+
+struct Exported {
+  std::vector<ExportedFile> files;
+  std::vector<std::string> remarks;  ///< For people: how well bones of one length fit.
+};
+
+/// Several files only for a format that holds one person, and then only for several persons.
+[[nodiscard]] Result<Exported> exported(const Take& take, ExportFormat format,
+                                        const ExportOptions& options = {});
+
+}  // namespace chorus::exporters

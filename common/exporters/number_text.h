@@ -1,0 +1,14 @@
+// Numbers as every reader reads them: a point, no exponent, no locale, never "-0" or "nan".
+#pragma once
+
+#include <string>
+
+namespace chorus::exporters {
+
+/// Appends a number with `digits` after the point; 0 for what is not finite.
+void append_fixed(std::string& text, double value, int digits);
+
+/// Appends the shortest text that reads back as the same number.
+void append_exact(std::string& text, double value);
+
+}  // namespace chorus::exporters

@@ -1,0 +1,71 @@
+// What is exported: fused skeletons on one uniform grid of instants, one track a person.
+//
+// Fused frames may skip instants and persons come and go; files of motion have one rate and no
+// holes.  So the samples are put on the grid start + i / rate: a sample within a microsecond of a
+// grid instant is kept as it is, others are interpolated between their neighbours (positions
+// linear) where these are no farther apart than `max_gap`.  What is left is a gap: no joint is
+// tracked there, and each format says "missing" in its own way.  World space, metres, +y up.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/base/strong_id.h"
+#include "common/body/skeleton.h"
+#include "common/time/timestamp.h"
+
+namespace chorus::exporters {
+
+/// One person at one instant.
+struct FusedSample {
+  Timestamp instant;
+  PersonId person;
+  Skeleton<WorldSpace> skeleton;
+  /// Mean per-axis variance [m^2] of each joint; NaN: not known.
+  std::array<double, kJointCount> variance = unknown_variance();
+
+  [[nodiscard]] static constexpr std::array<double, kJointCount> unknown_variance() {
+    std::array<double, kJointCount> all{};
+    for (double& each : all) each = std::numeric_limits<double>::quiet_NaN();
+    return all;
+  }
+};
+
+struct Pose {
+  Skeleton<WorldSpace> skeleton;
+  std::array<double, kJointCount> variance = FusedSample::unknown_variance();
+};
+
+struct PersonTrack {
+  PersonId person;
+  std::vector<Pose> poses;  ///< Take::frames of them.
+};
+
+struct Take {
+  Timestamp start;  ///< The first sample of anybody.
+  double rate_hz = 0.0;
+  std::size_t frames = 0;
+  std::vector<PersonTrack> persons;  ///< In order of their ids.
+};
+
+struct TakeOptions {
+  double rate_hz = 0.0;  ///< 0: that of the median step, so that the last sample is on the grid.
+  Duration max_gap = std::chrono::milliseconds(200);
+  std::optional<PersonId> person = {};  ///< Only this one.
+};
+
+/// Poses of all persons together; 2 kB each.
+inline constexpr std::size_t kMaxPoses = 500'000;
+
+/// Refuses: no samples, a person who is not there (naming those who are), a person twice at one
+/// instant, more than kMaxPoses.  Samples may come in any order.
+[[nodiscard]] Result<Take> make_take(std::vector<FusedSample> samples,
+                                     const TakeOptions& options = {});
+
+/// The instant of a frame.
+[[nodiscard]] Timestamp instant_of(const Take& take, std::size_t frame);
+
+}  // namespace chorus::exporters

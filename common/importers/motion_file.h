@@ -1,0 +1,31 @@
+// Recorded human motion as truth: C3D, BVH and MVNX (common/motion) as a recording of an ideal
+// sensor.
+//
+// The sensor's space is the world of the file: +y up, floor y = 0, extrinsics identity.  So what
+// was captured can be replayed, fused and exported as anything else, and stands beside it as truth.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "common/importers/camera_views.h"
+#include "common/importers/import_options.h"
+#include "common/record/frame_recording.h"
+
+namespace chorus::importers {
+
+enum class MotionFormat { C3d, Bvh, Mvnx };
+
+struct MotionRecording {
+  record::FrameRecording recording;  ///< Bodies 1, 2, ... in the order of the file's subjects.
+  std::vector<TruthFrame> truth;     ///< The same in world space.
+};
+
+/// Notes of the recording: "labels": points of a C3D that are no joint; "joints": how many there
+/// are; "time": that the file says a rate only.  BVH lengths count as centimetres unless
+/// `options.metres_per_unit` says otherwise.
+[[nodiscard]] Result<MotionRecording> read_motion_file(const std::filesystem::path& file,
+                                                       MotionFormat format,
+                                                       const ImportOptions& options = {});
+
+}  // namespace chorus::importers

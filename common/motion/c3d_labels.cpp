@@ -1,0 +1,168 @@
+// Which points of a C3D file make a Kinect v2 joint: one table.
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "common/body/bones.h"
+#include "common/motion/c3d.h"
+#include "common/motion/text_lines.h"
+
+namespace chorus::motion {
+namespace {
+
+struct LabelRow {
+  JointId left;  ///< The centre joint itself when there are no sides.
+  JointId right;
+  JointState state;                          ///< Inferred: a mean of skin markers, no joint centre.
+  std::array<std::string_view, 4> labels{};  ///< Their mean; '<' stands for L or R.
+};
+
+// In order of preference; the first row of a joint whose labels are all there counts.  After our
+// own names: joint centres as OpenSim users write them, the segment origins of Plug-in Gait, then
+// skin markers of the Plug-in Gait set.
+constexpr auto kSure = JointState::Tracked;
+constexpr auto kGuess = JointState::Inferred;
+// clang-format off
+constexpr LabelRow kLabelRows[] = {
+    {JointId::HipLeft, JointId::HipRight, kSure, {"<HJC"}},
+    {JointId::HipLeft, JointId::HipRight, kSure, {"<FEP"}},
+    {JointId::KneeLeft, JointId::KneeRight, kSure, {"<KJC"}},
+    {JointId::KneeLeft, JointId::KneeRight, kSure, {"<FEO"}},
+    {JointId::KneeLeft, JointId::KneeRight, kGuess, {"<LFC", "<MFC"}},
+    {JointId::KneeLeft, JointId::KneeRight, kGuess, {"<KNE", "<KNM"}},
+    {JointId::KneeLeft, JointId::KneeRight, kGuess, {"<KNE"}},
+    {JointId::AnkleLeft, JointId::AnkleRight, kSure, {"<AJC"}},
+    {JointId::AnkleLeft, JointId::AnkleRight, kSure, {"<TIO"}},
+    {JointId::AnkleLeft, JointId::AnkleRight, kGuess, {"<LMAL", "<MMAL"}},
+    {JointId::AnkleLeft, JointId::AnkleRight, kGuess, {"<ANK"}},
+    {JointId::FootLeft, JointId::FootRight, kGuess, {"<TOE"}},
+    {JointId::FootLeft, JointId::FootRight, kGuess, {"<MT1", "<MT2"}},
+    {JointId::ShoulderLeft, JointId::ShoulderRight, kSure, {"<SJC"}},
+    {JointId::ShoulderLeft, JointId::ShoulderRight, kSure, {"<CLO"}},
+    {JointId::ShoulderLeft, JointId::ShoulderRight, kGuess, {"<SHO"}},
+    {JointId::ElbowLeft, JointId::ElbowRight, kSure, {"<EJC"}},
+    {JointId::ElbowLeft, JointId::ElbowRight, kSure, {"<HUO"}},
+    {JointId::ElbowLeft, JointId::ElbowRight, kGuess, {"<ELB"}},
+    {JointId::WristLeft, JointId::WristRight, kSure, {"<WJC"}},
+    {JointId::WristLeft, JointId::WristRight, kSure, {"<RAO"}},
+    {JointId::WristLeft, JointId::WristRight, kGuess, {"<WRA", "<WRB"}},
+    {JointId::HandLeft, JointId::HandRight, kSure, {"<HNO"}},
+    {JointId::HandLeft, JointId::HandRight, kGuess, {"<FIN"}},
+    {JointId::SpineBase, JointId::SpineBase, kSure, {"MIDPEL"}},
+    {JointId::SpineBase, JointId::SpineBase, kSure, {"LHJC", "RHJC"}},
+    {JointId::SpineBase, JointId::SpineBase, kSure, {"LFEP", "RFEP"}},
+    {JointId::SpineBase, JointId::SpineBase, kSure, {"HipLeft", "HipRight"}},
+    {JointId::SpineBase, JointId::SpineBase, kGuess, {"LASI", "RASI", "LPSI", "RPSI"}},
+    {JointId::SpineMid, JointId::SpineMid, kGuess, {"STRN", "T10"}},
+    {JointId::SpineShoulder, JointId::SpineShoulder, kGuess, {"CLAV", "C7"}},
+    {JointId::Neck, JointId::Neck, kGuess, {"C7"}},
+    {JointId::Head, JointId::Head, kSure, {"HEDO"}},
+    {JointId::Head, JointId::Head, kGuess, {"LFHD", "RFHD", "LBHD", "RBHD"}},
+};
+// clang-format on
+
+constexpr std::size_t kFewestJoints = 2;
+constexpr std::size_t kShownLabels = 12;
+constexpr std::size_t kMaxSkeletons = 2 * kMaxFrames;  // of all subjects: 800 MB
+
+/// Label without its subject -> the point.
+using Labels = std::map<std::string, std::size_t>;
+
+struct Source {
+  std::vector<std::size_t> points;  ///< Empty: none.
+  JointState state = JointState::NotTracked;
+};
+using Sources = std::array<Source, kJointCount>;
+
+Source source_of(const Labels& labels, const LabelRow& row, std::string_view side) {
+  Source source{{}, row.state};
+  for (const std::string_view each : row.labels) {
+    if (each.empty()) break;
+    std::string wanted(each);
+    if (wanted.front() == '<') wanted.replace(0, 1, side);
+    const auto found = labels.find(wanted);
+    if (found == labels.end()) return {};
+    source.points.push_back(found->second);
+  }
+  return source;
+}
+
+Sources sources_of(const Labels& labels) {
+  Sources sources;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const auto own = labels.find(std::string(kJointNames[j]));
+    if (own != labels.end()) sources[j] = {{own->second}, JointState::Tracked};
+  }
+  for (const LabelRow& row : kLabelRows) {
+    for (const auto& [joint, side] : {std::pair{row.left, "L"}, std::pair{row.right, "R"}}) {
+      Source& source = sources[index_of(joint)];
+      if (source.points.empty()) source = source_of(labels, row, side);
+    }
+  }
+  return sources;
+}
+
+Skeleton<WorldSpace> skeleton_of(const C3d& c3d, const std::vector<C3dPoint>& frame,
+                                 const Sources& sources) {
+  Skeleton<WorldSpace> body;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const Source& source = sources[j];
+    const bool there =
+        !source.points.empty() && std::all_of(source.points.begin(), source.points.end(),
+                                              [&](std::size_t p) { return frame[p].valid(); });
+    if (!there) continue;
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const std::size_t p : source.points) mean += frame[p].position.cast<double>();
+    body.joints[j].position =
+        c3d.world_from_file * mean / static_cast<double>(source.points.size());
+    body.joints[j].state = source.state;
+  }
+  orient_segments(body);
+  return body;
+}
+
+std::string labels_shown(const C3d& c3d) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kShownLabels, c3d.labels.size()); ++i)
+    text += (i == 0 ? "" : " ") + c3d.labels[i].substr(0, 24);
+  return c3d.labels.size() > kShownLabels ? text + " ..." : text;
+}
+
+}  // namespace
+
+Result<C3dMotion> motion_from_c3d(const C3d& c3d) {
+  std::map<std::string, Labels> subjects;
+  for (std::size_t p = 0; p < c3d.labels.size(); ++p) {
+    const std::string& label = c3d.labels[p];
+    const std::size_t colon = label.find(':');
+    const bool prefixed = colon != std::string::npos;
+    subjects[prefixed ? label.substr(0, colon) : ""].emplace(
+        prefixed ? label.substr(colon + 1) : label, p);
+  }
+  C3dMotion out;
+  std::set<std::size_t> used;
+  for (const auto& [name, labels] : subjects) {
+    const Sources sources = sources_of(labels);
+    const auto found = std::count_if(sources.begin(), sources.end(),
+                                     [](const Source& s) { return !s.points.empty(); });
+    if (found < static_cast<std::ptrdiff_t>(kFewestJoints)) continue;
+    for (const Source& source : sources) used.insert(source.points.begin(), source.points.end());
+    if ((out.subjects.size() + 1) * c3d.frames.size() > kMaxSkeletons)
+      return fail(ErrorCode::TooLarge, "C3D labels", "too many subjects for a file this long");
+    C3dSubject subject{name, {c3d.rate_hz, {}}};
+    for (const auto& frame : c3d.frames)
+      subject.motion.frames.push_back(skeleton_of(c3d, frame, sources));
+    out.subjects.push_back(std::move(subject));
+  }
+  if (out.subjects.empty())
+    return fail(ErrorCode::Unsupported, "C3D labels",
+                "none of the points is a joint we know; the labels are: " + labels_shown(c3d));
+  for (std::size_t p = 0; p < c3d.labels.size(); ++p) {
+    if (used.count(p) == 0) out.unused_labels.push_back(c3d.labels[p]);
+  }
+  return out;
+}
+
+}  // namespace chorus::motion

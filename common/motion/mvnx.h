@@ -1,0 +1,56 @@
+// MVNX: the XML of Xsens MVN Studio, versions 3 and 4 (Xsens MVN User Manual, "MVNX").
+//
+// One subject of named segments with points on them, then frames: position and orientation of every
+// segment in a right-handed space with +x ahead, +y left, +z up; metres; quaternions w x y z.  In
+// the T-pose all segments have the axes of that space.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "common/base/result.h"
+#include "common/motion/motion.h"
+
+namespace chorus::motion {
+
+struct MvnxPoint {
+  std::string label;                                     ///< "jLeftHip", "pTopOfHead"
+  Eigen::Vector3d in_segment = Eigen::Vector3d::Zero();  ///< [m]
+};
+
+struct MvnxSegment {
+  std::string label;  ///< "Pelvis", "LeftUpperArm"
+  std::vector<MvnxPoint> points;
+};
+
+struct MvnxFrame {
+  double time = 0.0;                             ///< Since the first frame [s].
+  std::vector<Eigen::Vector3d> positions;        ///< Of the segments' origins [m].
+  std::vector<Eigen::Quaterniond> orientations;  ///< world_from_segment, in the file's world.
+  std::vector<Eigen::Quaterniond> sensor_orientations;  ///< One a sensor, where the file has them.
+};
+
+struct Mvnx {
+  std::string subject;
+  double rate_hz = 0.0;
+  std::vector<MvnxSegment> segments;
+  std::vector<std::string> sensors;
+  std::vector<MvnxFrame> frames;  ///< type="normal" only: calibration poses are left out.
+};
+
+/// Larger files are refused.
+inline constexpr std::size_t kMaxMvnxBytes = 512u << 20;
+
+/// Refuses entity declarations, elements nested deeper than 32, frames whose numbers do not match
+/// the segments, numbers that are none.  Elements it does not know are passed over.
+[[nodiscard]] Result<Mvnx> parse_mvnx(std::string_view xml, std::string_view origin);
+
+/// Which point of which segment is which joint is a table in mvnx_joints.cpp; segments' rotations
+/// become joint orientations, twist included.  A joint whose segment or point the file lacks is not
+/// tracked; a file without Pelvis is refused.
+[[nodiscard]] Result<Motion> motion_from_mvnx(const Mvnx& mvnx);
+
+}  // namespace chorus::motion

@@ -1,0 +1,137 @@
+// chorus export SOURCE --format FORMAT --out FILE: fused frames as files of other programs.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "common/base/duration.h"
+#include "common/exporters/export_formats.h"
+#include "services/ctl/command.h"
+#include "services/ctl/fused_frames.h"
+#include "services/ctl/text_file.h"
+
+namespace chorus::ctl {
+namespace {
+
+struct ExportArguments {
+  std::string source;
+  std::string format;
+  std::string out;
+  std::optional<std::uint64_t> person;
+  double rate_hz = 0.0;
+  int max_gap_ms = 200;
+  double seconds = 10.0;
+  std::string unit = "cm";
+  bool json = false;
+};
+
+/// "walk.bvh" and "-p2" -> "walk-p2.bvh"; standard output stays standard output.
+std::string with_suffix(const std::string& file, const std::string& suffix) {
+  if (suffix.empty() || file == "-") return file;
+  const std::filesystem::path path(file);
+  return (path.parent_path() / (path.stem().string() + suffix + path.extension().string()))
+      .string();
+}
+
+exporters::ExportFormat format_of(const std::string& name) {
+  const auto* row = std::find_if(exporters::kExportFormats.begin(), exporters::kExportFormats.end(),
+                                 [&](const auto& each) { return each.name == name; });
+  return row->format;  // the name was checked while parsing
+}
+
+Result<std::vector<std::string>> write_files(const exporters::Exported& exported,
+                                             const std::string& out) {
+  if (out == "-" && exported.files.size() > 1)
+    return fail(ErrorCode::InvalidArgument, "standard output",
+                "can take one file; this format holds one person. Name one with --person.");
+  std::vector<std::string> written;
+  for (const exporters::ExportedFile& file : exported.files) {
+    written.push_back(with_suffix(out, file.suffix));
+    const auto done = write_text(written.back(), file.bytes);
+    if (!done) return pass(done);
+  }
+  return written;
+}
+
+void report(const exporters::Take& take, const exporters::Exported& exported,
+            const std::vector<std::string>& written, bool as_json) {
+  if (as_json) {
+    nlohmann::json persons = nlohmann::json::array();
+    for (const auto& track : take.persons) persons.push_back(track.person.value);
+    std::cerr << nlohmann::json{{"files", written},       {"frames", take.frames},
+                                {"rateHz", take.rate_hz}, {"start", to_iso8601(take.start)},
+                                {"persons", persons},     {"remarks", exported.remarks}}
+                     .dump(2)
+              << '\n';
+    return;
+  }
+  std::cerr << fmt::format("{} persons, {} frames at {:.6g} Hz from {}\n", take.persons.size(),
+                           take.frames, take.rate_hz, to_iso8601(take.start));
+  for (const std::string& remark : exported.remarks) std::cerr << remark << '\n';
+  for (const std::string& file : written) std::cerr << "wrote " << file << '\n';
+}
+
+Result<int> run_export(const ExportArguments& arguments) {
+  auto samples = read_fused_frames(
+      arguments.source, std::chrono::milliseconds(std::llround(arguments.seconds * 1e3)));
+  if (!samples) return pass(samples);
+  exporters::TakeOptions options;
+  options.rate_hz = arguments.rate_hz;
+  options.max_gap = std::chrono::milliseconds(arguments.max_gap_ms);
+  if (arguments.person) options.person = PersonId{*arguments.person};
+  const auto take = exporters::make_take(std::move(*samples), options);
+  if (!take) return pass(take);
+  exporters::ExportOptions how;
+  how.file_name = std::filesystem::path(arguments.out).filename().string();
+  how.units_per_metre = arguments.unit == "m" ? 1.0 : 100.0;
+  const auto exported = exporters::exported(*take, format_of(arguments.format), how);
+  if (!exported) return pass(exported);
+  const auto written = write_files(*exported, arguments.out);
+  if (!written) return pass(written);
+  report(*take, *exported, *written, arguments.json);
+  return kExitOk;
+}
+
+}  // namespace
+
+Run add_export(CLI::App& options) {
+  const auto arguments = std::make_shared<ExportArguments>();
+  std::string formats = "One of:";
+  std::vector<std::string> names;
+  for (const auto& row : exporters::kExportFormats) {
+    formats += fmt::format("\n{}: {}", row.name, row.writes);
+    names.emplace_back(row.name);
+  }
+  options
+      .add_option("source", arguments->source,
+                  "Recording (.mcap or a folder of them), NDJSON of chorus fuse, - for NDJSON on "
+                  "standard input, or http://HOST:PORT/ of a fusion server")
+      ->required();
+  options.add_option("--format", arguments->format, formats)
+      ->required()
+      ->check(CLI::IsMember(names));
+  options.add_option("--out", arguments->out, "File to write; - is standard output")->required();
+  options.add_option("--person", arguments->person, "Only the person of this id");
+  options.add_option("--rate", arguments->rate_hz, "Frames a second [Hz]; the source's by default")
+      ->check(CLI::Range(0.1, 1000.0));
+  options
+      .add_option("--max-gap", arguments->max_gap_ms,
+                  "Longest hole that is bridged [ms]; joints are missing in longer ones")
+      ->check(CLI::Range(0, 60'000))
+      ->capture_default_str();
+  options.add_option("--seconds", arguments->seconds, "How long to listen to a server [s]")
+      ->check(CLI::Range(0.1, 86'400.0))
+      ->capture_default_str();
+  options.add_option("--unit", arguments->unit, "Of lengths in BVH")
+      ->check(CLI::IsMember({"cm", "m"}))
+      ->capture_default_str();
+  options.add_flag("--json", arguments->json, "Summary as JSON");
+  return [arguments] { return run_export(*arguments); };
+}
+
+}  // namespace chorus::ctl

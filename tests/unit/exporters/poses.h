@@ -1,0 +1,66 @@
+// Poses for exporter tests: nothing in them is the same mirrored, turned or with two axes swapped.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "common/base/units.h"
+#include "common/exporters/take.h"
+#include "common/motion/cmu_walk.h"
+#include "common/motion/motion.h"
+#include "tests/support/builders.h"
+
+namespace chorus::exporters {
+
+/// Left arm raised ahead, right knee lifted, head to the left; place and heading are odd numbers.
+inline Skeleton<WorldSpace> asymmetric_person() {
+  Skeleton<WorldSpace> body = testing::standing_person({0.7, 0.0, -1.3}, deg(35));
+  const Eigen::Quaterniond world_from_body(Eigen::AngleAxisd(deg(35), Eigen::Vector3d::UnitY()));
+  const auto hang = [&](JointId joint, JointId on, const Eigen::Vector3d& offset_in_body) {
+    body[joint].position = body[on].position + world_from_body * offset_in_body;
+  };
+  hang(JointId::ElbowLeft, JointId::ShoulderLeft, {0.10, 0.05, 0.25});
+  hang(JointId::WristLeft, JointId::ElbowLeft, {0.05, 0.20, 0.14});
+  hang(JointId::HandLeft, JointId::WristLeft, {0.0, 0.07, 0.04});
+  hang(JointId::HandTipLeft, JointId::HandLeft, {0.01, 0.08, 0.0});
+  hang(JointId::ThumbLeft, JointId::WristLeft, {-0.05, 0.04, 0.03});
+  hang(JointId::KneeRight, JointId::HipRight, {-0.05, -0.15, 0.38});
+  hang(JointId::AnkleRight, JointId::KneeRight, {0.02, -0.38, -0.06});
+  hang(JointId::FootRight, JointId::AnkleRight, {-0.03, -0.05, 0.12});
+  hang(JointId::Head, JointId::Neck, {0.06, 0.14, 0.05});
+  return body;
+}
+
+inline Take take_of(const std::vector<std::vector<Skeleton<WorldSpace>>>& persons, double rate_hz) {
+  Take take{testing::kStart, rate_hz, persons.front().size(), {}};
+  for (std::size_t p = 0; p < persons.size(); ++p) {
+    take.persons.push_back({PersonId{p + 1}, {}});
+    for (const auto& body : persons[p]) take.persons.back().poses.push_back({body});
+  }
+  return take;
+}
+
+/// The shipped walk at 30 Hz: bones that are rigid, rotations that are human.
+inline std::vector<Skeleton<WorldSpace>> walk() {
+  const auto& shipped = motion::cmu_walk();
+  const auto captured = motion::motion_from_amc(shipped.skeleton, shipped.takes.front()).value();
+  return motion::resampled(captured, 30.0).frames;
+}
+
+/// The same with 20 mm of noise on every joint, as fused joints have it; the same every time.
+inline std::vector<Skeleton<WorldSpace>> breathing_walk() {
+  auto frames = walk();
+  std::uint32_t state = 1;
+  const auto noise = [&state] {
+    state = state * 1664525u + 1013904223u;
+    return 0.02 * (static_cast<double>(state >> 8) / static_cast<double>(1u << 23) - 1.0);
+  };
+  for (auto& body : frames) {
+    for (Joint& joint : body.joints) {
+      for (Eigen::Index axis = 0; axis < 3; ++axis) joint.position[axis] += noise();
+    }
+  }
+  return frames;
+}
+
+}  // namespace chorus::exporters

@@ -1,0 +1,107 @@
+// Motion files as recordings: what was exported comes back, as truth and as an ideal sensor's view.
+#include "common/importers/motion_file.h"
+
+#include <gmock/gmock.h>
+
+#include "common/exporters/export_formats.h"
+#include "common/exporters/skeleton_fit.h"
+#include "common/importers/formats.h"
+#include "tests/support/matchers.h"
+#include "tests/unit/exporters/poses.h"
+#include "tests/unit/importers/import_files.h"
+#include "tests/unit/motion/c3d_files.h"
+
+namespace chorus::importers {
+namespace {
+
+using chorus::testing::FailsWith;
+using chorus::testing::IsOk;
+using chorus::testing::SkeletonNear;
+using ::testing::HasSubstr;
+
+exporters::Take two_persons() {
+  auto second = exporters::walk();
+  for (auto& body : second) {
+    for (Joint& joint : body.joints) joint.position.x() += 1.5;
+  }
+  for (Joint& joint : second[3].joints) testing::hide(joint);
+  return exporters::take_of({exporters::walk(), second}, 30.0);
+}
+
+TEST(MotionFile, AnExportedC3dComesBackWithBothPersons) {
+  const ScratchFolder folder;
+  const auto take = two_persons();
+  const auto exported = exporters::exported(take, exporters::ExportFormat::C3d);
+  ASSERT_THAT(exported, IsOk());
+  const auto file = folder.write("walk.c3d", exported->files[0].bytes);
+  const auto set = import_files(FileFormat::C3d, {file});
+  ASSERT_THAT(set, IsOk());
+  const auto& recording = set->recordings.at(0);
+  EXPECT_EQ(recording.sensor.str(), "walk");
+  ASSERT_EQ(recording.frames.size(), take.frames);
+  EXPECT_EQ(recording.frames[30].captured - recording.frames[0].captured, std::chrono::seconds(1));
+  EXPECT_EQ(recording.frames[3].bodies.size(), 1u) << "the second person is hidden";
+  EXPECT_TRUE(recording.frames[0].floor.has_value());
+  EXPECT_TRUE(set->world_from_sensor.at(recording.sensor).isApprox(Eigen::Isometry3d::Identity()));
+  ASSERT_EQ(set->truth.size(), 2 * take.frames - 1);
+  for (const TruthFrame& truth : set->truth)
+    ASSERT_THAT(truth.skeleton,
+                SkeletonNear(take.persons[truth.person - 1].poses[truth.index].skeleton, 1e-6));
+}
+
+TEST(MotionFile, AnExportedBvhComesBackInTheUnitItWasWrittenIn) {
+  const ScratchFolder folder;
+  const auto take = exporters::take_of({exporters::walk()}, 30.0);
+  const auto chain = exporters::fit_skeleton(take.persons[0]).value();
+  for (const double units : {100.0, 1.0}) {
+    const auto text = exporters::exported(take, exporters::ExportFormat::Bvh, {"walk.bvh", units})
+                          ->files[0]
+                          .bytes;
+    ImportOptions options;
+    options.metres_per_unit = 1.0 / units;
+    const auto set = import_files(FileFormat::Bvh, {folder.write("walk.bvh", text)}, options);
+    ASSERT_THAT(set, IsOk());
+    ASSERT_EQ(set->truth.size(), take.frames);
+    for (std::size_t f = 0; f < take.frames; f += 13)
+      EXPECT_THAT(set->truth[f].skeleton,
+                  SkeletonNear(take.persons[0].poses[f].skeleton, chain.residual.largest + 1e-4));
+  }
+}
+
+TEST(MotionFile, SaysWhatIsNoJointAndHowManyThereAre) {
+  const ScratchFolder folder;
+  motion::C3dSpec spec;
+  spec.labels = {"LHJC", "RHJC", "LKJC", "Wand1", "Wand2"};
+  const auto read = read_motion_file(folder.write("lab.c3d", motion::C3dBuilder(spec).bytes()),
+                                     MotionFormat::C3d);
+  ASSERT_THAT(read, IsOk());
+  EXPECT_EQ(read->recording.notes.at("labels"), "2 of 5 points are no joint: Wand1 Wand2");
+  EXPECT_THAT(read->recording.notes.at("joints"), HasSubstr("4 of our 25"));
+  EXPECT_THAT(read->recording.notes.at("time"), HasSubstr("50 Hz"));
+}
+
+TEST(MotionFile, WrongFilesAreNamed) {
+  const ScratchFolder folder;
+  const auto nonsense = folder.write("nonsense.c3d", "not a motion at all");
+  for (const auto format : {FileFormat::C3d, FileFormat::Bvh, FileFormat::Mvnx}) {
+    const auto read = import_files(format, {nonsense});
+    ASSERT_THAT(read, FailsWith(ErrorCode::Malformed));
+    EXPECT_THAT(to_string(read.error()), HasSubstr("nonsense.c3d"));
+    EXPECT_THAT(import_files(format, {folder.path() / "none"}), FailsWith(ErrorCode::NotFound));
+    EXPECT_THAT(import_files(format, {nonsense, nonsense}), FailsWith(ErrorCode::InvalidArgument));
+  }
+}
+
+TEST(MotionFile, RealSuitTakeIsARecording) {
+  const auto file = shared_recordings() / "xsens_mvnx_bvh/test_mocap.mvnx";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "shared recordings are not here";
+  const auto read = read_motion_file(file, MotionFormat::Mvnx);
+  ASSERT_THAT(read, IsOk());
+  EXPECT_EQ(read->recording.frames.size(), 112u);
+  EXPECT_THAT(read->recording.notes.at("sensors"), HasSubstr("11 inertial sensors"));
+  const auto& body = read->truth[50].skeleton;
+  EXPECT_GT(body[JointId::Head].position.y(), body[JointId::SpineBase].position.y() + 0.5);
+}
+
+}  // namespace
+}  // namespace chorus::importers
