@@ -54,8 +54,8 @@ constexpr std::array kCommands{
         &add_fuse},
     Command{"export", "Writes fused frames as BVH, C3D, TRC, CSV or glTF",
             "Examples:\n"
-            "  chorus fuse rec --out - | chorus export - --format bvh --out walk.bvh\n"
             "  chorus export cell.mcap --format c3d --out walk.c3d\n"
+            "  chorus fuse rec --out - | chorus export - --format bvh --out walk.bvh\n"
             "  chorus export http://127.0.0.1:8080/ --seconds 20 --format gltf --out walk.glb\n"
             "  chorus export fused.ndjson --format csv --person 2 --out - | head\n"
             "What each format holds, and what is lost: docs/guide/export.md.",
