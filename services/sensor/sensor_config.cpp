@@ -90,7 +90,8 @@ Device read_device(ConfigReader device, const Setup& setup) {
   auto replay = device.child("replay");
   const ReplayOptions options = read_replay_options(replay);
   auto simulation = device.child("simulated");
-  auto simulated = make_simulated(simulation, setup.config.id, setup.clock);
+  auto simulated = make_simulated(simulation, setup.config.id,
+                                  {std::make_shared<SystemClock>(), setup.config.clock_error});
   return kind == 0 ? std::move(simulated) : open_replay(replay, options, setup);
 }
 

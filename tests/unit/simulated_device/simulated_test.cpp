@@ -1,5 +1,7 @@
 #include "services/sensor/device/simulated.h"
 
+#include "common/synthetic/scene.h"
+
 #include <gmock/gmock.h>
 
 #include <condition_variable>
@@ -14,9 +16,10 @@ using testing::HasSubstr;
 constexpr Timestamp kStart = from_unix_ns(1'795'000'000'000'000'000);
 
 Result<std::unique_ptr<FrameSource>> device(std::string_view json, std::string_view id,
-                                            std::shared_ptr<const Clock> clock) {
+                                            std::shared_ptr<const Clock> clock,
+                                            Duration error = Duration{0}) {
   ConfigReader config = ConfigReader::parse(json, "test").value();
-  auto made = make_simulated(config, SensorId::parse(id).value(), std::move(clock));
+  auto made = make_simulated(config, SensorId::parse(id).value(), {std::move(clock), error});
   if (const auto ok = config.finish(); !ok) return pass(ok);
   return made;
 }
@@ -64,6 +67,34 @@ TEST(Simulated, TwoProcessesSeeTheSamePersonWhereverTheyStand) {
     EXPECT_LT((in_world(front[i], 0) - in_world(side[i], 1)).norm(), 0.06);
     EXPECT_NE(front[i].frame.captured, side[i].frame.captured);
   }
+}
+
+TEST(Simulated, AHostsClockErrorMovesTheStampsAndNothingElse) {
+  const auto run = [](Duration error) {
+    auto source = device("{}", "s1", std::make_shared<HastyClock>(), error);
+    return first_captures(**source, 5);
+  };
+  const auto right = run(Duration{0});
+  const auto ahead = run(std::chrono::milliseconds(300));
+  for (std::size_t i = 0; i < right.size(); ++i) {
+    EXPECT_EQ(ahead[i].frame.captured - right[i].frame.captured, std::chrono::milliseconds(300));
+    EXPECT_EQ(ahead[i].frame.bodies.at(0).captured, ahead[i].frame.captured);
+    EXPECT_EQ(ahead[i].frame.bodies.at(0).skeleton[JointId::Neck].position,
+              right[i].frame.bodies.at(0).skeleton[JointId::Neck].position);
+  }
+}
+
+TEST(Simulated, ProfilesOfTheJudgeAreDevicesToo) {
+  auto source =
+      device(R"({"profile": "A", "profile_draw": 3})", "s1", std::make_shared<HastyClock>());
+  ASSERT_TRUE(source) << to_string(source.error());
+  EXPECT_THAT((*source)->describe().label, HasSubstr("profile A "));
+  const auto captures = first_captures(**source, 20);
+  ASSERT_EQ(captures.size(), 20u);
+  EXPECT_FALSE(captures.back().frame.bodies.empty());
+  // The profile's own latency passes before a frame is delivered.
+  EXPECT_GT(captures.back().frame.received - captures.back().frame.captured,
+            std::chrono::milliseconds(20));
 }
 
 TEST(Simulated, DeliversInOrderAfterCaptureWithoutGaps) {
@@ -157,6 +188,7 @@ TEST(Simulated, WrongConfigIsNamed) {
       {R"({"scene": {"sped_m_per_s": 1}})", "speed_m_per_s"},
       {R"({"noise": {"along_mm": -1}})", "noise.along_mm"},
       {R"({"latency_ms": 1e9})", "latency_ms"},
+      {R"({"profile": "D"})", "profile"},
   };
   for (const auto& [json, named] : cases) {
     const auto made = device(json, "s1", clock);
@@ -164,7 +196,7 @@ TEST(Simulated, WrongConfigIsNamed) {
     EXPECT_THAT(to_string(made.error()), HasSubstr(std::string(named)));
   }
   ConfigReader empty = ConfigReader::parse("{}", "test").value();
-  EXPECT_FALSE(make_simulated(empty, SensorId::parse("s1").value(), nullptr));
+  EXPECT_FALSE(make_simulated(empty, SensorId::parse("s1").value(), {}));
 }
 
 }  // namespace

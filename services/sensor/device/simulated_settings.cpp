@@ -1,0 +1,145 @@
+#include "services/sensor/device/simulated_settings.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "common/synthetic/gauss_sensor.h"
+
+namespace chorus::sensor_service {
+namespace {
+
+using synthetic::PathKind;
+using synthetic::Scene;
+
+constexpr double kFarthest = 100.0;  // of anything in a room from its origin [m]
+constexpr int kMostSensors = 64;
+constexpr int kMostSeed = 1'000'000'000;
+constexpr std::array<std::string_view, 4> kProfiles{synthetic::kGaussProfile, "A", "B", "C"};
+
+/// FNV-1a: noise must differ between sensors that share a seed, and be the same in every run.
+std::uint64_t hash_of(std::string_view text) {
+  std::uint64_t hash = 0xcbf29ce484222325ull;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
+  return hash;
+}
+
+void read_mm(ConfigReader& config, std::string_view key, double& out, double most) {
+  double value = to_mm(out);
+  config.read(key, value, 0.0, most);
+  out = mm(value);
+}
+
+void read_scene(ConfigReader config, Scene& scene) {
+  synthetic::WalkerScript script;
+  int seed = 1;
+  int people = 1;
+  std::size_t path = 0;
+  Duration epoch{0};
+  config.read("seed", seed, 0, kMostSeed);
+  config.read_s("epoch_s", epoch, Duration::zero(), std::chrono::hours(24 * 365 * 200));
+  config.read("people", people, 0, 6);
+  config.read_choice("path", path, {synthetic::kPathNames.begin(), synthetic::kPathNames.end()});
+  config.read("reach_m", script.reach, 0.0, kFarthest);
+  config.read("centre_x_m", script.centre.x(), -kFarthest, kFarthest);
+  config.read("centre_z_m", script.centre.y(), -kFarthest, kFarthest);
+  config.read("speed_m_per_s", script.speed, 0.1, 2.0);
+  config.read("body_scale", script.body_scale, 0.5, 1.5);
+  script.seed = static_cast<std::uint64_t>(seed);
+  script.path = static_cast<PathKind>(std::min(path, synthetic::kPathNames.size() - 1));
+  scene.epoch = Timestamp(epoch);
+  scene.people = synthetic::make_people(script, static_cast<std::size_t>(people));
+}
+
+Eigen::Isometry3d read_ring(ConfigReader config) {
+  synthetic::Ring ring;
+  int index = 0;
+  int count = static_cast<int>(ring.count);
+  config.read("index", index, 0, kMostSensors - 1);
+  config.read("count", count, 1, kMostSensors);
+  config.read("radius_m", ring.radius, 0.0, kFarthest);
+  config.read("height_m", ring.height, 0.0, kFarthest);
+  config.read_deg("pitch_deg", ring.pitch, -89, 89);
+  if (index >= count) config.complain("index", "must be below ring.count");
+  ring.count = static_cast<std::size_t>(std::max(count, 1));
+  return ring_place(ring, static_cast<std::size_t>(std::max(index, 0)));
+}
+
+Eigen::Isometry3d read_pose(ConfigReader config) {
+  Eigen::Vector3d eye(0, 1.6, 0);
+  double yaw = 0;
+  double pitch = 0;
+  config.read("x_m", eye.x(), -kFarthest, kFarthest);
+  config.read("y_m", eye.y(), 0.0, kFarthest);
+  config.read("z_m", eye.z(), -kFarthest, kFarthest);
+  config.read_deg("yaw_deg", yaw, -360, 360);
+  config.read_deg("pitch_deg", pitch, -89, 89);
+  return synthetic::stand_sensor(eye, yaw, pitch);
+}
+
+int read_noise(ConfigReader config, synthetic::SimulatedSensor& sensor) {
+  synthetic::SensorModel& model = sensor.model;
+  int seed = 1;
+  double dropped = 0;
+  config.read("seed", seed, 0, kMostSeed);
+  read_mm(config, "along_mm", model.noise.along, 1000);
+  read_mm(config, "across_mm", model.noise.across, 1000);
+  config.read_deg("turn_deg", model.noise.turn, 0, 90);
+  config.read_ms("jitter_ms", model.sampling.jitter, Duration::zero(),
+                 std::chrono::milliseconds(10));
+  config.read("drop_percent", dropped, 0.0, 100.0);
+  config.read_deg("floor_tilt_deg", model.floor.fixed_tilt, 0, 10);
+  read_mm(config, "floor_offset_mm", model.floor.fixed_offset, 1000);
+  model.sampling.drop_share = dropped / 100.0;
+  model.seed = static_cast<std::uint64_t>(seed) ^ hash_of(sensor.id.str());
+  return seed;
+}
+
+/// Errors that sensors of one room share come from `seed` alone; the rest differs by the sensor's
+/// id.
+std::optional<synthetic::SensorChoice> read_profile(ConfigReader& config, const SensorId& sensor,
+                                                    int seed) {
+  std::size_t profile = 0;
+  int draw = 0;
+  config.read_choice("profile", profile, {kProfiles.begin(), kProfiles.end()});
+  config.read("profile_draw", draw, 0, kMostSeed);
+  if (profile == 0) return std::nullopt;
+  synthetic::SensorChoice choice;
+  choice.id = sensor;
+  choice.profile = kProfiles.at(profile);
+  if (draw > 0) choice.draw = static_cast<std::uint64_t>(draw);
+  choice.seed = static_cast<std::uint64_t>(seed);
+  choice.bias_seed = choice.seed;
+  choice.own_clock = false;  // the host's clock is a setting of the service
+  return choice;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<synthetic::BodySensor>> SimulatedSettings::sensor_from(
+    Timestamp start) const {
+  if (tracker) return make_sensor(scene, *tracker, start);
+  return std::make_unique<synthetic::GaussSensor>(scene, plain, start);
+}
+
+std::string SimulatedSettings::profile() const {
+  if (!tracker) return std::string(synthetic::kGaussProfile);
+  return tracker->profile + " " + synthetic::frozen_hash(tracker->profile);
+}
+
+SimulatedSettings read_simulated_settings(ConfigReader& config, const SensorId& sensor) {
+  SimulatedSettings settings;
+  settings.plain.id = sensor;
+  if (config.has("ring") && config.has("pose")) {
+    config.complain("pose", "give either ring or pose, not both");
+  }
+  read_scene(config.child("scene"), settings.scene);
+  settings.scene.world_from_sensor.push_back(config.has("pose") ? read_pose(config.child("pose"))
+                                                                : read_ring(config.child("ring")));
+  const int seed = read_noise(config.child("noise"), settings.plain);
+  settings.tracker = read_profile(config, sensor, seed);
+  config.read_ms("latency_ms", settings.latency, Duration::zero(), std::chrono::milliseconds(500));
+  return settings;
+}
+
+}  // namespace chorus::sensor_service

@@ -1,0 +1,44 @@
+// What the device `simulated` can be told.  All keys optional, defaults in brackets:
+//
+//   scene.seed [1]          scene.epoch_s [0 = 1970]   scene.people [1]
+//   scene.path [random | circle | line | stand | turn | assembly]    scene.reach_m [1.2]
+//   scene.centre_x_m [0]    scene.centre_z_m [0]       scene.speed_m_per_s [0.9]
+//   scene.body_scale [1]
+//   ring.index [0]    ring.count [6]    ring.radius_m [3]    ring.height_m [1.6]
+//   ring.pitch_deg [13]
+//   pose.x_m [0]    pose.y_m [1.6]    pose.z_m [0]    pose.yaw_deg [0]    pose.pitch_deg [0]
+//                           instead of the ring
+//   profile [gauss | A | B | C]    profile_draw [0: the nominal parameters; else drawn by this
+//   seed] noise.seed [1] noise.along_mm [25]     noise.across_mm [10]    noise.turn_deg [4] (these
+//   and the following noise.jitter_ms [2]     noise.drop_percent [0]                            for
+//   profile gauss) noise.floor_tilt_deg [0.15]    noise.floor_offset_mm [3] latency_ms [0] from
+//   capture to delivery, beside that of the profile
+#pragma once
+
+#include <optional>
+
+#include "common/base/config_reader.h"
+#include "common/synthetic/body_sensor.h"
+#include "common/synthetic/scene.h"
+#include "common/synthetic/sensor_choice.h"
+#include "common/synthetic/sensor_model.h"
+
+namespace chorus::sensor_service {
+
+struct SimulatedSettings {
+  synthetic::Scene scene;                          ///< One sensor in it: this one.
+  synthetic::SimulatedSensor plain;                ///< Profile gauss.
+  std::optional<synthetic::SensorChoice> tracker;  ///< Any other profile.
+  Duration latency{0};
+
+  /// A sensor that stands in `scene`, from `start` on.
+  [[nodiscard]] Result<std::unique_ptr<synthetic::BodySensor>> sensor_from(Timestamp start) const;
+  /// "gauss", "A 0123456789ab".
+  [[nodiscard]] std::string profile() const;
+};
+
+/// Mistakes are reported by the reader's finish().
+[[nodiscard]] SimulatedSettings read_simulated_settings(ConfigReader& config,
+                                                        const SensorId& sensor);
+
+}  // namespace chorus::sensor_service
