@@ -8,6 +8,10 @@
 namespace chorus::align {
 namespace {
 
+constexpr std::size_t kHabit = 30;       ///< Frames that make a habit: one second.
+constexpr std::size_t kLeastHabit = 10;  ///< Fewer say nothing.
+constexpr Duration kGrace = std::chrono::milliseconds(15);  ///< Later than ever before, but coming.
+
 /// The frames around an instant; `before` and `after` are the same frame when it is hit exactly.
 struct Bracket {
   Basis basis = Basis::Lost;
@@ -30,7 +34,8 @@ Bracket bracket(Timestamp instant, Timestamp now, const History& history,
   if (!found.after) {
     // A silent sensor is given up early: no later frame could close a bracket this wide.
     const bool hopeless = found.before && instant - found.before->captured > config.max_gap;
-    found.basis = hopeless || now - instant > config.patience ? Basis::Lost : Basis::Pending;
+    const Duration wait = std::min(config.patience, usual_wait(history).value_or(config.patience));
+    found.basis = hopeless || now - instant > wait ? Basis::Lost : Basis::Pending;
   } else if (found.before && found.after->captured - found.before->captured <= config.max_gap) {
     found.basis = Basis::Interpolated;
   }
@@ -77,6 +82,21 @@ Skeleton<SensorSpace> interpolate(const Skeleton<SensorSpace>& a, const Skeleton
     body.joints[i] = between(a.joints[i], b.joints[i], share);
   }
   return body;
+}
+
+std::optional<Duration> usual_wait(const History& history) {
+  const auto& frames = history.frames();
+  const std::size_t count = std::min(frames.size(), kHabit);
+  if (count < kLeastHabit) return std::nullopt;
+  Duration gap{0};
+  Duration delay{0};
+  for (auto frame = frames.end() - static_cast<std::ptrdiff_t>(count); frame != frames.end();
+       ++frame) {
+    if (frame->received == Timestamp{}) return std::nullopt;
+    delay = std::max(delay, frame->received - frame->captured);
+    if (frame != frames.begin()) gap = std::max(gap, frame->captured - std::prev(frame)->captured);
+  }
+  return gap + delay + kGrace;
 }
 
 Basis basis_at(Timestamp instant, Timestamp now, const History& history,

@@ -5,6 +5,8 @@
 // present at one end only is lost.  Nothing is ever extrapolated.
 #pragma once
 
+#include <optional>
+
 #include "fusion-server/align/history.h"
 #include "fusion-server/flow.h"
 
@@ -13,7 +15,8 @@ namespace chorus::align {
 struct AlignConfig {
   Duration max_gap =
       std::chrono::milliseconds(120);  ///< Widest bracket that is interpolated across.
-  Duration patience = std::chrono::milliseconds(100);  ///< Age at which Pending turns into Lost.
+  /// Age at which Pending turns into Lost, unless the sensor's own habit says sooner (usual_wait).
+  Duration patience = std::chrono::milliseconds(200);
 };
 
 /// The sensor's bodies at `instant`, as known `now` (both by the server's clock).
@@ -23,6 +26,10 @@ struct AlignConfig {
 /// How `at` would answer, without building the bodies.
 [[nodiscard]] Basis basis_at(Timestamp instant, Timestamp now, const History& history,
                              const AlignConfig& config);
+
+/// How long after an instant this sensor's next frame comes at the latest, by its recent gaps and
+/// arrival delays; none before there are enough frames with a time of arrival.
+[[nodiscard]] std::optional<Duration> usual_wait(const History& history);
 
 /// One body between two captures; s in [0, 1].  Exposed for registration and tests.
 [[nodiscard]] Skeleton<SensorSpace> interpolate(const Skeleton<SensorSpace>& a,

@@ -12,7 +12,7 @@ namespace chorus::server {
 struct TickConfig {
   int rate_hz = 30;
   Duration alignment_delay =
-      std::chrono::milliseconds(80);  ///< Latest time after the instant to answer it.
+      std::chrono::milliseconds(200);  ///< Latest time after the instant to answer it.
   /// Between two answers, but at most half an interval: after a stall the late ones come one by
   /// one, so that whoever polls the latest frame sees each of them.
   Duration min_spacing = std::chrono::milliseconds(13);

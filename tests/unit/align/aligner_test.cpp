@@ -1,6 +1,7 @@
 #include "fusion-server/align/aligner.h"
 
 #include <limits>
+#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -62,12 +63,42 @@ TEST(Align, BetweenTwoCapturesPositionsAreLinear) {
 TEST(Align, BeyondTheNewestCaptureIsPendingThenLost) {
   const History history = two_frames(milliseconds(30));
   EXPECT_EQ(ask(history, milliseconds(40), milliseconds(50)).basis, Basis::Pending);
-  EXPECT_EQ(ask(history, milliseconds(40), milliseconds(101)).basis, Basis::Lost);
+  EXPECT_EQ(ask(history, milliseconds(40), milliseconds(201)).basis, Basis::Lost);
 }
 
 TEST(Align, ASilentSensorIsGivenUpAsSoonAsNoBracketCouldClose) {
   EXPECT_EQ(ask(two_frames(milliseconds(30)), milliseconds(151), milliseconds(0)).basis,
             Basis::Lost);
+}
+
+/// A sensor whose frames come every 33 ms and arrive `delay` after their capture.
+History habitual(Duration delay, int frames = 30) {
+  History history;
+  for (int i = 0; i < frames; ++i) {
+    SensorFrame frame = frame_at(milliseconds(33 * i), 0.0);
+    frame.received = frame.captured + delay;
+    history.push(std::move(frame));
+  }
+  return history;
+}
+
+TEST(Align, ASensorIsWaitedForAsLongAsItsFramesUsuallyTake) {
+  const Duration instant = milliseconds(33 * 29 + 10);
+  // One period, its delay, and a little grace.
+  EXPECT_EQ(usual_wait(habitual(milliseconds(2))), milliseconds(33 + 2 + 15));
+  EXPECT_EQ(ask(habitual(milliseconds(2)), instant, milliseconds(45)).basis, Basis::Pending);
+  EXPECT_EQ(ask(habitual(milliseconds(2)), instant, milliseconds(55)).basis, Basis::Lost);
+  EXPECT_EQ(ask(habitual(milliseconds(110)), instant, milliseconds(150)).basis, Basis::Pending);
+  EXPECT_EQ(ask(habitual(milliseconds(110)), instant, milliseconds(160)).basis, Basis::Lost);
+  // Never longer than the patience.
+  EXPECT_EQ(ask(habitual(milliseconds(400)), instant, milliseconds(201)).basis, Basis::Lost);
+}
+
+TEST(Align, AFewFramesOrUnknownArrivalsMakeNoHabit) {
+  EXPECT_EQ(usual_wait(habitual(milliseconds(2), 9)), std::nullopt);
+  History unknown = two_frames(milliseconds(30));
+  for (int i = 2; i < 20; ++i) unknown.push(frame_at(milliseconds(30 * i), 0.0));
+  EXPECT_EQ(usual_wait(unknown), std::nullopt);
 }
 
 TEST(Align, AnEmptyHistoryIsPendingThenLost) {
