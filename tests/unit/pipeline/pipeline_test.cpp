@@ -142,7 +142,7 @@ TEST(Ready, WaitsForRegisteredSensorsOnlyAndOnlySoLong) {
   EXPECT_TRUE(ready({inside, inside, 0}, histories, registration, {}));
   const Timestamp beyond = kStart + milliseconds(2010);
   EXPECT_FALSE(ready({beyond, beyond, 0}, histories, registration, {}));
-  EXPECT_TRUE(ready({beyond, beyond + milliseconds(101), 0}, histories, registration, {}));
+  EXPECT_TRUE(ready({beyond, beyond + milliseconds(201), 0}, histories, registration, {}));
   histories[sensor(77)] = align::History();
   EXPECT_TRUE(ready({inside, inside, 0}, histories, registration, {}));
 }
