@@ -261,10 +261,10 @@ void Rig::add_origins() {
     const TrackerJoint& to = body_[kOrigins[i].to];
     BonePose& bone = rig_.bones[i];
     bone.known = bone.known && from.tracked && to.tracked;
-    if (from.tracked && to.tracked) {
+    if (bone.known) {
       bone.origin = (1.0 - kOrigins[i].share) * from.position + kOrigins[i].share * to.position;
     } else {
-      bone.origin = rig_[parent_of(static_cast<HumanBone>(i))].origin;
+      bone = {rig_[parent_of(static_cast<HumanBone>(i))].origin, bone.world_from_bone, false};
     }
   }
 }

@@ -49,7 +49,9 @@ inline constexpr std::array<std::string_view, kHumanBoneCount> kHumanBoneNames{
 struct BonePose {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< The joint it turns about.
   Eigen::Quaterniond world_from_bone = Eigen::Quaterniond::Identity();
-  bool known = false;  ///< False: its joints are not tracked; it is taken to follow its parent.
+  /// False: its joints are not tracked; then it has its parent's place and rotation, so that the
+  /// frames of its children mean the same to who never hears of it.
+  bool known = false;
 };
 
 struct Humanoid {

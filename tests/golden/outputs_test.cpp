@@ -1,0 +1,91 @@
+// tests/golden/outputs: every encoder gives the bytes that are kept there.
+#include <bit>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "common/resource/frame_resource.h"
+#include "fusion-server/publish/dtrack/dtrack_encoder.h"
+#include "fusion-server/publish/trackd/trackd_encoder.h"
+#include "fusion-server/publish/vmc/vmc_encoder.h"
+#include "fusion-server/publish/vrchat/vrchat_encoder.h"
+
+namespace chorus::publish {
+namespace {
+
+std::string contents(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  EXPECT_TRUE(file) << path;
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+TrackerFrame golden_frame() {
+  const auto frame =
+      resource::read_frame(contents("proto/golden/perfect/fused.json"), resource::Format::Json);
+  EXPECT_TRUE(frame) << to_string(frame.error());
+  Snapshot snapshot;
+  snapshot.sequence = frame->sequence;
+  snapshot.instant = frame->captured;
+  for (const resource::BodyResource& body : frame->bodies) {
+    FusedBody& fused = snapshot.bodies.emplace_back();
+    fused.id = {body.id};
+    for (std::size_t i = 0; i < kJointCount; ++i) {
+      const resource::JointResource& joint = body.joints[i];
+      fused.skeleton.joints[i] = {joint.position, joint.orientation, joint.state};
+    }
+  }
+  TrackerState state(6);
+  return state.advance(snapshot);
+}
+
+void expect_golden(const std::string& name, const std::string& bytes) {
+  const std::string path = "tests/golden/outputs/" + name;
+  if (std::getenv("CHORUS_WRITE_GOLDEN") != nullptr) {
+    std::ofstream(path, std::ios::binary) << bytes;
+  }
+  const std::string expected = contents(path);
+  ASSERT_EQ(bytes.size(), expected.size()) << name;
+  const auto first = std::mismatch(bytes.begin(), bytes.end(), expected.begin()).first;
+  EXPECT_EQ(first - bytes.begin(), bytes.end() - bytes.begin()) << name << ": first difference";
+}
+
+std::string with_sizes(const std::vector<std::vector<char>>& datagrams) {
+  std::string all;
+  for (const auto& datagram : datagrams) {
+    for (int shift = 24; shift >= 0; shift -= 8) {
+      all += static_cast<char>(datagram.size() >> shift & 0xFF);
+    }
+    all.append(datagram.begin(), datagram.end());
+  }
+  return all;
+}
+
+TEST(GoldenOutputs, Dtrack) {
+  expect_golden("fused.dtrack",
+                dtrack::encode(golden_frame(), {std::chrono::microseconds(2345), true}));
+}
+
+TEST(GoldenOutputs, Vmc) {
+  const TrackerFrame frame = golden_frame();
+  expect_golden("fused.vmc", with_sizes(vmc::encode(in_slot(frame, 0), {12.5, true})));
+}
+
+TEST(GoldenOutputs, VrChat) {
+  expect_golden("fused.vrchat", with_sizes(vrchat::encode(golden_frame().bodies.at(1))));
+}
+
+TEST(GoldenOutputs, Trackd) {
+  if (std::endian::native != std::endian::little) GTEST_SKIP() << "the block is in native order";
+  auto block = trackd::tracker_block(50);
+  const TrackerFrame frame = golden_frame();
+  trackd::write_sensors(frame, trackd::LengthUnit::Feet, block);
+  trackd::write_stamp(frame.instant, block);
+  expect_golden("fused.trackd", {block.begin(), block.end()});
+}
+
+}  // namespace
+}  // namespace chorus::publish
