@@ -1,0 +1,57 @@
+// Any bytes at all as C3D, BVH or MVNX: no crash, no endless loop, no number that is none.
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "common/motion/bvh.h"
+#include "common/motion/c3d.h"
+#include "common/motion/mvnx.h"
+
+namespace {
+
+void check(const chorus::motion::Motion& motion) {
+  for (const auto& body : motion.frames) {
+    for (const auto& joint : body.joints) {
+      if (joint.state != chorus::JointState::NotTracked && !joint.position.allFinite())
+        __builtin_trap();
+    }
+  }
+}
+
+void read_c3d(std::string_view bytes) {
+  const auto c3d = chorus::motion::parse_c3d(bytes, "fuzz");
+  if (!c3d) return;
+  for (const auto& frame : c3d->frames) {
+    if (frame.size() != c3d->labels.size()) __builtin_trap();
+  }
+  const auto motion = chorus::motion::motion_from_c3d(*c3d);
+  if (!motion) return;
+  for (const auto& subject : motion->subjects) check(subject.motion);
+}
+
+void read_bvh(std::string_view bytes) {
+  const auto bvh = chorus::motion::parse_bvh(bytes, "fuzz");
+  if (bvh) static_cast<void>(chorus::motion::motion_from_bvh(*bvh));
+}
+
+void read_mvnx(std::string_view bytes) {
+  const auto mvnx = chorus::motion::parse_mvnx(bytes, "fuzz");
+  if (!mvnx) return;
+  const auto motion = chorus::motion::motion_from_mvnx(*mvnx);
+  if (motion) check(*motion);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes), size);
+  // The first byte of a sound file says which it is; of others, all readers have to refuse it.
+  if (text.starts_with("HIERARCHY")) {
+    read_bvh(text);
+  } else if (text.starts_with('<')) {
+    read_mvnx(text);
+  } else {
+    read_c3d(text);
+  }
+  return 0;
+}
