@@ -145,10 +145,7 @@ TEST(BvhExport, EveryFrameOfAWalkIsTheChain) {
 }
 
 TEST(BvhExport, AnglesOfAPersonWhoTurnsAndTurnsNeverJump) {
-  std::vector<Skeleton<WorldSpace>> frames;
-  for (int i = 0; i < 240; ++i)
-    frames.push_back(testing::standing_person({0.01 * i, 0, 0}, deg(5.0 * i)));
-  const Decoded decoded(bvh_of(fit_of(frames), 30.0));
+  const Decoded decoded(bvh_of(fit_of(turning()), 30.0));
   for (std::size_t f = 1; f < decoded.frames.size(); ++f) {
     for (std::size_t c = 0; c < decoded.frames[f].size(); ++c)
       ASSERT_LT(std::abs(decoded.frames[f][c] - decoded.frames[f - 1][c]), 30.0) << f << " " << c;

@@ -144,7 +144,7 @@ TEST(GltfExport, AnimatesEveryPersonOnOneTimeLine) {
 }
 
 TEST(GltfExport, RotationsAreUnitAndContinuous) {
-  const auto fits = fits_of(take_of({breathing_walk()}, 30));
+  const auto fits = fits_of(take_of({turning()}, 30));
   const Decoded gltf(gltf_of(fits, 30));
   for (const json& channel : gltf.document["animations"][0]["channels"]) {
     if (channel["target"]["path"] != "rotation") continue;

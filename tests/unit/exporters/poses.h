@@ -63,4 +63,12 @@ inline std::vector<Skeleton<WorldSpace>> breathing_walk() {
   return frames;
 }
 
+/// Three turns on the spot, five degrees a frame.
+inline std::vector<Skeleton<WorldSpace>> turning() {
+  std::vector<Skeleton<WorldSpace>> frames;
+  for (int i = 0; i < 216; ++i)
+    frames.push_back(testing::standing_person({0.01 * i, 0, 0}, deg(5.0 * i)));
+  return frames;
+}
+
 }  // namespace chorus::exporters

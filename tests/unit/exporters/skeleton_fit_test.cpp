@@ -88,7 +88,7 @@ TEST(SkeletonFit, ReportsTheLargestDistanceAndWhere) {
 }
 
 TEST(SkeletonFit, QuaternionsAreUnitAndNeverJumpInSign) {
-  const auto fit = fit_skeleton(track_of(breathing_walk()));
+  const auto fit = fit_skeleton(track_of(turning()));
   ASSERT_THAT(fit, IsOk());
   for (std::size_t f = 1; f < fit->poses.size(); ++f) {
     for (std::size_t i = 0; i < fit->joints.size(); ++i) {
