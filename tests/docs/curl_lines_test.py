@@ -1,4 +1,5 @@
-"""Every curl line in our documents works against a running demo: run as it is printed, with the ports moved."""
+"""Every curl line and every example in our documents works against a running demo: run as it is printed, with the
+ports moved."""
 
 import json
 import os
@@ -24,13 +25,13 @@ SKIPPED = {"node_modules", "build", "var", ".git"}
 
 
 def curl_lines():
-    """(document, line) for every line of a shell block that calls curl."""
+    """(document, line) for every line of a shell block that calls curl or an example of ours."""
     for file in sorted(ROOT.rglob("*.md")):
         if SKIPPED & set(file.relative_to(ROOT).parts):
             continue
         for block in BLOCK.findall(file.read_text(encoding="utf-8")):
             for line in block.replace("\\\n", " ").splitlines():
-                if re.match(r"\s*curl\s", line):
+                if re.match(r"\s*(curl|python3 docs/guide/examples/\S+)\s", line):
                     yield file.relative_to(ROOT).as_posix(), line.strip()
 
 
