@@ -25,7 +25,8 @@ constexpr double kOwnShare = 0.5;       // of a piece within kMixedReach: it is 
 constexpr double kForeignShare = 0.1;   // of a piece: below, it is somebody new or a thing
 constexpr int kConfirmed = 3;           // frames before a body is reported
 constexpr int kPatience = 10;           // poor frames before it is given up
-constexpr double kBadFit = 0.06;        // mean distance to the surface [m]
+constexpr double kBadFit = 0.035;       // mean distance to the surface [m]
+constexpr double kTrunkSeen = 0.15;     // least support of head and chest of a body that is there
 constexpr double kSame = 0.15;          // two trunks cannot be closer [m]
 constexpr double kExchange = deg(100);  // facing beyond this: believed to face the sensor
 constexpr double kTracked = 0.3;        // support of a joint
@@ -178,7 +179,8 @@ void BodyTracker::follow(Track& track, const DepthImage& image, const Plane& flo
   if (all > 0) evidence.share = static_cast<double>(track.points.size()) / static_cast<double>(all);
   fit(track.body, evidence, track.age == 1 ? kFirstRounds : kRounds);
   believe_it_faces_us(track.body);
-  const bool is_poor = all < kFewPoints || track.body.misfit > kBadFit;
+  const double trunk = std::min(track.body.support[kHead], track.body.support[kChest]);
+  const bool is_poor = all < kFewPoints || track.body.misfit > kBadFit || trunk < kTrunkSeen;
   track.poor = is_poor ? track.poor + 1 : 0;
   for (std::size_t i = 0; i < kNodeCount; ++i) {
     track.unseen[i] = track.body.support[i] < kTracked ? track.unseen[i] + 1 : 0;
