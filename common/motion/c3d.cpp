@@ -33,6 +33,11 @@ class Numbers {
   [[nodiscard]] std::uint8_t byte(std::size_t at) const {
     return static_cast<std::uint8_t>(bytes_[at]);
   }
+  /// -128 to 127.
+  [[nodiscard]] int small(std::size_t at) const {
+    const int value = byte(at);
+    return value < 128 ? value : value - 256;
+  }
   [[nodiscard]] std::uint16_t word(std::size_t at) const {
     const auto [low, high] = processor_ == kMips ? std::pair{at + 1, at} : std::pair{at, at + 1};
     return static_cast<std::uint16_t>(byte(low) | byte(high) << 8);
@@ -107,11 +112,14 @@ class C3dReader {
   Result<void> read_processor();
   Result<void> read_parameters();
   Result<std::size_t> read_entry(std::size_t at, std::size_t end);
-  Result<Parameter> read_parameter(std::size_t at, std::size_t end) const;
-  Result<Layout> read_layout() const;
-  Result<void> check_extent(const Layout& layout) const;
+  [[nodiscard]] Result<Parameter> read_parameter(std::size_t at, std::size_t end) const;
+  [[nodiscard]] Result<Layout> read_layout() const;
+  [[nodiscard]] Result<double> metres_per_unit() const;
+  [[nodiscard]] Result<void> check_extent(const Layout& layout) const;
   void read_frames(const Layout& layout, C3d& out) const;
-  C3dPoint read_point(const Layout& layout, std::size_t at) const;
+  [[nodiscard]] std::optional<Eigen::Vector3d> axis(const std::string& name) const;
+  [[nodiscard]] Eigen::Matrix3d world_from_file() const;
+  [[nodiscard]] C3dPoint read_point(const Layout& layout, std::size_t at) const;
 
   [[nodiscard]] std::optional<double> number(const std::string& name, std::size_t i = 0) const;
   [[nodiscard]] std::vector<std::string> texts(const std::string& name) const;
@@ -141,6 +149,7 @@ Result<C3d> C3dReader::read() {
   out.labels = labels(layout->points);
   out.rate_hz = number("POINT:RATE").value_or(Numbers(bytes_, processor_).real(20));
   if (!(out.rate_hz > 0) || out.rate_hz > kMaxRateHz) return wrong("has no rate of frames");
+  out.world_from_file = world_from_file();
   read_frames(*layout, out);
   return out;
 }
@@ -184,9 +193,8 @@ Result<void> C3dReader::read_parameters() {
 Result<std::size_t> C3dReader::read_entry(std::size_t at, std::size_t end) {
   const Numbers numbers(bytes_, processor_);
   // A negative length of the name means "locked".
-  const auto length =
-      static_cast<std::size_t>(std::abs(static_cast<std::int8_t>(numbers.byte(at))));
-  const int group = static_cast<std::int8_t>(numbers.byte(at + 1));
+  const auto length = static_cast<std::size_t>(std::abs(numbers.small(at)));
+  const int group = numbers.small(at + 1);
   if (at + 2 + length + 2 > end) return wrong("has a parameter that is cut off");
   std::string name = upper(numbers.text(at + 2, length));
   const std::size_t link = at + 2 + length;
@@ -205,7 +213,7 @@ Result<Parameter> C3dReader::read_parameter(std::size_t at, std::size_t end) con
   const Numbers numbers(bytes_, processor_);
   if (at + 2 > end) return wrong("is cut off");
   Parameter out;
-  out.type = static_cast<std::int8_t>(numbers.byte(at));
+  out.type = numbers.small(at);
   const std::size_t dimensions = numbers.byte(at + 1);
   if (at + 2 + dimensions > end || dimensions > 7) return wrong("is cut off");
   out.at = at + 2 + dimensions;
@@ -274,6 +282,17 @@ double C3dReader::frame_count() const {
   return of_trial > stated ? of_trial : stated;
 }
 
+Result<double> C3dReader::metres_per_unit() const {
+  constexpr std::array<std::pair<std::string_view, double>, 6> kUnits{
+      {{"MM", 0.001}, {"CM", 0.01}, {"M", 1.0}, {"DM", 0.1}, {"IN", 0.0254}, {"", 0.001}}};
+  const auto units = texts("POINT:UNITS");
+  const std::string unit = units.empty() ? "" : upper(units.front());
+  for (const auto& [name, metres] : kUnits) {
+    if (name == unit) return metres;
+  }
+  return wrong("gives its points in \"" + unit.substr(0, 16) + "\", a unit we do not know");
+}
+
 Result<Layout> C3dReader::read_layout() const {
   const Numbers numbers(bytes_, processor_);
   Layout layout;
@@ -292,15 +311,9 @@ Result<Layout> C3dReader::read_layout() const {
   layout.frames = static_cast<std::size_t>(frames);
   layout.start = (static_cast<std::size_t>(start) - 1) * kBlock;
   layout.analog = numbers.word(4);
-  const auto units = texts("POINT:UNITS");
-  const std::string unit = units.empty() ? "mm" : upper(units.front());
-  constexpr std::array<std::pair<std::string_view, double>, 5> kUnits{
-      {{"MM", 0.001}, {"CM", 0.01}, {"M", 1.0}, {"DM", 0.1}, {"IN", 0.0254}}};
-  const auto* known = std::find_if(kUnits.begin(), kUnits.end(),
-                                   [&](const auto& row) { return row.first == unit; });
-  if (known == kUnits.end() && !unit.empty())
-    return wrong("gives its points in \"" + unit.substr(0, 16) + "\", a unit we do not know");
-  if (known != kUnits.end()) layout.metres_per_unit = known->second;
+  const auto unit = metres_per_unit();
+  if (!unit) return pass(unit);
+  layout.metres_per_unit = *unit;
   return layout;
 }
 
@@ -340,20 +353,24 @@ void C3dReader::read_frames(const Layout& layout, C3d& out) const {
     for (std::size_t p = 0; p < layout.points; ++p)
       out.frames[f].push_back(read_point(layout, frame + 4 * p * layout.word_bytes()));
   }
-  const auto axis = [&](const std::string& name) -> std::optional<Eigen::Vector3d> {
-    const auto found = texts(name);
-    if (found.empty() || found.front().size() != 2) return std::nullopt;
-    const std::size_t i = std::string_view("XYZ").find(upper(found.front())[1]);
-    if (i == std::string_view::npos) return std::nullopt;
-    const double sign = found.front()[0] == '-' ? -1.0 : 1.0;
-    return sign * Eigen::Vector3d::Unit(static_cast<Eigen::Index>(i));
-  };
+}
+
+std::optional<Eigen::Vector3d> C3dReader::axis(const std::string& name) const {
+  const auto found = texts(name);
+  if (found.empty() || found.front().size() != 2) return std::nullopt;
+  const std::size_t i = std::string_view("XYZ").find(upper(found.front())[1]);
+  if (i == std::string_view::npos) return std::nullopt;
+  const double sign = found.front()[0] == '-' ? -1.0 : 1.0;
+  return sign * Eigen::Vector3d::Unit(static_cast<Eigen::Index>(i));
+}
+
+Eigen::Matrix3d C3dReader::world_from_file() const {
   const Eigen::Vector3d up = axis("POINT:Y_SCREEN").value_or(Eigen::Vector3d::UnitZ());
   Eigen::Vector3d right = axis("POINT:X_SCREEN").value_or(Eigen::Vector3d::UnitX());
   if (right.dot(up) != 0) right = up.unitOrthogonal();
-  out.world_from_file.row(0) = right;
-  out.world_from_file.row(1) = up;
-  out.world_from_file.row(2) = right.cross(up);
+  Eigen::Matrix3d rows;
+  rows << right.transpose(), up.transpose(), right.cross(up).transpose();
+  return rows;
 }
 
 }  // namespace

@@ -130,9 +130,8 @@ std::string labels_shown(const C3d& c3d) {
   return c3d.labels.size() > kShownLabels ? text + " ..." : text;
 }
 
-}  // namespace
-
-Result<C3dMotion> motion_from_c3d(const C3d& c3d) {
+/// Points by subject and label.
+std::map<std::string, Labels> subjects_of(const C3d& c3d) {
   std::map<std::string, Labels> subjects;
   for (std::size_t p = 0; p < c3d.labels.size(); ++p) {
     const std::string& label = c3d.labels[p];
@@ -141,20 +140,30 @@ Result<C3dMotion> motion_from_c3d(const C3d& c3d) {
     subjects[prefixed ? label.substr(0, colon) : ""].emplace(
         prefixed ? label.substr(colon + 1) : label, p);
   }
+  return subjects;
+}
+
+Motion motion_of(const C3d& c3d, const Sources& sources) {
+  Motion motion{c3d.rate_hz, {}};
+  motion.frames.reserve(c3d.frames.size());
+  for (const auto& frame : c3d.frames) motion.frames.push_back(skeleton_of(c3d, frame, sources));
+  return motion;
+}
+
+}  // namespace
+
+Result<C3dMotion> motion_from_c3d(const C3d& c3d) {
   C3dMotion out;
   std::set<std::size_t> used;
-  for (const auto& [name, labels] : subjects) {
+  for (const auto& [name, labels] : subjects_of(c3d)) {
     const Sources sources = sources_of(labels);
     const auto found = std::count_if(sources.begin(), sources.end(),
                                      [](const Source& s) { return !s.points.empty(); });
     if (found < static_cast<std::ptrdiff_t>(kFewestJoints)) continue;
-    for (const Source& source : sources) used.insert(source.points.begin(), source.points.end());
     if ((out.subjects.size() + 1) * c3d.frames.size() > kMaxSkeletons)
       return fail(ErrorCode::TooLarge, "C3D labels", "too many subjects for a file this long");
-    C3dSubject subject{name, {c3d.rate_hz, {}}};
-    for (const auto& frame : c3d.frames)
-      subject.motion.frames.push_back(skeleton_of(c3d, frame, sources));
-    out.subjects.push_back(std::move(subject));
+    for (const Source& source : sources) used.insert(source.points.begin(), source.points.end());
+    out.subjects.push_back({name, motion_of(c3d, sources)});
   }
   if (out.subjects.empty())
     return fail(ErrorCode::Unsupported, "C3D labels",
