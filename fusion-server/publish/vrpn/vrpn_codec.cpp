@@ -1,6 +1,7 @@
 #include "fusion-server/publish/vrpn/vrpn_codec.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
 #include <utility>
@@ -16,9 +17,11 @@ constexpr std::size_t kLongestRequest = 300;
 
 template <class Unsigned>
 void append_big_endian(std::string& out, Unsigned value) {
-  for (int shift = 8 * (static_cast<int>(sizeof value) - 1); shift >= 0; shift -= 8) {
-    out.push_back(static_cast<char>((value >> shift) & 0xFFU));
+  std::array<char, sizeof value> bytes;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    bytes[i] = static_cast<char>((value >> (8 * (bytes.size() - 1 - i))) & 0xFFU);
   }
+  out.append(bytes.data(), bytes.size());
 }
 
 std::uint32_t integer_at(std::string_view bytes, std::size_t at) {

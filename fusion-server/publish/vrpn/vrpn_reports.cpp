@@ -19,15 +19,24 @@ constexpr std::array<std::string_view, 3> kTypeNames{
 /// A velocity's rotation is the turn within this time; short, so that no turn is ambiguous.
 constexpr Duration kTurnTime = std::chrono::milliseconds(10);
 
-Payload sensor(std::size_t number) {
-  const auto value = static_cast<std::uint32_t>(number);
-  Payload payload;
-  payload.integer(value).integer(value);  // the second is padding, in which VRPN repeats the sensor
-  return payload;
-}
-
 void add_vectors(Payload& out, const Eigen::Vector3d& v, const Eigen::Quaterniond& q) {
   for (const double value : {v.x(), v.y(), v.z(), q.x(), q.y(), q.z(), q.w()}) out.real(value);
+}
+
+/// What both trackers of a joint say of it: their payloads behind the sensor's number.
+struct JointNumbers {
+  Payload pose;
+  Payload velocity;
+};
+
+JointNumbers numbers_of(const TrackerJoint& joint) {
+  JointNumbers out;
+  const Axes& axes = vrpn_axes();
+  add_vectors(out.pose, axes.position(joint.position), axes.quaternion(joint.orientation));
+  const Eigen::Quaterniond turn = exp_map(seconds(kTurnTime) * joint.angular_velocity);
+  add_vectors(out.velocity, axes.position(joint.velocity), axes.quaternion(turn));
+  out.velocity.real(seconds(kTurnTime));
+  return out;
 }
 
 /// Where a joint's reports go: to which tracker, as which sensor.
@@ -36,25 +45,34 @@ struct Address {
   std::size_t sensor = 0;
 };
 
-void add(Reports& out, const MessageHead& head, const Payload& payload) {
+void add(Reports& out, const MessageHead& head, std::size_t sensor, const Payload& numbers) {
+  const auto number = static_cast<std::uint32_t>(sensor);
+  Payload payload;
+  payload.integer(number).integer(number);  // the second is padding: VRPN repeats the sensor there
   const std::size_t begin = out.bytes.size();
-  append_message(out.bytes, head, payload.bytes());
+  append_message(out.bytes, head, payload.bytes() + numbers.bytes());
   out.messages.push_back({static_cast<std::size_t>(head.sender), begin, out.bytes.size() - begin});
 }
 
-void add_joint(Reports& out, Timestamp time, const Address& to, const TrackerJoint& joint) {
+void add_joint(Reports& out, Timestamp time, const Address& to, const JointNumbers& numbers) {
   MessageHead head{time, static_cast<std::int32_t>(to.tracker),
                    static_cast<std::int32_t>(ReportType::PosQuat), 0};
-  Payload pose = sensor(to.sensor);
-  add_vectors(pose, vrpn_axes().position(joint.position),
-              vrpn_axes().quaternion(joint.orientation));
-  add(out, head, pose);
+  add(out, head, to.sensor, numbers.pose);
   head.type = static_cast<std::int32_t>(ReportType::Velocity);
-  const Eigen::Quaterniond turn = exp_map(seconds(kTurnTime) * joint.angular_velocity);
-  Payload velocity = sensor(to.sensor);
-  add_vectors(velocity, vrpn_axes().position(joint.velocity), vrpn_axes().quaternion(turn));
-  velocity.real(seconds(kTurnTime));
-  add(out, head, velocity);
+  add(out, head, to.sensor, numbers.velocity);
+}
+
+void add_body(Reports& out, Timestamp time, const TrackerBody& body, const Trackers& trackers) {
+  std::array<std::optional<JointNumbers>, kJointCount> joints;
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    if (!body.joints[i].tracked) continue;
+    joints[i] = numbers_of(body.joints[i]);
+    add_joint(out, time, {trackers.body(body.slot), i}, *joints[i]);
+  }
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    const auto own = trackers.joint(body.slot, i);
+    if (own && joints[i]) add_joint(out, time, {*own, 0}, *joints[i]);
+  }
 }
 
 }  // namespace
@@ -92,16 +110,7 @@ std::string Trackers::descriptions() const {
 
 Reports encode(const TrackerFrame& frame, const Trackers& trackers) {
   Reports out;
-  for (const TrackerBody& body : frame.bodies) {
-    for (const bool alone : {false, true}) {  // the body's tracker first, then those of its joints
-      for (std::size_t i = 0; i < kJointCount; ++i) {
-        const auto own = trackers.joint(body.slot, i);
-        if (!body.joints[i].tracked || (alone && !own)) continue;
-        const Address to = alone ? Address{*own, 0} : Address{trackers.body(body.slot), i};
-        add_joint(out, frame.instant, to, body.joints[i]);
-      }
-    }
-  }
+  for (const TrackerBody& body : frame.bodies) add_body(out, frame.instant, body, trackers);
   return out;
 }
 

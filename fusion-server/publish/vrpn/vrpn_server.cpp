@@ -98,8 +98,9 @@ Result<void> Server::Impl::bind(std::uint16_t port) {
                 "the address to listen on is a numeric one, such as 127.0.0.1 or 0.0.0.0");
   }
   const tcp::endpoint endpoint(address, port);
-  acceptor = http::Acceptor(io.get_executor());
-  datagrams = http::DatagramSocket(io.get_executor());
+  error_code ignored;
+  acceptor.close(ignored);  // an earlier attempt
+  datagrams.close(ignored);
   acceptor.open(endpoint.protocol(), failed);
   if (!failed) acceptor.set_option(net::socket_base::reuse_address(true), failed);
   if (!failed) acceptor.bind(endpoint, failed);
