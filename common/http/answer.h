@@ -17,9 +17,10 @@ struct Answer {
   std::string_view route = {};  ///< Header lines of the route; the responder owns them.
   std::string_view own = {};    ///< The other header lines and the blank line.
   std::string_view body = {};
-  std::shared_ptr<const void> owner = {};  ///< Keeps `own` and `body` alive.
-  std::optional<Timestamp> captured = {};  ///< Server-Timing tells the age at sending.
-  bool close = false;                      ///< Framing is lost: close after this answer.
+  std::shared_ptr<const void> owner = {};     ///< Keeps `own` and `body` alive.
+  std::shared_ptr<const FileBody> file = {};  ///< What follows `body`.
+  std::optional<Timestamp> captured = {};     ///< Server-Timing tells the age at sending.
+  bool close = false;                         ///< Framing is lost: close after this answer.
 };
 
 /// What the first lines say beside the answer itself.

@@ -173,6 +173,7 @@ void Connection::advance_body() {
 
 void Connection::send(Answer answer) {
   answer_ = std::move(answer);
+  sent_of_file_ = 0;
   state_ = State::Writing;
   close_after_ = close_after_ || answer_.close || core_.stopping;
   expire_in(core_.config.limits.write_timeout);
@@ -192,6 +193,7 @@ void Connection::send(Answer answer) {
 void Connection::on_sent(error_code failed, std::size_t size) {
   if (state_ == State::Closed) return;
   count(core_.counters.bytes_sent, size);
+  if (!failed && send_piece()) return;
   answer_ = {};
   if (failed) return close();
   if (reaction_.kind == Reaction::Kind::Stream) {
@@ -200,6 +202,22 @@ void Connection::on_sent(error_code failed, std::size_t size) {
   }
   if (close_after_ || core_.stopping) return linger();
   next_request();
+}
+
+/// The next piece of the answer's file; false when there is none left.
+bool Connection::send_piece() {
+  if (!answer_.file || sent_of_file_ >= answer_.file->size()) return false;
+  if (!answer_.file->read(sent_of_file_, piece_)) {
+    close();  // the length is announced: only a broken connection tells that it was not kept
+    return true;
+  }
+  sent_of_file_ += piece_.size();
+  expire_in(core_.config.limits.write_timeout);
+  net::async_write(socket_, net::buffer(piece_),
+                   [self = shared_from_this()](error_code failed, std::size_t size) {
+                     self->on_sent(failed, size);
+                   });
+  return true;
 }
 
 void Connection::next_request() {

@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -44,6 +45,7 @@ class Connection final : public Session {
   void advance_body();
   void send(Answer answer);
   void on_sent(error_code failed, std::size_t size);
+  bool send_piece();
   void next_request();
   void linger();
   void begin_wait();
@@ -77,6 +79,8 @@ class Connection final : public Session {
   RequestHead head_;
   Reaction reaction_;
   Answer answer_;
+  std::uint64_t sent_of_file_ = 0;
+  std::string piece_;  ///< Of the answer's file.
   Timestamp received_;
   std::string first_lines_;
   std::string body_;

@@ -109,7 +109,8 @@ struct Document::Impl {
     std::string wire;
     wire.reserve(shared.size() + body.size() + 128);  // Type and length lines fit in 128 bytes.
     add_line(wire, "Content-Type", content_type(variants[index].media_type));
-    add_line(wire, "Content-Length", std::to_string(body.size()));
+    add_line(wire, "Content-Length",
+             std::to_string(options.file ? options.file->size() : body.size()));
     wire.append(shared).append("\r\n");
     out.head_size = wire.size();
     out.wire = std::make_shared<const std::string>(wire.append(body));

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/http/file_body.h"
 #include "common/time/timestamp.h"
 
 namespace chorus::http {
@@ -30,11 +31,12 @@ struct Variant {
 struct DocumentOptions {
   std::string version;  ///< The ETag is "<version>-<variant>", strong.
   std::string cache_control = "no-cache";
-  std::string content_location = {};       ///< Relative IRI of the immutable version, "frames/42".
-  bool container = false;                  ///< An LDP basic container (else an RDF source).
-  bool rdf_source = true;                  ///< False: LDP non-RDF source (image, page, script).
-  std::vector<Header> headers = {};        ///< Further headers, Link among them.
-  std::optional<Timestamp> captured = {};  ///< Adds Server-Timing: age of what was captured.
+  std::string content_location = {};  ///< Relative IRI of the immutable version, "frames/42".
+  bool container = false;             ///< An LDP basic container (else an RDF source).
+  bool rdf_source = true;             ///< False: LDP non-RDF source (image, page, script).
+  std::vector<Header> headers = {};   ///< Further headers, Link among them.
+  std::shared_ptr<const FileBody> file = {};  ///< The body, instead of what the variant renders.
+  std::optional<Timestamp> captured = {};     ///< Adds Server-Timing: age of what was captured.
 };
 
 /// The bytes of one representation.  The server writes a status line and the headers of the single

@@ -310,7 +310,9 @@ Answer Responder::represent(const DocumentPtr& document, const RequestHead& head
     return answer;
   }
   answer.own = rendered.head();
-  if (!is_head(head)) answer.body = rendered.body();
+  if (is_head(head)) return answer;
+  answer.body = rendered.body();
+  answer.file = document->options().file;
   return answer;
 }
 

@@ -18,7 +18,6 @@ using Strings = std::map<std::string, std::string>;
 
 constexpr std::string_view kFrameTopic = "/frame";
 constexpr std::string_view kFloorTopic = "/floor-plane";
-constexpr std::string_view kMetadataName = "chorus";
 constexpr std::string_view kNotePrefix = "note.";
 constexpr std::array<const char*, 5> kDistortion{"k1", "k2", "p1", "p2", "k3"};
 constexpr int kLargestImage = 1 << 20;  // [pixels per side]
@@ -42,29 +41,6 @@ std::optional<double> number_at(const Strings& values, const std::string& key) {
 std::string text_at(const Strings& values, const std::string& key) {
   const auto found = values.find(key);
   return found == values.end() ? std::string{} : found->second;
-}
-
-Strings metadata_of(const FrameRecording& recording) {
-  Strings values{{"sensor", recording.sensor.str()}, {"device", recording.device}};
-  if (const auto& camera = recording.intrinsics) {
-    values["width"] = std::to_string(camera->width);
-    values["height"] = std::to_string(camera->height);
-    values["fx"] = text_of(camera->fx);
-    values["fy"] = text_of(camera->fy);
-    values["cx"] = text_of(camera->cx);
-    values["cy"] = text_of(camera->cy);
-    for (std::size_t i = 0; i < kDistortion.size(); ++i) {
-      values[kDistortion[i]] = text_of(camera->distortion[i]);
-    }
-  }
-  if (const auto& floor = recording.floor) {
-    values["floor_normal_x"] = text_of(floor->normal.x());
-    values["floor_normal_y"] = text_of(floor->normal.y());
-    values["floor_normal_z"] = text_of(floor->normal.z());
-    values["floor_offset"] = text_of(floor->offset);
-  }
-  for (const auto& [name, note] : recording.notes) values[std::string(kNotePrefix) + name] = note;
-  return values;
 }
 
 std::optional<Intrinsics> intrinsics_of(const Strings& values) {
@@ -97,28 +73,6 @@ std::optional<FloorPlane> floor_of(const Strings& values) {
 
 bool same(const FloorPlane& a, const FloorPlane& b) {
   return a.normal == b.normal && a.offset == b.offset;
-}
-
-std::string floor_json(const FloorPlane& floor) {
-  return nlohmann::json{{"normalX", floor.normal.x()},
-                        {"normalY", floor.normal.y()},
-                        {"normalZ", floor.normal.z()},
-                        {"offset", floor.offset}}
-      .dump();
-}
-
-Result<FloorPlane> read_floor(const std::string& text) {
-  const auto json = nlohmann::json::parse(text, nullptr, false);
-  std::array<double, 4> v{};
-  constexpr std::array<const char*, 4> kKeys{"normalX", "normalY", "normalZ", "offset"};
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    if (!json.is_object() || !json.contains(kKeys[i]) || !json[kKeys[i]].is_number()) {
-      return fail(ErrorCode::Malformed, std::string(kFloorTopic),
-                  "a floor plane is not four numbers");
-    }
-    v[i] = json[kKeys[i]].get<double>();
-  }
-  return make_plane(v[0], v[1], v[2], v[3]);
 }
 
 struct Channels {
@@ -174,7 +128,40 @@ Result<void> write_whole(const std::filesystem::path& path, const FrameRecording
   return writer->close();
 }
 
-void read_description(const Strings& values, FrameRecording& out) {
+}  // namespace
+
+std::string floor_json(const FloorPlane& floor) {
+  return nlohmann::json{{"normalX", floor.normal.x()},
+                        {"normalY", floor.normal.y()},
+                        {"normalZ", floor.normal.z()},
+                        {"offset", floor.offset}}
+      .dump();
+}
+
+Strings metadata_of(const FrameRecording& recording) {
+  Strings values{{"sensor", recording.sensor.str()}, {"device", recording.device}};
+  if (const auto& camera = recording.intrinsics) {
+    values["width"] = std::to_string(camera->width);
+    values["height"] = std::to_string(camera->height);
+    values["fx"] = text_of(camera->fx);
+    values["fy"] = text_of(camera->fy);
+    values["cx"] = text_of(camera->cx);
+    values["cy"] = text_of(camera->cy);
+    for (std::size_t i = 0; i < kDistortion.size(); ++i) {
+      values[kDistortion[i]] = text_of(camera->distortion[i]);
+    }
+  }
+  if (const auto& floor = recording.floor) {
+    values["floor_normal_x"] = text_of(floor->normal.x());
+    values["floor_normal_y"] = text_of(floor->normal.y());
+    values["floor_normal_z"] = text_of(floor->normal.z());
+    values["floor_offset"] = text_of(floor->offset);
+  }
+  for (const auto& [name, note] : recording.notes) values[std::string(kNotePrefix) + name] = note;
+  return values;
+}
+
+void read_metadata(const Strings& values, FrameRecording& out) {
   if (const auto id = SensorId::parse(text_at(values, "sensor"))) out.sensor = *id;
   out.device = text_at(values, "device");
   out.intrinsics = intrinsics_of(values);
@@ -183,42 +170,6 @@ void read_description(const Strings& values, FrameRecording& out) {
     if (key.starts_with(kNotePrefix)) out.notes[key.substr(kNotePrefix.size())] = value;
   }
 }
-
-Result<FrameRecording> frames_of(const Recording& recording, const std::string& where) {
-  FrameRecording out;
-  if (const auto found = recording.metadata.find(std::string(kMetadataName));
-      found != recording.metadata.end()) {
-    read_description(found->second, out);
-  }
-  FloorPlane floor = out.floor.value_or(FloorPlane{});
-  bool floor_known = out.floor.has_value();
-  for (const Message& message : recording.messages) {
-    if (message.topic == kFloorTopic) {
-      const auto plane = read_floor(message.data);
-      if (!plane) return fail(ErrorCode::Malformed, where, plane.error().message);
-      floor = *plane;
-      floor_known = true;
-    } else if (message.topic == kFrameTopic) {
-      const auto frame = resource::read_frame(message.data, resource::Format::Json);
-      if (!frame) {
-        return fail(ErrorCode::Malformed, where,
-                    "frame " + std::to_string(out.frames.size()) + ": " + to_string(frame.error()));
-      }
-      if (out.sensor.str().empty()) {
-        if (const auto id = SensorId::parse(frame->source)) out.sensor = *id;
-      }
-      out.frames.push_back(resource::to_sensor_frame(*frame, out.sensor, message.log_time));
-      if (floor_known) out.frames.back().floor = floor;
-    }
-  }
-  if (auto ok = check_order(out.frames, where); !ok) return pass(ok);
-  for (std::size_t i = 0; i < recording.notes.size(); ++i) {
-    out.notes["damage." + std::to_string(i + 1)] = recording.notes[i];
-  }
-  return out;
-}
-
-}  // namespace
 
 Result<void> write_frame_recording(const std::filesystem::path& path,
                                    const FrameRecording& recording) {
@@ -234,13 +185,6 @@ Result<void> write_frame_recording(const std::filesystem::path& path,
   }
   if (!ok) std::filesystem::remove(partial, error);
   return ok;
-}
-
-Result<FrameRecording> read_frame_recording(const std::filesystem::path& path,
-                                            const ReadLimits& limits) {
-  const auto recording = read_recording(path, limits);
-  if (!recording) return pass(recording);
-  return frames_of(*recording, path.string());
 }
 
 }  // namespace chorus::record

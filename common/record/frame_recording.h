@@ -30,8 +30,14 @@ struct FrameRecording {
 [[nodiscard]] Result<void> write_frame_recording(const std::filesystem::path& path,
                                                  const FrameRecording& recording);
 
-/// Refuses frames that go back in time or repeat a capture time, saying where.
+/// The one sensor of a recording (a file, or a folder of them); `which` of several.  Refuses frames
+/// that go back in time or repeat a capture time, saying where.
 [[nodiscard]] Result<FrameRecording> read_frame_recording(const std::filesystem::path& path,
-                                                          const ReadLimits& limits = {});
+                                                          const ReadLimits& limits = {},
+                                                          const SensorId& which = {});
+
+/// The metadata record "chorus" of such a recording, and back.
+[[nodiscard]] std::map<std::string, std::string> metadata_of(const FrameRecording& recording);
+void read_metadata(const std::map<std::string, std::string>& values, FrameRecording& out);
 
 }  // namespace chorus::record

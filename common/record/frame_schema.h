@@ -1,9 +1,17 @@
-// The JSON Schema that stands in every recording, so that its messages explain themselves.
+// The JSON Schemas that stand in every recording, so that its messages explain themselves, and the
+// texts that both ways of recording share.
 #pragma once
 
+#include <string>
 #include <string_view>
 
+#include "common/sensor/sensor_frame.h"
+
 namespace chorus::record {
+
+inline constexpr std::string_view kMetadataName = "chorus";
+
+[[nodiscard]] std::string floor_json(const FloorPlane& floor);
 
 inline constexpr std::string_view kFrameSchemaName = "chorus.Frame";
 inline constexpr std::string_view kFrameSchema = R"({
@@ -49,6 +57,43 @@ inline constexpr std::string_view kFloorSchema = R"({
   "properties": {
     "normalX": {"type": "number"}, "normalY": {"type": "number"}, "normalZ": {"type": "number"},
     "offset": {"type": "number"}
+  }
+})";
+
+inline constexpr std::string_view kClockSchemaName = "chorus.ClockModel";
+inline constexpr std::string_view kClockSchema = R"({
+  "$schema": "http://json-schema.org/draft-07/schema#",
+  "title": "chorus.ClockModel",
+  "description": "What is added to a sensor's capture times to get the recorder's, valid from this message on",
+  "type": "object",
+  "required": ["sensor", "appliedNanoseconds"],
+  "properties": {
+    "sensor": {"type": "string"},
+    "appliedNanoseconds": {"type": "string", "description": "added to its capture times"},
+    "oursMinusTheirsNanoseconds": {"type": "string", "description": "the estimate; applied when it exceeds its uncertainty"},
+    "uncertaintyNanoseconds": {"type": "string"}
+  }
+})";
+
+inline constexpr std::string_view kRegistrationSchemaName = "chorus.Registration";
+inline constexpr std::string_view kRegistrationSchema = R"({
+  "$schema": "http://json-schema.org/draft-07/schema#",
+  "title": "chorus.Registration",
+  "description": "Where the sensors stand, valid from this message on: x_in_world = q x_in_sensor + (x, y, z); metres",
+  "type": "object",
+  "required": ["sensors"],
+  "properties": {
+    "version": {"type": "integer"},
+    "verdict": {"enum": ["None", "Provisional", "Good", "Refused"]},
+    "master": {"type": "string"},
+    "sensors": {"type": "object", "additionalProperties": {
+      "type": "object",
+      "required": ["x", "y", "z", "qx", "qy", "qz", "qw"],
+      "properties": {
+        "x": {"type": "number"}, "y": {"type": "number"}, "z": {"type": "number"},
+        "qx": {"type": "number"}, "qy": {"type": "number"}, "qz": {"type": "number"}, "qw": {"type": "number"}
+      }
+    }}
   }
 })";
 

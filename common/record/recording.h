@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -59,6 +60,10 @@ class RecordingWriter {
   /// A named set of strings about the whole recording ("chorus": sensor id, device, intrinsics).
   [[nodiscard]] Result<void> write_metadata(const std::string& name,
                                             const std::map<std::string, std::string>& values);
+  /// Closes the open chunk and hands it to the operating system, for whoever falls silent.
+  [[nodiscard]] Result<void> flush();
+  /// In the file, without the open chunk.
+  [[nodiscard]] std::uint64_t bytes() const;
   /// Writes the last chunk, the summary and the footer.
   [[nodiscard]] Result<void> close();
 
@@ -86,6 +91,8 @@ struct ReadLimits {
   std::size_t max_chunk_bytes = 64u << 20;  ///< Uncompressed; zip bombs are refused.
   std::uintmax_t max_total_bytes =
       4ull << 30;  ///< Memory of all messages; beyond it the file is refused.
+  /// Messages of other topics are skipped; empty: all are wanted.
+  std::function<bool(std::string_view topic)> wanted = {};
 };
 
 [[nodiscard]] Result<Recording> read_recording(const std::filesystem::path& path,

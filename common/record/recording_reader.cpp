@@ -6,6 +6,7 @@
 #include <fstream>
 #include <limits>
 #include <optional>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -28,6 +29,7 @@ struct Schema {
 struct Contents {
   std::map<std::uint16_t, Schema> schemas;
   std::map<std::uint16_t, Channel> channels;
+  std::set<std::uint16_t> skipped;  ///< Channels nobody wants.
   std::vector<Message> messages;
   std::uintmax_t bytes = 0;  ///< Memory the messages take, tiny ones with long topics included.
 };
@@ -67,7 +69,7 @@ std::string read_schema(std::string_view content, Contents& into) {
   return {};
 }
 
-std::string read_channel(std::string_view content, Contents& into) {
+std::string read_channel(std::string_view content, const ReadLimits& limits, Contents& into) {
   ByteReader fields(content);
   const std::uint16_t id = fields.u16();
   const std::uint16_t schema = fields.u16();
@@ -76,6 +78,7 @@ std::string read_channel(std::string_view content, Contents& into) {
   (void)fields.text();  // the encoding: the reader of the topic knows what it expects
   channel.metadata = fields.strings();
   if (!fields.ok()) return "a channel record is cut short";
+  if (limits.wanted && !limits.wanted(channel.topic)) into.skipped.insert(id);
   if (const auto found = into.schemas.find(schema); found != into.schemas.end()) {
     channel.schema_name = found->second.name;
     channel.schema_json = found->second.json;
@@ -94,6 +97,7 @@ std::string read_message(std::string_view content, Contents& into) {
   const auto log_time = to_time(fields.u64());
   const auto publish_time = to_time(fields.u64());
   if (!fields.ok()) return "a message record is cut short";
+  if (into.skipped.contains(channel)) return {};
   const auto known = into.channels.find(channel);
   if (known == into.channels.end()) {
     return "a message names channel " + std::to_string(channel) + ", which is not there";
@@ -108,12 +112,13 @@ std::string read_message(std::string_view content, Contents& into) {
   return {};
 }
 
-std::string read_definition_or_message(const RawRecord& record, Contents& into) {
+std::string read_definition_or_message(const RawRecord& record, const ReadLimits& limits,
+                                       Contents& into) {
   switch (record.op) {
     case Op::Schema:
       return read_schema(record.content, into);
     case Op::Channel:
-      return read_channel(record.content, into);
+      return read_channel(record.content, limits, into);
     case Op::Message:
       return read_message(record.content, into);
     default:
@@ -202,7 +207,8 @@ std::string Reading::read_chunk(std::string_view content) {
   std::string wrong;
   while (wrong.empty() && !records.rest().empty() && !over_total()) {
     const auto record = take_record(records);
-    wrong = record ? read_definition_or_message(*record, contents_) : "a record in it is cut short";
+    wrong = record ? read_definition_or_message(*record, limits_, contents_)
+                   : "a record in it is cut short";
   }
   if (!wrong.empty()) contents_.messages.resize(kept);
   return wrong;
@@ -231,7 +237,7 @@ bool Reading::step(const RawRecord& record) {
       return !over_total();
     }
     default: {
-      const std::string wrong = read_definition_or_message(record, contents_);
+      const std::string wrong = read_definition_or_message(record, limits_, contents_);
       if (!wrong.empty()) note(wrong);
       return !over_total();
     }

@@ -314,6 +314,13 @@ Result<void> RecordingWriter::write_metadata(const std::string& name,
   return impl_->put(bytes);
 }
 
+Result<void> RecordingWriter::flush() {
+  if (auto ok = impl_->usable(); !ok) return ok;
+  return impl_->close_chunk();
+}
+
+std::uint64_t RecordingWriter::bytes() const { return impl_->offset; }
+
 Result<void> RecordingWriter::close() {
   if (impl_->closed) return {};
   if (auto ok = impl_->usable(); !ok) return ok;

@@ -111,10 +111,10 @@ class Session : public std::enable_shared_from_this<Session> {
   }
 
   void deliver(const std::shared_ptr<const resource::FrameResource>& frame) {
-    const Duration shift = correction(clock_.at(received_));
-    SensorFrame placed = place_in_time(*frame, sensor_.id, received_, shift, floor_);
+    const auto clock = clock_.at(received_);
+    SensorFrame placed = place_in_time(*frame, sensor_.id, received_, correction(clock), floor_);
     note(placed);
-    options_.deliver({std::move(placed), frame});
+    options_.deliver({std::move(placed), frame, clock});
   }
 
   void note(const SensorFrame& frame) {

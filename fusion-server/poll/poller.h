@@ -30,6 +30,7 @@ struct PolledSensor {
 struct PolledFrame {
   SensorFrame frame;  ///< By our clock, with the floor plane last heard of.
   std::shared_ptr<const resource::FrameResource> raw;  ///< As the sensor sent it.
+  std::optional<ClockEstimate> clock;                  ///< What its capture times were moved by.
 };
 
 /// What a poll knows of one sensor; a copy.

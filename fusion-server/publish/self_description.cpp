@@ -53,10 +53,11 @@ resource::Node service_node(const std::string& title, bool with_viewer) {
   out.emplace_back("floorPlane", Ref{"floor-plane"});
   out.emplace_back("sensorList", Ref{"sensors/"});
   out.emplace_back("registration", Ref{"registration"});
+  out.emplace_back("recordingList", Ref{"recordings/"});
   out.emplace_back("clock", Ref{"clock"});
   if (with_viewer) out.emplace_back("viewer", Ref{"viewer/"});
-  std::vector<Ref> contains{{"frame"},    {"skeletons/"},   {"floor-plane"},
-                            {"sensors/"}, {"registration"}, {"clock"}};
+  std::vector<Ref> contains{{"frame"},        {"skeletons/"},  {"floor-plane"}, {"sensors/"},
+                            {"registration"}, {"recordings/"}, {"clock"}};
   out.emplace_back("contains", std::move(contains));
   return node;
 }
@@ -79,6 +80,7 @@ std::string landing_page(const std::string& title, bool with_viewer) {
       "<li><a href=\"skeletons/\">skeletons/</a>: one resource per body</li>\n"
       "<li><a href=\"sensors/\">sensors/</a>: state, age and clock of every sensor</li>\n"
       "<li><a href=\"registration\">registration</a>: where the sensors stand</li>\n"
+      "<li><a href=\"recordings/\">recordings/</a>: what has been recorded</li>\n"
       "<li><a href=\"floor-plane\">floor-plane</a>, <a href=\"clock\">clock</a>, "
       "<a href=\"healthz\">healthz</a>, <a href=\"metrics\">metrics</a>, "
       "<a href=\"openapi.json\">openapi.json</a>, <a href=\"ns\">ns</a></li>\n"

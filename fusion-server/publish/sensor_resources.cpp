@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/base/log.h"
+#include "common/resource/floor_plane_resource.h"
+
 namespace chorus::publish {
 namespace {
 
@@ -105,6 +108,27 @@ Result<http::DocumentPtr> SensorResources::frame_of(const std::string& id) const
               "this sensor has not delivered a frame yet");
 }
 
+void SensorResources::floor(const SensorId& sensor, const std::optional<FloorPlane>& floor) {
+  const std::scoped_lock lock(mutex_);
+  if (floor) floors_[sensor] = *floor;
+}
+
+Result<http::DocumentPtr> SensorResources::floor_of(const std::string& id) const {
+  const std::string path = "sensors/" + id + "/floor-plane";
+  const auto sensor = SensorId::parse(id);
+  const std::scoped_lock lock(mutex_);
+  const auto it = sensor ? floors_.find(*sensor) : floors_.end();
+  if (it == floors_.end())
+    return fail(ErrorCode::NotFound, path, "no sensor of this id has told where its floor is");
+  const FloorPlane& floor = it->second;
+  http::DocumentOptions options;
+  options.version = context_.instance;
+  for (const double v : {floor.normal.x(), floor.normal.y(), floor.normal.z(), floor.offset})
+    options.version += "-" + log::number_text(v);
+  return resource::document_of(resource::floor_plane_node(floor, resource::SpaceKind::Sensor),
+                               std::move(options), place_of(context_, path));
+}
+
 void SensorResources::add_routes(http::Router& router) {
   router.live("/sensors/", list_);
   router.get("/sensors/{id}", [this](const http::Request&, const http::PathParams& params) {
@@ -113,6 +137,10 @@ void SensorResources::add_routes(http::Router& router) {
   router.get("/sensors/{id}/frame", [this](const http::Request&, const http::PathParams& params) {
     return frame_of(params.at("id"));
   });
+  router.get("/sensors/{id}/floor-plane",
+             [this](const http::Request&, const http::PathParams& params) {
+               return floor_of(params.at("id"));
+             });
   for (const auto& [sensor, live] : frames_) {
     router.live("/sensors/" + sensor.str() + "/frame", live);
   }

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "common/http/router.h"
@@ -25,6 +26,8 @@ class SensorResources {
   void publish(const std::vector<SensorStatus>& sensors);
   /// The frame as the sensor sent it: its own space, its own clock.
   void relay(const SensorId& sensor, FramePtr frame);
+  /// Its floor plane, in its own space; none: it has said nothing of one.
+  void floor(const SensorId& sensor, const std::optional<FloorPlane>& floor);
 
   void add_routes(http::Router& router);
 
@@ -32,6 +35,7 @@ class SensorResources {
   [[nodiscard]] std::shared_ptr<http::LiveDocument> live_of(const SensorId& sensor);
   [[nodiscard]] Result<http::DocumentPtr> one(const std::string& id) const;
   [[nodiscard]] Result<http::DocumentPtr> frame_of(const std::string& id) const;
+  [[nodiscard]] Result<http::DocumentPtr> floor_of(const std::string& id) const;
 
   RestContext context_;
   std::shared_ptr<http::LiveDocument> list_;
@@ -39,6 +43,7 @@ class SensorResources {
   std::vector<SensorStatus> sensors_;
   std::uint64_t version_ = 0;
   std::map<SensorId, std::shared_ptr<http::LiveDocument>> frames_;
+  std::map<SensorId, FloorPlane> floors_;
 };
 
 }  // namespace chorus::publish

@@ -184,6 +184,7 @@ Result<FusionConfig> read_fusion_config(std::string_view text, std::string_view 
   publish::read_outputs(root->child("outputs"), config.outputs);
   root->read("state_dir", config.state_dir);
   root->read("viewer_dir", config.viewer_dir);
+  endpoint::read_recording(root->child("recording"), config.recording);
   if (auto ok = root->finish(); !ok) return pass(ok);
   return config;
 }
@@ -212,6 +213,7 @@ std::string needs_restart(const FusionConfig& now, const FusionConfig& next) {
   add(now.state_dir != next.state_dir, "state_dir");
   add(now.viewer_dir != next.viewer_dir, "viewer_dir");
   add(now.outputs != next.outputs, "outputs");
+  add(now.recording != next.recording, "recording");
   add(now.registration_file != next.registration_file, "registration.file");
   return keys;
 }

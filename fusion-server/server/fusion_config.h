@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/endpoint/recordings.h"
 #include "common/http/server.h"
 #include "fusion-server/pipeline/pipeline.h"
 #include "fusion-server/poll/poller.h"
@@ -29,7 +30,8 @@ struct FusionConfig {
   publish::OutputsConfig outputs;
   std::string registration_file;  ///< Given extrinsics; empty: registered from a walk.
   std::string state_dir;          ///< Where the registration survives a restart; empty: nowhere.
-  std::string viewer_dir;         ///< Static files of /viewer/; empty: no viewer.
+  endpoint::RecordingConfig recording;
+  std::string viewer_dir;  ///< Static files of /viewer/; empty: no viewer.
 };
 
 /// `overrides` are "path=value" of the command line.  Every mistake is named, all at once.

@@ -12,6 +12,7 @@
 #include "common/endpoint/endpoint.h"
 #include "fusion-server/publish/frame_resources.h"
 #include "fusion-server/publish/metrics.h"
+#include "fusion-server/publish/recording_tap.h"
 #include "fusion-server/publish/registration_resources.h"
 #include "fusion-server/publish/self_description.h"
 #include "fusion-server/publish/sensor_resources.h"
@@ -80,6 +81,28 @@ endpoint::Health health_of(const publish::Status& status) {
   return {true, {}};
 }
 
+endpoint::RecordingsOptions recordings_options(const FusionConfig& config,
+                                               const publish::RestContext& context,
+                                               std::shared_ptr<const Clock> clock) {
+  endpoint::RecordingsOptions options;
+  options.config = config.recording;
+  options.head.metadata["title"] = config.title;
+  options.has_fused = true;
+  options.run = context.instance;
+  options.root = context.root;
+  options.clock = std::move(clock);
+  return options;
+}
+
+record::RawFrame raw_frame(const poll::PolledFrame& polled) {
+  record::ClockModel clock{polled.frame.captured - polled.raw->captured, Duration{0}, {}};
+  if (polled.clock) {
+    clock.ours_minus_theirs = polled.clock->ours_minus_theirs;
+    clock.uncertainty = polled.clock->uncertainty;
+  }
+  return {polled.frame.sensor, polled.raw, polled.frame.received, polled.frame.floor, clock};
+}
+
 }  // namespace
 
 struct FusionServer::Impl {
@@ -106,6 +129,8 @@ struct FusionServer::Impl {
   std::optional<publish::FrameResources> frames;
   std::optional<publish::SensorResources> sensors;
   std::optional<publish::RegistrationResources> registration;
+  std::optional<endpoint::Recordings> recordings;
+  std::optional<publish::RecordingTap> tap;
   std::unique_ptr<http::Server> http;
   std::unique_ptr<PipelineLoop> loop;
   std::unique_ptr<poll::Poller> poller;
@@ -123,6 +148,9 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   frames.emplace(context, ring_capacity(config));
   sensors.emplace(context, ids_of(config.sensors));
   registration.emplace(context, std::move(control));
+  recordings.emplace(recordings_options(config, context, clock));
+  tap.emplace(*recordings, clock);
+  recordings->add_routes(*router);
   frames->add_routes(*router);
   sensors->add_routes(*router);
   registration->add_routes(*router);
@@ -130,7 +158,10 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   endpoint::EndpointOptions endpoint;
   endpoint.clock = clock;
   endpoint.health = [this] { return health_of(status_now()); };
-  endpoint.metrics = [this] { return publish::metrics_text(status_now(), sinks, http->counters()); };
+  endpoint.metrics = [this] {
+    return publish::metrics_text(status_now(), sinks, http->counters()) +
+           recordings->metrics_text();
+  };
   endpoint::add_routes(*router, endpoint);
   return router;
 }
@@ -149,6 +180,7 @@ Result<void> FusionServer::Impl::start_session(Duration target) {
 void FusionServer::Impl::take_status(const publish::Status& next) {
   sensors->publish(next.sensors);
   registration->publish(next.registration, next.session);
+  tap->places(next.registration);
   const std::scoped_lock lock(mutex);
   status = next;
   session_asked = false;
@@ -179,6 +211,7 @@ Result<void> FusionServer::start() {
   loop.store = RegistrationStore(s.config.state_dir);
   loop.clock = s.clock;
   loop.sinks.push_back(&*s.frames);
+  loop.sinks.push_back(&*s.tap);
   for (const auto& sink : s.sinks) loop.sinks.push_back(sink.get());
   loop.on_status = [&s](const publish::Status& status) { s.take_status(status); };
   loop.poll_reports = [&s] {
@@ -191,6 +224,8 @@ Result<void> FusionServer::start() {
   polling.timings = s.config.poll;
   polling.clock = s.clock;
   polling.deliver = [&s](poll::PolledFrame polled) {
+    s.tap->raw(raw_frame(polled));
+    s.sensors->floor(polled.frame.sensor, polled.frame.floor);
     s.sensors->relay(polled.frame.sensor, std::move(polled.raw));
     s.loop->give(std::move(polled.frame));
   };

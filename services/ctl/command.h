@@ -33,6 +33,7 @@ struct Command {
 Run add_import(CLI::App& options);
 Run add_register(CLI::App& options);
 Run add_status(CLI::App& options);
+Run add_record(CLI::App& options);
 Run add_replay(CLI::App& options);
 Run add_fuse(CLI::App& options);
 Run add_export(CLI::App& options);

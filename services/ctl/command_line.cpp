@@ -37,20 +37,30 @@ constexpr std::array kCommands{
             "  chorus status\n"
             "  chorus status --url http://127.0.0.1:8080/ --json | jq .sensors",
             &add_status},
+    Command{"record", "Records a running sensor or fusion server into a file on this machine",
+            "Examples:\n"
+            "  chorus record --out walk.mcap --seconds 60\n"
+            "  chorus record http://10.0.0.5:8080/ --out walk.mcap        until Ctrl-C\n"
+            "  chorus record http://10.0.0.5:8081/ --out s1.mcap          one sensor alone\n"
+            "Everything a fusion server needs to do its work again: raw frames, clock models,\n"
+            "registration; and its fused frames.  Then: chorus fuse walk.mcap --out fused.mcap.",
+            &add_record},
     Command{"replay", "Plays recordings as sensors: one chorus-sensor process for each",
             "Examples:\n"
             "  chorus replay rec --loop               all recordings of a folder, ports 8081, "
             "8082, ...\n"
             "  chorus replay rec/cam01.mcap --port 9001\n"
+            "  chorus replay walk.mcap --speed 0.5    every sensor of one recording\n"
             "Ctrl-C stops all of them.",
             &add_replay},
     Command{
         "fuse", "Fuses recordings of several sensors offline, registration included",
         "Examples:\n"
         "  chorus fuse rec --out fused.ndjson\n"
+        "  chorus fuse walk.mcap --out fused.mcap --config other.json\n"
         "  chorus fuse rec --out fused.ndjson --registration rec/registration.json --method otto\n"
         "  chorus fuse rec --out - --config deploy/config/fusion.json | jq .bodies[0].joints.Head\n"
-        "One /frame document a line; the same input gives the same bytes.",
+        "A recording, or one /frame document a line; the same input gives the same bytes.",
         &add_fuse},
     Command{"export", "Writes fused frames as BVH, C3D, TRC, CSV or glTF",
             "Examples:\n"

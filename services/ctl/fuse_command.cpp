@@ -1,6 +1,6 @@
-// chorus fuse DIR --out FILE.ndjson: recordings through the pipeline, without clocks or sockets.
+// chorus fuse REC --out FILE: recordings through the pipeline, without clocks or sockets.
 #include <algorithm>
-#include <fstream>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -27,23 +27,34 @@ struct FuseArguments {
   std::string out;
   std::string registration;
   std::string save_registration;
+  bool from_walk = false;
   OfflineOptions options;
   bool json = false;
 };
 
-Result<std::vector<registration::WalkTrack>> read_tracks(const std::vector<std::string>& inputs) {
-  const auto files = find_recordings({inputs.begin(), inputs.end()});
-  if (!files) return pass(files);
-  auto recordings = read_recordings(*files);
-  if (!recordings) return pass(recordings);
+std::vector<registration::WalkTrack> tracks_of(record::Session session) {
   std::vector<registration::WalkTrack> tracks;
-  for (auto& recording : *recordings)
+  for (auto& recording : session.sensors)
     tracks.push_back({recording.sensor, std::move(recording.frames)});
   return tracks;
 }
 
-Result<std::optional<Registration>> read_extrinsics(const std::string& file) {
-  if (file.empty()) return std::nullopt;
+/// The last one that a recording was made with.
+Result<std::optional<Registration>> recorded_extrinsics(const std::vector<std::string>& recorded) {
+  for (auto text = recorded.rbegin(); text != recorded.rend(); ++text) {
+    auto registration = publish::read_registration(*text);
+    if (!registration)
+      return fail(registration.error().code, "/registration", to_string(registration.error()));
+    if (!registration->sensors.empty()) return std::optional(std::move(*registration));
+  }
+  return std::nullopt;
+}
+
+Result<std::optional<Registration>> read_extrinsics(const FuseArguments& arguments,
+                                                    const record::Session& session) {
+  if (arguments.from_walk) return std::nullopt;
+  const std::string& file = arguments.registration;
+  if (file.empty()) return recorded_extrinsics(session.registrations);
   const auto text = read_text(file);
   if (!text) return pass(text);
   auto registration = publish::read_registration(*text);
@@ -60,6 +71,35 @@ std::string ndjson_of(const std::vector<Snapshot>& snapshots) {
     text += line + "\n";
   }
   return text;
+}
+
+/// A recording of the fused frames alone.  Nothing in it depends on when or where it is made.
+Result<void> write_fused(const std::string& file, const pipeline::OfflineResult& result) {
+  auto writer = record::SessionWriter::create(file, {{{"title", "chorus fuse"}}, false});
+  if (!writer) return pass(writer);
+  record::PlacesChanged places{{}, publish::write_registration(result.registration), {}};
+  if (!result.snapshots.empty()) places.at = result.snapshots.front().instant;
+  for (const auto& [sensor, place] : result.registration.sensors)
+    places.places.push_back({sensor.str(), place.world_from_sensor});
+  if (auto ok = writer->write(places); !ok) return ok;
+  for (const Snapshot& snapshot : result.snapshots) {
+    const auto ok = writer->write(record::FusedFrame{
+        snapshot.instant, snapshot.instant, [&] { return publish::to_resource(snapshot); }});
+    if (!ok) return ok;
+  }
+  return writer->close();
+}
+
+Result<void> write_result(const std::string& file, const pipeline::OfflineResult& result) {
+  if (!file.ends_with(".mcap")) return write_text(file, ndjson_of(result.snapshots));
+  const std::string partial = file + ".partial";
+  std::error_code error;
+  std::filesystem::remove(partial, error);
+  auto ok = write_fused(partial, result);
+  if (ok) std::filesystem::rename(partial, file, error);
+  if (ok && error) ok = fail(ErrorCode::Io, file, error.message());
+  if (!ok) std::filesystem::remove(partial, error);
+  return ok;
 }
 
 nlohmann::json summary_of(const pipeline::OfflineResult& result, std::size_t sensors) {
@@ -87,20 +127,23 @@ void print_summary(const nlohmann::json& summary, const FuseArguments& arguments
 Result<int> run_fuse(const FuseArguments& arguments) {
   const auto config = offline_config(arguments.options);
   if (!config) return pass(config);
-  const auto extrinsics = read_extrinsics(arguments.registration);
+  const auto files = find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
+  if (!files) return pass(files);
+  auto session = read_recordings(*files);
+  if (!session) return pass(session);
+  const auto extrinsics = read_extrinsics(arguments, *session);
   if (!extrinsics) return pass(extrinsics);
-  const auto tracks = read_tracks(arguments.inputs);
-  if (!tracks) return pass(tracks);
-  const auto result = pipeline::fuse_offline(*tracks, *extrinsics, *config);
+  const auto tracks = tracks_of(std::move(*session));
+  const auto result = pipeline::fuse_offline(tracks, *extrinsics, *config);
   if (!result) return pass(result);
-  const auto written = write_text(arguments.out, ndjson_of(result->snapshots));
+  const auto written = write_result(arguments.out, *result);
   if (!written) return pass(written);
   if (!arguments.save_registration.empty()) {
     const auto saved =
         write_text(arguments.save_registration, publish::write_registration(result->registration));
     if (!saved) return pass(saved);
   }
-  const nlohmann::json summary = summary_of(*result, tracks->size());
+  const nlohmann::json summary = summary_of(*result, tracks.size());
   print_summary(summary, arguments);
   // A file of empty frames is not what anybody asked for; the report says why.
   return summary["framesWithBodies"].get<std::size_t>() > 0 ? kExitOk : kExitFailed;
@@ -110,12 +153,17 @@ Result<int> run_fuse(const FuseArguments& arguments) {
 
 Run add_fuse(CLI::App& options) {
   const auto arguments = std::make_shared<FuseArguments>();
-  options.add_option("recordings", arguments->inputs, "Folders or .mcap files, one per sensor")
+  options
+      .add_option("recordings", arguments->inputs,
+                  "Folders or .mcap files, of sensors or of whole cells")
       ->required();
-  options.add_option("--out", arguments->out, "NDJSON file to write; - is standard output")
+  options
+      .add_option("--out", arguments->out, "File to write: .mcap, or NDJSON; - is standard output")
       ->required();
   options.add_option("--registration", arguments->registration,
-                     "Extrinsics as JSON; without it the sensors are registered from the person");
+                     "Extrinsics as JSON; without it those of the recording, else from the person");
+  options.add_flag("--from-walk", arguments->from_walk,
+                   "Register from the person, though the recording has a registration");
   options.add_option("--save-registration", arguments->save_registration,
                      "Write the extrinsics used to this file");
   add_offline_options(options, arguments->options);

@@ -1,10 +1,7 @@
 #include "services/ctl/recordings.h"
 
 #include <algorithm>
-#include <map>
 #include <system_error>
-
-#include <fmt/format.h>
 
 namespace chorus::ctl {
 namespace {
@@ -45,20 +42,12 @@ Result<std::vector<fs::path>> find_recordings(const std::vector<fs::path>& input
   return all;
 }
 
-Result<std::vector<record::FrameRecording>> read_recordings(const std::vector<fs::path>& files) {
-  std::vector<record::FrameRecording> recordings;
-  std::map<SensorId, fs::path> seen;
-  for (const fs::path& file : files) {
-    auto recording = record::read_frame_recording(file);
-    if (!recording) return pass(recording);
-    const auto [other, fresh] = seen.try_emplace(recording->sensor, file);
-    if (!fresh)
-      return fail(ErrorCode::Conflict, file.string(),
-                  fmt::format("is a recording of sensor {}, and so is {}.", recording->sensor.str(),
-                              other->second.string()));
-    recordings.push_back(std::move(*recording));
-  }
-  return recordings;
+Result<record::Session> read_recordings(const std::vector<fs::path>& files) {
+  auto session = record::read_session(files);
+  if (session && session->sensors.empty())
+    return fail(ErrorCode::NotFound, files.front().string(),
+                "holds no frames of a sensor; was it recorded with --fused alone?");
+  return session;
 }
 
 }  // namespace chorus::ctl

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/base/result.h"
-#include "common/record/frame_recording.h"
+#include "common/record/session_reader.h"
 
 namespace chorus::ctl {
 
@@ -13,8 +13,9 @@ namespace chorus::ctl {
 [[nodiscard]] Result<std::vector<std::filesystem::path>> find_recordings(
     const std::vector<std::filesystem::path>& inputs);
 
-/// Read whole; refuses two of the same sensor.
-[[nodiscard]] Result<std::vector<record::FrameRecording>> read_recordings(
+/// Read whole; refuses none at all, and two of the same sensor unless they are parts of one
+/// recording.
+[[nodiscard]] Result<record::Session> read_recordings(
     const std::vector<std::filesystem::path>& files);
 
 }  // namespace chorus::ctl

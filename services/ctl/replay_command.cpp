@@ -1,10 +1,12 @@
-// chorus replay: one chorus-sensor process per recording, so that what runs is what runs with
+// chorus replay: one chorus-sensor process per recorded sensor, so that what runs is what runs with
 // hardware.
 //
 // All of them count from the same instant, a second from now, so that recordings of one set stay in
 // step.
+#include <algorithm>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -17,41 +19,98 @@
 namespace chorus::ctl {
 namespace {
 
-constexpr Duration kHeadStart = std::chrono::seconds(1);  // for every process to come up
+constexpr Duration kHeadStart = std::chrono::seconds(1);            // for every process to come up
+constexpr Duration kBetweenRounds = std::chrono::milliseconds(33);  // one frame, as between others
 constexpr int kLastPort = 65535;
 
 struct ReplayArguments {
   std::vector<std::string> inputs;
   int port = 8081;
   bool loop = false;
+  double speed = 1.0;
 };
 
-Child sensor_process(const std::filesystem::path& file, const SensorId& sensor, int port,
-                     const ReplayArguments& arguments, Timestamp epoch) {
-  Child child{
-      fmt::format("replay of {}", file.string()),
-      {sibling_program("chorus-sensor"), "--id", sensor.str(), "--port", std::to_string(port),
-       "--recording", file.string(), "--set", fmt::format("device.replay.loop={}", arguments.loop),
-       "--set", fmt::format("device.replay.epoch_ns={}", to_unix_ns(epoch))}};
+/// What one process plays.
+struct Part {
+  SensorId sensor;
+  std::filesystem::path from;  ///< A file, or the folder of a recording with several.
+};
+
+/// Where a set begins and how long one round lasts, when the recordings do not note it themselves.
+struct Round {
+  Timestamp origin;
+  Duration period{0};
+};
+
+Result<std::vector<Part>> parts_of(const record::Session& session) {
+  std::vector<Part> parts;
+  for (const auto& [sensor, files] : session.files) {
+    if (files.empty()) continue;  // it saw nothing
+    const auto folder = files.front().parent_path();
+    const bool together = std::all_of(
+        files.begin(), files.end(), [&](const auto& file) { return file.parent_path() == folder; });
+    if (!together) {
+      return fail(ErrorCode::InvalidArgument, files.back().string(),
+                  "is a part of a recording whose other files are in another folder.");
+    }
+    parts.push_back({sensor, files.size() == 1 ? files.front() : folder});
+  }
+  return parts;
+}
+
+/// Streams of one cell share their beginning; without it each would start at its own first frame.
+std::optional<Round> round_of(const record::Session& session) {
+  if (session.cell.empty()) return std::nullopt;
+  Timestamp first = Timestamp::max();
+  Timestamp last = Timestamp::min();
+  for (const auto& sensor : session.sensors) {
+    if (sensor.frames.empty()) continue;
+    first = std::min(first, sensor.frames.front().captured);
+    last = std::max(last, sensor.frames.back().captured);
+  }
+  if (last < first) return std::nullopt;
+  return Round{first, last - first + kBetweenRounds};
+}
+
+Child sensor_process(const Part& part, int port, const ReplayArguments& arguments,
+                     Timestamp epoch) {
+  Child child{fmt::format("replay of {}", part.from.string()),
+              {sibling_program("chorus-sensor"), "--id", part.sensor.str(), "--port",
+               std::to_string(port), "--recording", part.from.string(), "--set",
+               fmt::format("device.replay.loop={}", arguments.loop), "--set",
+               fmt::format("device.replay.speed={}", arguments.speed), "--set",
+               fmt::format("device.replay.epoch_ns={}", to_unix_ns(epoch))}};
   return child;
+}
+
+void share(const Round& round, Child& child) {
+  for (const auto& [key, value] : {std::pair("origin_ns", to_unix_ns(round.origin)),
+                                   std::pair("period_ns", round.period.count())}) {
+    child.command.insert(child.command.end(),
+                         {"--set", fmt::format("device.replay.{}={}", key, value)});
+  }
 }
 
 Result<int> run_replay(const ReplayArguments& arguments) {
   const auto files = find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
   if (!files) return pass(files);
   // Read now: a broken recording, or two of one sensor, should not start half a cell.
-  const auto recordings = read_recordings(*files);
-  if (!recordings) return pass(recordings);
-  if (arguments.port + static_cast<int>(files->size()) - 1 > kLastPort)
+  const auto session = read_recordings(*files);
+  if (!session) return pass(session);
+  const auto parts = parts_of(*session);
+  if (!parts) return pass(parts);
+  if (arguments.port + static_cast<int>(parts->size()) - 1 > kLastPort)
     return fail(ErrorCode::InvalidArgument, "--port", "leaves too few ports above it.");
   const Timestamp epoch = std::chrono::ceil<std::chrono::seconds>(SystemClock().now() + kHeadStart);
   std::vector<Child> children;
-  for (std::size_t i = 0; i < files->size(); ++i) {
+  const auto round = round_of(*session);
+  for (std::size_t i = 0; i < parts->size(); ++i) {
     const int port = arguments.port + static_cast<int>(i);
-    const SensorId& sensor = (*recordings)[i].sensor;
-    children.push_back(sensor_process((*files)[i], sensor, port, arguments, epoch));
-    std::cout << fmt::format("{} at http://127.0.0.1:{}/ from {}\n", sensor.str(), port,
-                             (*files)[i].string())
+    const Part& part = (*parts)[i];
+    children.push_back(sensor_process(part, port, arguments, epoch));
+    if (round) share(*round, children.back());
+    std::cout << fmt::format("{} at http://127.0.0.1:{}/ from {}\n", part.sensor.str(), port,
+                             part.from.string())
               << std::flush;
   }
   const auto done = run_children(children);
@@ -66,6 +125,9 @@ Run add_replay(CLI::App& options) {
   options.add_option("recordings", arguments->inputs, "Folders or .mcap files")->required();
   options.add_option("--port", arguments->port, "Port of the first; the others follow")
       ->check(CLI::Range(1, kLastPort))
+      ->capture_default_str();
+  options.add_option("--speed", arguments->speed, "2 is twice as fast")
+      ->check(CLI::Range(0.01, 100.0))
       ->capture_default_str();
   options.add_flag("--loop", arguments->loop, "Start over at the end");
   return [arguments] { return run_replay(*arguments); };

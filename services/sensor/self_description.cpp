@@ -31,6 +31,7 @@ constexpr std::array kResources{
     Resource{"images/color", "colorImage", "the latest colour image, JPEG", true},
     Resource{"images/depth", "depthImage", "the latest depth image, 16-bit PNG in millimetres",
              true},
+    Resource{"recordings/", "recordingList", "what this sensor has recorded"},
     Resource{"clock", "clock", "how well this host keeps time"},
     Resource{"healthz", "", "whether frames are coming in"},
     Resource{"metrics", "", "counters for Prometheus"},

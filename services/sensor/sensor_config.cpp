@@ -64,6 +64,7 @@ SensorConfig read_config(ConfigReader& root) {
   config.frames_kept = static_cast<std::size_t>(frames_kept);
   root.read_ms("clock_error_ms", config.clock_error, -kLargestClockError, kLargestClockError);
   read_log(root.child("log"), config.log);
+  endpoint::read_recording(root.child("recording"), config.recording);
   return config;
 }
 
@@ -74,7 +75,7 @@ Device open_replay(ConfigReader& config, const ReplayOptions& options, const Set
     config.complain("recording", "name the recording to replay, a .mcap file");
     return nullptr;
   }
-  auto recording = record::read_frame_recording(options.recording);
+  auto recording = record::read_frame_recording(options.recording, {}, setup.config.id);
   if (!recording) return pass(recording);
   for (const auto& [name, note] : recording->notes) {
     if (name.starts_with("damage.")) log::warn("recording is damaged", {{"note", note}});
@@ -135,6 +136,7 @@ std::vector<std::string> restart_keys(const Setup& running, const Setup& wanted)
   compare(a.http == listening, "http");
   compare(a.frames_kept == b.frames_kept, "frames_kept");
   compare(a.clock_error == b.clock_error, "clock_error_ms");
+  compare(a.recording == b.recording, "recording");
   compare(running.device_text == wanted.device_text, "device");
   return keys;
 }

@@ -9,6 +9,7 @@
 #include "common/base/config_reader.h"
 #include "common/base/log.h"
 #include "common/base/strong_id.h"
+#include "common/endpoint/recordings.h"
 #include "common/sensor/frame_source.h"
 #include "common/time/clock.h"
 
@@ -37,6 +38,7 @@ struct SensorConfig {
   std::size_t frames_kept = 90;
   Duration clock_error{0};  ///< Added to the host's clock: simulated hosts that disagree.
   LogConfig log;
+  endpoint::RecordingConfig recording;
 
   bool operator==(const SensorConfig&) const = default;
 };

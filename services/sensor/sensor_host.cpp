@@ -6,6 +6,7 @@
 #include <random>
 #include <utility>
 
+#include "common/record/frame_recording.h"
 #include "services/sensor/metrics_text.h"
 
 namespace chorus::sensor_service {
@@ -28,6 +29,20 @@ ServiceOptions service_options(const Setup& setup) {
   options.serving.run = run_name();
   options.serving.root =
       "http://" + setup.config.http.address + ":" + std::to_string(setup.config.http.port) + "/";
+  return options;
+}
+
+endpoint::RecordingsOptions recordings_options(const Setup& setup, const ServiceOptions& service) {
+  record::FrameRecording about;
+  about.sensor = service.id;
+  about.device = service.device.label;
+  about.intrinsics = service.device.depth_camera;
+  endpoint::RecordingsOptions options;
+  options.config = setup.config.recording;
+  options.head = {record::metadata_of(about), true};
+  options.run = service.serving.run;
+  options.root = service.serving.root;
+  options.clock = setup.clock;
   return options;
 }
 
@@ -72,16 +87,24 @@ void serve_until_stopped(SensorHost& host, const SetupSource& source) {
 
 SensorHost::SensorHost(Setup setup)
     : setup_(std::move(setup)),
-      service_(service_options(setup_)),
+      recordings_(recordings_options(setup_, service_options(setup_))),
+      service_([this] {
+        ServiceOptions options = service_options(setup_);
+        options.record = [this](const Sight& sight) { record(sight); };
+        return options;
+      }()),
       server_(server_config(setup_), routes()) {}
 
 std::shared_ptr<http::Router> SensorHost::routes() {
   auto router = std::make_shared<http::Router>();
   service_.add_routes(*router);
+  recordings_.add_routes(*router);
   endpoint::EndpointOptions options;
   options.clock = setup_.clock;
   options.health = [this] { return service_.health(); };
-  options.metrics = [this] { return metrics_text(service_.counters(), server_.counters()); };
+  options.metrics = [this] {
+    return metrics_text(service_.counters(), server_.counters()) + recordings_.metrics_text();
+  };
   endpoint::add_routes(*router, options);
   return router;
 }
@@ -100,6 +123,13 @@ Result<void> SensorHost::start() {
   });
   device_ = std::jthread([this](std::stop_token stop) { run_device(std::move(stop)); });
   return {};
+}
+
+void SensorHost::record(const Sight& sight) {
+  const auto recorder = recordings_.recorder(endpoint::Recordings::Stream::Raw);
+  if (!recorder) return;
+  recorder->offer(
+      record::RawFrame{setup_.config.id, sight.frame, setup_.clock->now(), sight.floor, {}});
 }
 
 void SensorHost::run_device(std::stop_token stop) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <thread>
 
+#include "common/endpoint/recordings.h"
 #include "common/http/server.h"
 #include "services/sensor/command_line.h"
 #include "services/sensor/sensor_config.h"
@@ -32,9 +33,11 @@ class SensorHost {
 
  private:
   [[nodiscard]] std::shared_ptr<http::Router> routes();
+  void record(const Sight& sight);
   void run_device(std::stop_token stop);
 
   Setup setup_;
+  endpoint::Recordings recordings_;
   SensorService service_;
   http::Server server_;
   std::jthread device_;

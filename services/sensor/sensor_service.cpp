@@ -51,6 +51,7 @@ void SensorService::on_capture(Capture capture) {
     last_capture_ = options_.steady_now();
   }
   live_->publish(latest_frame(*now, options_.serving));
+  if (options_.record) options_.record(*now);
   images_.offer(now);
 }
 

@@ -28,6 +28,7 @@ struct ServiceOptions {
   bool images = false;           ///< They show people: off unless somebody wants them.
   Duration stall_after = std::chrono::seconds(2);  ///< Without a capture for so long: not ready.
   Serving serving;
+  std::function<void(const Sight&)> record = {};  ///< Told of each sight; must return at once.
   SteadyNow steady_now = [] { return std::chrono::steady_clock::now(); };
 };
 

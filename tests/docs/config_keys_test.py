@@ -8,10 +8,10 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 # Which code reads which file.
 READERS = {
-    "fusion.json": ["fusion-server/server", "fusion-server/publish"],
-    "sensor.json": ["services/sensor"],
+    "fusion.json": ["fusion-server/server", "fusion-server/publish", "common/endpoint"],
+    "sensor.json": ["services/sensor", "common/endpoint"],
 }
-READ = re.compile(r"""(?:(?:\.|->)(?:read(?:_ms|_s|_deg|_choice)?|child|items)\(|\bread_\w+\(\w+,|\bvisit\()\s*"([A-Za-z0-9_]+)\"""")
+READ = re.compile(r"""(?:(?:\.|->)(?:read(?:_ms|_s|_deg|_choice)?|child|items)\(|\bread_\w+\(\w+,|\bvisit\(|\bread_mb\()\s*"([A-Za-z0-9_]+)\"""")
 KEY_LINE = re.compile(r'^\s*"([A-Za-z0-9_]+)"\s*:')
 UNITS = {"read_ms": "_ms", "read_s": "_s", "read_deg": "_deg"}
 READ_UNIT = re.compile(r"""(?:\.|->)(read_ms|read_s|read_deg)\(\s*"([A-Za-z0-9_]+)\"""")

@@ -1,0 +1,332 @@
+#include "common/endpoint/recordings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "common/base/log.h"
+
+namespace chorus::endpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+using record::RecordingReport;
+using record::RecordingState;
+using resource::Ref;
+
+constexpr std::string_view kWhere = "recordings";
+constexpr std::string_view kSuffix = ".mcap";
+constexpr std::size_t kMostListed = 10'000;
+constexpr int kCreated = 201;
+constexpr double kLongest = 7 * 24 * 3600.0;  // [s]
+
+bool is_running(const RecordingReport& report) {
+  return report.state == RecordingState::Recording || report.state == RecordingState::Stopping;
+}
+
+/// What is in the folder from earlier runs.
+std::map<std::string, RecordingReport> recordings_in(const fs::path& folder) {
+  std::map<std::string, RecordingReport> found;
+  std::error_code error;
+  if (folder.empty()) return found;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (found.size() >= kMostListed || !record::is_recording_name(name)) continue;
+    if (auto report = record::read_index(it->path())) found.emplace(name, std::move(*report));
+  }
+  return found;
+}
+
+std::string version_of(const RecordingReport& report) {
+  return report.name + "-" + std::string(name_of(report.state)) + "-" +
+         std::to_string(report.frames) + "-" + std::to_string(report.dropped) + "-" +
+         std::to_string(report.bytes());
+}
+
+tl::unexpected<Error> wrong(std::string message) {
+  return fail(ErrorCode::InvalidArgument, std::string(kWhere), std::move(message));
+}
+
+/// One key of the body of a POST.
+Result<void> take(const std::string& key, const nlohmann::json& value, RecordingRequest& out) {
+  if (key == "name" && value.is_string()) {
+    out.name = value.get<std::string>();
+    if (record::is_recording_name(out.name)) return {};
+    return wrong("a \"name\" has 1 to 64 characters of A-Z a-z 0-9 _ -");
+  }
+  if (key == "seconds" && value.is_number()) {
+    const double length = value.get<double>();
+    if (!(length >= 1.0 && length <= kLongest)) return wrong("\"seconds\" is from 1 to 604800");
+    out.duration = from_seconds(length);
+    return {};
+  }
+  if ((key == "raw" || key == "fused") && value.is_boolean()) {
+    (key == "raw" ? out.raw : out.fused) = value.get<bool>();
+    return {};
+  }
+  return wrong("\"" + key +
+               "\" is not one of: \"name\" (text), \"seconds\" (number), \"raw\" and "
+               "\"fused\" (true or false)");
+}
+
+}  // namespace
+
+void read_recording(ConfigReader config, RecordingConfig& out) {
+  constexpr double kMegabyte = 1u << 20;
+  constexpr double kMost = 1e6;  // [MB]
+  const auto read_mb = [&](std::string_view key, std::uintmax_t& bytes, double least) {
+    double megabytes = static_cast<double>(bytes) / kMegabyte;
+    config.read(key, megabytes, least, kMost);
+    bytes = static_cast<std::uintmax_t>(megabytes * kMegabyte);
+  };
+  config.read("folder", out.folder);
+  read_mb("max_file_mb", out.limits.max_file_bytes, 1.0);
+  config.read_s("max_file_s", out.limits.max_file_duration, std::chrono::seconds(1),
+                std::chrono::hours(24));
+  read_mb("min_free_mb", out.limits.min_free_bytes, 0.0);
+}
+
+Result<RecordingRequest> parse_recording_request(std::string_view body, bool has_fused) {
+  RecordingRequest request;
+  request.fused = has_fused;
+  if (body.find_first_not_of(" \t\r\n") == std::string_view::npos) return request;
+  const auto json = nlohmann::json::parse(body, nullptr, false);
+  if (!json.is_object()) return wrong("send a JSON object, such as {\"seconds\": 60}");
+  for (const auto& [key, value] : json.items()) {
+    if (auto ok = take(key, value, request); !ok) return pass(ok);
+  }
+  if (request.fused && !has_fused) return wrong("a sensor has no fused frames to record");
+  if (!request.raw && !request.fused)
+    return wrong("neither raw nor fused frames are to be recorded");
+  return request;
+}
+
+resource::Node recording_node(const RecordingReport& report, std::string id) {
+  resource::Node node{std::move(id), {"Recording"}, {}};
+  auto& out = node.properties;
+  const auto count = [](std::uint64_t n) { return static_cast<std::int64_t>(n); };
+  const std::string folder = "/recordings/" + report.name;
+  out.emplace_back("name", report.name);
+  out.emplace_back("state", std::string(name_of(report.state)));
+  if (!report.reason.empty()) out.emplace_back("reasons", std::vector<std::string>{report.reason});
+  out.emplace_back("started", report.started);
+  if (report.stopped) out.emplace_back("stopped", *report.stopped);
+  out.emplace_back("bytes", count(report.bytes()));
+  out.emplace_back("frames", count(report.frames));
+  out.emplace_back("dropped", count(report.dropped));
+  if (report.files.size() == 1) out.emplace_back("download", Ref{folder + std::string(kSuffix)});
+  std::vector<Ref> files;
+  for (const record::RecordedFile& file : report.files) files.push_back({folder + "/" + file.name});
+  out.emplace_back("files", std::move(files));
+  return node;
+}
+
+Recordings::Recordings(RecordingsOptions options)
+    : options_(std::move(options)), ended_(recordings_in(options_.config.folder)) {}
+
+Recordings::~Recordings() = default;
+
+std::shared_ptr<record::Recorder> Recordings::recorder(Stream stream) const {
+  const std::scoped_lock lock(mutex_);
+  const bool wanted =
+      stream == Stream::Any || (stream == Stream::Raw ? running_.raw : running_.fused);
+  return wanted ? running_.recorder : nullptr;
+}
+
+void Recordings::settle() {
+  if (!running_.recorder) return;
+  RecordingReport report = running_.recorder->report();
+  if (is_running(report)) return;
+  frames_ended_ += report.frames;
+  dropped_ended_ += report.dropped;
+  if (report.state == RecordingState::Failed) {
+    ++failed_;
+    log::error("recording failed", {{"name", report.name}, {"reason", report.reason}});
+  }
+  ended_[report.name] = std::move(report);
+  running_ = {};
+}
+
+Result<RecordingReport> Recordings::start(const RecordingRequest& request) {
+  if (options_.config.folder.empty()) {
+    return fail(ErrorCode::Forbidden, std::string(kWhere),
+                "recording is off here: set recording.folder in the configuration");
+  }
+  const std::scoped_lock lock(mutex_);
+  settle();
+  if (running_.recorder) {
+    return fail(ErrorCode::Conflict, std::string(kWhere),
+                "a recording is running: DELETE /recordings/" + running_.recorder->report().name +
+                    " ends it");
+  }
+  record::RecorderOptions options;
+  options.name = request.name.empty() ? record::utc_name(options_.clock->now()) : request.name;
+  options.folder = fs::path(options_.config.folder) / options.name;
+  options.head = options_.head;
+  options.limits = options_.config.limits;
+  options.stop_after = request.duration;
+  options.clock = options_.clock;
+  auto recorder = record::Recorder::start(std::move(options));
+  if (!recorder) {
+    log::error("recording not started", {{"reason", to_string(recorder.error())}});
+    return pass(recorder);
+  }
+  running_ = {std::move(*recorder), request.raw, request.fused};
+  log::info("recording", {{"name", running_.recorder->report().name}});
+  return running_.recorder->report();
+}
+
+Result<RecordingReport> Recordings::stop(std::string_view name) {
+  const auto known = find(name);
+  if (!known || !is_running(*known)) return known;
+  const auto recorder = this->recorder(Stream::Any);
+  if (!recorder) return find(name);
+  recorder->ask_to_stop();
+  log::info("recording stops", {{"name", name}});
+  constexpr std::chrono::milliseconds kPatience{100};  // the last chunk takes a few
+  recorder->wait(kPatience);
+  return recorder->report();
+}
+
+std::map<std::string, RecordingReport> Recordings::all() const {
+  const std::scoped_lock lock(mutex_);
+  auto reports = ended_;
+  if (running_.recorder) {
+    auto report = running_.recorder->report();
+    reports[report.name] = report;
+  }
+  return reports;
+}
+
+Result<RecordingReport> Recordings::find(std::string_view name) const {
+  const auto reports = all();
+  const auto found = reports.find(std::string(name));
+  if (found != reports.end()) return found->second;
+  return fail(ErrorCode::NotFound, "recordings/" + std::string(name),
+              "there is no recording of this name");
+}
+
+Result<http::DocumentPtr> Recordings::list() const {
+  resource::Node node{"", {"RecordingList", "ldp:BasicContainer", "ldp:Container"}, {}};
+  std::vector<Ref> contains;
+  std::vector<resource::Node> members;
+  std::string version;
+  for (const auto& [name, report] : all()) {
+    contains.push_back({name});
+    members.push_back(recording_node(report, name));
+    version += version_of(report) + "/";
+  }
+  node.properties.emplace_back("title", std::string("recordings"));
+  node.properties.emplace_back("contains", std::move(contains));
+  node.properties.emplace_back("recordings", std::move(members));
+  http::DocumentOptions options;
+  options.container = true;
+  options.version = options_.run + "-" + std::to_string(std::hash<std::string>{}(version));
+  options.headers = {{"Accept-Post", "application/json"}};
+  return resource::document_of(std::move(node), std::move(options),
+                               {"recordings/", {}, options_.root});
+}
+
+http::DocumentPtr Recordings::description(const RecordingReport& report) const {
+  http::DocumentOptions options;
+  options.version = options_.run + "-" + version_of(report);
+  return resource::document_of(recording_node(report, ""), std::move(options),
+                               {"recordings/" + report.name, {}, options_.root});
+}
+
+Result<http::DocumentPtr> Recordings::one(const std::string& name) const {
+  if (!name.ends_with(kSuffix)) {
+    return find(name).map([this](const RecordingReport& report) { return description(report); });
+  }
+  const auto report = find(name.substr(0, name.size() - kSuffix.size()));
+  if (!report) return pass(report);
+  if (report->files.size() == 1) return file(report->name, report->files.front().name);
+  return fail(ErrorCode::Conflict, "recordings/" + name,
+              "this recording has " + std::to_string(report->files.size()) +
+                  " files: take them one by one, as \"files\" of /recordings/" + report->name +
+                  " lists them");
+}
+
+Result<http::DocumentPtr> Recordings::file(const std::string& name, const std::string& file) const {
+  const auto report = find(name);
+  if (!report) return pass(report);
+  const auto& files = report->files;
+  const bool known = std::any_of(files.begin(), files.end(),
+                                 [&](const record::RecordedFile& f) { return f.name == file; });
+  if (!known) {
+    return fail(ErrorCode::NotFound, "recordings/" + name + "/" + file,
+                "the recording has no file of this name");
+  }
+  auto body = http::FileBody::open(fs::path(options_.config.folder) / name / file);
+  if (!body) return pass(body);
+  http::DocumentOptions options;
+  options.version = options_.run + "-" + file + "-" + std::to_string((*body)->size());
+  options.rdf_source = false;
+  options.headers = {{"Content-Disposition", "attachment; filename=\"" + file + "\""}};
+  options.file = std::move(*body);
+  return http::make_document("application/octet-stream", {}, std::move(options));
+}
+
+Result<http::ActionResult> Recordings::post(const http::Request& request) {
+  const auto wanted = parse_recording_request(request.body, options_.has_fused);
+  if (!wanted) return pass(wanted);
+  const auto report = start(*wanted);
+  if (!report) return pass(report);
+  return http::ActionResult{kCreated, description(*report), "/recordings/" + report->name};
+}
+
+void Recordings::add_routes(http::Router& router) {
+  using http::PathParams;
+  using http::Request;
+  router.get("/recordings/", [this](const Request&, const PathParams&) { return list(); });
+  router.get("/recordings/{name}",
+             [this](const Request&, const PathParams& path) { return one(path.at("name")); });
+  router.get("/recordings/{name}/{file}", [this](const Request&, const PathParams& path) {
+    return file(path.at("name"), path.at("file"));
+  });
+  router.action(http::Method::Post, "/recordings/",
+                [this](const Request& request, const PathParams&) { return post(request); });
+  router.action(http::Method::Delete, "/recordings/{name}",
+                [this](const Request&, const PathParams& path) -> Result<http::ActionResult> {
+                  const auto report = stop(path.at("name"));
+                  if (!report) return pass(report);
+                  return http::ActionResult{200, description(*report), {}};
+                });
+}
+
+std::string Recordings::metrics_text() const {
+  std::uint64_t frames = 0;
+  std::uint64_t dropped = 0;
+  std::uint64_t failed = 0;
+  bool active = false;
+  {
+    const std::scoped_lock lock(mutex_);
+    frames = frames_ended_;
+    dropped = dropped_ended_;
+    failed = failed_;
+    if (running_.recorder) {
+      const RecordingReport report = running_.recorder->report();
+      frames += report.frames;
+      dropped += report.dropped;
+      active = is_running(report);
+      failed += report.state == RecordingState::Failed ? 1 : 0;
+    }
+  }
+  const auto number = [](std::uint64_t n) { return static_cast<double>(n); };
+  MetricsText text;
+  text.gauge({"chorus_recording_active", "1 while something is recorded."}, active ? 1.0 : 0.0);
+  text.counter({"chorus_recording_frames_total", "Frames written to recordings."}, number(frames));
+  text.counter({"chorus_recording_dropped_total",
+                "Frames not recorded because the recorder's queue was full."},
+               number(dropped));
+  text.counter({"chorus_recording_failures_total", "Recordings that the disk ended."},
+               number(failed));
+  return text.text();
+}
+
+}  // namespace chorus::endpoint

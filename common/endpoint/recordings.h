@@ -1,0 +1,102 @@
+// /recordings/: what this service records and has recorded, the same on each service.
+//
+// One recording at a time.  POST /recordings/ starts one, DELETE /recordings/{name} ends it; no
+// request ever deletes a file (docs/decisions/0011-recordings.md).
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+#include "common/base/config_reader.h"
+#include "common/endpoint/metrics.h"
+#include "common/http/router.h"
+#include "common/record/recorder.h"
+#include "common/resource/node.h"
+
+namespace chorus::endpoint {
+
+struct RecordingConfig {
+  std::string folder;  ///< Empty: nothing is recorded.
+  record::RecorderLimits limits;
+
+  bool operator==(const RecordingConfig&) const = default;
+};
+
+/// The section "recording" of a service's configuration.
+void read_recording(ConfigReader config, RecordingConfig& out);
+
+/// The body of POST /recordings/.
+struct RecordingRequest {
+  std::string name;      ///< Empty: the UTC time.
+  Duration duration{0};  ///< Zero: until it is stopped.
+  bool raw = true;
+  bool fused = true;
+};
+/// An empty body asks for everything there is.  Unknown keys, wrong types and names that are no
+/// recording names are InvalidArgument.
+[[nodiscard]] Result<RecordingRequest> parse_recording_request(std::string_view body,
+                                                               bool has_fused);
+
+/// `id` is the IRI the document gives it ("" in /recordings/{name}).
+[[nodiscard]] resource::Node recording_node(const record::RecordingReport& report, std::string id);
+
+struct RecordingsOptions {
+  RecordingConfig config;
+  record::SessionHead head;  ///< Of every file.
+  bool has_fused = false;    ///< A fusion server.
+  std::string run;           ///< In every ETag.
+  std::string root = "http://localhost/";
+  std::shared_ptr<const Clock> clock = std::make_shared<SystemClock>();
+};
+
+/// Thread-safe.
+class Recordings {
+ public:
+  explicit Recordings(RecordingsOptions options);
+  ~Recordings();  ///< Ends the recording under way and waits for its file.
+
+  enum class Stream { Raw, Fused, Any };
+  /// Where to offer what this stream brings; null while it is not being recorded.
+  [[nodiscard]] std::shared_ptr<record::Recorder> recorder(Stream stream) const;
+
+  [[nodiscard]] Result<record::RecordingReport> start(const RecordingRequest& request);
+  /// Ends it; harmless when it has ended.  NotFound when there is none of this name.
+  [[nodiscard]] Result<record::RecordingReport> stop(std::string_view name);
+
+  /// chorus_recording_*, Prometheus text.
+  [[nodiscard]] std::string metrics_text() const;
+
+  /// Must outlive the router.
+  void add_routes(http::Router& router);
+
+ private:
+  struct Running {
+    std::shared_ptr<record::Recorder> recorder;
+    bool raw = false;
+    bool fused = false;
+  };
+
+  void settle();  ///< Takes note of a recording that has ended.  Called with the mutex held.
+  [[nodiscard]] std::map<std::string, record::RecordingReport> all() const;
+  [[nodiscard]] Result<record::RecordingReport> find(std::string_view name) const;
+  [[nodiscard]] Result<http::DocumentPtr> list() const;
+  [[nodiscard]] http::DocumentPtr description(const record::RecordingReport& report) const;
+  [[nodiscard]] Result<http::DocumentPtr> one(const std::string& name) const;
+  [[nodiscard]] Result<http::DocumentPtr> file(const std::string& name,
+                                               const std::string& file) const;
+  [[nodiscard]] Result<http::ActionResult> post(const http::Request& request);
+
+  const RecordingsOptions options_;
+  mutable std::mutex mutex_;  ///< Guards what follows.
+  Running running_;
+  std::map<std::string, record::RecordingReport> ended_;
+  std::uint64_t frames_ended_ = 0;  ///< Of this process's recordings that have ended.
+  std::uint64_t dropped_ended_ = 0;
+  std::uint64_t failed_ = 0;
+};
+
+}  // namespace chorus::endpoint

@@ -1,0 +1,33 @@
+// A file as the body of an answer: read piece by piece while it is sent, never whole in memory.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "common/base/result.h"
+
+namespace chorus::http {
+
+/// Stays open as long as somebody reads it.  A file that grows is sent as long as it was at first.
+class FileBody {
+ public:
+  /// NotFound for anything but a regular file.
+  [[nodiscard]] static Result<std::shared_ptr<const FileBody>> open(
+      const std::filesystem::path& path);
+  ~FileBody();
+  FileBody(const FileBody&) = delete;
+  FileBody& operator=(const FileBody&) = delete;
+
+  [[nodiscard]] std::uint64_t size() const { return size_; }
+  /// Up to 256 KiB from `offset` on; false when the file has less than it had.
+  [[nodiscard]] bool read(std::uint64_t offset, std::string& piece) const;
+
+ private:
+  FileBody(int file, std::uint64_t size) : file_(file), size_(size) {}
+  int file_;
+  std::uint64_t size_;
+};
+
+}  // namespace chorus::http

@@ -1,0 +1,287 @@
+#include "common/record/recorder.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace chorus::record {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// How long a message may wait in an open chunk when nothing follows it, and how often space,
+/// index and duration are looked at.
+constexpr auto kRest = std::chrono::seconds(1);
+/// Events are taken in batches: waking up for each would cost more than encoding it.
+constexpr auto kBatch = std::chrono::milliseconds(100);
+constexpr std::size_t kEarly = 4;  // or when the queue is a quarter full
+
+Result<void> enough_space(const fs::path& folder, std::uintmax_t wanted) {
+  std::error_code error;
+  const fs::space_info space = fs::space(folder.empty() ? fs::path(".") : folder, error);
+  if (error) return fail(ErrorCode::Io, folder.string(), error.message());
+  if (space.available >= wanted) return {};
+  constexpr std::uintmax_t kMegabyte = 1u << 20;
+  return fail(ErrorCode::Unavailable, folder.string(),
+              "only " + std::to_string(space.available / kMegabyte) +
+                  " MB are free; a recording leaves " + std::to_string(wanted / kMegabyte) +
+                  " MB (min_free_mb)");
+}
+
+std::string file_name(const RecorderOptions& options, std::size_t part, Timestamp now) {
+  std::string number = std::to_string(part);
+  constexpr std::size_t kDigits = 4;
+  number.insert(0, kDigits - std::min(kDigits, number.size()), '0');
+  return options.name + "-" + number + "-" + utc_name(now) + ".mcap";
+}
+
+}  // namespace
+
+struct Recorder::Impl {
+  explicit Impl(RecorderOptions o) : options(std::move(o)) {}
+  ~Impl() {
+    ask_to_stop();
+    if (thread.joinable()) thread.join();
+  }
+
+  Result<void> begin();
+  Result<void> next_file();
+  void run();
+  std::vector<RecordedEvent> take();
+  Result<void> write(const RecordedEvent& event);
+  Result<void> rest();
+  void note_size();
+  void finish(const Result<void>& how);
+  void store_index();
+  void ask_to_stop() {
+    {
+      const std::scoped_lock lock(mutex);
+      stopping = true;
+      if (report.state == RecordingState::Recording) report.state = RecordingState::Stopping;
+    }
+    arrived.notify_all();
+  }
+  [[nodiscard]] bool rotates() const { return options.file.empty(); }
+
+  const RecorderOptions options;
+  // The recorder's thread alone:
+  std::optional<SessionWriter> writer;
+  std::optional<PlacesChanged> places;  ///< Each file begins with them.
+  Timestamp file_started;
+  std::chrono::steady_clock::time_point rested = std::chrono::steady_clock::now();
+
+  mutable std::mutex mutex;  ///< Guards what follows.
+  std::condition_variable arrived;
+  std::condition_variable ended;
+  std::deque<RecordedEvent> queue;
+  RecordingReport report;
+  bool stopping = false;
+  bool done = false;
+  std::thread thread;
+};
+
+Result<void> Recorder::Impl::begin() {
+  const Timestamp now = options.clock->now();
+  report.name = options.name;
+  report.started = now;
+  const fs::path place = rotates() ? options.folder : options.file.parent_path();
+  std::error_code error;
+  if (rotates()) {
+    fs::create_directories(options.folder.parent_path(), error);
+    const bool fresh = !error && fs::create_directory(options.folder, error);
+    if (error) {
+      return fail(ErrorCode::Io, options.folder.string(),
+                  "the folder cannot be made: " + error.message());
+    }
+    if (!fresh) return fail(ErrorCode::Conflict, options.folder.string(), "it exists already");
+  }
+  auto ok = enough_space(place, options.limits.min_free_bytes);
+  if (ok) ok = next_file();
+  if (!ok && rotates()) fs::remove(options.folder, error);  // only when it is empty
+  return ok;
+}
+
+Result<void> Recorder::Impl::next_file() {
+  if (writer) {
+    note_size();
+    if (auto ok = writer->close(); !ok) return ok;
+    note_size();
+    writer.reset();
+  }
+  file_started = options.clock->now();
+  const std::size_t part = report.files.size() + 1;
+  const fs::path path =
+      rotates() ? options.folder / file_name(options, part, file_started) : options.file;
+  SessionHead head = options.head;
+  head.metadata["recording"] = options.name;
+  head.metadata["part"] = std::to_string(part);
+  auto opened = SessionWriter::create(path, head);
+  if (!opened) return pass(opened);
+  writer.emplace(std::move(*opened));
+  {
+    const std::scoped_lock lock(mutex);
+    report.files.push_back({path.filename().string(), file_started, writer->bytes()});
+  }
+  store_index();
+  if (places) return writer->write(*places);
+  return {};
+}
+
+void Recorder::Impl::note_size() {
+  const std::scoped_lock lock(mutex);
+  report.files.back().bytes = writer->bytes();
+}
+
+void Recorder::Impl::store_index() {
+  if (!rotates()) return;
+  RecordingReport now;
+  {
+    const std::scoped_lock lock(mutex);
+    now = report;
+  }
+  (void)write_index(options.folder, now);  // the recording itself is worth more than its index
+}
+
+std::vector<RecordedEvent> Recorder::Impl::take() {
+  std::unique_lock lock(mutex);
+  arrived.wait_for(lock, kBatch, [this] {
+    return queue.size() >= options.limits.max_queue / kEarly || stopping;
+  });
+  std::vector<RecordedEvent> taken(std::make_move_iterator(queue.begin()),
+                                   std::make_move_iterator(queue.end()));
+  queue.clear();
+  return taken;
+}
+
+Result<void> Recorder::Impl::write(const RecordedEvent& event) {
+  if (rotates()) {
+    const bool full = writer->bytes() >= options.limits.max_file_bytes;
+    const Duration age = options.clock->now() - file_started;
+    if (full || age >= options.limits.max_file_duration) {
+      if (auto ok = next_file(); !ok) return ok;
+    }
+  }
+  if (const auto* changed = std::get_if<PlacesChanged>(&event)) places = *changed;
+  const auto ok = std::visit([this](const auto& one) { return writer->write(one); }, event);
+  if (!ok || std::holds_alternative<PlacesChanged>(event)) return ok;
+  const std::scoped_lock lock(mutex);
+  ++report.frames;
+  return {};
+}
+
+/// Once a second: nothing stays in memory for longer, and the disk is not filled to its brim.
+Result<void> Recorder::Impl::rest() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - rested < kRest) return {};
+  rested = now;
+  if (auto ok = writer->flush(); !ok) return ok;
+  note_size();
+  store_index();
+  return enough_space(rotates() ? options.folder : options.file.parent_path(),
+                      options.limits.min_free_bytes);
+}
+
+void Recorder::Impl::run() {
+  Result<void> how;
+  try {
+    for (bool last = false; how && !last;) {
+      {
+        const std::scoped_lock lock(mutex);
+        last = stopping;  // what is queued now is the last that is written
+      }
+      for (const RecordedEvent& event : take()) {
+        if (how) how = write(event);
+      }
+      if (how) how = rest();
+      const bool over = options.stop_after > Duration{0} &&
+                        options.clock->now() - report.started >= options.stop_after;
+      if (over) ask_to_stop();
+    }
+  } catch (const std::exception& thrown) {
+    how = fail(ErrorCode::Internal, options.name, thrown.what());
+  }
+  finish(how);
+}
+
+void Recorder::Impl::finish(const Result<void>& how) {
+  const auto closed = writer ? writer->close() : Result<void>{};
+  if (writer) note_size();
+  writer.reset();
+  {
+    const std::scoped_lock lock(mutex);
+    stopping = true;
+    const bool good = how && closed;
+    report.state = good ? RecordingState::Finished : RecordingState::Failed;
+    if (!good) report.reason = to_string(how ? closed.error() : how.error());
+    report.stopped = options.clock->now();
+    report.dropped += queue.size();
+    queue.clear();
+  }
+  store_index();
+  {
+    const std::scoped_lock lock(mutex);
+    done = true;
+  }
+  ended.notify_all();
+}
+
+Recorder::Recorder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Recorder::~Recorder() = default;
+
+Result<std::unique_ptr<Recorder>> Recorder::start(RecorderOptions options) {
+  auto impl = std::make_unique<Impl>(std::move(options));
+  if (auto ok = impl->begin(); !ok) return pass(ok);
+  impl->thread = std::thread([raw = impl.get()] { raw->run(); });
+  return std::unique_ptr<Recorder>(new Recorder(std::move(impl)));
+}
+
+bool Recorder::offer(RecordedEvent event) {
+  const std::size_t most = impl_->options.limits.max_queue;
+  bool early = false;
+  {
+    const std::scoped_lock lock(impl_->mutex);
+    if (impl_->stopping) return false;
+    // A registration changes seldom, and the frames after it mean nothing without it.
+    if (impl_->queue.size() >= most && !std::holds_alternative<PlacesChanged>(event)) {
+      ++impl_->report.dropped;
+      return false;
+    }
+    impl_->queue.push_back(std::move(event));
+    early = impl_->queue.size() == most / kEarly;
+  }
+  if (early) impl_->arrived.notify_one();
+  return true;
+}
+
+void Recorder::ask_to_stop() { impl_->ask_to_stop(); }
+
+bool Recorder::wait(std::chrono::milliseconds patience) {
+  std::unique_lock lock(impl_->mutex);
+  return impl_->ended.wait_for(lock, patience, [this] { return impl_->done; });
+}
+
+RecordingReport Recorder::report() const {
+  const std::scoped_lock lock(impl_->mutex);
+  return impl_->report;
+}
+
+Result<std::vector<fs::path>> recording_files(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_directory(path, error)) return std::vector<fs::path>{path};
+  std::vector<fs::path> files;
+  for (fs::directory_iterator it(path, error), end; !error && it != end; it.increment(error)) {
+    if (it->path().extension() == ".mcap") files.push_back(it->path());
+  }
+  if (error) return fail(ErrorCode::Io, path.string(), error.message());
+  if (files.empty()) return fail(ErrorCode::NotFound, path.string(), "holds no .mcap recording");
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace chorus::record

@@ -1,0 +1,70 @@
+// Records what happens while others work: a bounded queue, a thread of its own, files that rotate.
+//
+// offer() never waits for the disk, the encoder or the compressor.  Drop policy "drop newest": what
+// arrives while the queue is full is not recorded and counted.  A failure of the disk ends the
+// recording, never the service; what was written stays readable.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "common/record/recording_index.h"
+#include "common/record/session_writer.h"
+#include "common/time/clock.h"
+
+namespace chorus::record {
+
+struct RecorderLimits {
+  std::uintmax_t max_file_bytes = 1ull << 30;             ///< Then the next file begins.
+  Duration max_file_duration = std::chrono::minutes(10);  ///< Likewise.
+  std::uintmax_t min_free_bytes = 200ull << 20;  ///< The recording ends before it takes these.
+  std::size_t max_queue = 2048;                  ///< Seconds of ten sensors.
+
+  bool operator==(const RecorderLimits&) const = default;
+};
+
+struct RecorderOptions {
+  std::string name;
+  /// A new folder for the files and their index.json ...
+  std::filesystem::path folder = {};
+  /// ... or one file, which is not rotated and has no index.
+  std::filesystem::path file = {};
+  SessionHead head = {};
+  RecorderLimits limits = {};
+  Duration stop_after{0};  ///< Zero: until stopped.
+  std::shared_ptr<const Clock> clock = std::make_shared<SystemClock>();
+};
+
+using RecordedEvent = std::variant<RawFrame, FusedFrame, PlacesChanged>;
+
+class Recorder {
+ public:
+  /// Opens the first file; Io, Conflict (it exists) and Unavailable (too little space) say where.
+  [[nodiscard]] static Result<std::unique_ptr<Recorder>> start(RecorderOptions options);
+  ~Recorder();  ///< Writes what is queued, closes, joins.
+
+  /// Any thread; false: dropped.
+  bool offer(RecordedEvent event);
+
+  /// Nothing is taken any more; what is queued is still written.  Does not wait.
+  void ask_to_stop();
+  /// Waits until the file is closed; false when the time was too short.
+  bool wait(std::chrono::milliseconds patience);
+
+  [[nodiscard]] RecordingReport report() const;
+
+ private:
+  struct Impl;
+  explicit Recorder(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Files of a recording: the file itself, or the .mcap files of a folder in order of their names.
+[[nodiscard]] Result<std::vector<std::filesystem::path>> recording_files(
+    const std::filesystem::path& path);
+
+}  // namespace chorus::record

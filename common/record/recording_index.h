@@ -1,0 +1,58 @@
+// What a recording consists of: kept while it is written, and beside its files as index.json.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/time/timestamp.h"
+
+namespace chorus::record {
+
+enum class RecordingState {
+  Recording,
+  Stopping,  ///< Asked to stop; the last chunk is being written.
+  Finished,
+  Failed,       ///< Ended by itself; the reason says why.  The files are readable.
+  Interrupted,  ///< Its process died.  The files are readable up to their last chunk.
+};
+[[nodiscard]] std::string_view name_of(RecordingState state) noexcept;
+
+struct RecordedFile {
+  std::string name;  ///< Within the recording's folder.
+  Timestamp started;
+  std::uint64_t bytes = 0;
+};
+
+struct RecordingReport {
+  std::string name;
+  RecordingState state = RecordingState::Recording;
+  std::string reason;
+  Timestamp started;
+  std::optional<Timestamp> stopped;
+  std::uint64_t frames = 0;   ///< Raw and fused frames written.
+  std::uint64_t dropped = 0;  ///< Frames not recorded because the queue was full.
+  std::vector<RecordedFile> files;
+
+  [[nodiscard]] std::uint64_t bytes() const;
+};
+
+inline constexpr std::string_view kIndexFile = "index.json";
+
+/// 1-64 characters of A-Z a-z 0-9 _ -: safe as folder and in a path.
+[[nodiscard]] bool is_recording_name(std::string_view name);
+
+/// "20261121T073000Z": UTC to the second, a recording name.
+[[nodiscard]] std::string utc_name(Timestamp t);
+
+/// Replaces index.json at once.
+[[nodiscard]] Result<void> write_index(const std::filesystem::path& folder,
+                                       const RecordingReport& report);
+/// A recording that the index calls running is Interrupted.  Sizes are those of the files.
+[[nodiscard]] Result<RecordingReport> read_index(const std::filesystem::path& folder);
+
+}  // namespace chorus::record

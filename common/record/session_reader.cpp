@@ -1,0 +1,285 @@
+#include "common/record/session_reader.h"
+
+#include <array>
+#include <charconv>
+#include <optional>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "common/record/frame_schema.h"
+#include "common/resource/frame_resource.h"
+
+namespace chorus::record {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kSensorsPrefix = "/sensors/";
+
+Result<FloorPlane> read_floor(const std::string& text) {
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  std::array<double, 4> v{};
+  constexpr std::array<const char*, 4> kKeys{"normalX", "normalY", "normalZ", "offset"};
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    if (!json.is_object() || !json.contains(kKeys[i]) || !json[kKeys[i]].is_number()) {
+      return fail(ErrorCode::Malformed, "floor-plane", "a floor plane is not four numbers");
+    }
+    v[i] = json[kKeys[i]].get<double>();
+  }
+  return make_plane(v[0], v[1], v[2], v[3]);
+}
+
+Result<Duration> read_shift(const std::string& text) {
+  constexpr std::int64_t kMost = 100ll * 365 * 24 * 3600 * 1'000'000'000;  // a hundred years
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  const auto wrong = fail(ErrorCode::Malformed, "clock", "a clock model has no appliedNanoseconds");
+  if (!json.is_object() || !json.contains("appliedNanoseconds")) return wrong;
+  const auto& value = json["appliedNanoseconds"];
+  if (!value.is_string()) return wrong;
+  const auto& digits = value.get_ref<const std::string&>();
+  std::int64_t ns = 0;
+  const char* last = digits.data() + digits.size();
+  const auto [end, error] = std::from_chars(digits.data(), last, ns);
+  if (error != std::errc{} || end != last || ns > kMost || ns < -kMost) return wrong;
+  return Duration(ns);
+}
+
+/// "/sensors/s1/clock" -> s1 and "clock"; "/frame" -> no id and "frame".
+struct Topic {
+  std::optional<SensorId> sensor;
+  std::string_view what;
+};
+std::optional<Topic> topic_of(std::string_view text) {
+  if (!text.starts_with(kSensorsPrefix)) {
+    return text.starts_with('/') ? std::optional(Topic{{}, text.substr(1)}) : std::nullopt;
+  }
+  text.remove_prefix(kSensorsPrefix.size());
+  const auto slash = text.find('/');
+  const auto id = SensorId::parse(text.substr(0, slash));
+  if (!id || slash == std::string_view::npos) return std::nullopt;
+  return Topic{*id, text.substr(slash + 1)};
+}
+
+bool is_scene(std::string_view topic) {
+  return topic.ends_with("/scene") || topic == "/transforms";
+}
+
+/// Messages in, streams out.
+class Sorting {
+ public:
+  explicit Sorting(const SessionQuery& query) : query_(query) {}
+
+  Result<void> add(Recording recording, const fs::path& file);
+  Session finish();
+
+ private:
+  /// The file being read.
+  struct Source {
+    fs::path file;
+    std::string recording;       ///< Its name, when it is one of several files.
+    FrameRecording description;  ///< What its metadata says of one sensor.
+    bool single = false;         ///< The metadata names a sensor: /frame is its own.
+  };
+  struct Stream {
+    FrameRecording recording;
+    std::vector<fs::path> files;
+    std::string part_of;  ///< Name of the recording that its files belong to.
+    std::optional<FloorPlane> floor;
+    std::optional<Duration> shift;  ///< None: the times are ours already.
+    std::size_t left_out = 0;
+  };
+
+  void describe(const Recording& recording);
+  Result<void> take(const Message& message);
+  Result<void> take_state(const Message& message, const Topic& topic);
+  Result<void> take_frame(const Message& message, const Topic& topic);
+  Result<void> append(Stream& stream, SensorFrame frame) const;
+  Result<Stream*> stream_of(const SensorId& sensor);
+  [[nodiscard]] std::string where() const { return source_.file.string(); }
+
+  const SessionQuery& query_;
+  Source source_;
+  std::size_t frames_ = 0;  ///< Seen so far, on all topics.
+  std::vector<std::string> damage_;
+  std::map<SensorId, Stream> streams_;
+  Session out_;
+};
+
+void Sorting::describe(const Recording& recording) {
+  damage_.insert(damage_.end(), recording.notes.begin(), recording.notes.end());
+  for (const Channel& channel : recording.channels) {
+    if (const auto topic = topic_of(channel.topic); topic && topic->sensor)
+      out_.cell.insert(*topic->sensor);
+  }
+  const auto found = recording.metadata.find(std::string(kMetadataName));
+  if (found == recording.metadata.end()) return;
+  read_metadata(found->second, source_.description);
+  source_.single = !source_.description.sensor.str().empty();
+  const auto name = found->second.find("recording");
+  if (name != found->second.end()) source_.recording = name->second;
+}
+
+/// The stream, which this file begins or, as the next file of its recording, goes on with.
+Result<Sorting::Stream*> Sorting::stream_of(const SensorId& sensor) {
+  const auto [found, fresh] = streams_.try_emplace(sensor);
+  Stream& stream = found->second;
+  if (fresh) {
+    if (source_.single) stream.recording = source_.description;
+    stream.recording.sensor = sensor;
+    stream.floor = stream.recording.floor;
+    stream.part_of = source_.recording;
+  }
+  if (!stream.files.empty() && stream.files.back() == source_.file) return &stream;
+  if (!fresh && (stream.part_of.empty() || stream.part_of != source_.recording)) {
+    return fail(
+        ErrorCode::Conflict, where(),
+        "is a recording of sensor " + sensor.str() + ", and so is " + stream.files.back().string());
+  }
+  stream.files.push_back(source_.file);
+  return &stream;
+}
+
+Result<void> Sorting::append(Stream& stream, SensorFrame frame) const {
+  auto& frames = stream.recording.frames;
+  const Duration shift = stream.shift.value_or(Duration{0});
+  frame.captured += shift;
+  for (BodyFrame& body : frame.bodies) body.captured += shift;
+  frame.floor = stream.floor;
+  if (frames.empty() || frame.captured > frames.back().captured) {
+    frames.push_back(std::move(frame));
+    return {};
+  }
+  if (!query_.strict || stream.shift) {  // a clock that was corrected may step back
+    ++stream.left_out;
+    return {};
+  }
+  const bool repeats = frame.captured == frames.back().captured;
+  return fail(ErrorCode::Malformed, where(),
+              "frame " + std::to_string(frames.size()) +
+                  (repeats ? " repeats the capture time " : " goes back in time to ") +
+                  to_iso8601(frame.captured));
+}
+
+Result<void> Sorting::take_frame(const Message& message, const Topic& topic) {
+  const bool maybe_fused = !topic.sensor && !source_.single;
+  ++frames_;
+  if (maybe_fused && !query_.fused && message.data.find("\"WorldSpace\"") != std::string::npos)
+    return {};
+  auto frame = resource::read_frame(message.data, resource::Format::Json);
+  if (!frame) {
+    return fail(ErrorCode::Malformed, where(),
+                "frame " + std::to_string(frames_ - 1) + ", on " + message.topic + ": " +
+                    to_string(frame.error()));
+  }
+  if (maybe_fused && frame->space == resource::SpaceKind::World) {
+    out_.fused.push_back(std::move(*frame));
+    return {};
+  }
+  SensorId sensor = topic.sensor.value_or(source_.description.sensor);
+  if (sensor.str().empty()) {
+    if (const auto id = SensorId::parse(frame->source)) sensor = *id;
+  }
+  const auto stream = stream_of(sensor);
+  if (!stream) return pass(stream);
+  return append(**stream, resource::to_sensor_frame(*frame, sensor, message.log_time));
+}
+
+/// What holds for the frames after it.
+Result<void> Sorting::take_state(const Message& message, const Topic& topic) {
+  const auto stream = stream_of(topic.sensor ? *topic.sensor : source_.description.sensor);
+  if (!stream) return pass(stream);
+  if (topic.what == "clock") {
+    const auto shift = read_shift(message.data);
+    if (!shift) return fail(ErrorCode::Malformed, where(), shift.error().message);
+    (*stream)->shift = *shift;
+    return {};
+  }
+  const auto floor = read_floor(message.data);
+  if (!floor) return fail(ErrorCode::Malformed, where(), floor.error().message);
+  (*stream)->floor = *floor;
+  return {};
+}
+
+Result<void> Sorting::take(const Message& message) {
+  const auto topic = topic_of(message.topic);
+  if (!topic) return {};
+  if (topic->what == "frame") return take_frame(message, *topic);
+  const bool floor = topic->what == "floor-plane";
+  if (floor || (topic->what == "clock" && topic->sensor)) return take_state(message, *topic);
+  auto& known = out_.registrations;
+  const bool news = known.empty() || known.back() != message.data;
+  if (message.topic == "/registration" && news) known.push_back(message.data);
+  return {};
+}
+
+Result<void> Sorting::add(Recording recording, const fs::path& file) {
+  source_ = {file, {}, {}, false};
+  describe(recording);
+  for (Message& message : recording.messages) {
+    if (auto ok = take(message); !ok) return ok;
+    std::string().swap(message.data);  // the frame read is smaller than its text
+  }
+  return {};
+}
+
+Session Sorting::finish() {
+  // A recording of one sensor that saw nothing.
+  if (streams_.empty() && frames_ == 0 && out_.cell.empty()) {
+    streams_[source_.description.sensor].recording = source_.description;
+  }
+  for (auto& [sensor, stream] : streams_) {
+    auto& notes = stream.recording.notes;
+    for (std::size_t i = 0; i < damage_.size(); ++i)
+      notes["damage." + std::to_string(i + 1)] = damage_[i];
+    if (stream.left_out > 0)
+      notes["left_out"] = std::to_string(stream.left_out) + " frames that go back in time";
+    out_.sensors.push_back(std::move(stream.recording));
+    out_.files[sensor] = std::move(stream.files);
+  }
+  return std::move(out_);
+}
+
+}  // namespace
+
+Result<Session> read_session(const std::vector<fs::path>& files, const SessionQuery& query) {
+  ReadLimits limits = query.limits;
+  const std::string own = std::string(kSensorsPrefix) + query.only.str() + "/";
+  limits.wanted = [&query, &own](std::string_view topic) {
+    const bool others = !query.only.str().empty() && topic.starts_with(kSensorsPrefix);
+    return !is_scene(topic) && (!others || topic.starts_with(own));
+  };
+  Sorting sorting(query);
+  for (const fs::path& file : files) {
+    auto recording = read_recording(file, limits);
+    if (!recording) return pass(recording);
+    if (auto ok = sorting.add(std::move(*recording), file); !ok) return pass(ok);
+  }
+  return sorting.finish();
+}
+
+Result<Session> read_session(const fs::path& path, const SessionQuery& query) {
+  const auto files = recording_files(path);
+  if (!files) return pass(files);
+  return read_session(*files, query);
+}
+
+Result<FrameRecording> read_frame_recording(const fs::path& path, const ReadLimits& limits,
+                                            const SensorId& which) {
+  auto session = read_session(path, {limits, which, false, true});
+  if (!session) return pass(session);
+  auto& sensors = session->sensors;
+  const bool any = which.str().empty() || session->cell.empty();
+  for (FrameRecording& one : sensors) {
+    // A recording of one sensor may be played under any name.
+    if (one.sensor == which || (any && sensors.size() == 1)) return std::move(one);
+  }
+  std::string there;
+  for (const SensorId& sensor : session->cell) there += (there.empty() ? "" : ", ") + sensor.str();
+  return fail(ErrorCode::NotFound, path.string(),
+              there.empty() ? "it holds no frames of a sensor"
+                            : "it holds the sensors " + there + "; name one of them, not \"" +
+                                  which.str() + "\"");
+}
+
+}  // namespace chorus::record

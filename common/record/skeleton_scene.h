@@ -1,0 +1,43 @@
+// Skeletons as lines between joints, in messages that recording viewers draw by themselves.
+//
+// JSON of the published Foxglove schemas foxglove.SceneUpdate and foxglove.FrameTransforms. Viewers
+// have +z up: their root frame `map` is our world, +y up, laid on its back by one transform.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "common/resource/frame_resource.h"
+
+namespace chorus::record {
+
+inline constexpr std::string_view kSceneSchemaName = "foxglove.SceneUpdate";
+inline constexpr std::string_view kTransformsSchemaName = "foxglove.FrameTransforms";
+[[nodiscard]] std::string_view scene_schema();
+[[nodiscard]] std::string_view transforms_schema();
+
+/// Frame of the fused bodies; each sensor's bodies are in the frame of its id.
+inline constexpr std::string_view kWorldFrame = "world";
+
+/// Where a frame stands in the world [m].
+struct NamedPlace {
+  std::string name;  ///< "s1"
+  Eigen::Isometry3d world_from_named = Eigen::Isometry3d::Identity();
+
+  bool operator==(const NamedPlace& other) const {
+    return name == other.name && world_from_named.matrix() == other.world_from_named.matrix();
+  }
+};
+
+/// One entity a body, which vanishes by itself when it is not seen again.  Bones with a joint that
+/// is not tracked are left out.
+[[nodiscard]] std::string scene_update(const resource::FrameResource& frame,
+                                       std::string_view frame_id);
+
+/// map -> world -> each place.
+[[nodiscard]] std::string frame_transforms(Timestamp at, const std::vector<NamedPlace>& places);
+
+}  // namespace chorus::record

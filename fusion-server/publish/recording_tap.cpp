@@ -1,0 +1,38 @@
+#include "fusion-server/publish/recording_tap.h"
+
+#include <utility>
+
+#include "fusion-server/publish/registration_file.h"
+#include "fusion-server/publish/snapshot_resource.h"
+
+namespace chorus::publish {
+
+using endpoint::Recordings;
+
+void RecordingTap::publish(std::shared_ptr<const Snapshot> snapshot) {
+  const auto recorder = recordings_.recorder(Recordings::Stream::Fused);
+  if (!recorder) return;
+  const Timestamp instant = snapshot->instant;
+  recorder->offer(record::FusedFrame{
+      instant, clock_->now(), [snapshot = std::move(snapshot)] { return to_resource(*snapshot); }});
+}
+
+void RecordingTap::raw(record::RawFrame frame) {
+  if (const auto recorder = recordings_.recorder(Recordings::Stream::Raw))
+    recorder->offer(std::move(frame));
+}
+
+void RecordingTap::places(const Registration& registration) {
+  const auto recorder = recordings_.recorder(Recordings::Stream::Any);
+  if (!recorder) return;
+  const bool known = told_.lock() == recorder;
+  if (known ? told_version_ == registration.version : registration.sensors.empty()) return;
+  record::PlacesChanged changed{clock_->now(), write_registration(registration), {}};
+  for (const auto& [sensor, place] : registration.sensors)
+    changed.places.push_back({sensor.str(), place.world_from_sensor});
+  recorder->offer(std::move(changed));
+  told_ = recorder;
+  told_version_ = registration.version;
+}
+
+}  // namespace chorus::publish

@@ -1,0 +1,69 @@
+#include "services/ctl/live_poll.h"
+
+#include <utility>
+
+namespace chorus::ctl {
+namespace {
+
+constexpr int kOk = 200;
+constexpr std::chrono::seconds kAnswerWithin{8};  // the wait below and some network
+constexpr const char* kWait = "wait=5";
+constexpr std::chrono::milliseconds kAfterFailure{250};
+constexpr std::chrono::milliseconds kAfterNothing{
+    10};  // a resource that cannot wait says 304 at once
+
+}  // namespace
+
+LivePoll::LivePoll(http::net::io_context& io, const http::Url& base, Options options,
+                   Deliver deliver)
+    : options_(std::move(options)),
+      deliver_(std::move(deliver)),
+      client_(io, base.host, base.port),
+      timer_(io) {
+  std::string prefix = base.target;
+  while (prefix.ends_with('/')) prefix.pop_back();
+  options_.target = prefix + options_.target;
+}
+
+void LivePoll::stop() {
+  stopped_ = true;
+  client_.close();
+  timer_.cancel();
+}
+
+void LivePoll::ask() {
+  http::ClientRequest request;
+  request.target = options_.target;
+  request.headers = {{"Accept", options_.accept}};
+  if (!etag_.empty()) {
+    request.headers.emplace_back("If-None-Match", etag_);
+    if (options_.every.count() == 0) request.headers.emplace_back("Prefer", kWait);
+  }
+  client_.send(std::move(request), kAnswerWithin, [this](Result<http::ClientResponse> answer) {
+    if (!stopped_) take(answer);
+  });
+}
+
+void LivePoll::take(const Result<http::ClientResponse>& answer) {
+  if (!answer) return ask_after(kAfterFailure);
+  answered_ = std::chrono::steady_clock::now();
+  if (answer->status == kOk) {
+    const auto etag = answer->headers.find("etag");
+    etag_ = etag == answer->headers.end() ? std::string() : etag->second;
+    deliver_(*answer);
+    if (stopped_) return;
+  }
+  if (options_.every.count() > 0) return ask_after(options_.every);
+  if (answer->status == kOk && !etag_.empty()) return ask();
+  constexpr int kFirstError = 400;
+  ask_after(answer->status >= kFirstError ? kAfterFailure : kAfterNothing);
+}
+
+void LivePoll::ask_after(std::chrono::milliseconds pause) {
+  timer_.expires_after(pause);
+  timer_.async_wait([this](const http::error_code& error) {
+    if (!error && !stopped_) ask();
+  });
+}
+
+}  // namespace chorus::ctl

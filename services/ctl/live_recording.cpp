@@ -1,0 +1,188 @@
+#include "services/ctl/live_recording.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/record/frame_recording.h"
+#include "common/resource/floor_plane_resource.h"
+#include "fusion-server/publish/registration_file.h"
+#include "services/ctl/service_client.h"
+
+namespace chorus::ctl {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kClocksEvery{500};
+constexpr milliseconds kFloorEvery{10'000};
+constexpr auto kFileWithin = std::chrono::seconds(30);
+
+bool is_a(const nlohmann::json& self, const std::string& type) {
+  const auto found = self.is_object() ? self.find("@type") : self.end();
+  if (!self.is_object() || found == self.end()) return false;
+  return found->is_array() ? std::find(found->begin(), found->end(), type) != found->end()
+                           : *found == type;
+}
+
+Timestamp received(const http::ClientResponse& answer) { return from_unix_ns(answer.received_ns); }
+
+Duration from_milliseconds(double ms) { return from_seconds(ms / 1e3); }
+
+/// As /sensors/ tells it, to the microsecond.
+record::ClockModel clock_of(const nlohmann::json& sensor) {
+  record::ClockModel clock;
+  const double offset = number_at(sensor, "clockOffsetMilliseconds");
+  const double uncertainty = number_at(sensor, "clockUncertaintyMilliseconds");
+  if (!std::isfinite(offset) || !std::isfinite(uncertainty)) return clock;
+  clock.ours_minus_theirs = from_milliseconds(offset);
+  clock.uncertainty = from_milliseconds(uncertainty);
+  const auto corrected = sensor.find("clockCorrected");
+  if (corrected != sensor.end() && corrected->is_boolean() && corrected->get<bool>())
+    clock.applied = clock.ours_minus_theirs;
+  return clock;
+}
+
+record::SessionHead head_of(const nlohmann::json& self, bool tracker) {
+  record::SessionHead head;
+  head.metadata["title"] = text_at(self, "title", "");
+  head.single_sensor = !tracker;
+  if (tracker) return head;
+  record::FrameRecording about;
+  if (const auto id = SensorId::parse(text_at(self, "sensorId", ""))) about.sensor = *id;
+  about.device = text_at(self, "deviceLabel", "");
+  head.metadata.merge(record::metadata_of(about));
+  return head;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<LiveRecording>> LiveRecording::start(http::net::io_context& io,
+                                                            LiveRecordingOptions options) {
+  const std::string url = "http://" + options.service.host + ":" +
+                          std::to_string(options.service.port) + options.service.target;
+  const auto client = ServiceClient::of(url);
+  if (!client) return pass(client);
+  const auto self = client->get("/");
+  if (!self) return pass(self);
+  const bool tracker = is_a(*self, "Tracker");
+  const auto id = SensorId::parse(text_at(*self, "sensorId", ""));
+  if (!tracker && !(is_a(*self, "Sensor") && id)) {
+    return fail(ErrorCode::Unsupported, url, "is neither a sensor nor a fusion server");
+  }
+  Result<nlohmann::json> sensors = nlohmann::json();
+  if (tracker && !(sensors = client->get("/sensors/"))) return pass(sensors);
+
+  record::RecorderOptions recording;
+  recording.name = "recording";
+  recording.file = options.file;
+  recording.head = head_of(*self, tracker);
+  recording.limits.min_free_bytes = 0;  // it is the user's own file
+  auto recorder = record::Recorder::start(std::move(recording));
+  if (!recorder) return pass(recorder);
+  std::unique_ptr<LiveRecording> live(new LiveRecording(io, std::move(options)));
+  live->recorder_ = std::move(*recorder);
+  if (tracker) {
+    live->poll_tracker(part_at(*sensors, "sensors"));
+  } else {
+    live->poll_raw(*id, "/");
+  }
+  for (LivePoll& one : live->polls_) one.start();
+  return live;
+}
+
+void LiveRecording::poll(LivePoll::Options what, LivePoll::Deliver deliver) {
+  polls_.emplace_back(io_, options_.service, std::move(what), std::move(deliver));
+}
+
+void LiveRecording::poll_raw(const SensorId& sensor, const std::string& prefix) {
+  poll({prefix + "floor-plane", "application/json", kFloorEvery},
+       [this, sensor](const http::ClientResponse& answer) {
+         const auto floor = resource::read_floor_plane(answer.body, resource::Format::Json);
+         if (floor) floors_[sensor] = *floor;
+       });
+  poll({prefix + "frame"},
+       [this, sensor, topic = prefix + "frame"](const http::ClientResponse& answer) {
+         take_raw(sensor, topic, answer);
+       });
+}
+
+void LiveRecording::poll_tracker(const nlohmann::json& sensors) {
+  poll({"/registration", "application/json"},
+       [this](const http::ClientResponse& answer) { take_registration(answer); });
+  if (options_.raw) {
+    poll({"/sensors/", "application/json", kClocksEvery},
+         [this](const http::ClientResponse& answer) { take_clocks(answer); });
+    for (const auto& [name, sensor] : sensors.items()) {
+      if (const auto id = SensorId::parse(name)) {
+        clocks_[*id] = clock_of(sensor);
+        poll_raw(*id, "/sensors/" + name + "/");
+      }
+    }
+  }
+  if (options_.fused) {
+    poll({"/frame"}, [this](const http::ClientResponse& answer) { take_fused(answer); });
+  }
+}
+
+void LiveRecording::count(const std::string& topic, std::uint64_t sequence) {
+  StreamCount& one = counts_[topic];
+  if (one.frames > 0 && sequence > one.last + 1) one.missed += sequence - one.last - 1;
+  one.last = sequence;
+  ++one.frames;
+}
+
+void LiveRecording::take_raw(const SensorId& sensor, const std::string& topic,
+                             const http::ClientResponse& answer) {
+  auto frame = resource::read_frame(answer.body, resource::Format::Turtle);
+  if (!frame) return;
+  count(topic, frame->sequence);
+  record::RawFrame raw{sensor,
+                       std::make_shared<const resource::FrameResource>(std::move(*frame)),
+                       received(answer),
+                       {},
+                       clocks_[sensor]};
+  if (const auto floor = floors_.find(sensor); floor != floors_.end()) raw.floor = floor->second;
+  recorder_->offer(std::move(raw));
+}
+
+void LiveRecording::take_fused(const http::ClientResponse& answer) {
+  auto frame = resource::read_frame(answer.body, resource::Format::Turtle);
+  if (!frame) return;
+  count("/frame", frame->sequence);
+  const Timestamp instant = frame->captured;
+  recorder_->offer(record::FusedFrame{instant, received(answer),
+                                      [frame = std::make_shared<const resource::FrameResource>(
+                                           std::move(*frame))] { return *frame; }});
+}
+
+void LiveRecording::take_clocks(const http::ClientResponse& answer) {
+  const auto list = nlohmann::json::parse(answer.body, nullptr, false);
+  for (const auto& [name, sensor] : part_at(list, "sensors").items()) {
+    if (const auto id = SensorId::parse(name)) clocks_[*id] = clock_of(sensor);
+  }
+}
+
+void LiveRecording::take_registration(const http::ClientResponse& answer) {
+  const auto registration = publish::read_registration(answer.body);
+  if (!registration || registration->sensors.empty()) return;
+  record::PlacesChanged changed{received(answer), publish::write_registration(*registration), {}};
+  for (const auto& [sensor, place] : registration->sensors)
+    changed.places.push_back({sensor.str(), place.world_from_sensor});
+  recorder_->offer(std::move(changed));
+}
+
+std::chrono::steady_clock::duration LiveRecording::silence() const {
+  std::chrono::steady_clock::time_point latest{};
+  for (const LivePoll& one : polls_) latest = std::max(latest, one.answered());
+  return std::chrono::steady_clock::now() - latest;
+}
+
+record::RecordingReport LiveRecording::stop() {
+  for (LivePoll& one : polls_) one.stop();
+  recorder_->ask_to_stop();
+  (void)recorder_->wait(kFileWithin);
+  return recorder_->report();
+}
+
+}  // namespace chorus::ctl

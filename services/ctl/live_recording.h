@@ -1,0 +1,69 @@
+// A running service recorded from outside, over HTTP: a sensor, or a fusion server with its
+// sensors.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "common/record/recorder.h"
+#include "services/ctl/live_poll.h"
+
+namespace chorus::ctl {
+
+struct LiveRecordingOptions {
+  http::Url service;
+  std::string file;
+  bool raw = true;
+  bool fused = true;
+};
+
+struct StreamCount {
+  std::uint64_t frames = 0;
+  std::uint64_t missed = 0;  ///< Gaps in the sequence.
+  std::uint64_t last = 0;
+};
+
+/// Everything on the thread of one io_context; the file on the recorder's.
+class LiveRecording {
+ public:
+  /// Asks the service what it is and begins.  Errors: it does not answer, is no Chorus service, or
+  /// the file cannot be made.
+  [[nodiscard]] static Result<std::unique_ptr<LiveRecording>> start(http::net::io_context& io,
+                                                                    LiveRecordingOptions options);
+  /// Ends polling and waits for the file.
+  [[nodiscard]] record::RecordingReport stop();
+
+  /// By topic: "/frame", "/sensors/s1/frame".
+  [[nodiscard]] const std::map<std::string, StreamCount>& counts() const { return counts_; }
+  /// How long nothing at all has answered.
+  [[nodiscard]] std::chrono::steady_clock::duration silence() const;
+
+ private:
+  LiveRecording(http::net::io_context& io, LiveRecordingOptions options)
+      : io_(io), options_(std::move(options)) {}
+
+  void poll(LivePoll::Options what, LivePoll::Deliver deliver);
+  void poll_raw(const SensorId& sensor, const std::string& prefix);
+  void poll_tracker(const nlohmann::json& sensors);
+  void take_raw(const SensorId& sensor, const std::string& topic,
+                const http::ClientResponse& answer);
+  void take_fused(const http::ClientResponse& answer);
+  void take_clocks(const http::ClientResponse& answer);
+  void take_registration(const http::ClientResponse& answer);
+  void count(const std::string& topic, std::uint64_t sequence);
+
+  http::net::io_context& io_;
+  LiveRecordingOptions options_;
+  std::unique_ptr<record::Recorder> recorder_;
+  std::deque<LivePoll> polls_;
+  std::map<std::string, StreamCount> counts_;
+  std::map<SensorId, record::ClockModel> clocks_;
+  std::map<SensorId, FloorPlane> floors_;
+};
+
+}  // namespace chorus::ctl

@@ -1,0 +1,159 @@
+// chorus record URL --out FILE: what a running sensor or fusion server says, into a file on this
+// machine.
+#include <csignal>
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "services/ctl/command.h"
+#include "services/ctl/console.h"
+#include "services/ctl/live_recording.h"
+#include "services/ctl/service_client.h"
+
+namespace chorus::ctl {
+namespace {
+
+using std::chrono::milliseconds;
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr milliseconds kLook{200};
+constexpr auto kGoneAfter = std::chrono::seconds(10);
+
+struct RecordArguments {
+  std::string url = kDefaultServer;
+  std::string out;
+  double seconds = 0.0;
+  bool raw = false;
+  bool fused = false;
+  bool json = false;
+};
+
+/// How it ended.
+enum class End { Asked, TimeIsUp, Gone };
+
+/// Looks a few times a second whether it is over; runs the polling meanwhile.
+class Watch {
+ public:
+  Watch(http::net::io_context& io, const LiveRecording& live, const RecordArguments& arguments)
+      : io_(io),
+        live_(live),
+        arguments_(arguments),
+        timer_(io),
+        signals_(io, SIGINT, SIGTERM),
+        progress_(std::cerr, on_terminal(), "recording") {}
+
+  End run() {
+    signals_.async_wait([this](const http::error_code& error, int) {
+      if (!error) finish(End::Asked);
+    });
+    look();
+    io_.run();
+    progress_.finish();
+    return end_;
+  }
+
+ private:
+  void look() {
+    timer_.expires_after(kLook);
+    timer_.async_wait([this](const http::error_code& error) {
+      if (error) return;
+      const double elapsed = std::chrono::duration<double>(SteadyClock::now() - begun_).count();
+      if (arguments_.seconds > 0.0) {
+        progress_.show(elapsed / arguments_.seconds, "");
+        if (elapsed >= arguments_.seconds) return finish(End::TimeIsUp);
+      }
+      if (live_.silence() > kGoneAfter) return finish(End::Gone);
+      look();
+    });
+  }
+
+  void finish(End how) {
+    end_ = how;
+    signals_.cancel();
+    io_.stop();
+  }
+
+  http::net::io_context& io_;
+  const LiveRecording& live_;
+  const RecordArguments& arguments_;
+  http::Timer timer_;
+  http::net::signal_set signals_;
+  Progress progress_;
+  SteadyClock::time_point begun_ = SteadyClock::now();
+  End end_ = End::Asked;
+};
+
+nlohmann::json summary_of(const LiveRecording& live, const record::RecordingReport& report,
+                          const std::string& file) {
+  nlohmann::json streams = nlohmann::json::object();
+  for (const auto& [topic, count] : live.counts())
+    streams[topic] = {{"frames", count.frames}, {"missed", count.missed}};
+  return {{"file", file},
+          {"seconds", chorus::seconds(report.stopped.value_or(report.started) - report.started)},
+          {"bytes", report.bytes()},
+          {"frames", report.frames},
+          {"dropped", report.dropped},
+          {"streams", streams}};
+}
+
+void print_summary(const nlohmann::json& summary, bool json) {
+  if (json) {
+    std::cout << summary.dump(2) << '\n';
+    return;
+  }
+  std::vector<std::vector<std::string>> rows{{"stream", "frames", "missed"}};
+  for (const auto& [topic, count] : summary["streams"].items())
+    rows.push_back({topic, count["frames"].dump(), count["missed"].dump()});
+  constexpr double kMegabyte = 1e6;
+  std::cout << table(rows)
+            << fmt::format("{}: {:.1f} s, {:.2f} MB\n", summary["file"].get<std::string>(),
+                           summary["seconds"].get<double>(),
+                           summary["bytes"].get<double>() / kMegabyte);
+}
+
+Result<int> run_record(const RecordArguments& arguments) {
+  const auto url = http::parse_url(arguments.url);
+  if (!url) return pass(url);
+  LiveRecordingOptions options;
+  options.service = *url;
+  options.file = arguments.out;
+  options.raw = arguments.raw || !arguments.fused;  // neither named: both
+  options.fused = arguments.fused || !arguments.raw;
+  http::net::io_context io{1};
+  const auto live = LiveRecording::start(io, options);
+  if (!live) return pass(live);
+  const End end = Watch(io, **live, arguments).run();
+  const auto report = (*live)->stop();
+  print_summary(summary_of(**live, report, arguments.out), arguments.json);
+  if (report.state != record::RecordingState::Finished) {
+    return fail(ErrorCode::Io, arguments.out,
+                report.reason.empty() ? "the file could not be finished in time" : report.reason);
+  }
+  if (end == End::Gone) {
+    return fail(ErrorCode::Unavailable, arguments.url,
+                "has not answered for ten seconds; what came before is in " + arguments.out);
+  }
+  if (report.frames == 0)
+    return fail(ErrorCode::Unavailable, arguments.url, "delivered no frame in this time");
+  return kExitOk;
+}
+
+}  // namespace
+
+Run add_record(CLI::App& options) {
+  const auto arguments = std::make_shared<RecordArguments>();
+  options.add_option("url", arguments->url, "A sensor or a fusion server")->capture_default_str();
+  options.add_option("--out", arguments->out, "The .mcap file to write; never one that exists")
+      ->required();
+  constexpr double kLongest = 7 * 24 * 3600.0;
+  options.add_option("--seconds", arguments->seconds, "How long; without it until Ctrl-C")
+      ->check(CLI::Range(1.0, kLongest));
+  options.add_flag("--raw", arguments->raw, "Only what the sensors say");
+  options.add_flag("--fused", arguments->fused, "Only what the fusion server makes of it");
+  options.add_flag("--json", arguments->json, "Summary as JSON");
+  return [arguments] { return run_record(*arguments); };
+}
+
+}  // namespace chorus::ctl
