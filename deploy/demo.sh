@@ -175,7 +175,7 @@ start_replays() {
 start_fusion() {
   local config=deploy/config/fusion.json list
   list=$(IFS=,; echo "[${sensors[*]}]")
-  local options=(--set "http.port=$port" --set "sensors=$list")
+  local options=(--set "http.port=$port" --set "sensors=$list" --set "recording.folder=$logs/recordings")
   if [[ -n "$recording" ]]; then
     [[ ! -f "$recording/fusion.json" ]] || config=$recording/fusion.json
     if [[ -z "$register" && -f "$recording/registration.json" ]]; then

@@ -144,10 +144,7 @@ void Recordings::settle() {
   if (is_running(report)) return;
   frames_ended_ += report.frames;
   dropped_ended_ += report.dropped;
-  if (report.state == RecordingState::Failed) {
-    ++failed_;
-    log::error("recording failed", {{"name", report.name}, {"reason", report.reason}});
-  }
+  if (report.state == RecordingState::Failed) ++failed_;
   ended_[report.name] = std::move(report);
   running_ = {};
 }
@@ -157,12 +154,15 @@ Result<RecordingReport> Recordings::start(const RecordingRequest& request) {
     return fail(ErrorCode::Forbidden, std::string(kWhere),
                 "recording is off here: set recording.folder in the configuration");
   }
-  const std::scoped_lock lock(mutex_);
-  settle();
-  if (running_.recorder) {
-    return fail(ErrorCode::Conflict, std::string(kWhere),
-                "a recording is running: DELETE /recordings/" + running_.recorder->report().name +
-                    " ends it");
+  const std::scoped_lock one_at_a_time(starting_);
+  {
+    const std::scoped_lock lock(mutex_);
+    settle();
+    if (running_.recorder) {
+      return fail(ErrorCode::Conflict, std::string(kWhere),
+                  "a recording is running: DELETE /recordings/" + running_.recorder->report().name +
+                      " ends it");
+    }
   }
   record::RecorderOptions options;
   options.name = request.name.empty() ? record::utc_name(options_.clock->now()) : request.name;
@@ -176,9 +176,11 @@ Result<RecordingReport> Recordings::start(const RecordingRequest& request) {
     log::error("recording not started", {{"reason", to_string(recorder.error())}});
     return pass(recorder);
   }
+  const RecordingReport report = (*recorder)->report();
+  log::info("recording", {{"name", report.name}});
+  const std::scoped_lock lock(mutex_);
   running_ = {std::move(*recorder), request.raw, request.fused};
-  log::info("recording", {{"name", running_.recorder->report().name}});
-  return running_.recorder->report();
+  return report;
 }
 
 Result<RecordingReport> Recordings::stop(std::string_view name) {

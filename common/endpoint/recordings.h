@@ -91,7 +91,8 @@ class Recordings {
   [[nodiscard]] Result<http::ActionResult> post(const http::Request& request);
 
   const RecordingsOptions options_;
-  mutable std::mutex mutex_;  ///< Guards what follows.
+  std::mutex starting_;       ///< One start at a time; never held by those who offer frames.
+  mutable std::mutex mutex_;  ///< Guards what follows; never held while the disk is used.
   Running running_;
   std::map<std::string, record::RecordingReport> ended_;
   std::uint64_t frames_ended_ = 0;  ///< Of this process's recordings that have ended.

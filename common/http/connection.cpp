@@ -213,10 +213,9 @@ bool Connection::send_piece() {
   }
   sent_of_file_ += piece_.size();
   expire_in(core_.config.limits.write_timeout);
-  net::async_write(socket_, net::buffer(piece_),
-                   [self = shared_from_this()](error_code failed, std::size_t size) {
-                     self->on_sent(failed, size);
-                   });
+  net::async_write(
+      socket_, net::buffer(piece_),
+      [self = self()](error_code failed, std::size_t size) { self->on_sent(failed, size); });
   return true;
 }
 

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/base/log.h"
+
 namespace chorus::record {
 namespace {
 
@@ -59,6 +61,7 @@ struct Recorder::Impl {
   void note_size();
   void finish(const Result<void>& how);
   void store_index();
+  void tell_end() const;
   void ask_to_stop() {
     {
       const std::scoped_lock lock(mutex);
@@ -209,6 +212,17 @@ void Recorder::Impl::run() {
   finish(how);
 }
 
+/// A service learns of it here; who writes one file asks for the report.
+void Recorder::Impl::tell_end() const {
+  if (!rotates()) return;
+  if (report.state == RecordingState::Failed)
+    return log::error("recording failed", {{"name", report.name}, {"reason", report.reason}});
+  log::info("recording finished", {{"name", report.name},
+                                   {"frames", report.frames},
+                                   {"dropped", report.dropped},
+                                   {"bytes", report.bytes()}});
+}
+
 void Recorder::Impl::finish(const Result<void>& how) {
   const auto closed = writer ? writer->close() : Result<void>{};
   if (writer) note_size();
@@ -224,6 +238,7 @@ void Recorder::Impl::finish(const Result<void>& how) {
     queue.clear();
   }
   store_index();
+  tell_end();
   {
     const std::scoped_lock lock(mutex);
     done = true;

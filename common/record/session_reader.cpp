@@ -45,6 +45,15 @@ Result<Duration> read_shift(const std::string& text) {
   return Duration(ns);
 }
 
+/// False, and `t` as it was, when the sum is no time we know.
+bool moved(Timestamp& t, const std::optional<Duration>& by) {
+  std::int64_t ns = 0;
+  const std::int64_t shift = by ? by->count() : 0;
+  if (__builtin_add_overflow(to_unix_ns(t), shift, &ns) || ns < 0) return false;
+  t = from_unix_ns(ns);
+  return true;
+}
+
 /// "/sensors/s1/clock" -> s1 and "clock"; "/frame" -> no id and "frame".
 struct Topic {
   std::optional<SensorId> sensor;
@@ -142,9 +151,12 @@ Result<Sorting::Stream*> Sorting::stream_of(const SensorId& sensor) {
 
 Result<void> Sorting::append(Stream& stream, SensorFrame frame) const {
   auto& frames = stream.recording.frames;
-  const Duration shift = stream.shift.value_or(Duration{0});
-  frame.captured += shift;
-  for (BodyFrame& body : frame.bodies) body.captured += shift;
+  bool told = moved(frame.captured, stream.shift);
+  for (BodyFrame& body : frame.bodies) told = moved(body.captured, stream.shift) && told;
+  if (!told) {
+    ++stream.left_out;
+    return {};
+  }
   frame.floor = stream.floor;
   if (frames.empty() || frame.captured > frames.back().captured) {
     frames.push_back(std::move(frame));
@@ -233,7 +245,8 @@ Session Sorting::finish() {
     for (std::size_t i = 0; i < damage_.size(); ++i)
       notes["damage." + std::to_string(i + 1)] = damage_[i];
     if (stream.left_out > 0)
-      notes["left_out"] = std::to_string(stream.left_out) + " frames that go back in time";
+      notes["left_out"] =
+          std::to_string(stream.left_out) + " frames that go back in time or out of it";
     out_.sensors.push_back(std::move(stream.recording));
     out_.files[sensor] = std::move(stream.files);
   }
@@ -255,6 +268,12 @@ Result<Session> read_session(const std::vector<fs::path>& files, const SessionQu
     if (!recording) return pass(recording);
     if (auto ok = sorting.add(std::move(*recording), file); !ok) return pass(ok);
   }
+  return sorting.finish();
+}
+
+Result<Session> session_of(Recording recording, const fs::path& name, const SessionQuery& query) {
+  Sorting sorting(query);
+  if (auto ok = sorting.add(std::move(recording), name); !ok) return pass(ok);
   return sorting.finish();
 }
 

@@ -41,4 +41,8 @@ struct SessionQuery {
 [[nodiscard]] Result<Session> read_session(const std::vector<std::filesystem::path>& files,
                                            const SessionQuery& query = {});
 
+/// The same from a file that has been read already; `name` is for messages.
+[[nodiscard]] Result<Session> session_of(Recording recording, const std::filesystem::path& name,
+                                         const SessionQuery& query = {});
+
 }  // namespace chorus::record

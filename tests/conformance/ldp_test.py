@@ -6,7 +6,7 @@ import unittest
 from chorus_processes import URLS, get
 
 LDP = "http://www.w3.org/ns/ldp#"
-DOCUMENTS = ["/", "/frame", "/skeletons/", "/floor-plane", "/clock"]
+DOCUMENTS = ["/", "/frame", "/skeletons/", "/floor-plane", "/clock", "/recordings/"]
 SCHEMAS = ["/ns", "/shapes"]  # Turtle files as they are written; no other format
 FUSION_ONLY = ["/registration", "/sensors/"]
 TURTLE = "text/turtle"

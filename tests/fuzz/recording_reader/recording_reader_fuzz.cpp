@@ -2,18 +2,27 @@
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
+#include <utility>
 
-#include "common/record/recording.h"
+#include "common/record/session_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   const chorus::record::ReadLimits limits{
       .max_file_bytes = 1u << 20, .max_chunk_bytes = 1u << 20, .max_total_bytes = 16u << 20};
-  const auto read = chorus::record::read_recording_bytes(
+  auto read = chorus::record::read_recording_bytes(
       std::string_view(reinterpret_cast<const char*>(bytes), size), limits);
   if (!read) return 0;
   for (std::size_t i = 1; i < read->messages.size(); ++i) {
     if (read->messages[i].log_time < read->messages[i - 1].log_time) __builtin_trap();
   }
   if (read->notes.size() > chorus::record::kMaxNotes) __builtin_trap();
+  // And whatever was read, as a recording of a cell: frames of every stream rise in time.
+  const auto session = chorus::record::session_of(std::move(*read), "fuzz", {.fused = true});
+  if (!session) return 0;
+  for (const auto& sensor : session->sensors) {
+    for (std::size_t i = 1; i < sensor.frames.size(); ++i) {
+      if (sensor.frames[i].captured <= sensor.frames[i - 1].captured) __builtin_trap();
+    }
+  }
   return 0;
 }

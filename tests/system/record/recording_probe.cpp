@@ -1,11 +1,12 @@
-// `recording_probe write FILE` makes a recording whose contents the test knows; `recording_probe
-// read FILE` prints what our reader makes of a file, as JSON.
+// `recording_probe write FILE` makes a recording whose contents the test knows, `session` one of a
+// cell; `recording_probe read FILE` prints what our reader makes of a file, as JSON.
 #include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "common/record/recording.h"
+#include "common/record/session_writer.h"
+#include "tests/support/builders.h"
 
 namespace {
 
@@ -35,6 +36,43 @@ Result<void> write_known(const char* path) {
   return writer->close();
 }
 
+/// Two sensors of a ring of two, one person, for two seconds.
+Result<void> write_session(const char* path) {
+  auto writer = SessionWriter::create(path, {{{"title", "probe"}}, false});
+  if (!writer) return pass(writer);
+  PlacesChanged places{testing::kStart, R"({"version":1,"verdict":"Good","sensors":{}})", {}};
+  for (int s = 0; s < 2; ++s)
+    places.places.push_back({"s" + std::to_string(s + 1), testing::ring_sensor(s, 2)});
+  if (auto ok = writer->write(places); !ok) return ok;
+  for (int i = 0; i < 60; ++i) {
+    const Timestamp t = testing::kStart + testing::kFrameInterval * i;
+    const auto person = testing::standing_person({0.01 * i, 0, 0}, 0.02 * i);
+    for (int s = 0; s < 2; ++s) {
+      const auto pose = testing::ring_sensor(s, 2);
+      const auto id = testing::sensor_id("s" + std::to_string(s + 1));
+      const auto frame =
+          testing::sensor_frame(id.str(), t, {testing::body_seen_from(pose, person, t)});
+      const RawFrame raw{
+          id,
+          std::make_shared<const resource::FrameResource>(resource::to_resource(frame)),
+          t,
+          testing::floor_seen_from(pose),
+          {Duration{0}, Duration{0}, std::chrono::milliseconds(1)}};
+      if (auto ok = writer->write(raw); !ok) return ok;
+    }
+    const auto ok = writer->write(
+        FusedFrame{t, t, [&] {
+                     const auto at_origin = Eigen::Isometry3d::Identity();
+                     auto frame = resource::to_resource(testing::sensor_frame(
+                         "fusion", t, {testing::body_seen_from(at_origin, person, t)}));
+                     frame.space = resource::SpaceKind::World;
+                     return frame;
+                   }});
+    if (!ok) return ok;
+  }
+  return writer->close();
+}
+
 nlohmann::json to_json(const Recording& recording) {
   nlohmann::json out{{"metadata", recording.metadata},
                      {"truncated", recording.truncated},
@@ -53,17 +91,18 @@ nlohmann::json to_json(const Recording& recording) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc == 3 && std::string_view(argv[1]) == "write") {
-    const auto ok = write_known(argv[2]);
+  const std::string_view what = argc == 3 ? argv[1] : "";
+  if (what == "write" || what == "session") {
+    const auto ok = what == "write" ? write_known(argv[2]) : write_session(argv[2]);
     if (!ok) std::cerr << to_string(ok.error()) << '\n';
     return ok ? 0 : 1;
   }
-  if (argc == 3 && std::string_view(argv[1]) == "read") {
+  if (what == "read") {
     const auto recording = read_recording(argv[2]);
     if (!recording) std::cerr << to_string(recording.error()) << '\n';
     if (recording) std::cout << to_json(*recording).dump() << '\n';
     return recording ? 0 : 1;
   }
-  std::fputs("usage: recording_probe write|read FILE\n", stderr);
+  std::fputs("usage: recording_probe write|session|read FILE\n", stderr);
   return 2;
 }

@@ -1,0 +1,136 @@
+"""A cell of real processes is recorded, killed, downloaded, replayed and fused again."""
+
+import json
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "tests/system/fusion"))
+from rig import BIN, Rig, free_port, get, get_json, send, wait_for  # noqa: E402
+
+SENSORS = 3
+
+
+def chorus(*arguments, seconds=90):
+    return subprocess.run([BIN / "chorus", *map(str, arguments)], cwd=ROOT, capture_output=True, text=True, timeout=seconds)
+
+
+def positions(frame):
+    return {(body["bodyId"], name): tuple(joint[a] for a in "xyz")
+            for body in frame["bodies"] for name, joint in body["joints"].items() if "x" in joint}
+
+
+class Cell(Rig):
+    def cell(self, **settings):
+        self.at = pathlib.Path(self.folder.name)
+        sensors = {f"s{i + 1}": self.sensor(i, SENSORS).url for i in range(SENSORS)}
+        fusion = self.fusion(sensors, **{"registration.file": self.given_ring(SENSORS),
+                                         "recording.folder": self.at / "rec", "recording.min_free_mb": 0, **settings})
+        wait_for("somebody is fused", lambda: get_json(fusion.url + "frame")["bodies"])
+        return fusion
+
+    def fuse(self, recording, out, *options):
+        done = chorus("fuse", recording, "--out", self.at / out, *options)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return (self.at / out).read_bytes()
+
+    def finished(self, url):
+        return wait_for("the recording ends", lambda: (r := get_json(url))["state"] == "finished" and r)
+
+    def test_recorded_by_the_service_and_fused_again(self):
+        fusion = self.cell()
+        status, headers, body = send("POST", fusion.url + "recordings/", b'{"name": "walk", "seconds": 4}')
+        self.assertEqual((status, headers["Location"]), (201, "/recordings/walk"), body)
+        self.assertEqual(send("POST", fusion.url + "recordings/")[0], 409)
+        report = self.finished(fusion.url + "recordings/walk")
+        self.assertEqual(report["dropped"], 0)
+        self.assertGreater(report["frames"], 4 * 25 * (SENSORS + 1))
+        self.assertIn(b"chorus_recording_dropped_total 0", get(fusion.url + "metrics")[2])
+        file = self.at / "walk.mcap"
+        file.write_bytes(get(fusion.url + report["download"].lstrip("/"), accept="*/*")[2])
+        self.assertEqual(file.stat().st_size, report["bytes"])
+
+        # Raw frames through the pipeline twice: the same bytes, and what the server made of them at the time.
+        self.assertEqual(self.fuse(file, "a.mcap"), self.fuse(self.at / "rec/walk", "b.mcap"))
+        again = [json.loads(line) for line in self.fuse(file, "a.ndjson").splitlines()]
+        live = self.fused_frames(file)
+        by_instant = {frame["capturedNanoseconds"]: frame for frame in again}
+        pairs = [(frame, by_instant[frame["capturedNanoseconds"]]) for frame in live if frame["capturedNanoseconds"] in by_instant]
+        self.assertGreater(len(pairs), 80)
+        equal = sum(sorted(positions(a).values()) == sorted(positions(b).values()) for a, b in pairs)
+        self.assertGreater(equal / len(pairs), 0.9, "the beginning, where the recording lacks what came before, may differ")
+        self.assertNotEqual(self.fuse(file, "c.mcap", "--method", "mean"), (self.at / "a.mcap").read_bytes())
+
+    def fused_frames(self, file):
+        """By the recording's own probe: independent of the reader that fuses."""
+        read = subprocess.run([BIN.parent / "tests/recording_probe", "read", file], capture_output=True, check=True)
+        return [json.loads(m["text"]) for m in json.loads(read.stdout)["messages"] if m["topic"] == "/frame"]
+
+    def test_recorded_from_outside_and_replayed(self):
+        fusion = self.cell()
+        done = chorus("record", fusion.url, "--out", self.at / "mine.mcap", "--seconds", 3, "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        streams = json.loads(done.stdout)["streams"]
+        self.assertEqual(set(streams), {"/frame"} | {f"/sensors/s{i + 1}/frame" for i in range(SENSORS)})
+        for topic, count in streams.items():
+            self.assertGreater(count["frames"], 60, topic)
+        again = chorus("record", fusion.url, "--out", self.at / "mine.mcap", "--seconds", 1)
+        self.assertEqual(again.returncode, 1, "a file that exists is never overwritten")
+
+        self.assertEqual(self.fuse(self.at / "mine.mcap", "a.mcap"), self.fuse(self.at / "mine.mcap", "b.mcap"))
+        first = free_port()
+        replay = subprocess.Popen([BIN / "chorus", "replay", self.at / "mine.mcap", "--port", str(first)], cwd=ROOT,
+                                  stdout=subprocess.PIPE, text=True)
+        try:
+            url = replay.stdout.readline().split()[2]
+            frame = wait_for("the replay serves", lambda: (a := get(url + "frame"))[0] == 200 and json.loads(a[2]))
+            self.assertEqual((frame["source"], frame["space"]), ("s1", "SensorSpace"))
+        finally:
+            replay.send_signal(signal.SIGTERM)
+            replay.communicate(timeout=20)
+
+    def test_a_sensor_records_itself(self):
+        folder = pathlib.Path(self.folder.name) / "rec"
+        sensor = self.sensor(0, **{"recording.folder": folder, "recording.min_free_mb": 0})
+        self.assertEqual(send("POST", sensor.url + "recordings/", b'{"name": "a"}')[0], 201)
+        wait_for("frames are written", lambda: get_json(sensor.url + "recordings/a")["frames"] > 20)
+        self.assertEqual(send("DELETE", sensor.url + "recordings/a")[0], 200)
+        self.finished(sensor.url + "recordings/a")
+        self.assertEqual(send("POST", sensor.url + "recordings/", b'{"fused": true}')[0], 400)
+        again = self.sensor(1, **{"id": "other", "device.kind": "replay", "device.replay.recording": folder / "a"})
+        self.assertTrue(get_json(again.url + "frame")["bodies"])
+
+    def test_kill_costs_at_most_the_open_chunk(self):
+        fusion = self.cell()
+        send("POST", fusion.url + "recordings/", b'{"name": "walk"}')
+        wait_for("some seconds are written", lambda: get_json(fusion.url + "recordings/walk")["frames"] > 500)
+        newest = int(get_json(fusion.url + "frame")["capturedNanoseconds"])
+        fusion.child.kill()
+        fusion.child.wait()
+        file, = (self.at / "rec/walk").glob("*.mcap")
+        frames = self.fused_frames(file)
+        lost = (newest - int(frames[-1]["capturedNanoseconds"])) / 1e9
+        self.assertLess(lost, 2.5, "a chunk is closed after a second of recording")
+        self.assertGreater(len(frames), 60)
+        self.fuse(file, "a.mcap")
+        # The next run of the service knows what happened.
+        after = self.fusion({}, wait=False, **{"recording.folder": self.at / "rec", "sensors": "[]"})
+        report = wait_for("the list", lambda: get_json(after.url + "recordings/walk"))
+        self.assertEqual(report["state"], "interrupted")
+        self.assertEqual(report["bytes"], file.stat().st_size)
+
+    def test_a_folder_that_cannot_be_written_is_told_and_harms_nothing(self):
+        fusion = self.cell(**{"recording.folder": "/proc/nowhere"})
+        status, _, body = send("POST", fusion.url + "recordings/")
+        self.assertGreaterEqual(status, 500)
+        self.assertIn(b"/proc/nowhere", body)
+        before = get_json(fusion.url + "frame")["sequence"]
+        wait_for("fusion goes on", lambda: get_json(fusion.url + "frame")["sequence"] > before + 10)
+
+
+if __name__ == "__main__":
+    unittest.main()
