@@ -181,17 +181,24 @@ TEST(Session, AClockThatWasSetBackCostsItsFramesAndIsNoted) {
 TEST(Session, AFolderIsReadAsOneRecording) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "rec");
-  for (const int part : {1, 0}) {
-    auto writer =
-        SessionWriter::create(folder / ("rec/r-000" + std::to_string(part) + ".mcap"), {});
+  const auto write_part = [&](int part, const std::string& recording) {
+    auto writer = SessionWriter::create(folder / ("rec/r-000" + std::to_string(part) + ".mcap"),
+                                        {{{"recording", recording}}, false});
     ASSERT_TRUE(writer);
     for (int i = 10 * part; i < 10 * part + 10; ++i) ASSERT_TRUE(writer->write(raw("s1", i)));
     ASSERT_TRUE(writer->close());
-  }
+  };
+  write_part(1, "r");
+  write_part(0, "r");
   const auto session = read_session(folder / "rec");
-  ASSERT_TRUE(session);
+  ASSERT_TRUE(session) << to_string(session.error());
   ASSERT_THAT(session->sensors, SizeIs(1));
   EXPECT_THAT(session->sensors[0].frames, SizeIs(20));
+  EXPECT_THAT(session->files.begin()->second, SizeIs(2));
+  write_part(2, "another");
+  const auto mixed = read_session(folder / "rec");
+  ASSERT_FALSE(mixed) << "two recordings of one sensor are no recording";
+  EXPECT_EQ(mixed.error().code, ErrorCode::Conflict);
 }
 
 TEST(Session, NonsenseOnAKnownTopicIsNamed) {
