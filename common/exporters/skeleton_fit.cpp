@@ -140,9 +140,9 @@ class ChainFollower {
   const FittedPose& follow(const Skeleton<WorldSpace>& body);
 
  private:
-  Eigen::Quaterniond turn_of(std::size_t joint, const Skeleton<WorldSpace>& body,
-                             const Eigen::Quaterniond& world_from_parent,
-                             const Eigen::Vector3d& place) const;
+  [[nodiscard]] Eigen::Quaterniond turn_of(std::size_t joint, const Skeleton<WorldSpace>& body,
+                                           const Eigen::Quaterniond& world_from_parent,
+                                           const Eigen::Vector3d& place) const;
 
   const std::vector<FittedJoint>& joints_;
   Children children_;

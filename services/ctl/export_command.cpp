@@ -74,6 +74,8 @@ void report(const exporters::Take& take, const exporters::Exported& exported,
                            take.frames, take.rate_hz, to_iso8601(take.start));
   for (const std::string& remark : exported.remarks) std::cerr << remark << '\n';
   for (const std::string& file : written) std::cerr << "wrote " << file << '\n';
+  if (!written.empty() && written.front().ends_with(".gltf"))
+    std::cerr << "note: this is binary glTF; most programs want it to be called .glb\n";
 }
 
 Result<int> run_export(const ExportArguments& arguments) {

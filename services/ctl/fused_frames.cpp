@@ -56,7 +56,7 @@ Result<void> add_recording(FusedSamples& samples, const fs::path& file) {
   for (const record::Message& message : recording->messages) {
     if (message.topic != kFusedTopic) continue;
     const std::string at = fmt::format("{}: frame {}", file.string(), ++frames);
-    if (const auto added = add_frame(samples, message.data, at); !added) return added;
+    if (auto added = add_frame(samples, message.data, at); !added) return added;
   }
   for (const std::string& note : recording->notes)
     std::cerr << fmt::format("note: {}: {}\n", file.string(), note);
