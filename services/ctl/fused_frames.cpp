@@ -50,11 +50,12 @@ Result<void> add_frame(FusedSamples& samples, std::string_view json, const std::
 }
 
 Result<void> add_recording(FusedSamples& samples, const fs::path& file) {
-  const auto recording = record::read_recording(file);
+  record::ReadLimits limits;
+  limits.wanted = [](std::string_view topic) { return topic == kFusedTopic; };
+  const auto recording = record::read_recording(file, limits);
   if (!recording) return pass(recording);
   std::size_t frames = 0;
   for (const record::Message& message : recording->messages) {
-    if (message.topic != kFusedTopic) continue;
     const std::string at = fmt::format("{}: frame {}", file.string(), ++frames);
     if (auto added = add_frame(samples, message.data, at); !added) return added;
   }
