@@ -44,6 +44,11 @@ const Axes& dtrack_axes() {
   return kAxes;
 }
 
+const Axes& dtrack_powerwall_axes() {
+  static const Axes kAxes = axes(kX, kY, kZ, kMillimetresPerMetre);
+  return kAxes;
+}
+
 const Axes& trackd_axes() {
   static const Axes kAxes = axes(kX, kY, kZ, 1.0 / kMetresPerFoot);
   return kAxes;

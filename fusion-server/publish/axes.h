@@ -29,6 +29,8 @@ struct Axes {
 [[nodiscard]] const Axes& vrpn_axes();
 /// DTrack "normal" room calibration: right-handed, +z up, millimetres: (x, -z, y).
 [[nodiscard]] const Axes& dtrack_axes();
+/// DTrack "powerwall" room calibration: right-handed, +y up, millimetres.
+[[nodiscard]] const Axes& dtrack_powerwall_axes();
 /// CAVELib/trackd: right-handed, +y up, feet.
 [[nodiscard]] const Axes& trackd_axes();
 /// Unity, VMC, VRChat: left-handed, +y up, +z forward, metres: (x, y, -z).

@@ -65,8 +65,8 @@ std::string with_sizes(const std::vector<std::vector<char>>& datagrams) {
 }
 
 TEST(GoldenOutputs, Dtrack) {
-  expect_golden("fused.dtrack",
-                dtrack::encode(golden_frame(), {std::chrono::microseconds(2345), true}));
+  expect_golden("fused.dtrack", dtrack::encode(golden_frame(), {std::chrono::microseconds(2345),
+                                                                true, dtrack::Room::Normal}));
 }
 
 TEST(GoldenOutputs, Vmc) {

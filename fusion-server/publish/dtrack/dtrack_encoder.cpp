@@ -60,11 +60,11 @@ void add_all(std::string& out, const Eigen::Vector3d& values, int digits) {
 }
 
 /// [sx sy sz eta theta phi][b0 .. b8]
-void add_pose(std::string& out, const Eigen::Vector3d& x_in_world,
+void add_pose(std::string& out, const Axes& axes, const Eigen::Vector3d& x_in_world,
               const Eigen::Quaterniond& world_from_body) {
-  const Eigen::Matrix3d r = dtrack_axes().rotation(world_from_body);
+  const Eigen::Matrix3d r = axes.rotation(world_from_body);
   out += '[';
-  add_all(out, dtrack_axes().position(x_in_world), kPlaceDigits);
+  add_all(out, axes.position(x_in_world), kPlaceDigits);
   add_all(out, dtrack_angles(r).unaryExpr(&to_deg), kAngleDigits);
   out += "][";
   for (const Eigen::Index column : {0, 1, 2}) add_all(out, r.col(column), kMatrixDigits);
@@ -98,7 +98,7 @@ void add_line(std::string& out, std::string_view name, std::uint64_t count, std:
   out.append(rest).append(kEnd);
 }
 
-std::size_t add_bodies(std::string& out, const TrackerBody& body) {
+std::size_t add_bodies(std::string& out, const Axes& axes, const TrackerBody& body) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < kJointCount; ++i) {
     const std::size_t id = kJointCount * body.slot + i;
@@ -106,14 +106,14 @@ std::size_t add_bodies(std::string& out, const TrackerBody& body) {
     out += " [";
     add(out, id);
     out += kSeen;
-    add_pose(out, body.joints[i].position, body.joints[i].orientation);
+    add_pose(out, axes, body.joints[i].position, body.joints[i].orientation);
     ++count;
   }
   return count;
 }
 
 /// " [slot joints][joint 1.000][..][..] ..." or nothing when the body's rig is not known.
-std::string human_model(const TrackerBody& body) {
+std::string human_model(const Axes& axes, const TrackerBody& body) {
   const Humanoid rig = humanoid_of(body);
   std::string joints;
   std::size_t count = 0;
@@ -123,7 +123,7 @@ std::string human_model(const TrackerBody& body) {
     joints += '[';
     add(joints, joint.id);
     joints += kSeen;
-    add_pose(joints, bone.origin, bone.world_from_bone);
+    add_pose(joints, axes, bone.origin, bone.world_from_bone);
     ++count;
   }
   if (count == 0) return {};
@@ -134,12 +134,12 @@ std::string human_model(const TrackerBody& body) {
   return out + "]" + joints;
 }
 
-void add_human_models(std::string& out, const TrackerFrame& frame) {
+void add_human_models(std::string& out, const Axes& axes, const TrackerFrame& frame) {
   constexpr std::size_t kHeadOfLine = 32;
   std::string models;
   std::uint64_t count = 0;
   for (const TrackerBody& body : frame.bodies) {
-    const std::string model = human_model(body);
+    const std::string model = human_model(axes, body);
     if (out.size() + kHeadOfLine + models.size() + model.size() > kMostBytes) break;
     if (model.empty()) continue;
     models += model;
@@ -153,16 +153,17 @@ void add_human_models(std::string& out, const TrackerFrame& frame) {
 }  // namespace
 
 std::string encode(const TrackerFrame& frame, const Content& content) {
+  const Axes& axes = content.room == Room::Normal ? dtrack_axes() : dtrack_powerwall_axes();
   std::string bodies;
   std::size_t count = 0;
-  for (const TrackerBody& body : frame.bodies) count += add_bodies(bodies, body);
+  for (const TrackerBody& body : frame.bodies) count += add_bodies(bodies, axes, body);
   std::string out;
   add_line(out, "fr", frame.sequence & 0xFFFF'FFFFU, "");
   add_times(out, frame.instant, content.latency);
   add_line(out, "6dcal", std::min(kJointCount * frame.slots, kMostBodies), "");
   add_line(out, "6d", count, bodies);
   add_line(out, "3d", 0, "");
-  if (content.human_model) add_human_models(out, frame);
+  if (content.human_model) add_human_models(out, axes, frame);
   return out;
 }
 

@@ -7,10 +7,11 @@
 //   3d 0
 //   6dj <slots> <n> [slot joints][joint 1.000][sx .. phi][b0 .. b8] ...   human models, if asked
 //   for
-// Lines end with CR LF.  Millimetres, degrees; room "normal": right-handed, +z up.  The matrix is
-// written column by column; R = Rx(eta) Ry(theta) Rz(phi).  Body id = 25 * slot + joint.
-// The 6dj joints are those of A.R.T.'s own Unreal plugin; their rotations are the rig's of
-// humanoid.h, so a person in T-pose who looks along the room's +y has unit matrices.
+// Lines end with CR LF.  Millimetres, degrees; right-handed, +z up in a "normal" room, +y up in a
+// "powerwall" one.  The matrix is written column by column; R = Rx(eta) Ry(theta) Rz(phi).  Body id
+// = 25 * slot + joint. The 6dj joints are those of A.R.T.'s own Unreal plugin; their rotations are
+// the rig's of humanoid.h, so a person in T-pose who looks along the normal room's +y has unit
+// matrices.
 #pragma once
 
 #include <string>
@@ -23,9 +24,12 @@ namespace chorus::publish::dtrack {
 inline constexpr std::size_t kMostBodies = 150;
 inline constexpr std::size_t kMostBytes = 32768;
 
+enum class Room { Normal, Powerwall };
+
 struct Content {
   Duration latency{0};       ///< From the instant until now.
   bool human_model = false;  ///< With 6dj; human models that do not fit are left out.
+  Room room = Room::Normal;
 };
 
 [[nodiscard]] std::string encode(const TrackerFrame& frame, const Content& content = {});

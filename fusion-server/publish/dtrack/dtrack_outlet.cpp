@@ -5,7 +5,6 @@
 
 #include "common/time/clock.h"
 #include "fusion-server/publish/datagram_sender.h"
-#include "fusion-server/publish/dtrack/dtrack_encoder.h"
 
 namespace chorus::publish::dtrack {
 namespace {
@@ -26,6 +25,7 @@ class DtrackOutlet final : public Outlet {
     Content content;
     content.latency = clock_.now() - frame.instant;
     content.human_model = settings_.human_model;
+    content.room = settings_.room;
     const std::string datagram = encode(frame, content);
     sender_->send(datagram);
     if (client_) sender_->send_to(datagram, *client_);
@@ -77,6 +77,9 @@ void read_settings(ConfigReader& reader, Settings& out) {
   constexpr int kMostPort = 65535;
   read_targets(reader, out.targets);
   reader.read("source_port", out.source_port, 0, kMostPort);
+  auto room = static_cast<std::size_t>(out.room);
+  reader.read_choice("room", room, {"normal", "powerwall"});
+  out.room = static_cast<Room>(room);
   reader.read("human_model", out.human_model);
   read_command(reader.child("command"), out);
 }

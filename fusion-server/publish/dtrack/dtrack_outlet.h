@@ -9,6 +9,7 @@
 #include "common/base/config_reader.h"
 #include "common/base/result.h"
 #include "fusion-server/publish/dtrack/command_server.h"
+#include "fusion-server/publish/dtrack/dtrack_encoder.h"
 #include "fusion-server/publish/outlet.h"
 
 namespace chorus::publish::dtrack {
@@ -16,6 +17,7 @@ namespace chorus::publish::dtrack {
 struct Settings {
   std::vector<std::string> targets{"127.0.0.1:5000"};
   int source_port = 50107;  ///< The controller's; clients behind firewalls write to it.  0: any.
+  Room room = Room::Normal;
   bool human_model = false;
   bool commands = false;
   CommandServerOptions command;

@@ -102,7 +102,8 @@ TrackerBody one_joint() {
 }
 
 TEST(Dtrack, LinesSayWhichFrameWhenAndHowMany) {
-  const auto lines = lines_of(encode(frame_with(one_joint()), {std::chrono::microseconds(2345)}));
+  const auto lines =
+      lines_of(encode(frame_with(one_joint()), {.latency = std::chrono::microseconds(2345)}));
   EXPECT_EQ(lines.at("fr"), "9");
   EXPECT_EQ(lines.at("ts"), "27404.001847");
   EXPECT_EQ(lines.at("ts2"), "1795246604 1847 2345");
@@ -123,6 +124,15 @@ TEST(Dtrack, AnAsymmetricPoseIsInMillimetresZUpAndColumnByColumn) {
   const Eigen::Quaterniond turned =
       about_x(body.angles.x()) * about_up(body.angles.y()) * about_z(body.angles.z());
   EXPECT_LT((body.rotation - turned.toRotationMatrix()).norm(), 1e-5);
+}
+
+TEST(Dtrack, APowerwallRoomIsYUp) {
+  const auto lines = lines_of(encode(frame_with(one_joint()), {{}, false, Room::Powerwall}));
+  const Body body = bodies_of(lines.at("6d")).at(3);
+  EXPECT_THAT(body.place, VectorNear(Eigen::Vector3d(1000, 2000, 3000), 1e-3));
+  const Eigen::Quaterniond expected = about_x(20) * about_up(30) * about_z(-50);
+  EXPECT_LT((body.rotation - expected.toRotationMatrix()).norm(), 5e-6);
+  EXPECT_THAT(body.angles, VectorNear(Eigen::Vector3d(20, 30, -50), 1e-3));
 }
 
 TEST(Dtrack, BodiesAreWrittenAsCapturesShow) {
@@ -148,7 +158,7 @@ TEST(Dtrack, OurParserReadsTheRealCapturesWeKnow) {
 TEST(Dtrack, NobodyIsSaidToo) {
   TrackerFrame frame = frame_with({});
   frame.bodies.clear();
-  const auto lines = lines_of(encode(frame, {Duration{-5}, true}));
+  const auto lines = lines_of(encode(frame, {Duration{-5}, true, Room::Normal}));
   EXPECT_EQ(lines.at("6d"), "0");
   EXPECT_EQ(lines.at("6dj"), "6 0");
   EXPECT_EQ(lines.at("ts2"), "1795246604 1847 0");  // never late by less than nothing
@@ -158,7 +168,7 @@ TEST(Dtrack, UntrackedJointsAreLeftOut) {
   TrackerBody body = publish::testing::t_pose();
   body.joints[index_of(JointId::Neck)].tracked = false;
   body.joints[index_of(JointId::Neck)].position.setConstant(std::nan(""));
-  const std::string datagram = encode(frame_with(body), {{}, true});
+  const std::string datagram = encode(frame_with(body), {.human_model = true});
   const auto bodies = bodies_of(lines_of(datagram).at("6d"));
   EXPECT_EQ(bodies.size(), 24u);
   EXPECT_FALSE(bodies.contains(2));
@@ -168,7 +178,7 @@ TEST(Dtrack, UntrackedJointsAreLeftOut) {
 TEST(Dtrack, HumanModelsHaveArtsJointNumbersAndTheRigsRotations) {
   TrackerBody body = publish::testing::t_pose();
   publish::testing::move(body, {0, 0, 0}, -6);
-  const auto lines = lines_of(encode(frame_with(body, 2), {{}, true}));
+  const auto lines = lines_of(encode(frame_with(body, 2), {.human_model = true}));
   const auto blocks = blocks_of(lines.at("6dj"));
   EXPECT_EQ(blocks.at(0), (std::vector<double>{6, 1}));
   EXPECT_EQ(blocks.at(1), (std::vector<double>{2, 20}));
@@ -195,7 +205,7 @@ TEST(Dtrack, TheLargestDatagramFitsTheClientsBuffer) {
         joint.position += Eigen::Vector3d::Random() * 1e-4;
       }
     }
-    const std::string datagram = encode(frame, {std::chrono::hours(24), human_model});
+    const std::string datagram = encode(frame, {std::chrono::hours(24), human_model, Room::Normal});
     EXPECT_LE(datagram.size(), kMostBytes);
     const auto bodies = bodies_of(lines_of(datagram).at("6d"));
     EXPECT_EQ(bodies.size(), 150u);
