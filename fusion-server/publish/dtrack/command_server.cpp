@@ -77,6 +77,8 @@ struct CommandServer::Impl {
   http::Timer pause{io};
   std::list<ConnectionPtr> connections;  ///< Oldest first: the first one is in control.
   Device device;
+  /// Cancelling does not recall a handler that is due already: it must not begin anew.
+  bool stopping = false;
   std::uint64_t next_serial = 1;
   std::atomic<std::uint64_t> refused = 0;
   std::atomic<std::uint64_t> clients = 0;
@@ -102,8 +104,9 @@ Result<void> CommandServer::Impl::listen() {
 }
 
 void CommandServer::Impl::accept() {
+  if (stopping) return;
   acceptor.async_accept([this](error_code error, http::Socket socket) {
-    if (error == net::error::operation_aborted) return;
+    if (stopping) return;
     if (!error) {
       welcome(std::move(socket));
       return accept();
@@ -192,6 +195,7 @@ void CommandServer::Impl::close(const ConnectionPtr& connection) {
 
 /// Closes whose time is over.
 void CommandServer::Impl::sweep() {
+  if (stopping) return;
   const SteadyTime now = std::chrono::steady_clock::now();
   const std::list<ConnectionPtr> all = connections;
   for (const ConnectionPtr& connection : all) {
@@ -204,6 +208,7 @@ void CommandServer::Impl::sweep() {
 }
 
 void CommandServer::Impl::stop() {
+  stopping = true;
   error_code ignored;
   acceptor.close(ignored);
   sweeper.cancel();
