@@ -122,8 +122,13 @@ class Export(unittest.TestCase):
 
     def test_every_source_gives_the_same_bytes(self):
         piped = self.export("csv")
-        code, out, _ = chorus("export", self.ndjson, "--format", "csv", "--out", "-")
-        self.assertEqual((code, out), (0, piped))
+        recording = self.at / "fused.mcap"
+        code, _, error = chorus("fuse", self.at / "rec", "--config", f"{CAMERAS}/fusion.json", "--registration",
+                                self.at / "rec" / "registration.json", "--out", recording)
+        self.assertEqual(code, 0, error)
+        for source in (self.ndjson, recording):
+            code, out, _ = chorus("export", source, "--format", "csv", "--out", "-")
+            self.assertEqual((code, out), (0, piped), source)
 
     def test_a_running_server_is_listened_to(self):
         server = FakeFusion("\n".join(map(json.dumps, self.frames)).encode())
