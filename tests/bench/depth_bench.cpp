@@ -220,11 +220,12 @@ struct Walks {
   std::string profile;
   PathKind path = PathKind::Random;
   std::size_t people = 1;
+  std::size_t draws = 20;
 };
 
 std::vector<Outcome> watched(const Report& report, const Walks& walks) {
   const Duration length = std::chrono::seconds(report.quick() ? 8 : 30);
-  return over_draws(report.quick() ? 3 : 20, [&](std::size_t i) {
+  return over_draws(report.quick() ? 3 : walks.draws, [&](std::size_t i) {
     const std::uint64_t seed = report.seed() + i;
     return watched(scene_of(walkers(walks.path, seed, walks.people)),
                    choice_of(walks.profile, seed), length);
@@ -273,8 +274,8 @@ Result<void> run_depth(Report& report) {
   }
   show(report, "turn-C", watched(report, {"C", PathKind::Turn}));
   show(report, "assembly-C", watched(report, {"C", PathKind::Assembly}));
-  show(report, "four-people-A", watched(report, {"A", PathKind::Random, 4}));
-  show(report, "four-people-C", watched(report, {"C", PathKind::Random, 4}));
+  show(report, "four-people-A", watched(report, {"A", PathKind::Random, 4, 5}));
+  show(report, "four-people-C", watched(report, {"C", PathKind::Random, 4, 5}));
   for (const double yaw : {0.0, 45.0, 90.0, 135.0, 180.0}) {
     show(report, fmt::format("stand-{:.0f}-C", yaw), stands(report, deg(yaw)));
   }
