@@ -10,6 +10,8 @@
 #include <pcl/point_types.h>
 #include <pcl/registration/correspondence_rejection_trimmed.h>
 #include <pcl/registration/icp.h>
+#include <pcl/search/kdtree.h>
+#include <Eigen/Core>
 
 #include "common/geometry/rotation.h"
 
@@ -26,6 +28,37 @@ constexpr float kKeptShare = 0.9F;        // notes 1.1: trimmed 90 %
 constexpr double kSettled = 1e-9;         // squared metres and 1 - cos of the last step
 constexpr std::size_t kMostPoints = 300;  // a 10 s walk at 30 Hz; more costs time and gives nothing
 constexpr std::size_t kLeastPoints = 10;
+
+/// Nearest neighbours in a few hundred points by looking at all of them: several times faster than
+/// a tree, which spends more on locks than on such a search.
+class Scan : public pcl::search::KdTree<pcl::PointXYZ> {
+ public:
+  void setInputCloud(const PointCloudConstPtr& cloud, const IndicesConstPtr& /*all*/) override {
+    input_ = cloud;
+    points_.resize(static_cast<Eigen::Index>(cloud->size()), 3);
+    for (std::size_t i = 0; i < cloud->size(); ++i) {
+      points_.row(static_cast<Eigen::Index>(i)) = (*cloud)[i].getVector3fMap();
+    }
+  }
+
+  /// The nearest one only, whatever k is: iterative closest point asks for no more.
+  int nearestKSearch(const pcl::PointXYZ& point, int /*k*/, pcl::Indices& indices,
+                     std::vector<float>& squares) const override {
+    if (points_.rows() == 0) return 0;
+    squares_ = (points_.col(0) - point.x).square() + (points_.col(1) - point.y).square() +
+               (points_.col(2) - point.z).square();
+    const float least = squares_.minCoeff();
+    const float* const first = squares_.data();
+    const float* const nearest = std::find(first, first + squares_.size() - 1, least);
+    indices.assign(1, static_cast<pcl::index_t>(nearest - squares_.data()));
+    squares.assign(1, least);
+    return 1;
+  }
+
+ private:
+  Eigen::Array<float, Eigen::Dynamic, 3> points_;
+  mutable Eigen::ArrayXf squares_;  ///< Of the last search; one thread uses one ICP.
+};
 
 /// At most kMostPoints, evenly taken.
 Points::Ptr cloud_of(Cloud points) {
@@ -46,6 +79,7 @@ Eigen::Vector3d centroid(const Points& cloud) {
 }
 
 void set_up(Icp& icp, const Points::Ptr& source, const Points::Ptr& target, int iterations) {
+  icp.setSearchMethodTarget(std::make_shared<Scan>());
   icp.setInputSource(source);
   icp.setInputTarget(target);
   icp.setMaximumIterations(iterations);

@@ -1,7 +1,8 @@
 // Two trails to one edge of the graph.
 #pragma once
 
-#include <string>
+#include <functional>
+#include <vector>
 
 #include "fusion-server/registration/floor_constraint.h"
 #include "fusion-server/registration/trail.h"
@@ -21,5 +22,14 @@ struct Walker {
 [[nodiscard]] Result<PairwiseRegistration> register_walkers(const Walker& target,
                                                             const Walker& source,
                                                             const RegistrationConfig& config);
+
+/// How two walks become an edge.
+using PairEstimator = std::function<Result<PairwiseRegistration>(const Walker&, const Walker&)>;
+
+/// solve() with another estimator of pairs: everything around it stays the same, so that estimators
+/// can be compared.
+[[nodiscard]] Registration solve_with(const PairEstimator& estimate,
+                                      const std::vector<WalkTrack>& walk, Timestamp now,
+                                      const RegistrationConfig& config);
 
 }  // namespace chorus::registration

@@ -53,10 +53,10 @@ void reduce_tracks(Work& work) {
   }
 }
 
-void register_pairs(Work& work) {
+void register_pairs(Work& work, const PairEstimator& estimate) {
   for (auto target = work.walkers.begin(); target != work.walkers.end(); ++target) {
     for (auto source = std::next(target); source != work.walkers.end(); ++source) {
-      auto edge = register_walkers(target->second, source->second, work.config);
+      auto edge = estimate(target->second, source->second);
       if (edge) {
         work.result.edges.push_back(std::move(*edge));
       } else {
@@ -275,8 +275,8 @@ void judge(Work& work) {
 
 }  // namespace
 
-Registration solve(const std::vector<WalkTrack>& walk, Timestamp now,
-                   const RegistrationConfig& config) {
+Registration solve_with(const PairEstimator& estimate, const std::vector<WalkTrack>& walk,
+                        Timestamp now, const RegistrationConfig& config) {
   Work work{walk, config, {}, {}, {}, {}, false};
   work.result.solved = now;
   reduce_tracks(work);
@@ -286,11 +286,19 @@ Registration solve(const std::vector<WalkTrack>& walk, Timestamp now,
     work.result.reasons.push_back("no sensor has delivered a frame yet");
     return work.result;
   }
-  register_pairs(work);
+  register_pairs(work, estimate);
   choose_master(work);
   place_sensors(work);
   judge(work);
   return work.result;
+}
+
+Registration solve(const std::vector<WalkTrack>& walk, Timestamp now,
+                   const RegistrationConfig& config) {
+  const PairEstimator estimate = [&](const Walker& target, const Walker& source) {
+    return register_walkers(target, source, config);
+  };
+  return solve_with(estimate, walk, now, config);
 }
 
 }  // namespace chorus::registration

@@ -1,6 +1,7 @@
 #include "tests/bench/judge.h"
 
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -27,7 +28,19 @@ struct Recorded {
 
 bool is_gauss(const Setting& setting) { return setting.profile == synthetic::kGaussProfile; }
 
-synthetic::Scene scene_of(const Setting& setting) {
+/// Somebody whose whole walk moves there and back once in `period`.
+synthetic::Person gliding(synthetic::Person person, const Eigen::Vector3d& way, Timestamp begin,
+                          Duration period) {
+  return [=](Duration since_epoch) {
+    const double share = seconds(Timestamp{since_epoch} - begin) / seconds(period);
+    const double there = 0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * share));
+    Skeleton<WorldSpace> body = person(since_epoch);
+    for (Joint& joint : body.joints) joint.position += there * way;
+    return body;
+  };
+}
+
+synthetic::Scene scene_of(const Setting& setting, Timestamp begin) {
   synthetic::WalkerScript script;
   script.seed = setting.seed;
   script.path = setting.walk;
@@ -38,6 +51,11 @@ synthetic::Scene scene_of(const Setting& setting) {
   synthetic::Scene scene;
   scene.people =
       setting.people.empty() ? synthetic::make_people(script, setting.persons) : setting.people;
+  if (!setting.glide.isZero()) {
+    for (synthetic::Person& person : scene.people) {
+      person = gliding(person, setting.glide, begin, setting.length);
+    }
+  }
   scene.world_from_sensor = setting.places;
   scene.occluders = setting.occluders;
   return scene;
@@ -62,12 +80,14 @@ Recorded record_tracker(const Workshop& workshop, const SensorId& id, std::size_
 }
 
 /// The host's clock is off by so much more.
-void set_off(Recorded& recorded, double offset) {
-  recorded.clock.offset += offset;
-  const Duration shift = from_seconds(offset);
+void set_off(Recorded& recorded, Timestamp begin, double offset, double drift) {
+  const HostClock before = recorded.clock;
+  recorded.clock.origin = begin;
+  recorded.clock.offset = seconds(before.host_time(begin) - begin) + offset;
+  recorded.clock.drift += drift;
   for (SensorFrame& frame : recorded.frames) {
-    frame.captured += shift;
-    for (BodyFrame& body : frame.bodies) body.captured += shift;
+    frame.captured = recorded.clock.host_time(true_time(before, frame.captured));
+    for (BodyFrame& body : frame.bodies) body.captured = frame.captured;
   }
 }
 
@@ -84,17 +104,17 @@ Workshop draw_workshop(Setting setting) {
   Workshop workshop;
   workshop.setting = std::move(setting);
   const Setting& asked = workshop.setting;
-  workshop.scene = scene_of(asked);
   synthetic::Draw begin{asked.seed, kDrawBegin};
   workshop.begin = from_unix_ns(kSomeTime) + from_seconds(begin.uniform(0.0, kLatestBegin));
+  workshop.scene = scene_of(asked, workshop.begin);
   for (std::size_t i = 0; i < asked.places.size(); ++i) {
     const SensorId id = SensorId::parse(fmt::format("s{}", i + 1)).value();
     Recorded recorded =
         is_gauss(asked) ? record_gauss(workshop, id, i) : record_tracker(workshop, id, i);
-    if (asked.clock_offset > 0) {
-      synthetic::Draw clock{asked.seed, kDrawClock, i};
-      set_off(recorded, clock.uniform(-asked.clock_offset, asked.clock_offset));
-    }
+    synthetic::Draw clock{asked.seed, kDrawClock, i};
+    const double offset = clock.uniform(-asked.clock_offset, asked.clock_offset);
+    const double drift = clock.uniform(-asked.clock_drift, asked.clock_drift);
+    if (offset != 0.0 || drift != 0.0) set_off(recorded, workshop.begin, offset, drift);
     workshop.tracks.push_back({id, std::move(recorded.frames)});
     workshop.clocks.push_back(recorded.clock);
   }
@@ -112,6 +132,21 @@ std::vector<registration::WalkTrack> first_of(const Workshop& workshop, Duration
     tracks.push_back(std::move(track));
   }
   return tracks;
+}
+
+Setting row_of_four() {
+  constexpr double kApart = 2.5;     // [m]; each sees 1.8 m to either side at the walk's distance
+  constexpr double kDistance = 2.6;  // [m]
+  constexpr double kHeight = 1.6;    // [m]
+  Setting setting;
+  setting.places.clear();
+  for (int i = 0; i < 4; ++i) {
+    setting.places.push_back(
+        synthetic::stand_sensor({kApart * i, kHeight, -kDistance}, 0.0, deg(13)));
+  }
+  setting.glide = {3 * kApart, 0, 0};
+  setting.length = std::chrono::seconds(60);
+  return setting;
 }
 
 std::vector<Eigen::Isometry3d> pair_places(double angle) {

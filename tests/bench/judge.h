@@ -26,8 +26,12 @@ struct Setting {
   /// These instead of `persons` walkers; their time counts from 1970.
   std::vector<synthetic::Person> people = {};
   std::vector<synthetic::Occluder> occluders = {};
-  /// Beyond what the profile says, every host's clock is off by up to so much, uniformly [s].
+  /// The middle of the walk glides so far and back again during it (world) [m].
+  Eigen::Vector3d glide = Eigen::Vector3d::Zero();
+  /// Beyond what the profile says, every host's clock is off [s] and drifts [s/s] by up to so much,
+  /// uniformly.
   double clock_offset = 0.0;
+  double clock_drift = 0.0;
   Duration length = std::chrono::seconds(30);
 };
 
@@ -46,6 +50,9 @@ struct Workshop {
 /// The frames stamped in the first `duration`: a shorter walk out of a longer one.
 [[nodiscard]] std::vector<registration::WalkTrack> first_of(const Workshop& workshop,
                                                             Duration duration);
+
+/// Four sensors side by side; the walk glides along them, and only neighbours share any of it.
+[[nodiscard]] Setting row_of_four();
 
 /// Two sensors of a ring, `angle` [rad] apart.
 [[nodiscard]] std::vector<Eigen::Isometry3d> pair_places(double angle);
