@@ -33,6 +33,15 @@ std::vector<std::vector<MethodScores>> measure(Report& report, const Registratio
   return scores;
 }
 
+/// A ceiling that only a broken estimator reaches; what is good is for the table to say.
+void watch(Report& report, const RegistrationCase& each, const std::vector<Score>& ours) {
+  constexpr double kCeiling = 60.0;  // [mm]
+  std::vector<double> position;
+  for (const Score& score : ours) position.push_back(to_mm(score.position));
+  report.condition(fmt::format("{}: median position below {:.0f} mm", each.name, kCeiling),
+                   median(position) < kCeiling);
+}
+
 /// What was claimed on white noise before the sensor model existed; kept so that it can be
 /// repeated.
 void measure_gauss(Report& report) {
@@ -118,6 +127,11 @@ void measure_short_walks(Report& report, std::size_t count, bool corrected) {
   report.row(name, "accepted_over_100mm", static_cast<double>(lost), "");
   report.row(name, "refused_percent", refused_percent(scores), "%");
   report.row(name, "accepted_position_mm", median(accepted), "mm");
+  constexpr double kMostLost = 0.02;
+  if (corrected) {
+    report.condition(name + ": at most 2 % accepted and more than 100 mm off",
+                     static_cast<double>(lost) <= kMostLost * static_cast<double>(count));
+  }
 }
 
 void measure_cases(Report& report, const std::string& profile) {
@@ -127,7 +141,9 @@ void measure_cases(Report& report, const std::string& profile) {
       if (wanted == std::end(kQuickCases) || each.lengths.size() > 1) continue;
       each.draws = kQuickDraws;
     }
-    measure(report, each);
+    const auto scores = measure(report, each);
+    const bool watched = each.name.starts_with("ring6-{}s") && each.lengths.front() == 30;
+    if (watched) watch(report, each, scores.front().front().draws);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "fusion-server/registration/pair_registration.h"
 #include "tests/unit/registration/walk_builder.h"
 
 namespace chorus::registration {
@@ -42,6 +43,18 @@ TEST(Solve, SixSensorsInARingAfterThirtySeconds) {
     EXPECT_EQ(place.chain.back(), sensor(i));
     EXPECT_NEAR(place.world_from_sensor.translation().y(), 1.8, mm(10));
   }
+}
+
+TEST(Solve, AnotherEstimatorOfPairsTakesThePlaceOfOurs) {
+  std::size_t asked = 0;
+  const PairEstimator never = [&](const Walker& target, const Walker& source) {
+    ++asked;
+    return Result<PairwiseRegistration>(
+        fail(ErrorCode::Conflict, "test", target.trail.sensor.str() + source.trail.sensor.str()));
+  };
+  const Registration registration = solve_with(never, ring(3, {.length = 5}), kWalkStart, {});
+  EXPECT_EQ(asked, 3u);
+  EXPECT_EQ(registration.verdict, Verdict::Refused);
 }
 
 TEST(Solve, TheWorldIsUnderTheMasterAndLevelOnTheCommonFloor) {
