@@ -93,7 +93,8 @@ class Sorting {
   struct Stream {
     FrameRecording recording;
     std::vector<fs::path> files;
-    std::string part_of;  ///< Name of the recording that its files belong to.
+    std::size_t newest = 0;  ///< Number of the last of them.
+    std::string part_of;     ///< Name of the recording that its files belong to.
     std::optional<FloorPlane> floor;
     std::optional<Duration> shift;  ///< None: the times are ours already.
     std::size_t left_out = 0;
@@ -109,6 +110,7 @@ class Sorting {
 
   const SessionQuery& query_;
   Source source_;
+  std::size_t files_ = 0;   ///< Read so far, this one included.
   std::size_t frames_ = 0;  ///< Seen so far, on all topics.
   std::vector<std::string> damage_;
   std::map<SensorId, Stream> streams_;
@@ -139,13 +141,14 @@ Result<Sorting::Stream*> Sorting::stream_of(const SensorId& sensor) {
     stream.floor = stream.recording.floor;
     stream.part_of = source_.recording;
   }
-  if (!stream.files.empty() && stream.files.back() == source_.file) return &stream;
+  if (!fresh && stream.newest == files_) return &stream;  // a file named twice is two files
   if (!fresh && (stream.part_of.empty() || stream.part_of != source_.recording)) {
     return fail(
         ErrorCode::Conflict, where(),
         "is a recording of sensor " + sensor.str() + ", and so is " + stream.files.back().string());
   }
   stream.files.push_back(source_.file);
+  stream.newest = files_;
   return &stream;
 }
 
@@ -227,6 +230,7 @@ Result<void> Sorting::take(const Message& message) {
 
 Result<void> Sorting::add(Recording recording, const fs::path& file) {
   source_ = {file, {}, {}, false};
+  ++files_;
   describe(recording);
   for (Message& message : recording.messages) {
     if (auto ok = take(message); !ok) return ok;

@@ -162,6 +162,9 @@ TEST(Session, ARecordingOfOneSensorIsASessionToo) {
   EXPECT_EQ(read->sensor.str(), "cam01");
   EXPECT_EQ(read->device, "a test");
   ASSERT_THAT(read->frames, SizeIs(5));
+  const auto twice = read_session({folder / "a.mcap", folder / "a.mcap"});
+  ASSERT_FALSE(twice) << "the same file twice is a mistake";
+  EXPECT_EQ(twice.error().code, ErrorCode::Conflict);
   EXPECT_TRUE(read->frames[0].floor);
 }
 
