@@ -141,8 +141,8 @@ class Replay {
     for (auto& [sensor, feed] : feeds_) feed.advance(instant, histories_[sensor]);
     const Timestamp late = instant + config_.pipeline.align.patience + Duration(1);
     const Inputs in{instant, late, snapshots_.size() + 1};
-    Step next = step(in, histories_, registration_, tracks_, config_.pipeline);
-    tracks_ = std::move(next.tracks);
+    Step next = step(in, histories_, registration_, memory_, config_.pipeline);
+    memory_ = std::move(next.memory);
     if (!covered(next.snapshot)) return false;
     snapshots_.push_back(std::move(next.snapshot));
     return true;
@@ -164,7 +164,7 @@ class Replay {
   Grid grid_;
   std::vector<std::pair<SensorId, Feed>> feeds_;
   Histories histories_;
-  associate::Tracks tracks_;
+  Memory memory_;
   std::vector<Snapshot> snapshots_;
 };
 

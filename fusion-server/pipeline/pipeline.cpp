@@ -62,18 +62,40 @@ std::vector<SensorView> views_in_world(const std::vector<AlignedSensor>& aligned
   return views;
 }
 
+/// 5.2.2 once more, now that it is known who is who: sides agreed between the sensors, and the
+/// weights that follow from them.
+void resolve_sides(Perceived& perceived, Timestamp instant, const PipelineConfig& config) {
+  Memory& memory = perceived.memory;
+  for (Person& person : perceived.people) {
+    const auto track = std::ranges::find(memory.tracks.people, person.id, &associate::Track::id);
+    const bool known = track != memory.tracks.people.end();
+    const facing::Motion motion{instant, known ? track->velocity : Eigen::Vector3d::Zero()};
+    facing::resolve_sides(person, motion, memory.sides, config.sides);
+    for (SensorView& view : person.views) {
+      view.weight =
+          fusion::view_weight(view.distance, view.facing, view.bearing, config.quality).value();
+    }
+  }
+  std::erase_if(memory.sides, [&](const auto& entry) {
+    return std::ranges::find(memory.tracks.people, entry.first, &associate::Track::id) ==
+           memory.tracks.people.end();
+  });
+}
+
 /// One report per known sensor: polled, registered, or both.
 std::vector<SensorReport> report(const std::vector<AlignedSensor>& aligned,
-                                 const std::vector<SensorView>& views,
+                                 const std::vector<Person>& people,
                                  const Registration& registration) {
   std::map<SensorId, SensorReport> reports;
   for (const auto& [sensor, extrinsics] : registration.sensors) reports[sensor].sensor = sensor;
   for (const AlignedSensor& sensor : aligned) {
     reports[sensor.sensor] = {sensor.sensor, sensor.basis, sensor.bodies.size(), 0.0};
   }
-  for (const SensorView& view : views) {
-    double& heaviest = reports[view.sensor].weight;
-    heaviest = std::max(heaviest, view.weight);
+  for (const Person& person : people) {
+    for (const SensorView& view : person.views) {
+      double& heaviest = reports[view.sensor].weight;
+      heaviest = std::max(heaviest, view.weight);
+    }
   }
   std::vector<SensorReport> listed;
   for (auto& [sensor, one] : reports) listed.push_back(std::move(one));
@@ -91,21 +113,21 @@ bool ready(const Inputs& in, const Histories& histories, const Registration& reg
 }
 
 Perceived perceive(const Inputs& in, const Histories& histories, const Registration& registration,
-                   const associate::Tracks& tracks, const PipelineConfig& config) {
+                   const Memory& memory, const PipelineConfig& config) {
   const std::vector<AlignedSensor> aligned = align_all(in, histories, config);
-  std::vector<SensorView> views = views_in_world(aligned, registration, config);
+  associate::Grouping grouping = associate::group(views_in_world(aligned, registration, config),
+                                                  in.instant, memory.tracks, config.association);
   Perceived perceived;
-  perceived.reports = report(aligned, views, registration);
-  associate::Grouping grouping =
-      associate::group(std::move(views), in.instant, tracks, config.association);
   perceived.people = std::move(grouping.people);
-  perceived.tracks = std::move(grouping.tracks);
+  perceived.memory = {std::move(grouping.tracks), memory.sides};
+  resolve_sides(perceived, in.instant, config);
+  perceived.reports = report(aligned, perceived.people, registration);
   return perceived;
 }
 
 Step step(const Inputs& in, const Histories& histories, const Registration& registration,
-          const associate::Tracks& tracks, const PipelineConfig& config) {
-  Perceived perceived = perceive(in, histories, registration, tracks, config);
+          const Memory& memory, const PipelineConfig& config) {
+  Perceived perceived = perceive(in, histories, registration, memory, config);
   Step result;
   result.snapshot.sequence = in.sequence;
   result.snapshot.instant = in.instant;
@@ -114,7 +136,7 @@ Step step(const Inputs& in, const Histories& histories, const Registration& regi
   for (const Person& person : perceived.people) {
     result.snapshot.bodies.push_back(fusion::fuse(person, result.snapshot.sensors, config.fusion));
   }
-  result.tracks = std::move(perceived.tracks);
+  result.memory = std::move(perceived.memory);
   return result;
 }
 

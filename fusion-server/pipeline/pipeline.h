@@ -7,6 +7,7 @@
 
 #include "fusion-server/align/aligner.h"
 #include "fusion-server/associate/person_association.h"
+#include "fusion-server/facing/sides.h"
 #include "fusion-server/flow.h"
 #include "fusion-server/fusion/fuse.h"
 #include "fusion-server/fusion/quality.h"
@@ -17,6 +18,7 @@ struct PipelineConfig {
   align::AlignConfig align;
   fusion::QualityLimits quality;
   associate::AssociationConfig association;
+  facing::SidesConfig sides;
   fusion::FusionConfig fusion;
 };
 
@@ -28,29 +30,35 @@ struct Inputs {
   std::uint64_t sequence = 0;
 };
 
+/// What one instant leaves to the next.
+struct Memory {
+  associate::Tracks tracks;
+  facing::SidesMemory sides;
+};
+
 /// Everything before fusion: who is there at an instant, each with all views of them.
 struct Perceived {
   std::vector<Person> people;
   std::vector<SensorReport> reports;
-  associate::Tracks tracks;
+  Memory memory;
 };
 
 struct Step {
   Snapshot snapshot;
-  associate::Tracks tracks;
+  Memory memory;
 };
 
 /// True when no sensor's answer for the instant is still pending: waiting longer cannot improve it.
 [[nodiscard]] bool ready(const Inputs& in, const Histories& histories,
                          const Registration& registration, const PipelineConfig& config);
 
-/// Alignment, facing, world, association: the views that `step` hands to fusion.
+/// Alignment, facing, world, association, sides: the views that `step` hands to fusion.
 [[nodiscard]] Perceived perceive(const Inputs& in, const Histories& histories,
-                                 const Registration& registration, const associate::Tracks& tracks,
+                                 const Registration& registration, const Memory& memory,
                                  const PipelineConfig& config);
 
 [[nodiscard]] Step step(const Inputs& in, const Histories& histories,
-                        const Registration& registration, const associate::Tracks& tracks,
+                        const Registration& registration, const Memory& memory,
                         const PipelineConfig& config);
 
 }  // namespace chorus::pipeline

@@ -85,6 +85,10 @@ void read_quality(ConfigReader reader, fusion::QualityLimits& out) {
   reader.read_deg("max_bearing_deg", out.max_bearing, 1.0, 180.0);
 }
 
+void read_facing(ConfigReader reader, facing::SidesConfig& out) {
+  reader.read("resolve_sides", out.resolve);
+}
+
 void read_association(ConfigReader reader, associate::AssociationConfig& out) {
   reader.read("gate_m", out.gate, 0.05, 10.0);
   reader.read("cluster_m", out.cluster, 0.05, 10.0);
@@ -178,6 +182,7 @@ Result<FusionConfig> read_fusion_config(std::string_view text, std::string_view 
   read_align(root->child("align"), config.pipeline.align);
   read_quality(root->child("quality"), config.pipeline.quality);
   read_association(root->child("association"), config.pipeline.association);
+  read_facing(root->child("facing"), config.pipeline.sides);
   read_fusion(root->child("fusion"), config.pipeline.fusion);
   read_sensors(*root, config);
   read_registration(root->child("registration"), config);

@@ -45,8 +45,8 @@ std::optional<Snapshot> FusionCore::tick(Timestamp now) {
   if (idle(now) > Duration{0}) return std::nullopt;
   const Tick tick = schedule_.next(now);
   pipeline::Step step = pipeline::step({tick.instant, now, tick.sequence}, histories_,
-                                       registration_, tracks_, config_.pipeline);
-  tracks_ = std::move(step.tracks);
+                                       registration_, memory_, config_.pipeline);
+  memory_ = std::move(step.memory);
   reports_ = step.snapshot.reports;
   schedule_.answered(now);
   return std::move(step.snapshot);
@@ -77,7 +77,8 @@ void FusionCore::forget() {
   const std::uint64_t version = registration_.version;
   registration_ = Registration{};
   registration_.version = version;
-  tracks_.people.clear();
+  memory_.tracks.people.clear();  // the ids go on
+  memory_.sides.clear();
 }
 
 void FusionCore::start_by_itself(Timestamp now) {

@@ -76,7 +76,7 @@ class FusionCore {
   CoreConfig config_;
   TickSchedule schedule_;
   pipeline::Histories histories_;
-  associate::Tracks tracks_;
+  pipeline::Memory memory_;
   Registration registration_;
   RegistrationSession session_;
   std::uint64_t session_number_ = 0;

@@ -16,7 +16,6 @@ constexpr double kFullTurn = 2.0 * std::numbers::pi;
 constexpr double kPassing = 0.5;   // [m] between two who cross
 constexpr double kCircling = 0.8;  // [m]
 constexpr double kReach = 1.3;     // of those who cross [m]
-constexpr double kTurnTime = 8.0;  // [s]
 constexpr double kWorkRing = 1.0;  // where the working places lie [m]
 constexpr double kGap = 0.4;       // between people at work [m]
 enum Purpose : std::uint64_t { kBuild = 701, kSpeed, kHour };
@@ -37,7 +36,6 @@ struct Placing {
   double yaw = 0.0;    ///< [rad]
   double aside = 0.0;  ///< [m] to the left of the way
   double delay = 0.0;  ///< [s]
-  double spin = 0.0;   ///< Further turn per second, about the person's own place [rad/s]
 };
 
 Skeleton<WorldSpace> turned(Skeleton<WorldSpace> body, const Eigen::Isometry3d& placed) {
@@ -53,8 +51,7 @@ Skeleton<WorldSpace> turned(Skeleton<WorldSpace> body, const Eigen::Isometry3d& 
 synthetic::Person placed(const WalkerScript& script, const Placing& placing) {
   return [walker = synthetic::Walker(script), placing](Duration since_epoch) {
     const Duration time = since_epoch + from_seconds(placing.delay);
-    const double spin = placing.spin * std::fmod(seconds(time), kTurnTime);
-    const Eigen::Isometry3d to_world(about_y(placing.yaw + spin) *
+    const Eigen::Isometry3d to_world(about_y(placing.yaw) *
                                      Eigen::Translation3d(placing.aside, 0, 0));
     return turned(walker.at(time), to_world);
   };
@@ -115,13 +112,6 @@ std::vector<synthetic::Person> people_around(double radius, std::uint64_t seed) 
   Placing opposite;
   opposite.yaw = std::numbers::pi;
   return {placed(script, {}), placed(script, opposite)};
-}
-
-std::vector<synthetic::Person> turning_person(std::uint64_t seed) {
-  Placing turning;
-  turning.spin = (seed % 2 == 0 ? 1.0 : -1.0) * kFullTurn / kTurnTime;
-  turning.delay = synthetic::Draw{seed, kHour}.uniform(0.0, kTurnTime);
-  return {placed(script_of(seed, 0, PathKind::Stand), turning)};
 }
 
 synthetic::Occluder car_body() {

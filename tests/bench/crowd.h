@@ -27,9 +27,6 @@ namespace chorus::bench {
 /// Two people walk around the middle opposite to each other at `radius` [m].
 [[nodiscard]] std::vector<synthetic::Person> people_around(double radius, std::uint64_t seed);
 
-/// One person on the spot who turns about the vertical, a full turn in 8 s.
-[[nodiscard]] std::vector<synthetic::Person> turning_person(std::uint64_t seed);
-
 [[nodiscard]] synthetic::Occluder car_body();  ///< In the middle, 1.8 m long, 1.2 m high.
 [[nodiscard]] synthetic::Occluder pillar();    ///< Beside the middle, 0.4 m wide, to the ceiling.
 [[nodiscard]] synthetic::Occluder table();     ///< In the middle, 1.2 x 0.8 m, 0.75 m high.

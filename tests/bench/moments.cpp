@@ -9,7 +9,7 @@ std::vector<Moment> moments_of(const std::vector<registration::WalkTrack>& track
                                const pipeline::PipelineConfig& config) {
   pipeline::Histories histories;
   std::vector<std::size_t> next(tracks.size(), 0);
-  associate::Tracks people;
+  pipeline::Memory memory;
   std::vector<Moment> moments;
   const Duration step = from_seconds(1.0 / period.rate_hz);
   for (Timestamp instant = period.begin; instant <= period.end; instant += step) {
@@ -24,8 +24,8 @@ std::vector<Moment> moments_of(const std::vector<registration::WalkTrack>& track
     }
     const Timestamp late = instant + config.align.patience + Duration(1);
     auto perceived = pipeline::perceive({instant, late, moments.size()}, histories, registration,
-                                        people, config);
-    people = std::move(perceived.tracks);
+                                        memory, config);
+    memory = std::move(perceived.memory);
     moments.push_back({instant, std::move(perceived.people)});
   }
   return moments;

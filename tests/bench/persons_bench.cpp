@@ -219,7 +219,13 @@ void measure(Report& report, const Case& each) {
     }
     comparison.report(report);
   }
-  report.row(each.name, "draws_without_switch_percent", faultless_percent(draws), "%");
+  const double faultless = faultless_percent(draws);
+  report.row(each.name, "draws_without_switch_percent", faultless, "%");
+  if (each.name != kQuickCase) return;
+  constexpr double kLeast = 50.0;  // [%] generous: a regression, not a target
+  report.condition(
+      fmt::format("{}: in at least {} % of the draws no id changes", kQuickCase, kLeast),
+      faultless >= kLeast);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "common/base/units.h"
 #include "common/body/bones.h"
 #include "fusion-server/associate/person_association.h"
+#include "fusion-server/facing/sides.h"
 
 namespace chorus::bench::baselines {
 namespace {
@@ -67,6 +68,7 @@ std::vector<SensorView> views_of(const SensorFrame& frame, const SensorId& senso
     SensorView view;
     view.sensor = sensor;
     view.body = body.id;
+    view.eye = world_from_sensor.translation();
     view.skeleton = to_world(world_from_sensor, body.skeleton);
     views.push_back(std::move(view));
   }
@@ -144,6 +146,7 @@ std::vector<Stated> arrival_kalman(const std::vector<registration::WalkTrack>& s
       std::chrono::milliseconds(100);  // a joint not seen for so long is gone
   std::map<PersonId, BodyFilter> filters;
   associate::Tracks tracks;
+  facing::SidesMemory sides;
   std::vector<Stated> answers;
   for (const auto& [track, frame] : by_arrival(sensors)) {
     const auto place = registration.sensors.find(track->sensor);
@@ -152,8 +155,11 @@ std::vector<Stated> arrival_kalman(const std::vector<registration::WalkTrack>& s
     auto grouping = associate::group(
         views_of(*frame, track->sensor, place->second.world_from_sensor), arrived, tracks, {});
     tracks = std::move(grouping.tracks);
-    for (const Person& person : grouping.people) {
+    for (Person& person : grouping.people) {
       BodyFilter& filter = filters[person.id];
+      // Not the track's velocity: between two sensors a few milliseconds apart that is all noise.
+      const PointFilter& trunk = filter.joints[index_of(JointId::SpineShoulder)];
+      facing::resolve_sides(person, {arrived, trunk.velocity()}, sides, {});
       update(filter, person, arrived);
       answers.push_back({arrived, person.id, filter.at(arrived, arrived - kCoast)});
     }

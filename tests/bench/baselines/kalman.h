@@ -23,6 +23,7 @@ class PointFilter {
   /// Where it should be at `instant`, or at its last update when that is later; none before the
   /// first.
   [[nodiscard]] std::optional<Eigen::Vector3d> at(Timestamp instant) const;
+  [[nodiscard]] const Eigen::Vector3d& velocity() const { return velocity_; }  ///< [m/s]
   [[nodiscard]] double position_variance() const { return covariance_(0, 0); }
 
  private:
@@ -54,7 +55,8 @@ struct Stated {
 /// The way of OpenPTrack: each frame updates its person's joints as it arrives, by the time of
 /// arrival, and the answer bears that time (peers A3, but with the real elapsed time instead of a
 /// fixed one, and noise to fit the sensors: 25 mm, 75 mm where inferred).  One answer per frame and
-/// person, in order.  `received` of the frames must be set.
+/// person, in order; left and right are put right from frame to frame.  `received` of the frames
+/// must be set.
 [[nodiscard]] std::vector<Stated> arrival_kalman(
     const std::vector<registration::WalkTrack>& sensors, const Registration& registration);
 

@@ -6,9 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include "common/base/units.h"
-#include "common/geometry/rotation.h"
-
 namespace chorus::bench {
 namespace {
 
@@ -70,19 +67,6 @@ TEST(PeopleAtWork, KeepApart) {
 
 TEST(PeopleAround, AreOppositeToEachOther) {
   EXPECT_GT(least_distance(people_around(1.5, 1)), 2.3);
-}
-
-TEST(TurningPerson, TurnsOnceInEightSecondsOnTheSpot) {
-  const auto person = turning_person(2).front();
-  const auto yaw = [&](double time) {
-    const auto body = person(from_seconds(time));
-    const Eigen::Vector3d left =
-        body[JointId::ShoulderLeft].position - body[JointId::ShoulderRight].position;
-    return std::atan2(-left.z(), left.x());
-  };
-  EXPECT_NEAR(wrap_angle(yaw(11) - yaw(10)), deg(45), deg(5));
-  EXPECT_NEAR(std::abs(wrap_angle(yaw(14) - yaw(10))), deg(180), deg(5));
-  EXPECT_LT((neck_at(person, 14) - neck_at(person, 10)).norm(), 0.4);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ Step run(const Histories& histories, const Registration& registration, int steps
   for (int i = 0; i < steps; ++i) {
     const Timestamp instant = kStart + milliseconds(200 + 33 * i);
     result = step({instant, instant + milliseconds(80), static_cast<std::uint64_t>(i)}, histories,
-                  registration, result.tracks, config);
+                  registration, result.memory, config);
   }
   return result;
 }
@@ -60,8 +60,8 @@ TEST(Perceive, HandsOnTheViewsThatStepFuses) {
   const Step last = run(histories, registration, 10);
   const Timestamp next = last.snapshot.instant + milliseconds(33);
   const Inputs in{next, next + milliseconds(80), 10};
-  const Perceived perceived = perceive(in, histories, registration, last.tracks, {});
-  const Step fused = step(in, histories, registration, last.tracks, {});
+  const Perceived perceived = perceive(in, histories, registration, last.memory, {});
+  const Step fused = step(in, histories, registration, last.memory, {});
   ASSERT_EQ(perceived.people.size(), 2u);
   ASSERT_EQ(fused.snapshot.bodies.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {
@@ -71,7 +71,7 @@ TEST(Perceive, HandsOnTheViewsThatStepFuses) {
     EXPECT_EQ(again.skeleton[JointId::Neck].position,
               fused.snapshot.bodies[i].skeleton[JointId::Neck].position);
   }
-  EXPECT_EQ(perceived.tracks.people.size(), fused.tracks.people.size());
+  EXPECT_EQ(perceived.memory.tracks.people.size(), fused.memory.tracks.people.size());
 }
 
 TEST(Step, ThreePeopleSeenByTenSensorsAreThreePeople) {
