@@ -103,6 +103,7 @@ build() {
   fi
   step "build"
   local launcher=()
+  export CCACHE_SLOPPINESS=pch_defines,time_macros
   command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   cmake --preset release "${launcher[@]}" --log-level=WARNING > "$logs/configure.out"
   cmake --build build/release -j "$(build_jobs)" --target chorus-sensor chorus-fusion chorus

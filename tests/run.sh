@@ -24,6 +24,7 @@ npm_packages() {
 }
 
 launcher=()
+export CCACHE_SLOPPINESS=pch_defines,time_macros  # else it keeps nothing that reads a precompiled header
 command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
 jobs=${CHORUS_JOBS:-$(build_jobs)}
 

@@ -107,6 +107,16 @@ def header_violations(file, text):
         yield Violation(file, "has no #pragma once")
 
 
+def standing_violations(root, file, text):
+    """A header stands alone because its own source includes it before anything else."""
+    own = file.removesuffix(".cpp") + ".h"
+    if not file.endswith(".cpp") or not (Path(root) / own).exists():
+        return
+    first = next(iter(INCLUDE.findall(text)), "nothing")
+    if first != f'"{own}"':
+        yield Violation(file, f"includes {first} before its own header {own}")
+
+
 def form_violations(file, text):
     lines = text.count("\n")
     if lines > MAX_LINES:
@@ -161,6 +171,7 @@ def violations(root):
                 continue
             text = path.read_text(encoding="utf-8")
             found += form_violations(relative, text)
+            found += standing_violations(root, relative, text)
             if top in ("common", "fusion-server", "services") and path.suffix in (".h", ".cpp"):
                 found += layer_violations(relative, text)
                 found += header_violations(relative, text)

@@ -39,6 +39,13 @@ class BrokenRules(unittest.TestCase):
     def test_a_clean_file_is_not_complained_about(self):
         self.assertEqual(messages_for({"common/body/a.cpp": '#include "common/geometry/rotation.h"\n'}), [])
 
+    def test_a_source_that_hides_what_its_header_lacks(self):
+        header = {"common/body/a.h": "#pragma once\n"}
+        for text in ('#include <vector>\n#include "common/body/a.h"\n', ""):
+            caught = messages_for(header | {"common/body/a.cpp": text})
+            self.assertTrue(any("before its own header" in message for message in caught), caught)
+        self.assertEqual(messages_for(header | {"common/body/a.cpp": '#include "common/body/a.h"\n#include <vector>\n'}), [])
+
     def test_upward_include(self):
         self.assert_caught("common/base/a.cpp", '#include "common/time/timestamp.h"\n', "below or beside")
 

@@ -1,4 +1,5 @@
-// KERAAL: a Kinect v2 beside optical targets on the same person.
+#include "tests/bench/recordings_keraal.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,7 +12,6 @@
 #include "common/importers/keraal_text.h"
 #include "common/importers/text_rows.h"
 #include "fusion-server/pipeline/offline.h"
-#include "tests/bench/recordings_keraal.h"
 
 namespace chorus::bench {
 namespace {
