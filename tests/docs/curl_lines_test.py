@@ -1,11 +1,12 @@
 """Every curl line and every example in our documents works against a running demo: run as it is printed, with the
-ports moved."""
+ports moved, from a folder that holds the documents and takes what a line writes."""
 
 import json
 import os
 import re
 import subprocess
 import sys
+import tempfile
 import time
 import unittest
 import urllib.request
@@ -45,6 +46,10 @@ def moved(line, first):
 class CurlLines(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = Path(folder.name)
+        (cls.folder / "docs").symlink_to(ROOT / "docs")
         cls.port = free_ports(SENSORS + 1)
         cls.demo = subprocess.Popen(["deploy/demo.sh", "--bin", str(BIN), "--port", str(cls.port)], cwd=ROOT,
                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
@@ -76,7 +81,7 @@ class CurlLines(unittest.TestCase):
         for document, line in lines:
             with self.subTest(document=document, line=line):
                 result = subprocess.run(["bash", "-o", "pipefail", "-c", moved(line, self.port)],
-                                        capture_output=True, text=True, timeout=60)
+                                        capture_output=True, text=True, timeout=60, cwd=self.folder)
                 self.assertEqual(result.returncode, 0, result.stderr)
                 self.assertNotEqual(result.stdout.strip(), "")
 

@@ -1,11 +1,13 @@
 #include "fusion-server/publish/mxtp/mxtp_encoder.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <string_view>
 
 #include "common/body/bones.h"
 #include "fusion-server/publish/axes.h"
+#include "fusion-server/publish/big_endian.h"
 
 namespace chorus::publish::mxtp {
 namespace {
@@ -51,22 +53,11 @@ constexpr std::array<Segment, kSegments> kTable{{
 constexpr std::string_view kMagic = "MXTP02";
 constexpr std::uint8_t kOnlyDatagram = 0x80;
 
-class Bytes {
- public:
-  explicit Bytes(std::size_t size) { bytes_.reserve(size); }
-  void text(std::string_view value) { bytes_.insert(bytes_.end(), value.begin(), value.end()); }
-  template <class Unsigned>
-  void big_endian(Unsigned value) {
-    for (int shift = 8 * (static_cast<int>(sizeof value) - 1); shift >= 0; shift -= 8) {
-      bytes_.push_back(static_cast<char>((value >> shift) & 0xFFU));
-    }
-  }
-  void real(double value) { big_endian(std::bit_cast<std::uint32_t>(static_cast<float>(value))); }
-  [[nodiscard]] std::vector<char> take() { return std::move(bytes_); }
+using Bytes = std::vector<char>;
 
- private:
-  std::vector<char> bytes_;
-};
+void add_real(Bytes& out, double value) {
+  append_big_endian(out, std::bit_cast<std::uint32_t>(static_cast<float>(value)));
+}
 
 std::uint32_t time_code(const TrackerFrame& frame) {
   return static_cast<std::uint32_t>(static_cast<std::uint64_t>(to_unix_ns(frame.instant)) /
@@ -85,24 +76,25 @@ const TrackerJoint& shown(const TrackerBody& body, JointId id) {
 }
 
 void add_header(Bytes& out, const TrackerFrame& frame, const TrackerBody& body) {
-  out.text(kMagic);
-  out.big_endian(static_cast<std::uint32_t>(frame.sequence));
-  out.big_endian(kOnlyDatagram);
-  out.big_endian(static_cast<std::uint8_t>(kSegments));
-  out.big_endian(time_code(frame));
-  out.big_endian(static_cast<std::uint8_t>(body.slot));
-  out.big_endian(static_cast<std::uint8_t>(kSegments));  // body segments
-  out.big_endian(std::uint8_t{0});                       // props
-  out.big_endian(std::uint8_t{0});                       // finger segments
-  out.big_endian(std::uint16_t{0});                      // reserved
-  out.big_endian(static_cast<std::uint16_t>(kDatagramBytes - 24));
+  out.insert(out.end(), kMagic.begin(), kMagic.end());
+  append_big_endian(out, static_cast<std::uint32_t>(frame.sequence));
+  append_big_endian(out, kOnlyDatagram);
+  append_big_endian(out, static_cast<std::uint8_t>(kSegments));
+  append_big_endian(out, time_code(frame));
+  append_big_endian(out, static_cast<std::uint8_t>(body.slot));
+  append_big_endian(out, static_cast<std::uint8_t>(kSegments));  // body segments
+  append_big_endian(out, std::uint8_t{0});                       // props
+  append_big_endian(out, std::uint8_t{0});                       // finger segments
+  append_big_endian(out, std::uint16_t{0});                      // reserved
+  append_big_endian(out, static_cast<std::uint16_t>(kDatagramBytes - 24));
 }
 
 }  // namespace
 
 std::vector<char> encode(const TrackerFrame& frame, const TrackerBody& body) {
   if (!body[SpineBase].tracked || !body[Head].tracked) return {};
-  Bytes out(kDatagramBytes);
+  Bytes out;
+  out.reserve(kDatagramBytes);
   add_header(out, frame, body);
   std::uint32_t id = 0;
   for (const Segment& segment : kTable) {
@@ -110,10 +102,11 @@ std::vector<char> encode(const TrackerFrame& frame, const TrackerBody& body) {
                                        segment.share * shown(body, segment.to).position;
     const Eigen::Vector3d p = xsens_axes().position(x_in_world);
     const Eigen::Quaterniond q = xsens_axes().quaternion(shown(body, segment.turns).orientation);
-    out.big_endian(++id);
-    for (const double value : {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}) out.real(value);
+    append_big_endian(out, ++id);
+    for (const double value : {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()})
+      add_real(out, value);
   }
-  return out.take();
+  return out;
 }
 
 }  // namespace chorus::publish::mxtp

@@ -6,6 +6,8 @@
 #include <charconv>
 #include <utility>
 
+#include "fusion-server/publish/big_endian.h"
+
 namespace chorus::publish::vrpn {
 namespace {
 
@@ -14,15 +16,6 @@ constexpr std::string_view kVersion = "vrpn: ver. 07.";
 constexpr std::size_t kAlignment = 8;
 constexpr int kLeastPort = 1024;
 constexpr std::size_t kLongestRequest = 300;
-
-template <class Unsigned>
-void append_big_endian(std::string& out, Unsigned value) {
-  std::array<char, sizeof value> bytes;
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    bytes[i] = static_cast<char>((value >> (8 * (bytes.size() - 1 - i))) & 0xFFU);
-  }
-  out.append(bytes.data(), bytes.size());
-}
 
 std::uint32_t integer_at(std::string_view bytes, std::size_t at) {
   std::uint32_t value = 0;
@@ -85,10 +78,8 @@ void append_message(std::string& out, const MessageHead& head, std::string_view 
 }
 
 void set_sequence(char* message, std::uint32_t sequence) {
-  for (int shift = 24; shift >= 0; shift -= 8) {
-    message[kSequenceOffset + static_cast<std::size_t>(3 - shift / 8)] =
-        static_cast<char>((sequence >> shift) & 0xFFU);
-  }
+  const auto bytes = big_endian(sequence);
+  std::copy(bytes.begin(), bytes.end(), message + kSequenceOffset);
 }
 
 void append_description(std::string& out, SystemType kind, std::int32_t id, std::string_view name) {
