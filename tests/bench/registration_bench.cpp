@@ -77,7 +77,8 @@ void measure_stress(Report& report, const std::string& name,
   each.setting.stress = stress;
   each.draws = kStressDraws;
   Comparison comparison(name, "position_mm", "mm");
-  for (const MethodScores& method : run_case(each, report.seed()).front()) {
+  const auto scores = run_case(each, report.seed());
+  for (const MethodScores& method : scores.front()) {
     for (std::size_t i = 0; i < method.draws.size(); ++i) {
       comparison.add(method.name, i, to_mm(method.draws[i].position));
     }
