@@ -37,7 +37,7 @@ TEST(DtrackCommandReader, TakesTwoHundredBytesAndNoMore) {
   EXPECT_TRUE(reader.feed(std::string(200, 'x')));
   EXPECT_FALSE(reader.feed("x"));
   CommandReader hidden;  // behind a good one
-  EXPECT_FALSE(hidden.feed("dtrack2 getmsg\0"s + std::string(201, 'x') + '\0'));
+  EXPECT_FALSE(hidden.feed("dtrack2 getmsg\0"s.append(201, 'x') + '\0'));
 }
 
 struct Said {
