@@ -64,6 +64,13 @@ const Axes& xsens_axes() {
   return kAxes;
 }
 
+const Axes& natnet_axes() { return vrpn_axes(); }
+
+const Eigen::Quaterniond& natnet_rest() {
+  static const Eigen::Quaterniond kHalfTurnAboutUp(0.0, 0.0, 1.0, 0.0);
+  return kHalfTurnAboutUp;
+}
+
 // R = Rx(a) Ry(b) Rz(c): R02 = sin b, R12 = -sin a cos b, R22 = cos a cos b, R01 = -cos b sin c,
 // R00 = cos b cos c.
 Eigen::Vector3d dtrack_angles(const Eigen::Matrix3d& r) {

@@ -38,6 +38,11 @@ struct Axes {
 /// Xsens MXTP: right-handed, +z up, metres: (z, x, y), so a body that faces +z looks along +x.
 [[nodiscard]] const Axes& xsens_axes();
 
+/// NatNet, as Motive streams it by default: right-handed, +y up, metres.
+[[nodiscard]] const Axes& natnet_axes();
+/// Directions of the rig at rest (humanoid.h: it looks along -z) from those of Motive's (along +z).
+[[nodiscard]] const Eigen::Quaterniond& natnet_rest();
+
 /// R = Rx(eta) Ry(theta) Rz(phi), |theta| <= 90 deg (A.R.T. DTrack2 manual, App. B) [rad].
 [[nodiscard]] Eigen::Vector3d dtrack_angles(const Eigen::Matrix3d& rotation);
 /// R = Ry(azimuth) Rx(elevation) Rz(roll), |elevation| <= 90 deg (CAVELib) [rad].

@@ -24,6 +24,7 @@ void for_each_output(Config& config, const Visitor& visit) {
   visit("vmc", config.vmc);
   visit("vrchat", config.vrchat);
   visit("vrpn", config.vrpn);
+  visit("natnet", config.natnet);
 }
 
 struct Opening {

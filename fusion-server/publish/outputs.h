@@ -12,6 +12,7 @@
 #include "common/time/clock.h"
 #include "fusion-server/publish/dtrack/dtrack_outlet.h"
 #include "fusion-server/publish/mxtp/mxtp_outlet.h"
+#include "fusion-server/publish/natnet/natnet_outlet.h"
 #include "fusion-server/publish/outlet.h"
 #include "fusion-server/publish/trackd/trackd_outlet.h"
 #include "fusion-server/publish/vmc/vmc_outlet.h"
@@ -44,6 +45,7 @@ struct OutputsConfig {
   Output<vmc::Settings> vmc;
   Output<vrchat::Settings> vrchat;
   Output<vrpn::Settings> vrpn;
+  Output<natnet::Settings> natnet;
 
   bool operator==(const OutputsConfig&) const = default;
 };

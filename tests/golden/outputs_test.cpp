@@ -8,6 +8,8 @@
 
 #include "common/resource/frame_resource.h"
 #include "fusion-server/publish/dtrack/dtrack_encoder.h"
+#include "fusion-server/publish/natnet/natnet_encoder.h"
+#include "fusion-server/publish/natnet/natnet_messages.h"
 #include "fusion-server/publish/trackd/trackd_encoder.h"
 #include "fusion-server/publish/vmc/vmc_encoder.h"
 #include "fusion-server/publish/vrchat/vrchat_encoder.h"
@@ -85,6 +87,16 @@ TEST(GoldenOutputs, Trackd) {
   trackd::write_sensors(frame, trackd::LengthUnit::Feet, block);
   trackd::write_stamp(frame.instant, block);
   expect_golden("fused.trackd", {block.begin(), block.end()});
+}
+
+/// Server information, model definitions of two slots, a frame.
+TEST(GoldenOutputs, NatNet) {
+  const TrackerFrame frame = golden_frame();
+  const Timestamp start = frame.instant - std::chrono::milliseconds(12500);
+  const Timestamp received = frame.instant + std::chrono::microseconds(2345);
+  const natnet::Times times{start, received, received + std::chrono::microseconds(67)};
+  expect_golden("fused.natnet", with_sizes({natnet::server_info({}), natnet::encode_models(2, {}),
+                                            natnet::encode_frame(frame, {}, times)}));
 }
 
 }  // namespace

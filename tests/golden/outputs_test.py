@@ -7,6 +7,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests/support"))
+import natnet_reader as natnet  # noqa: E402
 from output_readers import (JOINT_OF_BONE, JOINTS, dtrack_bodies, dtrack_lines, matrix_of, orientation, osc_messages,  # noqa: E402
                             trackd_matrix, trackd_sensors, vmc_bone_places)
 
@@ -85,6 +86,34 @@ class Golden(unittest.TestCase):
                     rows = zip(trackd_matrix(azimuth, elevation, roll), matrix_of(*orientation(joints, name)))
                     for a, b in rows:
                         self.assert_near(a, b, 5e-5, name)
+
+    def test_natnet(self):
+        (server, told, behind), (kind, described, _), (message, data, _) = map(natnet.read, datagrams("fused.natnet"))
+        self.assertEqual((server, kind, message, behind), (natnet.SERVER_INFO, natnet.MODELS, natnet.FRAME, b""))
+        self.assertEqual(natnet.server_info(told), ("Chorus", (0, 1, 0, 0), (3, 1, 0, 0), 10**9, 1511, 0, (239, 255, 42, 99)))
+        models, frame = natnet.models(described), natnet.frame(data)
+        captured = int(FRAME["capturedNanoseconds"])
+        self.assertEqual((frame.number, frame.seconds, frame.exposure), (FRAME["sequence"] % 2**31, 12.5, captured))
+        self.assertEqual((frame.received - captured, frame.sent - captured), (2_345_000, 2_412_000))
+        self.assertEqual((len(models), len(frame.rigid_bodies)), (52, 50))
+        names = {model.id: model.name for model in models if model.kind == "rigid body"}
+        for body in frame.rigid_bodies:
+            slot, name = names[body.id].removeprefix("Body").split("_")
+            joints = BODIES[int(slot)]
+            self.assertEqual(body.params, 1 if "x" in joints[name] else 0, names[body.id])
+            if body.params:
+                self.assert_near(body.place, place(joints[name]), 1e-5, name)
+                for a, b in zip(matrix_of(*body.turned), matrix_of(*orientation(joints, name))):
+                    self.assert_near(a, b, 5e-5, name)
+        skeletons = {model.id: model for model in models if model.kind == "skeleton"}
+        self.assertEqual([s.id for s in frame.skeletons], [1, 2])
+        for skeleton in frame.skeletons:
+            tracked = {bone.id & 0xFFFF for bone in skeleton.bones if bone.params}
+            model = skeletons[skeleton.id]
+            for described, (name, (got, _)) in zip(model.bones, natnet.bones_in_world(skeleton, model).items()):
+                if described.id in tracked and name in natnet.JOINT_OF_BONE:
+                    self.assert_near(got, place(BODIES[skeleton.id - 1][natnet.JOINT_OF_BONE[name]]), 1e-4, name)
+            self.assertGreaterEqual(len(tracked), 10)
 
 
 if __name__ == "__main__":

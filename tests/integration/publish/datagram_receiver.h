@@ -33,9 +33,10 @@ class DatagramReceiver {
   [[nodiscard]] std::string target() const { return "127.0.0.1:" + std::to_string(port_); }
 
   /// Also what is sent to this group on this port; false where the machine cannot.
-  [[nodiscard]] bool join(const char* group) {
+  [[nodiscard]] bool join(const char* group, const char* interface = "0.0.0.0") {
     ip_mreq request{};
     ::inet_pton(AF_INET, group, &request.imr_multiaddr);
+    ::inet_pton(AF_INET, interface, &request.imr_interface);
     return ::setsockopt(socket_, IPPROTO_IP, IP_ADD_MEMBERSHIP, &request, sizeof request) == 0;
   }
 

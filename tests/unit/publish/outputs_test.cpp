@@ -49,6 +49,20 @@ TEST(Outputs, NameAnUnknownProtocolAndABadTarget) {
   EXPECT_NE(to_string(bad.error()).find("HOST:PORT"), std::string::npos);
 }
 
+TEST(Outputs, NatNetsGroupIsOne) {
+  const auto config = read(R"({"outputs": {"natnet": {"transmission": "multicast",
+      "group": "239.1.2.3", "skeleton_coordinates": "global", "rigid_bodies": false}}})");
+  ASSERT_THAT(config, IsOk());
+  EXPECT_EQ(config->natnet.protocol.transmission, natnet::Transmission::Multicast);
+  EXPECT_EQ(config->natnet.protocol.models.skeleton_coordinates, natnet::Coordinates::Global);
+  EXPECT_FALSE(config->natnet.protocol.models.rigid_bodies);
+  for (const char* wrong : {"127.0.0.1", "239.255.42", "ff02::1", "group"}) {
+    const auto bad = read(std::string(R"({"outputs": {"natnet": {"group": ")") + wrong + R"("}}})");
+    ASSERT_FALSE(bad) << wrong;
+    EXPECT_NE(to_string(bad.error()).find("outputs.natnet.group"), std::string::npos);
+  }
+}
+
 TEST(Outputs, AnUnknownHostFailsWithTheOutputsName) {
   auto config =
       read(R"({"outputs": {"mxtp": {"enabled": true, "targets": ["no.such.invalid:9763"]}}})");

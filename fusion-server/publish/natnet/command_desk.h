@@ -1,0 +1,82 @@
+// NatNet's command channel without a socket: who is a client, and what is answered to whom.
+//
+// Clients are those that connected or keep alive (in multicast, where connecting only asks for the
+// server's settings, those that keep alive).  They are few, known by address and port, and
+// forgotten when nothing is heard of them for `client_timeout`. Anybody can write in anybody's
+// name, and answers are larger than requests: all answers together get `bytes_per_second`, so that
+// we are of little use against others.  What a server says is never answered, so two servers cannot
+// be made to talk to each other.
+#pragma once
+
+#include <chrono>
+#include <compare>
+#include <deque>
+#include <map>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "common/time/timestamp.h"
+#include "fusion-server/publish/natnet/natnet_messages.h"
+
+namespace chorus::publish::natnet {
+
+using SteadyTime = std::chrono::steady_clock::time_point;
+
+/// IPv4: the protocol knows no other.
+struct Address {
+  std::uint32_t host = 0;
+  std::uint16_t port = 0;
+
+  auto operator<=>(const Address&) const = default;
+};
+
+struct DeskOptions {
+  ServerInfo info;
+  Bytes models;  ///< The whole message.
+  std::size_t max_clients = 16;
+  Duration client_timeout = std::chrono::seconds(10);
+  double bytes_per_second = 262'144.0;
+  double burst = 524'288.0;  ///< Bytes.
+};
+
+struct Now {
+  SteadyTime steady{};
+  Timestamp utc{};
+};
+
+struct Reply {
+  Bytes bytes;               ///< Empty: nothing is said.
+  std::string_view refusal;  ///< Why it was turned away; empty: it was not.
+};
+
+class CommandDesk {
+ public:
+  explicit CommandDesk(DeskOptions options);
+
+  [[nodiscard]] Reply answer(std::span<const char> datagram, const Address& from, const Now& now);
+
+  /// The frame that is sent to those who ask for one.
+  void newest(std::shared_ptr<const Bytes> frame, Timestamp instant);
+
+  /// Who gets frames now.
+  [[nodiscard]] std::vector<Address> clients(SteadyTime now);
+
+ private:
+  [[nodiscard]] Reply reply_to(const Incoming& request, const Now& now) const;
+  [[nodiscard]] Bytes reply_to_text(std::string_view text) const;
+  [[nodiscard]] bool admit(const Incoming& request, const Address& from, SteadyTime now);
+  [[nodiscard]] bool allowed(std::size_t bytes, SteadyTime now);
+  [[nodiscard]] float frame_rate() const;
+  void expire(SteadyTime now);
+
+  DeskOptions options_;
+  std::map<Address, SteadyTime> heard_;  ///< Clients, and when something came of them last.
+  std::shared_ptr<const Bytes> frame_;
+  std::deque<Timestamp> instants_;  ///< Of the newest frames.
+  double allowance_;
+  SteadyTime counted_{};
+};
+
+}  // namespace chorus::publish::natnet
