@@ -62,6 +62,7 @@ int main(int argc, char** argv) {
   app.add_option("--json", json_path, "Also write the rows to this file as JSON");
   app.add_option("--seed", options.seed, "First random seed; runs use it and the ones after it")
       ->capture_default_str();
+  app.add_option("--plots", options.plots, "Also draw charts (SVG) into this folder");
   app.add_flag("--quick", options.quick, "Fewer runs: a smoke test, indicative numbers only");
   app.require_subcommand(1);
   app.fallthrough();

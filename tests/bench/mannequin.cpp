@@ -90,4 +90,10 @@ double jitter(const std::vector<MannequinSample>& samples, JointId joint, double
   return count == 0 ? std::numeric_limits<double>::quiet_NaN() : sum / static_cast<double>(count);
 }
 
+double shown_facing(const Skeleton<SensorSpace>& body) {
+  const Eigen::Vector3d to_left =
+      body[JointId::ShoulderLeft].position - body[JointId::ShoulderRight].position;
+  return std::atan2(to_left.z(), -to_left.x());
+}
+
 }  // namespace chorus::bench

@@ -30,4 +30,7 @@ struct MannequinSample {
 [[nodiscard]] double jitter(const std::vector<MannequinSample>& samples, JointId joint,
                             double least_angle, double most_angle);
 
+/// Yaw shown by the shoulders, 0 = facing the sensor [rad].
+[[nodiscard]] double shown_facing(const Skeleton<SensorSpace>& body);
+
 }  // namespace chorus::bench

@@ -12,7 +12,7 @@
 namespace chorus::bench {
 namespace {
 
-constexpr double kWidth = 820;
+constexpr double kWidth = 860;
 constexpr double kHeight = 440;
 constexpr double kLeft = 70;
 constexpr double kRight = 590;  // the legend stands right of it
@@ -20,6 +20,7 @@ constexpr double kTop = 40;
 constexpr double kBottom = 385;
 constexpr double kLegendStep = 20;
 constexpr double kAimedTicks = 6;
+constexpr double kBarWidth = 26;
 constexpr double kPadding = 0.05;  // of the data's range, where the axis follows the data
 constexpr int kMostTicks = 50;
 
@@ -70,9 +71,9 @@ Axis fitted(const Axis& axis, const Plot& plot, int dimension) {
       most = std::max(most, point[dimension]);
     }
   }
-  if (!(least <= most)) return {axis.label, 0.0, 1.0};
+  if (!(least <= most)) return {axis.label, 0.0, 1.0, 0.0};
   const double room = most > least ? kPadding * (most - least) : std::max(1e-9, std::abs(most));
-  return {axis.label, least - room, most + room};
+  return {axis.label, least - room, most + room, axis.step};
 }
 
 /// Data to picture.
@@ -117,7 +118,7 @@ std::string line(const Eigen::Vector2d& from, const Eigen::Vector2d& to, std::st
 
 std::vector<double> ticks_of(const Axis& axis) {
   std::vector<double> ticks;
-  const double step = round_step(axis.most - axis.least);
+  const double step = axis.step > 0 ? axis.step : round_step(axis.most - axis.least);
   const double first = std::ceil(axis.least / step - 1e-9);
   for (int i = 0; i < kMostTicks; ++i) {
     const double tick = (first + i) * step;
@@ -161,6 +162,12 @@ std::string mark(const Eigen::Vector2d& at, Mark kind, std::string_view colour) 
       at.x() - 5, at.y() - 5, colour);
 }
 
+std::string bar(const Eigen::Vector2d& top, double bottom, double width, std::string_view colour) {
+  return fmt::format(
+      "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"/>\n",
+      top.x() - 0.5 * width, top.y(), width, bottom - top.y(), colour);
+}
+
 bool is_line(Mark kind) { return kind == Mark::Line || kind == Mark::Dashes; }
 
 /// A line is lifted over points that are not finite or outside.
@@ -186,7 +193,10 @@ std::string drawn(const Series& series, const Scale& scale, std::string_view col
   if (is_line(series.mark)) return drawn_line(series, scale, colour);
   std::string out;
   for (const Eigen::Vector2d& point : series.points) {
-    if (scale.shows(point)) out += mark(scale.at(point), series.mark, colour);
+    if (!scale.shows(point)) continue;
+    const Eigen::Vector2d at = scale.at(point);
+    out += series.mark == Mark::Bars ? bar(at, kBottom, kBarWidth, colour)
+                                     : mark(at, series.mark, colour);
   }
   return out;
 }
@@ -197,6 +207,8 @@ std::string legend_entry(const Series& series, double y, std::string_view colour
   if (is_line(series.mark)) {
     sign = fmt::format("<path d=\"M{:.1f} {:.1f}h22\" stroke=\"{}\" stroke-width=\"2.5\"{}/>\n", x,
                        y, colour, series.mark == Mark::Dashes ? " stroke-dasharray=\"6 4\"" : "");
+  } else if (series.mark == Mark::Bars) {
+    sign = bar({x + 11, y - 5}, y + 5, 10, colour);
   } else {
     sign = mark({x + 11, y}, series.mark, colour);
   }

@@ -13,7 +13,9 @@
 
 namespace chorus::bench {
 
-enum class Mark { Line, Dashes, Dots, Crosses };
+/// Bars stand on the lower axis, as wide for every series: set their x apart to put them side by
+/// side.
+enum class Mark { Line, Dashes, Dots, Crosses, Bars };
 
 struct Series {
   std::string name;  ///< In the legend; empty: not named there.
@@ -27,6 +29,7 @@ struct Axis {
   std::string label;  ///< With its unit: "true yaw [deg]".
   double least = 0.0;
   double most = 0.0;
+  double step = 0.0;  ///< From tick to tick; 0: a round one.
 };
 
 struct Plot {

@@ -44,6 +44,7 @@ struct Options {
   std::string name;        ///< The subcommand.
   std::uint64_t seed = 1;  ///< The first seed; runs use seed, seed + 1, ...
   bool quick = false;      ///< Fewer runs, for a smoke test; the numbers are then only indicative.
+  std::string plots = {};  ///< Folder for charts, where a subcommand draws any; empty: none.
 };
 
 class Report {
@@ -52,6 +53,7 @@ class Report {
 
   [[nodiscard]] std::uint64_t seed() const noexcept { return options_.seed; }
   [[nodiscard]] bool quick() const noexcept { return options_.quick; }
+  [[nodiscard]] const std::string& plots() const noexcept { return options_.plots; }
 
   void row(std::string case_name, std::string metric, double value, std::string unit,
            std::string baseline = "", double ratio = kNoRatio);

@@ -51,7 +51,8 @@ std::optional<SensorFrame> DepthSensor::next() {
   frame.sequence = number;
   frame.captured = clock_.host_time(exposed);
   frame.received = exposed + latency(delivery, number, keys());
-  frame.floor = kinect::estimated_floor(scene_->world_from_sensor[setting_.place], number, keys());
+  frame.floor =
+      kinect::estimated_floor(scene_->world_from_sensor[setting_.place], number, floor_, keys());
   const DepthImage image = measure(render(view(exposed), camera_), setting_.profile.camera,
                                    Draw{kDrawImage, setting_.seed, setting_.place, number});
   for (TrackedBody& body : tracker_.look(image, *frame.floor)) {

@@ -42,6 +42,7 @@ class DepthSensor final : public BodySensor {
   std::uint64_t number_;
   std::vector<Build> builds_;
   DepthCamera camera_;
+  kinect::FloorError floor_ = kinect::nominal_profile("A").floor;  ///< The same SDK estimates it.
   BodyTracker tracker_;
 };
 

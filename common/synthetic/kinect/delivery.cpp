@@ -10,8 +10,6 @@ namespace {
 
 enum Purpose : std::uint64_t { kPhase = 961, kJitter, kDrop, kGap, kGapAt, kLatency, kClock };
 
-constexpr double kGapBlock = 10.0;  // at most one gap starts in each [s]
-
 }  // namespace
 
 HostClock draw_clock(const ClockError& clock, Timestamp origin, const ErrorKeys& keys) {
@@ -45,12 +43,13 @@ bool is_dropped(const Delivery& delivery, std::uint64_t number, const ErrorKeys&
 }
 
 bool is_lost(const Delivery& delivery, double time, const ErrorKeys& keys) {
-  const auto block = static_cast<std::uint64_t>(std::max(0.0, std::floor(time / kGapBlock)));
+  const auto block =
+      static_cast<std::uint64_t>(std::max(0.0, std::floor(time / delivery.gap_block)));
   Draw draw{kGap, keys.seed, keys.sensor, keys.person, block};
-  if (draw.uniform() >= delivery.gaps_per_minute * kGapBlock / 60.0) return false;
+  if (draw.uniform() >= delivery.gaps_per_minute * delivery.gap_block / 60.0) return false;
   const double length = draw.uniform(delivery.gap_least, delivery.gap_most);
-  const double start =
-      static_cast<double>(block) * kGapBlock + draw.uniform() * (kGapBlock - length);
+  const double start = static_cast<double>(block) * delivery.gap_block +
+                       draw.uniform() * (delivery.gap_block - length);
   return time >= start && time < start + length;
 }
 

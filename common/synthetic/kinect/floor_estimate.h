@@ -10,6 +10,7 @@ namespace chorus::synthetic::kinect {
 
 /// A fixed error per sensor and a little per frame; `keys.person` does not matter.
 [[nodiscard]] FloorPlane estimated_floor(const Eigen::Isometry3d& world_from_sensor,
-                                         std::uint64_t number, const ErrorKeys& keys);
+                                         std::uint64_t number, const FloorError& error,
+                                         const ErrorKeys& keys);
 
 }  // namespace chorus::synthetic::kinect

@@ -10,8 +10,6 @@ namespace {
 
 enum Purpose : std::uint64_t { kGhost = 941, kGhostPlace, kSwap, kIds };
 
-constexpr double kMergeAngle = deg(1.5);  // legs closer than this, as seen, are one blob
-constexpr double kContact = 0.5;          // people nearer than this touch [m]
 constexpr std::uint64_t kGhostId = 900'000;
 constexpr std::uint64_t kMaxId = 800'000;
 
@@ -23,16 +21,16 @@ double bearing(const Eigen::Vector3d& x) { return std::atan2(x.x(), x.z()); }
 
 }  // namespace
 
-void merge_legs(Skeleton<SensorSpace>& body, double share) {
-  if (!(share > 0)) return;
+void merge_legs(Skeleton<SensorSpace>& body, const GrossError& gross) {
+  if (!(gross.leg_merge > 0)) return;
   for (std::size_t i = 0; i < kLeft.size(); ++i) {
     Joint& left = body[kLeft[i]];
     Joint& right = body[kRight[i]];
     if (!left.seen() || !right.seen()) continue;
-    if (std::abs(bearing(left.position) - bearing(right.position)) > kMergeAngle) continue;
+    if (std::abs(bearing(left.position) - bearing(right.position)) > gross.merge_angle) continue;
     Joint& far = left.position.z() > right.position.z() ? left : right;
     const Joint& near = &far == &left ? right : left;
-    far.position += share * (near.position - far.position);
+    far.position += gross.leg_merge * (near.position - far.position);
     far.state = JointState::Inferred;
   }
 }
@@ -65,14 +63,14 @@ IdBook::IdBook(const ErrorKeys& keys, std::size_t people)
   }
 }
 
-void IdBook::look(const std::vector<Eigen::Vector3d>& cores, double swap_probability, double time) {
+void IdBook::look(const std::vector<Eigen::Vector3d>& cores, const GrossError& gross, double time) {
   const auto stamp = static_cast<std::uint64_t>(std::max(0.0, time * 1e3));
   for (std::size_t a = 0; a < ids_.size(); ++a) {
     for (std::size_t b = a + 1; b < ids_.size(); ++b) {
-      const bool touch =
-          cores[a].allFinite() && cores[b].allFinite() && (cores[a] - cores[b]).norm() < kContact;
+      const bool touch = cores[a].allFinite() && cores[b].allFinite() &&
+                         (cores[a] - cores[b]).norm() < gross.contact;
       if (touch && !touching_[a][b] &&
-          Draw{kSwap, keys_.seed, keys_.sensor, a, b, stamp}.uniform() < swap_probability) {
+          Draw{kSwap, keys_.seed, keys_.sensor, a, b, stamp}.uniform() < gross.id_swap) {
         std::swap(ids_[a], ids_[b]);
       }
       touching_[a][b] = touch;

@@ -11,7 +11,7 @@
 namespace chorus::synthetic::kinect {
 
 /// Before the sensor the far leg disappears behind the near one: the SDK pulls it towards it.
-void merge_legs(Skeleton<SensorSpace>& body, double share);
+void merge_legs(Skeleton<SensorSpace>& body, const GrossError& gross);
 
 /// A skeleton on furniture, standing still somewhere in view; none most of the time.
 [[nodiscard]] std::optional<BodyFrame> ghost(const GrossError& gross, double time,
@@ -22,7 +22,7 @@ class IdBook {
  public:
   IdBook(const ErrorKeys& keys, std::size_t people);
   /// `cores`: trunk positions by person, sensor space; not finite where the person is not seen.
-  void look(const std::vector<Eigen::Vector3d>& cores, double swap_probability, double time);
+  void look(const std::vector<Eigen::Vector3d>& cores, const GrossError& gross, double time);
   [[nodiscard]] BodyId id_of(std::size_t person) const { return ids_[person]; }
 
  private:

@@ -5,6 +5,7 @@
 // (all people) and partly to the person.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "common/body/skeleton.h"
@@ -17,8 +18,17 @@ struct BiasKeys {
   std::uint64_t person = 1;
 };
 
+/// Coefficients of one joint, of unit size.
+struct Harmonics {
+  double radial1 = 0, radial2 = 0, lateral1 = 0, lateral2 = 0, up0 = 0, up1 = 0;
+};
+using PersonHarmonics = std::array<Harmonics, kJointCount>;
+
+/// SDK part and personal part, mixed by share: drawn once per person.
+[[nodiscard]] PersonHarmonics harmonics_of(const JointBias& bias, const BiasKeys& keys);
+
 /// Error of one joint [m] in sensor space, to be added to its position.
 [[nodiscard]] Eigen::Vector3d joint_bias(JointId id, const Eigen::Vector3d& joint, double facing,
-                                         const JointBias& bias, const BiasKeys& keys);
+                                         const JointBias& bias, const Harmonics& harmonics);
 
 }  // namespace chorus::synthetic::kinect

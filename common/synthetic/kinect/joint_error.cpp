@@ -10,24 +10,9 @@
 namespace chorus::synthetic::kinect {
 namespace {
 
-enum Purpose : std::uint64_t {
-  kShared = 921,
-  kOwn,
-  kCore,
-  kTail,
-  kState,
-  kWhite,
-  kTeleport,
-  kStart
-};
+enum Purpose : std::uint64_t { kOwn = 922, kCore, kTail, kState, kWhite, kTeleport };
 
-constexpr double kBestDistance = 2.5;  // Otto Eq. (1) [m]
-constexpr double kReliableTurn = deg(40);
-constexpr double kTurnUnit = deg(50);
-constexpr double kTailTau = 2.0;  // how long a bad spell lasts [s]
-constexpr double kMostTail = 6.0;
-constexpr double kTeleportTime = 0.1;   // [s]
-constexpr double kWhiteInferred = 2.0;  // real logs: inferred joints are about twice as noisy
+constexpr double kTurnUnit = deg(22.5);  // the unit of turn_growth
 
 bool is_core(JointId id) { return mirror(id) == id; }
 
@@ -41,19 +26,22 @@ Eigen::Vector3d node(std::initializer_list<std::uint64_t> key, std::uint64_t blo
 }
 
 /// Student t as a slowly varying scale on a Gaussian; unit variance.
-double tail_scale(double nu, double time, const ErrorKeys& keys, std::size_t joint) {
+double tail_scale(const ColouredError& coloured, double time, const ErrorKeys& keys,
+                  std::size_t joint) {
+  const double nu = coloured.student_nu;
   if (!(nu > 2)) return 1.0;
-  const Eigen::Vector3d g =
-      lattice_noise({kTail, keys.seed, keys.sensor, keys.person, joint}, time, kTailTau);
+  const Eigen::Vector3d g = lattice_noise({kTail, keys.seed, keys.sensor, keys.person, joint}, time,
+                                          std::max(coloured.tail_time, 1e-3));
   const double chi_square = g.squaredNorm() * nu / 3.0;
-  return std::min(kMostTail, std::sqrt((nu - 2.0) / std::max(chi_square, 1e-3)));
+  return std::min(coloured.most_tail, std::sqrt((nu - 2.0) / std::max(chi_square, 1e-3)));
 }
 
-/// The error's standard deviation against the table's: turned away, off the best distance.
+/// The error's standard deviation against the table's: where the SDK's body is turned wrongly, and
+/// off the best distance.
 double growth(const Stand& stand, const ColouredError& coloured) {
-  const double size = std::abs(stand.facing);
-  const double turned = std::max(0.0, std::min(size, deg(180) - size) - kReliableTurn) / kTurnUnit;
-  const double off = std::max(0.0, std::abs(stand.distance - kBestDistance) - 0.5);
+  const double turned = std::abs(stand.misjudged) / kTurnUnit;
+  const double off =
+      std::max(0.0, std::abs(stand.distance - coloured.best_distance) - coloured.good_depth);
   return (1.0 + coloured.turn_growth * turned) * (1.0 + coloured.distance_growth * off * off);
 }
 
@@ -72,9 +60,10 @@ Eigen::Vector3d resting_place(const Skeleton<SensorSpace>& body, JointId id) {
 }
 
 Eigen::Vector3d teleport(JointId id, double time, const GrossError& gross, const ErrorKeys& keys) {
+  if (!(gross.teleports > 0) || !(gross.teleport_time > 0)) return Eigen::Vector3d::Zero();
   Draw draw{kTeleport,   keys.seed,    keys.sensor,
-            keys.person, index_of(id), block_of(time, kTeleportTime)};
-  if (draw.uniform() >= gross.teleports * kTeleportTime) return Eigen::Vector3d::Zero();
+            keys.person, index_of(id), block_of(time, gross.teleport_time)};
+  if (draw.uniform() >= gross.teleports * gross.teleport_time) return Eigen::Vector3d::Zero();
   return gross.teleport_size * draw.gauss3();
 }
 
@@ -87,26 +76,6 @@ Eigen::Vector3d lattice_noise(std::initializer_list<std::uint64_t> key, double t
   // A straight line between two nodes has the least variance in the middle: scaled back to one.
   return ((1.0 - s) * node(key, block) + s * node(key, block + 1)) /
          std::sqrt((1.0 - s) * (1.0 - s) + s * s);
-}
-
-Eigen::Vector3d field_noise(std::initializer_list<std::uint64_t> key, const Eigen::Vector2d& place,
-                            double cell) {
-  constexpr double kOffset = 1000.0;  // keeps cell numbers positive anywhere in a building
-  const Eigen::Vector2d at = place / std::max(cell, 1e-3) + Eigen::Vector2d::Constant(kOffset);
-  const Eigen::Vector2d base = at.array().floor();
-  const Eigen::Vector2d s = at - base;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double squares = 0.0;
-  for (const int dx : {0, 1}) {
-    for (const int dz : {0, 1}) {
-      const double weight = (dx == 1 ? s.x() : 1.0 - s.x()) * (dz == 1 ? s.y() : 1.0 - s.y());
-      const auto cell_x = static_cast<std::uint64_t>(base.x() + dx);
-      const auto cell_z = static_cast<std::uint64_t>(base.y() + dz);
-      sum += weight * node(key, (cell_x << 20) + cell_z);
-      squares += weight * weight;
-    }
-  }
-  return sum / std::sqrt(squares);
 }
 
 JointState shown_state(JointId id, double visible_share, double time, const Visibility& visibility,
@@ -150,20 +119,22 @@ void advance(ColouredState& state, const Stand& stand, const Moment& moment,
                            Draw{kOwn, keys.seed, keys.sensor, keys.person, i, stamp});
   }
   const double core_speed = stand.speed[index_of(JointId::SpineShoulder)];
+  state.shared.look(stand.view, coloured, {keys.seed, keys.person});
   state.core.advance(moment.dt * activity(core_speed, coloured), coloured.core_tau,
                      Draw{kCore, keys.seed, keys.sensor, keys.person, stamp});
 }
 
 namespace {
 
-/// The unit-variance coloured error of one joint: shared by all sensors, by the core, and its own.
-Eigen::Vector3d coloured_unit(std::size_t i, const ColouredState& state, const Stand& stand,
-                              const ColouredError& coloured, const ErrorKeys& keys) {
-  const double shared = coloured.sensor_correlation;
+/// The unit-variance coloured error of one joint: shared by all sensors that see the same side, by
+/// the core, and its own.
+Eigen::Vector3d coloured_unit(std::size_t i, const ColouredState& state,
+                              const ColouredError& coloured) {
+  const double shared = static_cast<JointId>(i) == JointId::Neck ? coloured.neck_correlation
+                                                                 : coloured.sensor_correlation;
   const double core =
       is_core(static_cast<JointId>(i)) ? coloured.core_correlation * (1.0 - shared) : 0.0;
-  return std::sqrt(shared) *
-             field_noise({kShared, keys.seed, keys.person, i}, stand.place, coloured.shared_cell) +
+  return std::sqrt(shared) * state.shared.of(static_cast<JointId>(i), coloured) +
          std::sqrt(core) * state.core.value() +
          std::sqrt(std::max(0.0, 1.0 - shared - core)) * state.joint[i].value();
 }
@@ -171,7 +142,7 @@ Eigen::Vector3d coloured_unit(std::size_t i, const ColouredState& state, const S
 Eigen::Vector3d white_error(std::size_t i, const Stand& stand, const Profile& profile,
                             const Eigen::Vector3d& draw) {
   const JointNoise& row = kJointNoise[i];
-  const double size = std::abs(stand.facing);
+  const double size = std::abs(stand.view.facing);
   const double side = std::sin(std::min(size, deg(180)));
   const double ends = size < deg(90) ? row.rest_front : row.rest_rear;
   const double rest = ends + side * side * (row.rest_side - ends);
@@ -202,12 +173,13 @@ void add_errors(Skeleton<SensorSpace>& body, const ColouredState& state, const S
       sigma = std::max(sigma * coloured.inferred_factor, coloured.inferred_least);
       joint.position += coloured.inferred_pull * (resting_place(exact, id) - joint.position);
     }
-    const Eigen::Vector3d unit = coloured_unit(i, state, stand, coloured, keys);
+    const Eigen::Vector3d unit = coloured_unit(i, state, coloured);
     const Eigen::Vector3d ray = exact.joints[i].position.stableNormalized();
     const Eigen::Vector3d along = ray.dot(unit) * ray;
-    joint.position += sigma * tail_scale(coloured.student_nu, time, keys, i) *
+    joint.position += sigma * tail_scale(coloured, time, keys, i) *
                       (unit + (coloured.depth_factor - 1.0) * along);
-    joint.position += (guessed ? kWhiteInferred : 1.0) * white_error(i, stand, profile, white_draw);
+    joint.position +=
+        (guessed ? profile.white_inferred : 1.0) * white_error(i, stand, profile, white_draw);
     joint.position += teleport(id, time, profile.gross, keys);
   }
 }

@@ -10,6 +10,7 @@
 #include "common/body/skeleton.h"
 #include "common/synthetic/draw.h"
 #include "common/synthetic/kinect/profile.h"
+#include "common/synthetic/kinect/shared_error.h"
 
 namespace chorus::synthetic::kinect {
 
@@ -34,27 +35,25 @@ class SmoothNoise {
   bool started_ = false;
 };
 
-/// The coloured error's memory: one process per joint and one shared by the core.
+/// The coloured error's memory: one process per joint and one common to the core, each sensor's
+/// own, and the part that sensors share.
 struct ColouredState {
   std::array<SmoothNoise, kJointCount> joint{};
   SmoothNoise core;
+  SharedError shared;
 };
 
 /// How the body stands and moves: what scales the error.
 struct Stand {
-  double facing = 0.0;                              ///< [rad]
-  double distance = 2.5;                            ///< Sensor to neck [m]
-  Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< Of the neck on the floor, world x, z [m]
-  std::array<double, kJointCount> speed{};          ///< Of each joint [m/s]
+  View view;
+  double misjudged = 0.0;                   ///< Yaw the SDK is wrong by [rad]
+  double distance = 2.5;                    ///< Sensor to neck [m]
+  std::array<double, kJointCount> speed{};  ///< Of each joint [m/s]
 };
 
 /// Smooth unit-variance noise over one coordinate (time [s]) with correlation length `tau`; pure.
 [[nodiscard]] Eigen::Vector3d lattice_noise(std::initializer_list<std::uint64_t> key, double time,
                                             double tau);
-
-/// The same over the floor; pure.
-[[nodiscard]] Eigen::Vector3d field_noise(std::initializer_list<std::uint64_t> key,
-                                          const Eigen::Vector2d& place, double cell);
 
 /// Share of time that passes for the error of a joint of this speed: rest_share at rest, 1 when
 /// moving.

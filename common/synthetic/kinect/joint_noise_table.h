@@ -1,9 +1,9 @@
-// Standard deviations per joint at 2.5 m, facing, tracked: coloured (one figure) and white (x, y,
-// z).
+// Standard deviations per joint at 2.5 m, facing, tracked: coloured (one figure), white (x, y, z),
+// and what is left at rest.
 //
 // Millimetres, sensor space.  White: real Kinect v2 logs, third-difference, walking (statistics
-// only).  Coloured: bone-length variation of the same logs; the neck by Otto's Table 1.  Order of
-// JointId; profiles.json scales both tables as a whole.
+// only).  Coloured: bone-length variation of the same logs; the neck by Otto's Table 1.  At rest:
+// Otto's Fig. 7.  Order of JointId; profiles.json scales both tables as a whole.
 #pragma once
 
 #include <array>
@@ -24,15 +24,15 @@ struct JointNoise {
 
 // clang-format off
 inline constexpr std::array<JointNoise, kJointCount> kJointNoise{{
-    {12, 3.5, 2.7, 5.2, 0.15, 1.8, 0.5},  // SpineBase
-    {13, 1.8, 1.6, 4.1, 0.15, 1.8, 0.5},  // SpineMid
-    {2.2, 1.2, 1.3, 3.4, 0.08, 0.15, 0.22},  // Neck
-    { 9, 1.5, 1.5, 3.0, 0.03, 0.03, 0.03},  // Head
-    { 9, 2.5, 2.2, 4.5, 0.4, 1.0, 0.8},  // ShoulderLeft
+    {14, 3.5, 2.7, 5.2, 0.15, 1.7, 0.5},  // SpineBase
+    {14, 1.8, 1.6, 4.1, 0.15, 1.7, 0.5},  // SpineMid
+    {4.8, 1.2, 1.3, 3.4, 0.075, 0.15, 0.20},  // Neck
+    { 9, 1.5, 1.5, 3.0, 0.022, 0.022, 0.022},  // Head
+    { 7, 2.5, 2.2, 4.5, 0.4, 1.0, 0.8},  // ShoulderLeft
     {20, 3.0, 3.0, 5.0, 0.8, 1.6, 1.6},  // ElbowLeft
     {26, 5.0, 4.0, 6.0, 0.8, 1.6, 1.6},  // WristLeft
     {30, 7.0, 7.0, 9.0, 2.0, 3.0, 3.0},  // HandLeft
-    { 9, 2.5, 2.2, 4.5, 0.4, 1.0, 0.8},  // ShoulderRight
+    { 7, 2.5, 2.2, 4.5, 0.4, 1.0, 0.8},  // ShoulderRight
     {20, 3.0, 3.0, 5.0, 0.8, 1.6, 1.6},  // ElbowRight
     {26, 5.0, 4.0, 6.0, 0.8, 1.6, 1.6},  // WristRight
     {30, 7.0, 7.0, 9.0, 2.0, 3.0, 3.0},  // HandRight
@@ -44,7 +44,7 @@ inline constexpr std::array<JointNoise, kJointCount> kJointNoise{{
     {22, 3.0, 6.0, 4.0, 0.8, 1.6, 1.6},  // KneeRight
     {20, 4.0, 11.0, 7.0, 0.8, 1.6, 1.6},  // AnkleRight
     {30, 8.5, 21.0, 17.0, 2.0, 3.0, 3.0},  // FootRight
-    { 6, 1.3, 1.2, 3.4, 0.08, 0.15, 0.22},  // SpineShoulder
+    { 6, 1.3, 1.2, 3.4, 0.075, 0.15, 0.20},  // SpineShoulder
     {34, 11.0, 14.0, 13.0, 2.0, 3.0, 3.0},  // HandTipLeft
     {34, 11.0, 14.0, 13.0, 2.0, 3.0, 3.0},  // ThumbLeft
     {34, 11.0, 14.0, 13.0, 2.0, 3.0, 3.0},  // HandTipRight

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "common/body/facing.h"
 #include "common/synthetic/kinect/floor_estimate.h"
-#include "common/synthetic/kinect/joint_bias.h"
 
 namespace chorus::synthetic::kinect {
 namespace {
@@ -41,7 +41,11 @@ KinectSensor::KinectSensor(const Scene& scene, KinectSetting setting, Timestamp 
       clock_(setting_.own_clock ? draw_clock(setting_.profile.clock, start, keys(0)) : HostClock{}),
       number_(first_frame(setting_.profile.delivery, start, keys(0))),
       memory_(scene.people.size()),
-      ids_(keys(0), scene.people.size()) {}
+      ids_(keys(0), scene.people.size()) {
+  for (std::size_t person = 0; person < memory_.size(); ++person) {
+    memory_[person].bias = harmonics_of(setting_.profile.bias, {setting_.bias_seed, person});
+  }
+}
 
 ErrorKeys KinectSensor::keys(std::size_t person) const {
   return {setting_.seed, setting_.place, person};
@@ -73,12 +77,13 @@ std::optional<Skeleton<SensorSpace>> KinectSensor::shown(std::size_t person, Tim
   const Profile& profile = setting_.profile;
   const double time = time_of(exposed);
   const Skeleton<SensorSpace>& exact = bodies_[person];
-  const Stand stand = stand_of(person);
-  const double facing = stand.facing;
+  Stand stand = stand_of(person);
+  const double facing = stand.view.facing;
   const auto visible = visible_share(exact, person, obstacles_, profile.visibility);
 
   Memory& memory = memory_[person];
   advance(memory.flip, facing, profile.delivery.period, profile.yaw);
+  stand.misjudged = misjudged_yaw(facing, memory.flip, profile.yaw);
   advance(memory.coloured, stand, {time, profile.delivery.period}, profile.coloured, keys(person));
   memory.before = exact;
 
@@ -87,12 +92,12 @@ std::optional<Skeleton<SensorSpace>> KinectSensor::shown(std::size_t person, Tim
     labelled.joints[i].state =
         shown_state(static_cast<JointId>(i), visible[i], time, profile.visibility, keys(person));
     labelled.joints[i].position += joint_bias(static_cast<JointId>(i), exact.joints[i].position,
-                                              facing, profile.bias, {setting_.bias_seed, person});
+                                              facing, profile.bias, memory.bias[i]);
   }
   Skeleton<SensorSpace> body = as_shown(labelled, facing, memory.flip, profile.yaw);
   limit(body, profile.view);
   if (!is_reported(body) || is_lost(profile.delivery, time, keys(person))) return std::nullopt;
-  merge_legs(body, profile.gross.leg_merge);
+  merge_legs(body, profile.gross);
   add_errors(body, memory.coloured, stand, time, profile, keys(person));
   return body;
 }
@@ -100,11 +105,14 @@ std::optional<Skeleton<SensorSpace>> KinectSensor::shown(std::size_t person, Tim
 Stand KinectSensor::stand_of(std::size_t person) const {
   const Skeleton<SensorSpace>& exact = bodies_[person];
   Stand stand;
-  stand.facing = facing_angle(exact).value_or(0.0);
   stand.distance = neck_distance(exact).value_or(0.0);
   const Eigen::Vector3d neck_in_world =
       scene_->world_from_sensor[setting_.place] * exact[JointId::Neck].position;
-  stand.place = {neck_in_world.x(), neck_in_world.z()};
+  const double facing = facing_angle(exact).value_or(0.0);
+  const Eigen::Vector3d& neck = exact[JointId::Neck].position;
+  // Facing 0 looks at the sensor: against the bearing.
+  const double heading = std::atan2(neck.x(), neck.z()) + std::numbers::pi + facing;
+  stand.view = {facing, heading, {neck_in_world.x(), neck_in_world.z()}};
   if (const auto& before = memory_[person].before) {
     for (std::size_t i = 0; i < kJointCount; ++i) {
       stand.speed[i] = (exact.joints[i].position - before->joints[i].position).norm() /
@@ -127,7 +135,8 @@ std::optional<SensorFrame> KinectSensor::next() {
   frame.sequence = number;
   frame.captured = clock_.host_time(exposed);
   frame.received = exposed + latency(profile.delivery, number, keys(0));
-  frame.floor = estimated_floor(scene_->world_from_sensor[setting_.place], number, keys(0));
+  frame.floor =
+      estimated_floor(scene_->world_from_sensor[setting_.place], number, profile.floor, keys(0));
   std::vector<Eigen::Vector3d> cores(
       bodies_.size(), Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
   std::vector<std::pair<std::size_t, Skeleton<SensorSpace>>> bodies;
@@ -137,7 +146,7 @@ std::optional<SensorFrame> KinectSensor::next() {
       bodies.emplace_back(person, *std::move(body));
     }
   }
-  ids_.look(cores, profile.gross.id_swap, time_of(exposed));
+  ids_.look(cores, profile.gross, time_of(exposed));
   for (auto& [person, skeleton] : bodies) {
     frame.bodies.push_back({ids_.id_of(person), frame.captured, std::move(skeleton)});
   }

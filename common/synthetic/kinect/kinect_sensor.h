@@ -12,6 +12,7 @@
 #include "common/synthetic/body_sensor.h"
 #include "common/synthetic/kinect/delivery.h"
 #include "common/synthetic/kinect/gross_error.h"
+#include "common/synthetic/kinect/joint_bias.h"
 #include "common/synthetic/kinect/profile.h"
 #include "common/synthetic/kinect/visibility.h"
 #include "common/synthetic/kinect/yaw_behaviour.h"
@@ -41,6 +42,7 @@ class KinectSensor final : public BodySensor {
   struct Memory {
     FlipState flip;
     ColouredState coloured;
+    PersonHarmonics bias{};
     std::optional<Skeleton<SensorSpace>> before;  ///< One frame ago, exactly.
   };
   void look(Timestamp exposed);

@@ -23,11 +23,14 @@ struct Delivery {
   double period = 0, jitter = 0;  ///< [s]
   double drop_share = 0;
   double gaps_per_minute = 0, gap_least = 0, gap_most = 0;  ///< [s]
+  double gap_block = 10;                                    ///< At most one gap starts in each [s]
   double latency = 0, latency_jitter = 0;                   ///< [s]
 };
 
 struct Visibility {
   double rays = 0, girth = 0;
+  double fan = 0;   ///< Offset of the outer rays about a joint [m]
+  double skin = 0;  ///< A hit this close before the joint is its own surface [m]
   double inferred_visible = 0, inferred_occluded = 0;  ///< Probabilities.
   double state_hold = 0;                               ///< [s]
 };
@@ -42,6 +45,10 @@ struct YawBehaviour {
 struct JointBias {
   double core = 0, head_forward = 0, hip_radial = 0, vertical = 0;  ///< [m]
   double limb_factor = 0, common_share = 0;
+  double neck_factor = 0;                ///< Of core and vertical.
+  double harmonic = 0;                   ///< Root mean square of one coefficient.
+  double head_from = 0, head_width = 0;  ///< Turn at which it begins, and its ramp [rad]
+  double hip_from = 0, hip_width = 0;    ///< [rad]
 };
 
 struct ColouredError {
@@ -51,22 +58,34 @@ struct ColouredError {
   double shared_cell = 0;             ///< [m]
   double scale = 0, depth_factor = 0, turn_growth = 0, distance_growth = 0;
   double inferred_factor = 0, inferred_least = 0, inferred_pull = 0;
-  double core_correlation = 0, sensor_correlation = 0;
-  double student_nu = 0;  ///< 0: Gaussian.
+  double core_correlation = 0, sensor_correlation = 0, neck_correlation = 0;
+  double view_twice = 0;  ///< Of the shared part: what comes round twice as the view does once.
+  double best_distance = 0, good_depth = 0;  ///< [m]
+  double student_nu = 0;                     ///< 0: Gaussian.
+  double tail_time = 0, most_tail = 0;       ///< How long a bad spell lasts [s]; its limit.
 };
 
 struct GrossError {
   double teleports = 0;      ///< Per joint and second.
   double teleport_size = 0;  ///< [m]
+  double teleport_time = 0;  ///< [s]
   double ghosts_per_minute = 0, ghost_time = 0;
-  double id_swap = 0;    ///< Probability per contact.
-  double leg_merge = 0;  ///< Share of the distance closed.
+  double id_swap = 0;      ///< Probability per contact.
+  double contact = 0;      ///< People nearer than this touch [m]
+  double leg_merge = 0;    ///< Share of the distance closed.
+  double merge_angle = 0;  ///< Legs closer than this, as seen, are one blob [rad]
 };
 
 struct ClockError {
   double offset = 0;  ///< Standard deviation over hosts [s]
   double drift = 0;   ///< Standard deviation [s/s]
   double step = 0;    ///< [s]
+};
+
+/// The floor plane that comes with each frame: standard deviations, for good and per frame.
+struct FloorError {
+  double tilt = 0, tilt_now = 0;      ///< [rad]
+  double offset = 0, offset_now = 0;  ///< [m]
 };
 
 struct Profile {
@@ -78,8 +97,10 @@ struct Profile {
   JointBias bias;
   ColouredError coloured;
   double white_scale = 1.0;
+  double white_inferred = 1.0;  ///< Inferred joints are so much noisier.
   GrossError gross;
   ClockError clock;
+  FloorError floor;
 };
 
 /// The nominal values of "A" or "B".

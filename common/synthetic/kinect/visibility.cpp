@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "common/body/bones.h"
 
 namespace chorus::synthetic::kinect {
 namespace {
-
-constexpr double kFan = 0.03;   // offset of the outer rays about a joint [m]
-constexpr double kSkin = 0.02;  // a hit this close before the joint is the joint's own surface [m]
 
 double distance_to_axis(const Capsule& capsule, const Eigen::Vector3d& point) {
   const Eigen::Vector3d axis = capsule.to - capsule.from;
@@ -19,45 +17,70 @@ double distance_to_axis(const Capsule& capsule, const Eigen::Vector3d& point) {
   return (point - (capsule.from + s * axis)).norm();
 }
 
-/// Whose joint it is; real logs: the trunk's own limbs hardly ever make it "inferred" (0-3 %).
-struct Self {
-  std::size_t index;
-  bool is_core;
+/// A capsule with the ball around it.
+struct Obstacle {
+  const Capsule* capsule;
+  Eigen::Vector3d middle;
+  double reach;
+  bool own;
 };
 
-/// Cheap and safe: the ball around the capsule lies beside the ray.
-bool is_beside(const Capsule& capsule, const Eigen::Vector3d& ray) {
-  const Eigen::Vector3d middle = 0.5 * (capsule.from + capsule.to);
-  const double reach = 0.5 * (capsule.to - capsule.from).norm() + capsule.radius;
-  return (middle - middle.dot(ray) * ray).squaredNorm() > reach * reach;
-}
-
-bool is_blocked(const Eigen::Vector3d& end, const Eigen::Vector3d& joint, const Self& self,
-                const Obstacles& obstacles) {
-  const double range = end.norm();
-  const Eigen::Vector3d ray = end / range;
+std::vector<Obstacle> all_of(const Obstacles& obstacles, std::size_t self) {
+  std::vector<Obstacle> all;
   for (std::size_t body = 0; body < obstacles.bodies.size(); ++body) {
     for (const Capsule& capsule : obstacles.bodies[body]) {
-      if (is_beside(capsule, ray)) continue;
-      const bool own = body == self.index;
-      if (own && (self.is_core || distance_to_axis(capsule, joint) < capsule.radius + kSkin))
-        continue;
-      const auto distance = hit(capsule, ray);
-      if (distance && *distance < range - kSkin) return true;
+      all.push_back({&capsule, 0.5 * (capsule.from + capsule.to),
+                     0.5 * (capsule.to - capsule.from).norm() + capsule.radius, body == self});
     }
   }
-  return std::ranges::any_of(obstacles.boxes, [&](const Box& box) { return blocks(box, end); });
+  return all;
+}
+
+/// One joint and what may stand before it.
+struct Target {
+  Eigen::Vector3d joint;
+  bool is_core;
+  double skin;                           ///< [m]
+  std::vector<const Capsule*> capsules;  ///< Near any of its rays.
+};
+
+/// Keeps the capsules whose balls come within `fan` of the ray to the joint.  Not the limb that the
+/// joint lies in, and none of the own ones for the trunk: in real logs the own limbs hardly ever
+/// make it "inferred" (0-3 %).
+void choose(Target& target, const std::vector<Obstacle>& all, double fan) {
+  target.capsules.clear();
+  const Eigen::Vector3d ray = target.joint.normalized();
+  for (const Obstacle& each : all) {
+    if (each.own && target.is_core) continue;
+    const double reach = each.reach + fan;
+    if ((each.middle - each.middle.dot(ray) * ray).squaredNorm() > reach * reach) continue;
+    if (each.own &&
+        distance_to_axis(*each.capsule, target.joint) < each.capsule->radius + target.skin) {
+      continue;
+    }
+    target.capsules.push_back(each.capsule);
+  }
+}
+
+bool is_blocked(const Eigen::Vector3d& end, const Target& target, const std::vector<Box>& boxes) {
+  const double range = end.norm();
+  const Eigen::Vector3d ray = end / range;
+  for (const Capsule* capsule : target.capsules) {
+    const auto distance = hit(*capsule, ray);
+    if (distance && *distance < range - target.skin) return true;
+  }
+  return std::ranges::any_of(boxes, [&](const Box& box) { return blocks(box, end); });
 }
 
 /// The joint itself, then points around it across the line of sight.
-Eigen::Vector3d ray_end(const Eigen::Vector3d& joint, int index) {
+Eigen::Vector3d ray_end(const Eigen::Vector3d& joint, int index, double fan) {
   if (index == 0) return joint;
   const Eigen::Vector3d ray = joint.normalized();
   const Eigen::Vector3d right = ray.cross(Eigen::Vector3d::UnitY()).stableNormalized();
   const Eigen::Vector3d up = right.cross(ray);
   constexpr std::array<std::array<double, 2>, 4> kCross{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
   const auto& [x, y] = kCross[static_cast<std::size_t>(index - 1) % kCross.size()];
-  return joint + kFan * (x * right + y * up);
+  return joint + fan * (x * right + y * up);
 }
 
 }  // namespace
@@ -89,13 +112,18 @@ std::array<double, kJointCount> visible_share(const Skeleton<SensorSpace>& body,
   share.fill(1.0);
   const int rays = static_cast<int>(visibility.rays);
   if (rays <= 0) return share;
+  const std::vector<Obstacle> all = all_of(obstacles, self);
+  Target target{{}, false, visibility.skin, {}};
   for (std::size_t i = 0; i < kJointCount; ++i) {
-    const Eigen::Vector3d& joint = body.joints[i].position;
-    if (!body.joints[i].seen() || joint.norm() < 1e-6) continue;
+    target.joint = body.joints[i].position;
+    target.is_core = mirror(static_cast<JointId>(i)) == static_cast<JointId>(i);
+    if (!body.joints[i].seen() || target.joint.norm() < 1e-6) continue;
+    choose(target, all, visibility.fan);
+    if (target.capsules.empty() && obstacles.boxes.empty()) continue;
     int arrived = 0;
     for (int ray = 0; ray < rays; ++ray) {
-      const Self whose{self, mirror(static_cast<JointId>(i)) == static_cast<JointId>(i)};
-      if (!is_blocked(ray_end(joint, ray), joint, whose, obstacles)) ++arrived;
+      const Eigen::Vector3d end = ray_end(target.joint, ray, visibility.fan);
+      if (!is_blocked(end, target, obstacles.boxes)) ++arrived;
     }
     share[i] = static_cast<double>(arrived) / rays;
   }

@@ -51,6 +51,14 @@ void advance(FlipState& state, double facing, double dt, const YawBehaviour& beh
   state.blend = std::clamp(state.blend + (state.rear ? step : -step), 0.0, 1.0);
 }
 
+double misjudged_yaw(double facing, const FlipState& state, const YawBehaviour& behaviour) {
+  const auto wrong_by = [&](double yaw) {
+    return std::abs(shown_yaw(yaw, behaviour.shoulder_slope, behaviour) - yaw);
+  };
+  return (1.0 - state.blend) * wrong_by(facing) +
+         state.blend * wrong_by(wrap_angle(facing - kHalfTurn));
+}
+
 Skeleton<SensorSpace> as_shown(const Skeleton<SensorSpace>& body, double facing,
                                const FlipState& state, const YawBehaviour& behaviour) {
   // In the rear state the SDK sees a person who faces it: the yaw is counted from behind.

@@ -23,6 +23,10 @@ struct FlipState {
 /// One frame further: decides the flip from the true facing angle (0 = squarely facing).
 void advance(FlipState& state, double facing, double dt, const YawBehaviour& behaviour);
 
+/// By how much the yaw that the SDK shows is wrong, shoulders, exchanged labels aside [rad, >= 0].
+[[nodiscard]] double misjudged_yaw(double facing, const FlipState& state,
+                                   const YawBehaviour& behaviour);
+
 /// The skeleton as the SDK would show it: trunk and limbs turned about the spine, labels exchanged
 /// when flipped.
 [[nodiscard]] Skeleton<SensorSpace> as_shown(const Skeleton<SensorSpace>& body, double facing,

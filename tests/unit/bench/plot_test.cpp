@@ -42,6 +42,15 @@ TEST(Plot, FollowsTheDataWhereAnAxisIsNotGiven) {
   EXPECT_NE(svg.find(">-2<"), std::string::npos);
 }
 
+TEST(Plot, TicksStandWhereTheAxisSays) {
+  Plot plot = square();
+  plot.x.step = 4.5;
+  const std::string svg = svg_of(plot);
+  EXPECT_NE(svg.find(">4.5<"), std::string::npos);
+  EXPECT_NE(svg.find(">9<"), std::string::npos);
+  EXPECT_EQ(svg.find(">10<"), std::string::npos);
+}
+
 TEST(Plot, BreaksLinesAtGapsAndKeepsNonsenseOut) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Plot plot = square();
@@ -52,6 +61,14 @@ TEST(Plot, BreaksLinesAtGapsAndKeepsNonsenseOut) {
   EXPECT_EQ(count(svg, "inf"), 0u);
   EXPECT_EQ(count(svg, "d=\"M122.0 381.6L174.0 371.2M278.0 329.8M330.0 298.8\""), 1u) << svg;
   EXPECT_EQ(count(svg, "l10 10m0 -10l-10 10"), 1u) << "the one cross on the sheet";
+}
+
+TEST(Plot, BarsStandOnTheLowerAxis) {
+  Plot plot = square();
+  plot.series = {{"ours", Mark::Bars, {{5, 25}, {5, 200}}}};
+  const std::string svg = svg_of(plot);
+  EXPECT_EQ(count(svg, "x=\"317.0\" y=\"298.8\" width=\"26.0\" height=\"86.2\""), 1u) << svg;
+  EXPECT_EQ(count(svg, "<rect"), 3u) << "the sheet, the one bar on it and its legend";
 }
 
 TEST(Plot, EmptyAndDegenerateOnesAreStillSheets) {

@@ -17,10 +17,22 @@ Skeleton<SensorSpace> person(double facing) {
                    testing::standing_person({0, 0, 2.5}, deg(180) + facing));
 }
 
+GrossError with_merge(double share) {
+  GrossError gross = nominal_profile("A").gross;
+  gross.leg_merge = share;
+  return gross;
+}
+
+GrossError with_swap(double probability) {
+  GrossError gross = nominal_profile("A").gross;
+  gross.id_swap = probability;
+  return gross;
+}
+
 TEST(MergeLegs, PullsTheFarLegTowardsTheNearOneWhereTheyCross) {
   const auto exact = person(deg(90));
   auto body = exact;
-  merge_legs(body, 0.3);
+  merge_legs(body, with_merge(0.3));
   const bool left_far = exact[KneeLeft].position.z() > exact[KneeRight].position.z();
   const JointId far = left_far ? KneeLeft : KneeRight;
   const JointId near = left_far ? KneeRight : KneeLeft;
@@ -32,11 +44,11 @@ TEST(MergeLegs, PullsTheFarLegTowardsTheNearOneWhereTheyCross) {
 
 TEST(MergeLegs, LeavesLegsThatAreSeenApartAndDoesNothingForNothing) {
   auto front = person(0);
-  merge_legs(front, 0.3);
+  merge_legs(front, with_merge(0.3));
   EXPECT_EQ(front[KneeLeft].position, person(0)[KneeLeft].position);
   EXPECT_EQ(front[KneeLeft].state, JointState::Tracked);
   auto side = person(deg(90));
-  merge_legs(side, 0.0);
+  merge_legs(side, with_merge(0.0));
   EXPECT_EQ(side[KneeLeft].state, JointState::Tracked);
   EXPECT_EQ(side[KneeRight].state, JointState::Tracked);
 }
@@ -71,13 +83,14 @@ TEST(Ghost, NoneWhenSwitchedOff) {
 /// Two people who touch and part `contacts` times; how often their ids were exchanged.
 int swaps(double probability, int contacts) {
   IdBook book({1, 0, 0}, 2);
+  const GrossError gross = with_swap(probability);
   int count = 0;
   for (int i = 0; i < contacts; ++i) {
     const BodyId before = book.id_of(0);
-    book.look({{0, 0, 2}, {0.3, 0, 2}}, probability, i);
-    book.look({{0, 0, 2}, {0.31, 0, 2}}, probability, i + 0.3);
+    book.look({{0, 0, 2}, {0.3, 0, 2}}, gross, i);
+    book.look({{0, 0, 2}, {0.31, 0, 2}}, gross, i + 0.3);
     count += book.id_of(0) != before;
-    book.look({{0, 0, 2}, {2, 0, 2}}, probability, i + 0.6);
+    book.look({{0, 0, 2}, {2, 0, 2}}, gross, i + 0.6);
   }
   return count;
 }
@@ -95,7 +108,7 @@ TEST(IdBook, KeepsIdsApartAndIgnoresTheUnseen) {
   EXPECT_EQ(ids.size(), 6u);
   const BodyId before = book.id_of(0);
   const Eigen::Vector3d unseen = Eigen::Vector3d::Constant(std::nan(""));
-  book.look(std::vector<Eigen::Vector3d>(6, unseen), 1.0, 1.0);
+  book.look(std::vector<Eigen::Vector3d>(6, unseen), with_swap(1.0), 1.0);
   EXPECT_EQ(book.id_of(0), before);
 }
 

@@ -13,13 +13,17 @@ namespace {
 const Eigen::Vector3d kJoint(0.3, 0.2, 2.4);
 const JointBias kBias = nominal_profile("A").bias;
 
+Eigen::Vector3d bias_of(JointId id, double facing, const JointBias& bias, const BiasKeys& keys,
+                        const Eigen::Vector3d& joint = kJoint) {
+  return joint_bias(id, joint, facing, bias, harmonics_of(bias, keys)[index_of(id)]);
+}
+
 TEST(JointBias, IsZeroWhenSwitchedOff) {
   JointBias none = kBias;
   none.core = none.head_forward = none.hip_radial = none.vertical = 0;
   for (std::size_t i = 0; i < kJointCount; ++i) {
     for (double facing = -3.1; facing < 3.1; facing += 0.3) {
-      EXPECT_EQ(joint_bias(static_cast<JointId>(i), kJoint, facing, none, {1, 2}),
-                Eigen::Vector3d::Zero());
+      EXPECT_EQ(bias_of(static_cast<JointId>(i), facing, none, {1, 2}), Eigen::Vector3d::Zero());
     }
   }
 }
@@ -29,9 +33,8 @@ TEST(JointBias, ChangesSmoothlyAsTheBodyTurnsAllTheWayRound) {
     const auto id = static_cast<JointId>(i);
     for (int angle = -180; angle < 180; ++angle) {
       const double next = angle == 179 ? -180.0 : angle + 1.0;
-      const double jump = (joint_bias(id, kJoint, deg(angle), kBias, {1, 2}) -
-                           joint_bias(id, kJoint, deg(next), kBias, {1, 2}))
-                              .norm();
+      const double jump =
+          (bias_of(id, deg(angle), kBias, {1, 2}) - bias_of(id, deg(next), kBias, {1, 2})).norm();
       EXPECT_LT(jump, mm(2.5)) << name_of(id) << " at " << angle;
     }
   }
@@ -42,7 +45,7 @@ TEST(JointBias, HasTheStatedSizeOverManyDraws) {
   int count = 0;
   for (std::uint64_t draw = 1; draw <= 300; ++draw) {
     for (const double facing : {0.0, 0.7, 1.5, 2.5}) {
-      const auto error = joint_bias(JointId::Neck, kJoint, facing, kBias, {draw, draw});
+      const auto error = bias_of(JointId::SpineShoulder, facing, kBias, {draw, draw});
       squares += error.x() * error.x() + error.z() * error.z();
       ++count;
     }
@@ -52,11 +55,19 @@ TEST(JointBias, HasTheStatedSizeOverManyDraws) {
   EXPECT_LT(horizontal, mm(10));
 }
 
+TEST(JointBias, TheNeckErrsLeastOfAll) {
+  JointBias same = kBias;
+  same.neck_factor = 1.0;
+  const auto full = bias_of(JointId::Neck, 0.7, same, {3, 3});
+  EXPECT_NEAR(bias_of(JointId::Neck, 0.7, kBias, {3, 3}).norm(), kBias.neck_factor * full.norm(),
+              1e-9);
+}
+
 TEST(JointBias, TheHeadMovesForwardBeyondFortyFiveDegreesAndTheHipAway) {
   JointBias only = kBias;
   only.core = only.vertical = 0;
   const auto at = [&](JointId id, double facing) {
-    return joint_bias(id, Eigen::Vector3d(0, 0, 2), facing, only, {});
+    return bias_of(id, facing, only, {}, Eigen::Vector3d(0, 0, 2));
   };
   EXPECT_EQ(at(JointId::Head, deg(44)).norm(), 0.0);
   EXPECT_NEAR(at(JointId::Head, deg(90)).norm(), only.head_forward, 1e-9);
@@ -66,20 +77,20 @@ TEST(JointBias, TheHeadMovesForwardBeyondFortyFiveDegreesAndTheHipAway) {
 }
 
 TEST(JointBias, BelongsPartlyToThePersonAndIsTheSameForEverySensor) {
-  const auto one = joint_bias(JointId::Neck, kJoint, 1.0, kBias, {1, 1});
-  EXPECT_EQ(one, joint_bias(JointId::Neck, kJoint, 1.0, kBias, {1, 1}));
-  EXPECT_NE(one, joint_bias(JointId::Neck, kJoint, 1.0, kBias, {1, 2}));
+  const auto one = bias_of(JointId::Neck, 1.0, kBias, {1, 1});
+  EXPECT_EQ(one, bias_of(JointId::Neck, 1.0, kBias, {1, 1}));
+  EXPECT_NE(one, bias_of(JointId::Neck, 1.0, kBias, {1, 2}));
   JointBias shared = kBias;
   shared.common_share = 1.0;
-  EXPECT_EQ(joint_bias(JointId::Neck, kJoint, 1.0, shared, {1, 1}),
-            joint_bias(JointId::Neck, kJoint, 1.0, shared, {1, 2}));
+  EXPECT_EQ(bias_of(JointId::Neck, 1.0, shared, {1, 1}),
+            bias_of(JointId::Neck, 1.0, shared, {1, 2}));
 }
 
 TEST(JointBias, NonsenseHasNoBias) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(joint_bias(JointId::Neck, kJoint, nan, kBias, {}), Eigen::Vector3d::Zero());
-  EXPECT_EQ(joint_bias(JointId::Neck, {0, 0, 0}, 0, kBias, {}), Eigen::Vector3d::Zero());
-  EXPECT_EQ(joint_bias(JointId::Neck, {nan, 0, 1}, 0, kBias, {}), Eigen::Vector3d::Zero());
+  EXPECT_EQ(bias_of(JointId::Neck, nan, kBias, {}), Eigen::Vector3d::Zero());
+  EXPECT_EQ(bias_of(JointId::Neck, 0, kBias, {}, {0, 0, 0}), Eigen::Vector3d::Zero());
+  EXPECT_EQ(bias_of(JointId::Neck, 0, kBias, {}, {nan, 0, 1}), Eigen::Vector3d::Zero());
 }
 
 }  // namespace

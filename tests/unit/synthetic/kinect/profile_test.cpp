@@ -109,10 +109,9 @@ TEST(Profile, TheSameSeedGivesTheSameDraw) {
   EXPECT_TRUE(differs);
 }
 
-TEST(Profile, TheHashIsTwelveHexDigits) {
-  EXPECT_EQ(frozen_hash().size(), 12u);
-  EXPECT_EQ(frozen_hash().find_first_not_of("0123456789abcdef"), std::string::npos);
-}
+// Frozen after calibration.  Whoever changes a number of the model changes every published result:
+// say so in docs/benchmarks.md, run the benchmarks again, then pin the new hash here.
+TEST(Profile, IsFrozen) { EXPECT_EQ(frozen_hash(), "e1917a32d9f7"); }
 
 }  // namespace
 }  // namespace chorus::synthetic::kinect

@@ -103,5 +103,16 @@ TEST(YawBehaviour, WhileItFlipsTheLimbsAreInferred) {
   EXPECT_EQ(between[Neck].state, JointState::Tracked);
 }
 
+TEST(MisjudgedYaw, GrowsUntilTheFlipAndIsSmallAgainBehindIt) {
+  const YawBehaviour yaw = nominal_profile("A").yaw;
+  const FlipState front{};
+  const FlipState rear{true, 1.0};
+  EXPECT_EQ(misjudged_yaw(deg(40), front, yaw), 0.0);
+  EXPECT_NEAR(misjudged_yaw(deg(90), front, yaw), deg(50) * (1 - yaw.shoulder_slope), 1e-9);
+  EXPECT_NEAR(misjudged_yaw(-deg(130), front, yaw), deg(90) * (1 - yaw.shoulder_slope), 1e-9);
+  EXPECT_NEAR(misjudged_yaw(deg(180), rear, yaw), 0.0, 1e-9);
+  EXPECT_NEAR(misjudged_yaw(deg(120), rear, yaw), deg(20) * (1 - yaw.shoulder_slope), 1e-9);
+}
+
 }  // namespace
 }  // namespace chorus::synthetic::kinect
