@@ -33,7 +33,8 @@ std::string escaped(std::string_view text, bool quotes) {
   return out;
 }
 
-bool is_name(std::string_view name) {
+/// For assertions: a release build calls it nowhere.
+[[maybe_unused]] bool is_name(std::string_view name) {
   const auto fits = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
            c == ':';
