@@ -22,7 +22,9 @@ using resource::Ref;
 constexpr std::string_view kWhere = "recordings";
 constexpr std::string_view kSuffix = ".mcap";
 constexpr std::size_t kMostListed = 10'000;
+constexpr int kOk = 200;
 constexpr int kCreated = 201;
+constexpr int kAccepted = 202;
 constexpr double kLongest = 7 * 24 * 3600.0;  // [s]
 
 bool is_running(const RecordingReport& report) {
@@ -190,8 +192,6 @@ Result<RecordingReport> Recordings::stop(std::string_view name) {
   if (!recorder) return find(name);
   recorder->ask_to_stop();
   log::info("recording stops", {{"name", name}});
-  constexpr std::chrono::milliseconds kPatience{100};  // the last chunk takes a few
-  recorder->wait(kPatience);
   return recorder->report();
 }
 
@@ -264,6 +264,10 @@ Result<http::DocumentPtr> Recordings::file(const std::string& name, const std::s
     return fail(ErrorCode::NotFound, "recordings/" + name + "/" + file,
                 "the recording has no file of this name");
   }
+  if (report->state == RecordingState::Stopping) {
+    return fail(ErrorCode::Unavailable, "recordings/" + name + "/" + file,
+                "the recording is being finished; ask again in a second");
+  }
   auto body = http::FileBody::open(fs::path(options_.config.folder) / name / file);
   if (!body) return pass(body);
   http::DocumentOptions options;
@@ -297,7 +301,8 @@ void Recordings::add_routes(http::Router& router) {
                 [this](const Request&, const PathParams& path) -> Result<http::ActionResult> {
                   const auto report = stop(path.at("name"));
                   if (!report) return pass(report);
-                  return http::ActionResult{200, description(*report), {}};
+                  return http::ActionResult{is_running(*report) ? kAccepted : kOk,
+                                            description(*report), {}};
                 });
 }
 

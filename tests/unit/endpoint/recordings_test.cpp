@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <future>
+
 #include <nlohmann/json.hpp>
 
 #include "common/http/client.h"
@@ -138,7 +140,9 @@ TEST_F(RecordingRoutes, StartDescribeStopDownload) {
   EXPECT_EQ(ask("POST", "/recordings/").status, 409);
   for (int i = 0; i < 30; ++i) recordings_.recorder(Stream::Raw)->offer(raw(i));
   const auto recorder = recordings_.recorder(Stream::Any);
-  EXPECT_EQ(ask("DELETE", "/recordings/walk").status, 200);
+  const auto ended = ask("DELETE", "/recordings/walk");
+  EXPECT_EQ(ended.status, 202);
+  EXPECT_EQ(nlohmann::json::parse(ended.body).at("state"), "stopping");
   ASSERT_TRUE(recorder->wait(seconds(20)));
   const auto described = nlohmann::json::parse(ask("GET", "/recordings/walk").body);
   EXPECT_EQ(described.at("state"), "finished");
@@ -154,6 +158,27 @@ TEST_F(RecordingRoutes, StartDescribeStopDownload) {
   const auto list = nlohmann::json::parse(ask("GET", "/recordings/").body);
   EXPECT_EQ(list.at("recordings").at(0).at("name"), "walk");
   EXPECT_THAT(ask("GET", "/recordings/", {}, "text/turtle").body, HasSubstr("ldp:contains <walk>"));
+}
+
+TEST_F(RecordingRoutes, EndingOneWaitsForNobodyAndHalfAFileIsNotHandedOut) {
+  ASSERT_EQ(ask("POST", "/recordings/", R"({"name":"walk"})").status, 201);
+  const auto recorder = recordings_.recorder(Stream::Any);
+  std::promise<void> disk;  // a slow one: the writer stands still until it is kept
+  recorder->offer(record::FusedFrame{{}, {}, [slow = disk.get_future().share()] {
+                                       slow.wait();
+                                       return resource::FrameResource{};
+                                     }});
+  EXPECT_EQ(ask("DELETE", "/recordings/walk").status, 202);
+  const auto half = ask("GET", "/recordings/walk.mcap", {}, "*/*");
+  EXPECT_EQ(half.status, 503);
+  EXPECT_EQ(half.headers.at("retry-after"), "1");
+  EXPECT_EQ(ask("POST", "/recordings/").status, 409);
+  disk.set_value();
+  ASSERT_TRUE(recorder->wait(seconds(20)));
+  EXPECT_EQ(ask("DELETE", "/recordings/walk").status, 200) << "it has ended";
+  const auto whole = record::read_recording_bytes(ask("GET", "/recordings/walk.mcap", {}, "*/*").body);
+  ASSERT_TRUE(whole);
+  EXPECT_FALSE(whole->truncated);
 }
 
 TEST_F(RecordingRoutes, LeadNowhereElse) {
