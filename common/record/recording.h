@@ -25,6 +25,8 @@ struct Channel {
   std::string schema_name;  ///< "chorus.Frame"
   std::string schema_json;  ///< JSON Schema text; may be empty.
   std::map<std::string, std::string> metadata = {};
+
+  bool operator==(const Channel&) const = default;
 };
 
 struct Message {
@@ -90,7 +92,7 @@ struct ReadLimits {
   std::uintmax_t max_file_bytes = 4ull << 30;
   std::size_t max_chunk_bytes = 64u << 20;  ///< Uncompressed; zip bombs are refused.
   std::uintmax_t max_total_bytes =
-      4ull << 30;  ///< Memory of all messages; beyond it the file is refused.
+      4ull << 30;  ///< Memory of all it holds; beyond it the file is refused.
   /// Messages of other topics are skipped; empty: all are wanted.
   std::function<bool(std::string_view topic)> wanted = {};
 };

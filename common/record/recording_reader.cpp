@@ -23,6 +23,8 @@ using mcap::Op;
 struct Schema {
   std::string name;
   std::string json;
+
+  bool operator==(const Schema&) const = default;
 };
 
 /// What is known at some point of the file, and what was collected so far.
@@ -31,7 +33,9 @@ struct Contents {
   std::map<std::uint16_t, Channel> channels;
   std::set<std::uint16_t> skipped;  ///< Channels nobody wants.
   std::vector<Message> messages;
-  std::uintmax_t bytes = 0;  ///< Memory the messages take, tiny ones with long topics included.
+  /// Memory of the messages, tiny ones with long topics included, and of what channels and schemas
+  /// say: a small file can repeat one long schema in 65535 channels.
+  std::uintmax_t bytes = 0;
 };
 
 struct RawRecord {
@@ -54,6 +58,25 @@ std::optional<Timestamp> to_time(std::uint64_t ns) {
   return from_unix_ns(static_cast<std::int64_t>(ns));
 }
 
+std::uintmax_t size_of(const Schema& schema) { return schema.name.size() + schema.json.size(); }
+
+std::uintmax_t size_of(const Channel& channel) {
+  std::uintmax_t sum =
+      channel.topic.size() + channel.schema_name.size() + channel.schema_json.size();
+  for (const auto& [key, value] : channel.metadata) sum += key.size() + value.size();
+  return sum;
+}
+
+/// Writers repeat their definitions in every chunk; only what is new takes memory.
+template <class Definition>
+void define(std::map<std::uint16_t, Definition>& known, std::uint16_t id, Definition definition,
+            Contents& into) {
+  const auto found = known.find(id);
+  if (found != known.end() && found->second == definition) return;
+  into.bytes += sizeof(Definition) + size_of(definition);
+  known.insert_or_assign(id, std::move(definition));
+}
+
 // Each of these returns "" or what is wrong with the record.
 
 std::string read_schema(std::string_view content, Contents& into) {
@@ -65,7 +88,7 @@ std::string read_schema(std::string_view content, Contents& into) {
   if (!fields.ok()) return "a schema record is cut short";
   if (id == 0) return "a schema has the number 0";
   const std::string_view json = encoding == "jsonschema" ? text : std::string_view{};
-  into.schemas[id] = {std::string(name), std::string(json)};
+  define(into.schemas, id, Schema{std::string(name), std::string(json)}, into);
   return {};
 }
 
@@ -85,7 +108,7 @@ std::string read_channel(std::string_view content, const ReadLimits& limits, Con
   } else if (schema != 0) {
     return "channel " + channel.topic + " names a schema that is not there";
   }
-  into.channels.insert_or_assign(id, std::move(channel));
+  define(into.channels, id, std::move(channel), into);
   return {};
 }
 

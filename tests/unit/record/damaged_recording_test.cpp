@@ -121,6 +121,26 @@ TEST(DamagedRecording, ManyChunksTogetherStayBelowTheTotalLimit) {
   EXPECT_EQ(read.error().code, ErrorCode::TooLarge);
 }
 
+TEST(DamagedRecording, ChannelsAndSchemasCountTowardsTheTotalLimit) {
+  std::string schema = start_of_file();
+  schema += mcap::record(
+      Op::Schema,
+      ByteWriter().u16(1).text("s").text("jsonschema").text(std::string(10'000, 'x')).bytes());
+  const auto channel = [](std::uint16_t id) {
+    return mcap::record(Op::Channel,
+                        ByteWriter().u16(id).u16(1).text("/t").text("json").text("").bytes());
+  };
+  std::string many = schema;
+  for (std::uint16_t id = 2; id < 1000; ++id) many += channel(id);
+  std::string repeated = schema;
+  for (int i = 0; i < 1000; ++i) repeated += channel(2);
+  const ReadLimits limits{.max_total_bytes = 100'000};
+  const auto refused = read_recording_bytes(many + end_of_file(), limits);
+  ASSERT_FALSE(refused) << "45 kB that would take 10 MB";
+  EXPECT_EQ(refused.error().code, ErrorCode::TooLarge);
+  EXPECT_TRUE(read_recording_bytes(repeated + end_of_file(), limits)) << "as writers do";
+}
+
 TEST(DamagedRecording, UnknownRecordsAreSkippedSilently) {
   const std::string records = mcap::record(static_cast<Op>(0x80), "private") + message_record(1);
   const auto read =
