@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::size_t kShownLabels = 40;
 constexpr double kNanosecondsPerSecond = 1e9;
+constexpr double kLongestSeconds = 7 * 24 * 3600.0;
 
 /// What the readers agree on: one motion a person, all of one length.
 struct Captured {
@@ -133,6 +134,11 @@ Result<MotionRecording> read_motion_file(const std::filesystem::path& file, Moti
   if (!found) return pass(found);
   if (found->persons.size() > kMaxBodies)
     return fail(ErrorCode::TooLarge, file.string(), "holds more than 64 persons.");
+  const motion::Motion& first = found->persons.front();
+  if (!(static_cast<double>(first.frames.size()) / first.rate_hz <= kLongestSeconds))
+    return fail(ErrorCode::TooLarge, file.string(),
+                fmt::format("holds {} frames at {:.6g} Hz, which is more than a week.",
+                            first.frames.size(), first.rate_hz));
   MotionRecording out;
   out.recording.sensor = *sensor;
   out.recording.device = found->device;
@@ -142,7 +148,7 @@ Result<MotionRecording> read_motion_file(const std::filesystem::path& file, Moti
   out.recording.notes["joints"] =
       fmt::format("{} of our {} joints are in the file", joints_in(found->persons), kJointCount);
   out.recording.notes["time"] =
-      fmt::format("{:.6g} Hz in the file, no UTC", found->persons.front().rate_hz);
+      fmt::format("{:.6g} Hz in the file, no UTC", first.rate_hz);
   add_frames(out, *found, options);
   return out;
 }

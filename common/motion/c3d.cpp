@@ -19,7 +19,6 @@ constexpr std::uint8_t kKey = 0x50;  // second byte of every C3D file
 constexpr std::uint8_t kFirstProcessor = 84;
 constexpr std::array<std::string_view, 3> kProcessors{"Intel", "DEC", "MIPS"};
 constexpr std::size_t kMaxPoints = 4096;
-constexpr double kMaxDistance = 1e4;  // [m]; beyond it a coordinate is no coordinate
 constexpr double kMaxRateHz = 1e5;
 constexpr double kMaxWordFrames = 65535;
 

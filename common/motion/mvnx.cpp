@@ -15,7 +15,6 @@ namespace {
 constexpr std::size_t kMaxDepth = 32;
 constexpr std::size_t kMaxElementText = 1u << 20;  // a frame's positions are some 2 kB
 constexpr std::size_t kMaxPointsPerSegment = 256;
-constexpr double kMaxDistance = 1e4;  // [m]
 constexpr double kMaxRateHz = 1e4;
 
 /// Numbers of one element, in groups of `width`; none when one is no number or some are over.

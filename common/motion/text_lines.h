@@ -16,6 +16,7 @@ inline constexpr std::size_t kMaxTextBytes = 64u << 20;
 inline constexpr std::size_t kMaxSegments = 512;
 inline constexpr std::size_t kMaxFrames = 200'000;
 inline constexpr std::size_t kMaxWordsPerLine = 4096;
+inline constexpr double kMaxDistance = 1e4;  ///< [m]; beyond it a coordinate is no coordinate.
 
 class TextLines {
  public:

@@ -30,7 +30,8 @@ bool wait_on(const Clock& clock, std::stop_token stop, Timestamp until) {
   return false;
 }
 
-/// "set_origin_ns": nanoseconds; "set_origin": ISO 8601.  What importers note about a set.
+/// "set_origin_ns": nanoseconds; "set_origin": ISO 8601.  What importers note about a set; never
+/// before 1970.
 std::optional<std::int64_t> noted_ns(const record::FrameRecording& recording,
                                      const std::string& key) {
   const auto note = recording.notes.find(key);
@@ -38,9 +39,11 @@ std::optional<std::int64_t> noted_ns(const record::FrameRecording& recording,
   const std::string& text = note->second;
   std::int64_t ns = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), ns);
-  if (error == std::errc{} && end == text.data() + text.size()) return ns;
-  const auto instant = parse_iso8601(text);
-  return instant ? std::optional(to_unix_ns(*instant)) : std::nullopt;
+  if (error != std::errc{} || end != text.data() + text.size()) {
+    const auto instant = parse_iso8601(text);
+    ns = instant ? to_unix_ns(*instant) : -1;
+  }
+  return ns >= 0 ? std::optional(ns) : std::nullopt;
 }
 
 Timestamp origin_of(const record::FrameRecording& recording, const ReplayOptions& options) {

@@ -42,7 +42,13 @@ Result<ReplaySchedule> ReplaySchedule::make(std::vector<Timestamp> captured,
         ErrorCode::InvalidArgument, "origin_ns",
         "lies after the first frame of the recording; use the first capture of the whole set");
   }
-  if (timing.period > kLongestPeriod || captured.back() - timing.origin >= timing.period) {
+  // Recordings may say anything of their set: nothing below may leave 64 bits or divide by zero.
+  if (timing.origin < captured.front() - kLongestPeriod) {
+    return fail(ErrorCode::InvalidArgument, "origin_ns",
+                "lies more than a year before the recording");
+  }
+  if (timing.period <= Duration::zero() || timing.period > kLongestPeriod ||
+      captured.back() - timing.origin >= timing.period) {
     return fail(ErrorCode::InvalidArgument, "period_ns",
                 "must be longer than the recording (and shorter than a year)");
   }

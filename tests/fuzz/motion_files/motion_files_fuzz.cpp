@@ -31,7 +31,9 @@ void read_c3d(std::string_view bytes) {
 
 void read_bvh(std::string_view bytes) {
   const auto bvh = chorus::motion::parse_bvh(bytes, "fuzz");
-  if (bvh) static_cast<void>(chorus::motion::motion_from_bvh(*bvh));
+  if (!bvh) return;
+  const auto motion = chorus::motion::motion_from_bvh(*bvh);
+  if (motion) check(*motion);
 }
 
 void read_mvnx(std::string_view bytes) {

@@ -92,6 +92,29 @@ TEST(MotionFile, WrongFilesAreNamed) {
   }
 }
 
+TEST(MotionFile, NumbersThatNoMotionHasAreRefused) {
+  const ScratchFolder folder;
+  const auto take = exporters::take_of({exporters::walk()}, 30.0);
+  const auto sound = exporters::exported(take, exporters::ExportFormat::Bvh)->files[0].bytes;
+  const std::size_t time = sound.find("Frame Time:");
+  const auto slow = sound.substr(0, time) + "Frame Time: 1e300" + sound.substr(sound.find('\n', time));
+  const auto years = import_files(FileFormat::Bvh, {folder.write("years.bvh", slow)});
+  ASSERT_THAT(years, FailsWith(ErrorCode::TooLarge));
+  EXPECT_THAT(to_string(years.error()), HasSubstr("more than a week"));
+  for (const char* length : {"1e308", "1e7"}) {
+    const std::string line = std::string("OFFSET ") + length + " 0 0\n";
+    std::string far = sound;
+    for (std::size_t at = far.find("JOINT"); at != std::string::npos; at = far.find("JOINT", at)) {
+      at = far.find("OFFSET", at);
+      far.replace(at, far.find('\n', at) + 1 - at, line);
+    }
+    const auto read = import_files(FileFormat::Bvh, {folder.write("far.bvh", far)});
+    ASSERT_THAT(read, FailsWith(ErrorCode::Malformed)) << length;
+    EXPECT_THAT(to_string(read.error()), HasSubstr("farther than 10 km"));
+    EXPECT_THAT(to_string(read.error()), HasSubstr("far.bvh"));
+  }
+}
+
 TEST(MotionFile, RealSuitTakeIsARecording) {
   const auto file = shared_recordings() / "xsens_mvnx_bvh/test_mocap.mvnx";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "shared recordings are not here";

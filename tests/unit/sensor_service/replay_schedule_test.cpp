@@ -75,6 +75,9 @@ TEST(ReplaySchedule, RefusesWhatCannotBePlayed) {
   EXPECT_FALSE(ReplaySchedule::make(two, {kEpoch, kRecorded, seconds(1)}))
       << "the period is too short";
   EXPECT_FALSE(ReplaySchedule::make(one, {kEpoch, kRecorded, Duration::max()}));
+  EXPECT_FALSE(ReplaySchedule::make(one, {kEpoch, Timestamp::min(), seconds(1)}));
+  const Timestamp rounded = kRecorded + std::chrono::nanoseconds(500);
+  EXPECT_FALSE(ReplaySchedule::make(one, {kEpoch, rounded, Duration::zero()}));
   EXPECT_FALSE(ReplaySchedule::make(one, {kEpoch, kRecorded, seconds(1), 0.0}));
   EXPECT_FALSE(ReplaySchedule::make(one, {kEpoch, kRecorded, seconds(1), std::nan("")}));
 }
