@@ -106,7 +106,10 @@ Result<void> DatagramSender::Sockets::open(const udp& protocol, const DatagramOp
   if (!error) socket->set_option(net::ip::multicast::enable_loopback(true), error);
   if (!error) socket->bind(source, error);
   if (!error) return {};
-  return fail(ErrorCode::Io, "UDP port " + std::to_string(options.source_port), error.message());
+  const std::string advice =
+      error == net::error::address_in_use ? "; set source_port to another, or to 0 for any" : "";
+  return fail(ErrorCode::Io, "UDP port " + std::to_string(options.source_port),
+              error.message() + advice);
 }
 
 bool DatagramSender::Sockets::lost(std::span<const char> datagram, const udp::endpoint& target) {

@@ -69,6 +69,11 @@ void read_outputs(ConfigReader reader, OutputsConfig& out) {
     ConfigReader child = reader.child(key);
     read_common(child, output.common);
     read_settings(child, output.protocol);
+    if constexpr (requires { output.protocol.slot; }) {
+      if (output.protocol.slot >= output.common.max_persons) {
+        child.complain("slot", "must be below max_persons; nobody has this slot");
+      }
+    }
   });
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/base/rate_report.h"
 #include "common/http/asio.h"
 #include "fusion-server/publish/dtrack/dtrack_commands.h"
 
@@ -64,7 +65,8 @@ struct CommandServer::Impl {
   void read(const ConnectionPtr& connection);
   void obey(const ConnectionPtr& connection);
   void write(const ConnectionPtr& connection);
-  void turn_away(const ConnectionPtr& connection);
+  void turn_away(const ConnectionPtr& connection, std::string_view reason);
+  void refuse(std::string_view reason);
   void close(const ConnectionPtr& connection);
   void sweep();
   void stop();
@@ -75,6 +77,8 @@ struct CommandServer::Impl {
   http::Acceptor acceptor{io};
   http::Timer sweeper{io};
   http::Timer pause{io};
+  RateReport turned_away{"DTrack client turned away"};
+  RateReport accept_trouble{"DTrack accept failed"};
   std::list<ConnectionPtr> connections;  ///< Oldest first: the first one is in control.
   Device device;
   /// Cancelling does not recall a handler that is due already: it must not begin anew.
@@ -89,18 +93,22 @@ struct CommandServer::Impl {
 };
 
 Result<void> CommandServer::Impl::listen() {
+  const std::string where =
+      "command channel at " + options.address + ":" + std::to_string(options.port);
   error_code error;
   const auto address = net::ip::make_address(options.address, error);
+  if (error) {
+    return fail(ErrorCode::InvalidArgument, where,
+                "the address to listen on is a numeric one, such as 127.0.0.1 or 0.0.0.0");
+  }
   const tcp::endpoint place(address, static_cast<std::uint16_t>(options.port));
-  if (!error) acceptor.open(place.protocol(), error);
+  acceptor.open(place.protocol(), error);
   if (!error) acceptor.set_option(net::socket_base::reuse_address(true), error);
   if (!error) acceptor.bind(place, error);
   if (!error) acceptor.listen(net::socket_base::max_listen_connections, error);
   if (!error) port = acceptor.local_endpoint(error).port();
   if (!error) return {};
-  return fail(ErrorCode::Io,
-              "command channel at " + options.address + ":" + std::to_string(options.port),
-              error.message());
+  return fail(ErrorCode::Io, where, "cannot listen: " + error.message());
 }
 
 void CommandServer::Impl::accept() {
@@ -111,7 +119,8 @@ void CommandServer::Impl::accept() {
       welcome(std::move(socket));
       return accept();
     }
-    pause.expires_after(kPause);  // out of descriptors, for example
+    accept_trouble.hit(error.message());  // out of descriptors, for example
+    pause.expires_after(kPause);
     pause.async_wait([this](error_code aborted) {
       if (!aborted) accept();
     });
@@ -121,9 +130,10 @@ void CommandServer::Impl::accept() {
 void CommandServer::Impl::welcome(http::Socket socket) {
   error_code error;
   const tcp::endpoint peer = socket.remote_endpoint(error);
-  if (error || connections.size() >= static_cast<std::size_t>(options.max_connections)) {
-    ++refused;
-    return;  // closes it
+  if (error) return;  // it has left; leaving here closes the socket
+  if (connections.size() >= static_cast<std::size_t>(options.max_connections)) {
+    return refuse("there are " + std::to_string(options.max_connections) +
+                  " already, as many as outputs.dtrack.command.max_connections allows");
   }
   auto connection = std::make_shared<Connection>(std::move(socket), next_serial++);
   connection->host = peer.address().to_string();
@@ -141,7 +151,7 @@ void CommandServer::Impl::read(const ConnectionPtr& connection) {
         if (!connection->socket.is_open()) return;
         if (error) return close(connection);
         if (!connection->reader.feed({connection->incoming.data(), size})) {
-          return turn_away(connection);
+          return turn_away(connection, "a command of more than 200 bytes");
         }
         obey(connection);
       });
@@ -154,8 +164,9 @@ void CommandServer::Impl::obey(const ConnectionPtr& connection) {
   while (connection->reader.next(command)) {
     conversation.in_control = connection == connections.front();
     connection->waiting += answer(command, conversation, device);
-    if (conversation.refused > kMostRefused || connection->waiting.size() > kMostWaiting) {
-      return turn_away(connection);
+    if (conversation.refused > kMostRefused) return turn_away(connection, "it knows no command");
+    if (connection->waiting.size() > kMostWaiting) {
+      return turn_away(connection, "it does not read its answers");
     }
   }
   if (conversation.answered > answered) {
@@ -178,8 +189,13 @@ void CommandServer::Impl::write(const ConnectionPtr& connection) {
                    });
 }
 
-void CommandServer::Impl::turn_away(const ConnectionPtr& connection) {
+void CommandServer::Impl::refuse(std::string_view reason) {
   ++refused;
+  turned_away.hit(reason);
+}
+
+void CommandServer::Impl::turn_away(const ConnectionPtr& connection, std::string_view reason) {
+  refuse(reason);
   close(connection);
 }
 
@@ -199,7 +215,9 @@ void CommandServer::Impl::sweep() {
   const SteadyTime now = std::chrono::steady_clock::now();
   const std::list<ConnectionPtr> all = connections;
   for (const ConnectionPtr& connection : all) {
-    if (connection->deadline < now) turn_away(connection);
+    if (connection->deadline >= now) continue;
+    turn_away(connection, connection->conversation.answered > 0 ? "it has fallen silent"
+                                                                : "it said no command in time");
   }
   sweeper.expires_after(kSweep);
   sweeper.async_wait([this](error_code aborted) {

@@ -51,6 +51,7 @@ struct Server::Impl {
   void on_accepted(error_code failed, http::Socket socket);
   void receive_request();
   void on_request(error_code failed, std::size_t size);
+  void answer_request(const tcp::endpoint& to);
   void connect_back(const tcp::endpoint& to, const std::string& asker);
   void on_connected(error_code failed, const std::shared_ptr<Attempt>& attempt);
   void welcome(http::Socket socket, const std::string& asker);
@@ -61,6 +62,10 @@ struct Server::Impl {
   void turn_away(const std::string& reason);
   [[nodiscard]] bool full() const {
     return clients.size() + attempts.size() >= options.max_clients;
+  }
+  [[nodiscard]] std::string too_many() const {
+    return "there are " + std::to_string(options.max_clients) +
+           " already, as many as outputs.vrpn.max_clients allows";
   }
 
   struct Client {
@@ -152,7 +157,7 @@ void Server::Impl::on_accepted(error_code failed, http::Socket socket) {
     });
   }
   if (full()) {
-    turn_away("there are max_clients of them already");
+    turn_away(too_many());
   } else {
     welcome(std::move(socket), {});
   }
@@ -172,15 +177,18 @@ void Server::Impl::on_request(error_code failed, std::size_t size) {
     if (!port) {
       turn_away(port.error().message);
     } else {
-      const tcp::endpoint to(requester.address(), *port);
-      const std::string asker = text_of(to.address()) + ":" + std::to_string(*port);
-      const auto verdict = full() ? RequestGate::Verdict::Refused
-                                  : gate.ask(asker, std::chrono::steady_clock::now());
-      if (verdict == RequestGate::Verdict::Refused) turn_away("too many requests");
-      if (verdict == RequestGate::Verdict::Connect) connect_back(to, asker);
+      answer_request({requester.address(), *port});
     }
   }
   receive_request();
+}
+
+void Server::Impl::answer_request(const tcp::endpoint& to) {
+  if (full()) return turn_away(too_many());
+  const std::string asker = text_of(to.address()) + ":" + std::to_string(to.port());
+  const auto verdict = gate.ask(asker, std::chrono::steady_clock::now());
+  if (verdict == RequestGate::Verdict::Refused) turn_away("too many requests");
+  if (verdict == RequestGate::Verdict::Connect) connect_back(to, asker);
 }
 
 void Server::Impl::connect_back(const tcp::endpoint& to, const std::string& asker) {

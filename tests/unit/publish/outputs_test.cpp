@@ -1,6 +1,7 @@
 // The configuration's section "outputs": everything off by default, every mistake named.
 #include "fusion-server/publish/outputs.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "fusion-server/publish/datagram_sender.h"
@@ -11,6 +12,8 @@ namespace {
 
 using testing::FailsWith;
 using testing::IsOk;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
 Result<OutputsConfig> read(std::string_view text) {
   auto root = ConfigReader::parse(text, "test.json");
@@ -70,6 +73,40 @@ TEST(Outputs, AnUnknownHostFailsWithTheOutputsName) {
   const auto sinks = open_outputs(*config, std::make_shared<SystemClock>());
   ASSERT_FALSE(sinks);
   EXPECT_NE(sinks.error().context.find("outputs.mxtp"), std::string::npos);
+}
+
+TEST(Outputs, ASlotThatNobodyHasIsRefused) {
+  for (const char* name : {"vmc", "vrchat"}) {
+    const std::string head = std::string(R"({"outputs": {")") + name;
+    const auto bad = read(head + R"(": {"slot": 2, "max_persons": 2}}})");
+    ASSERT_FALSE(bad) << name;
+    EXPECT_NE(to_string(bad.error()).find("max_persons"), std::string::npos);
+    EXPECT_THAT(read(head + R"(": {"slot": 2, "max_persons": 3}}})"), IsOk());
+  }
+}
+
+/// What is said of a configuration that can be read but not be opened.
+std::string opening_error(std::string_view text) {
+  const auto config = read(text);
+  EXPECT_THAT(config, IsOk());
+  const auto sinks = open_outputs(*config, std::make_shared<SystemClock>());
+  EXPECT_FALSE(sinks);
+  return sinks ? "" : to_string(sinks.error());
+}
+
+TEST(Outputs, WhatCannotBeOpenedNamesWhatToChange) {
+  EXPECT_THAT(
+      opening_error(R"({"outputs": {"vrpn": {"enabled": true, "address": "localhost"}}})"),
+      AllOf(HasSubstr("outputs.vrpn"), HasSubstr("numeric")));
+  EXPECT_THAT(opening_error(
+                  R"({"outputs": {"dtrack": {"enabled": true, "source_port": 0,
+                      "command": {"enabled": true, "address": "here", "port": 0}}}})"),
+              AllOf(HasSubstr("outputs.dtrack"), HasSubstr("numeric")));
+  const auto taken = DatagramSender::open({.targets = {"127.0.0.1:9"}});
+  ASSERT_THAT(taken, IsOk());
+  EXPECT_THAT(opening_error(R"({"outputs": {"dtrack": {"enabled": true, "source_port": )" +
+                            std::to_string((*taken)->source_port()) + "}}}"),
+              AllOf(HasSubstr("outputs.dtrack"), HasSubstr("source_port")));
 }
 
 TEST(Targets, AreHostAndPort) {
