@@ -11,9 +11,8 @@
 //   of neck, head:  from the shoulders' line, turned as the joint's own orientation turns against
 //                   that of SpineShoulder (the only place where orientations are used: those of
 //                   limbs err by 50-170 degrees about the bone, those of leaves do not exist),
-//   of the limbs:   from the plane of elbow or knee once it bends (15 to 30 degrees, faded in); of
-//   a
-//                   straight limb, from the shortest turn out of T-pose relative to the trunk,
+//   of the limbs:   from the plane of elbow or knee once it bends (15 to 30 degrees, faded in);
+//                   of a straight limb, from the shortest turn out of T-pose relative to the trunk,
 //   of the hands:   from the thumb, else as the forearm,
 //   of the feet:    from the lower leg.
 // UpperChest and the shoulders follow Chest, the toes follow the foot.  A flat foot's ankle-to-foot

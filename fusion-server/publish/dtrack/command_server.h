@@ -1,7 +1,7 @@
 // The TCP end of DTrack's command channel: a thread of its own, few connections, nobody trusted.
 //
-// Turned away, logged and counted as refused: connections beyond the limit, commands over 200 bytes,
-// clients that do not read their answers (4 kB wait at most), that say nothing known for ten
+// Turned away, logged and counted as refused: connections beyond the limit, commands over 200
+// bytes, clients that do not read their answers (4 kB wait at most), that say nothing known for ten
 // seconds, that are silent for longer than `idle`, and that send 64 commands nobody knows.
 #pragma once
 

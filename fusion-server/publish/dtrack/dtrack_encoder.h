@@ -5,13 +5,13 @@
 //   6dcal <bodies>                       25 per slot
 //   6d <k> [id 1.000][sx sy sz eta theta phi][b0 .. b8] ...        only what is tracked
 //   3d 0
-//   6dj <slots> <n> [slot joints][joint 1.000][sx .. phi][b0 .. b8] ...   human models, if asked
-//   for
+//   6dj <slots> <n> [slot joints][joint 1.000][sx .. phi][b0 .. b8] ...   human models, on demand
+//
 // Lines end with CR LF.  Millimetres, degrees; right-handed, +z up in a "normal" room, +y up in a
-// "powerwall" one.  The matrix is written column by column; R = Rx(eta) Ry(theta) Rz(phi).  Body id
-// = 25 * slot + joint. The 6dj joints are those of A.R.T.'s own Unreal plugin; their rotations are
-// the rig's of humanoid.h, so a person in T-pose who looks along the normal room's +y has unit
-// matrices.
+// "powerwall" one.  The matrix is written column by column; R = Rx(eta) Ry(theta) Rz(phi).
+// Body id = 25 * slot + joint.  The 6dj joints are those of A.R.T.'s own Unreal plugin; their
+// rotations are the rig's of humanoid.h, so a person in T-pose who looks along the normal room's +y
+// has unit matrices.
 #pragma once
 
 #include <string>

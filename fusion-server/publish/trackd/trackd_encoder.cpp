@@ -76,20 +76,23 @@ std::vector<char> controller_block() {
 }
 
 void write_sensors(const TrackerFrame& frame, LengthUnit unit, std::span<char> block) {
-  const std::size_t sensors = sensors_in(block);
-  for (std::size_t i = 0; i < sensors; ++i) {
-    put(block, kHeaderBytes + i * kSensorBytes + kCalibrated, std::array{std::int32_t{0}});
-  }
+  // Readers look at any time: a sensor that stays tracked must not be without calibration between.
+  std::vector<bool> tracked(sensors_in(block));
   const auto number = static_cast<std::int32_t>(frame.sequence & 0x7FFF'FFFFU);
   for (const TrackerBody& body : frame.bodies) {
     for (std::size_t i = 0; i < kJointCount; ++i) {
       const std::size_t sensor = kJointCount * body.slot + kSensorOf[i];
-      if (!body.joints[i].tracked || sensor >= sensors) continue;
+      if (!body.joints[i].tracked || sensor >= tracked.size()) continue;
       const std::size_t at = kHeaderBytes + sensor * kSensorBytes;
       put(block, at, pose_of(body.joints[i], unit));
       put(block, at + kPoseBytes, seconds_and_microseconds(frame.instant));
       put(block, at + kCalibrated, std::array{std::int32_t{1}, number});
+      tracked[sensor] = true;
     }
+  }
+  for (std::size_t i = 0; i < tracked.size(); ++i) {
+    if (tracked[i]) continue;
+    put(block, kHeaderBytes + i * kSensorBytes + kCalibrated, std::array{std::int32_t{0}});
   }
 }
 

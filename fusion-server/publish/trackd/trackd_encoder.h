@@ -2,10 +2,10 @@
 //
 // Native byte order, 4-byte packed.  Layout as VR Juggler's and CalVR's readers have it:
 //   tracker     28 bytes: u32 version 1, count, offset 28, size 40, time s, time us, command
-//   per sensor  40 bytes: f32 x y z, azimuth elevation roll [deg]; u32 time s, us; i32 calibrated,
-//   frame controller  32 bytes: u32 version 1, button offset, valuator offset, counts, time s, us,
-//   command;
-//               then i32 buttons, f32 valuators (all zero: bodies have no buttons)
+//   sensor      40 bytes: f32 x y z, azimuth elevation roll [deg]; u32 time s, us;
+//               i32 calibrated, frame
+//   controller  32 bytes: u32 version 1, button offset, valuator offset, counts, time s, us,
+//               command; then i32 buttons, f32 valuators (all zero: bodies have no buttons)
 // Right-handed, +y up, R = Ry(azimuth) Rx(elevation) Rz(roll); feet by CAVELib's habit.
 // Sensor 25 * slot + n: n = 0 the head, 1 the right hand (the wand), 2 the left hand, then all
 // other joints in our order.  A sensor nobody sees keeps its pose, is not calibrated, and stands

@@ -10,10 +10,10 @@
 namespace chorus::publish {
 namespace {
 
-using testing::FailsWith;
-using testing::IsOk;
 using ::testing::AllOf;
+using testing::FailsWith;
 using ::testing::HasSubstr;
+using testing::IsOk;
 
 Result<OutputsConfig> read(std::string_view text) {
   auto root = ConfigReader::parse(text, "test.json");
@@ -95,9 +95,8 @@ std::string opening_error(std::string_view text) {
 }
 
 TEST(Outputs, WhatCannotBeOpenedNamesWhatToChange) {
-  EXPECT_THAT(
-      opening_error(R"({"outputs": {"vrpn": {"enabled": true, "address": "localhost"}}})"),
-      AllOf(HasSubstr("outputs.vrpn"), HasSubstr("numeric")));
+  EXPECT_THAT(opening_error(R"({"outputs": {"vrpn": {"enabled": true, "address": "localhost"}}})"),
+              AllOf(HasSubstr("outputs.vrpn"), HasSubstr("numeric")));
   EXPECT_THAT(opening_error(
                   R"({"outputs": {"dtrack": {"enabled": true, "source_port": 0,
                       "command": {"enabled": true, "address": "here", "port": 0}}}})"),

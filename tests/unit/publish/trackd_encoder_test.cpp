@@ -1,8 +1,14 @@
 // trackd's blocks read back at the offsets that other people's readers use.
 #include "fusion-server/publish/trackd/trackd_encoder.h"
 
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
 #include <cstring>
 #include <set>
+#include <span>
 
 #include <gtest/gtest.h>
 
@@ -136,6 +142,47 @@ TEST(Trackd, WhoIsLostKeepsThePoseAndIsNotCalibrated) {
   EXPECT_EQ(after.calibrated, 0);
   EXPECT_EQ(after.x, before.x);
   EXPECT_EQ(after.frame, before.frame);
+}
+
+/// A block that another process reads, as trackd's readers do.
+struct SharedBlock {
+  explicit SharedBlock(const std::vector<char>& content)
+      : size(content.size()),
+        place(::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) {
+    std::memcpy(place, content.data(), size);
+  }
+  ~SharedBlock() { ::munmap(place, size); }
+  [[nodiscard]] std::span<char> bytes() const { return {static_cast<char*>(place), size}; }
+  std::size_t size;
+  void* place;
+};
+
+TEST(Trackd, WhoStaysTrackedIsCalibratedAllTheTime) {
+  const SharedBlock block(tracker_block(150));
+  TrackerFrame frame;
+  for (std::size_t slot = 0; slot < 6; ++slot) {
+    TrackerBody body;
+    for (TrackerJoint& joint : body.joints) joint.tracked = true;
+    body.slot = slot;
+    frame.bodies.push_back(body);
+  }
+  write_sensors(frame, LengthUnit::Feet, block.bytes());
+  const pid_t reader = ::fork();
+  ASSERT_GE(reader, 0);
+  if (reader == 0) {
+    const auto* last = reinterpret_cast<const Sensor*>(block.bytes().data() + 28) + 149;
+    const volatile std::int32_t& calibrated = last->calibrated;
+    const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(300);
+    bool always = true;
+    while (std::chrono::steady_clock::now() < until) {
+      for (int i = 0; i < 1000; ++i) always = always && calibrated == 1;
+    }
+    ::_exit(always ? 0 : 1);
+  }
+  int status = 0;
+  while (::waitpid(reader, &status, WNOHANG) == 0)
+    write_sensors(frame, LengthUnit::Feet, block.bytes());
+  EXPECT_EQ(status, 0);
 }
 
 TEST(Trackd, SlotsBeyondTheBlockAreLeftOut) {
