@@ -119,6 +119,30 @@ TEST(WebSocket, ABadHandshakeIsRefusedAndClosed) {
   EXPECT_TRUE(open_sockets(service.server, 0));
 }
 
+/// A masked frame of up to 64 kB whose first byte is ours to choose.
+std::string frame_of(int first_byte, const std::string& payload) {
+  constexpr std::size_t kLongest = 125;  // in the short form, which is then the only one allowed
+  std::string frame(1, static_cast<char>(first_byte));
+  if (payload.size() <= kLongest) {
+    frame += static_cast<char>(0x80 | payload.size());
+  } else {
+    frame += {static_cast<char>(0x80 | 126), static_cast<char>(payload.size() >> 8 & 0xFF),
+              static_cast<char>(payload.size() & 0xFF)};
+  }
+  return frame + std::string(4, '\0') + payload;  // a mask of zeros
+}
+
+constexpr int kText = 0x81;
+constexpr int kFirstFragment = 0x01;
+constexpr int kNextFragment = 0x00;
+
+std::string many_fragments() {
+  const std::string piece(100, 'x');
+  std::string flood = frame_of(kFirstFragment, piece);
+  for (int i = 0; i < 60; ++i) flood += frame_of(kNextFragment, piece);
+  return flood;
+}
+
 class HostileFrames : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(HostileFrames, EndTheConnectionAndNothingElse) {
@@ -139,6 +163,13 @@ INSTANTIATE_TEST_SUITE_P(
                       std::string("\xF3\x80\x01\x02\x03\x04", 6),  // reserved bits
                       std::string("\x83\x80\x01\x02\x03\x04", 6),  // unknown opcode
                       masked(0x8, "x"),                            // close of one byte
+                      masked(0x8, "\x03\xE8\xFF"),                 // its reason is no UTF-8
+                      masked(0x1, "\xC3\x28"),                     // nor is this text
+                      frame_of(kText, std::string(4097, 'x')),     // more than a client may say
+                      many_fragments(),                            // nor in pieces
+                      masked(0x0, "x"),                            // continues nothing
+                      std::string("\x09\x80\x01\x02\x03\x04", 6),  // a ping in fragments
+                      frame_of(0x89, std::string(126, 'x')),       // a ping of more than 125 bytes
                       std::string("GET / HTTP/1.1\r\n\r\n")));
 
 TEST(WebSocket, AReaderThatStallsIsClosedAndOthersGoOn) {
@@ -157,6 +188,57 @@ TEST(WebSocket, AReaderThatStallsIsClosedAndOthersGoOn) {
   for (int n = 0; n < 20; ++n) service.frame->publish(large(n));
   EXPECT_TRUE(open_sockets(service.server, 0));
   EXPECT_EQ(service.ask("/frames/1").status, 200);
+}
+
+TEST(WebSocket, WhoPingsAndNeverReadsIsClosedAndOthersGoOn) {
+  ServerConfig config;
+  config.limits.write_timeout = std::chrono::seconds(1);
+  config.limits.idle_timeout = std::chrono::seconds(2);
+  TestServer service(config);
+  RawClient deaf(service.server.port(), 4096);
+  deaf.say(hello());
+  ASSERT_TRUE(open_sockets(service.server, 1));
+  std::string flood;
+  for (int i = 0; i < 1000; ++i) flood += masked(0x9, std::string(100, 'p'));
+  std::thread saying([&] {
+    while (deaf.say(flood)) {
+    }
+  });
+  EXPECT_TRUE(open_sockets(service.server, 0));
+  saying.join();
+  EXPECT_EQ(service.ask("/frames/1").status, 200);
+}
+
+TEST(WebSocket, FragmentsWithoutAnEndAndWithoutBytesCostNobodyElse) {
+  TestServer service;
+  service.frame->publish(frame_document(1));
+  RawClient empty(service.server.port());
+  empty.say(hello());
+  ASSERT_TRUE(open_sockets(service.server, 1));
+  std::string flood = frame_of(kFirstFragment, "");
+  for (int i = 0; i < 20'000; ++i) flood += frame_of(kNextFragment, "");
+  empty.say(flood);
+  EXPECT_EQ(service.ask("/frames/1").status, 200);
+  service.frame->publish(frame_document(2));
+  EXPECT_THAT(empty.hear_until(R"({"n":2})"), HasSubstr(R"({"n":2})"));
+}
+
+TEST(WebSocket, WhatComesRightBehindTheHandshakeIsRead) {
+  TestServer service;
+  RawClient hasty(service.server.port());
+  hasty.say(hello() + masked(0x9, "soon"));
+  EXPECT_THAT(hasty.hear_until("\x8A\x04soon"), HasSubstr("\x8A\x04soon"));
+}
+
+TEST(WebSocket, WhoDoesNotAnswerACloseIsHungUpOn) {
+  TestServer service;
+  RawClient client(service.server.port());
+  client.say(hello());
+  ASSERT_TRUE(open_sockets(service.server, 1));
+  client.say(masked(0x8, std::string("\x03\xE8", 2)));  // and stays
+  EXPECT_TRUE(open_sockets(service.server, 0));
+  (void)client.hear_all();
+  EXPECT_TRUE(client.ended());
 }
 
 TEST(WebSocket, AStoppingServerSaysGoodbye) {
