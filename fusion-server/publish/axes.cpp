@@ -71,6 +71,10 @@ const Eigen::Quaterniond& natnet_rest() {
   return kHalfTurnAboutUp;
 }
 
+Eigen::Quaterniond from_xsens_rest(const Eigen::Quaterniond& world_from_bone) {
+  return world_from_bone * Eigen::Quaterniond(0.0, 0.0, 1.0, 0.0);  // half a turn about +y
+}
+
 // R = Rx(a) Ry(b) Rz(c): R02 = sin b, R12 = -sin a cos b, R22 = cos a cos b, R01 = -cos b sin c,
 // R00 = cos b cos c.
 Eigen::Vector3d dtrack_angles(const Eigen::Matrix3d& r) {

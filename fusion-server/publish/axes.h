@@ -37,6 +37,9 @@ struct Axes {
 [[nodiscard]] const Axes& unity_axes();
 /// Xsens MXTP: right-handed, +z up, metres: (z, x, y), so a body that faces +z looks along +x.
 [[nodiscard]] const Axes& xsens_axes();
+/// The same turn counted from Xsens' rest, which looks along our +z; the rig of humanoid.h rests
+/// looking along -z.
+[[nodiscard]] Eigen::Quaterniond from_xsens_rest(const Eigen::Quaterniond& world_from_bone);
 
 /// NatNet, as Motive streams it by default: right-handed, +y up, metres.
 [[nodiscard]] const Axes& natnet_axes();

@@ -8,46 +8,46 @@
 #include "common/body/bones.h"
 #include "fusion-server/publish/axes.h"
 #include "fusion-server/publish/big_endian.h"
+#include "fusion-server/publish/humanoid.h"
 
 namespace chorus::publish::mxtp {
 namespace {
 
-/// A segment's origin: `share` of the way from one joint to another; its rotation is that of
-/// `turns`.
+/// A segment's origin: `share` of the way from one joint to another; it turns as a bone of the rig.
 struct Segment {
   JointId from;
   JointId to;
   double share;
-  JointId turns;
+  HumanBone turns;
 };
 
 using enum JointId;
 
 // Order and meaning of the ids 1..23: wire-formats, Xsens MVN real-time network streaming.
 constexpr std::array<Segment, kSegments> kTable{{
-    {SpineBase, SpineBase, 0.0, SpineBase},              // Pelvis
-    {SpineBase, SpineMid, 1.0 / 3.0, SpineBase},         // L5
-    {SpineBase, SpineMid, 2.0 / 3.0, SpineMid},          // L3
-    {SpineMid, SpineMid, 0.0, SpineMid},                 // T12
-    {SpineMid, SpineShoulder, 0.5, SpineShoulder},       // T8
-    {SpineShoulder, Neck, 0.5, Neck},                    // Neck
-    {Neck, Neck, 0.0, Head},                             // Head: its origin is the top of the neck
-    {SpineShoulder, ShoulderRight, 0.3, ShoulderRight},  // RightShoulder
-    {ShoulderRight, ShoulderRight, 0.0, ElbowRight},     // RightUpperArm
-    {ElbowRight, ElbowRight, 0.0, WristRight},           // RightForearm
-    {WristRight, WristRight, 0.0, HandRight},            // RightHand
-    {SpineShoulder, ShoulderLeft, 0.3, ShoulderLeft},    // LeftShoulder
-    {ShoulderLeft, ShoulderLeft, 0.0, ElbowLeft},        // LeftUpperArm
-    {ElbowLeft, ElbowLeft, 0.0, WristLeft},              // LeftForearm
-    {WristLeft, WristLeft, 0.0, HandLeft},               // LeftHand
-    {HipRight, HipRight, 0.0, KneeRight},                // RightUpperLeg
-    {KneeRight, KneeRight, 0.0, AnkleRight},             // RightLowerLeg
-    {AnkleRight, AnkleRight, 0.0, FootRight},            // RightFoot
-    {FootRight, FootRight, 0.0, FootRight},              // RightToe
-    {HipLeft, HipLeft, 0.0, KneeLeft},                   // LeftUpperLeg
-    {KneeLeft, KneeLeft, 0.0, AnkleLeft},                // LeftLowerLeg
-    {AnkleLeft, AnkleLeft, 0.0, FootLeft},               // LeftFoot
-    {FootLeft, FootLeft, 0.0, FootLeft},                 // LeftToe
+    {SpineBase, SpineBase, 0.0, HumanBone::Hips},           // Pelvis
+    {SpineBase, SpineMid, 1.0 / 3.0, HumanBone::Spine},     // L5
+    {SpineBase, SpineMid, 2.0 / 3.0, HumanBone::Spine},     // L3
+    {SpineMid, SpineMid, 0.0, HumanBone::Chest},            // T12
+    {SpineMid, SpineShoulder, 0.5, HumanBone::UpperChest},  // T8
+    {SpineShoulder, Neck, 0.5, HumanBone::Neck},            // Neck
+    {Neck, Neck, 0.0, HumanBone::Head},  // Head: its origin is the top of the neck
+    {SpineShoulder, ShoulderRight, 0.3, HumanBone::RightShoulder},  // RightShoulder
+    {ShoulderRight, ShoulderRight, 0.0, HumanBone::RightUpperArm},  // RightUpperArm
+    {ElbowRight, ElbowRight, 0.0, HumanBone::RightLowerArm},        // RightForearm
+    {WristRight, WristRight, 0.0, HumanBone::RightHand},            // RightHand
+    {SpineShoulder, ShoulderLeft, 0.3, HumanBone::LeftShoulder},    // LeftShoulder
+    {ShoulderLeft, ShoulderLeft, 0.0, HumanBone::LeftUpperArm},     // LeftUpperArm
+    {ElbowLeft, ElbowLeft, 0.0, HumanBone::LeftLowerArm},           // LeftForearm
+    {WristLeft, WristLeft, 0.0, HumanBone::LeftHand},               // LeftHand
+    {HipRight, HipRight, 0.0, HumanBone::RightUpperLeg},            // RightUpperLeg
+    {KneeRight, KneeRight, 0.0, HumanBone::RightLowerLeg},          // RightLowerLeg
+    {AnkleRight, AnkleRight, 0.0, HumanBone::RightFoot},            // RightFoot
+    {FootRight, FootRight, 0.0, HumanBone::RightToes},              // RightToe
+    {HipLeft, HipLeft, 0.0, HumanBone::LeftUpperLeg},               // LeftUpperLeg
+    {KneeLeft, KneeLeft, 0.0, HumanBone::LeftLowerLeg},             // LeftLowerLeg
+    {AnkleLeft, AnkleLeft, 0.0, HumanBone::LeftFoot},               // LeftFoot
+    {FootLeft, FootLeft, 0.0, HumanBone::LeftToes},                 // LeftToe
 }};
 
 constexpr std::string_view kMagic = "MXTP02";
@@ -92,7 +92,8 @@ void add_header(Bytes& out, const TrackerFrame& frame, const TrackerBody& body) 
 }  // namespace
 
 std::vector<char> encode(const TrackerFrame& frame, const TrackerBody& body) {
-  if (!body[SpineBase].tracked || !body[Head].tracked) return {};
+  const Humanoid rig = humanoid_of(body);
+  if (!rig[HumanBone::Hips].known || !body[Head].tracked) return {};
   Bytes out;
   out.reserve(kDatagramBytes);
   add_header(out, frame, body);
@@ -101,7 +102,8 @@ std::vector<char> encode(const TrackerFrame& frame, const TrackerBody& body) {
     const Eigen::Vector3d x_in_world = (1.0 - segment.share) * shown(body, segment.from).position +
                                        segment.share * shown(body, segment.to).position;
     const Eigen::Vector3d p = xsens_axes().position(x_in_world);
-    const Eigen::Quaterniond q = xsens_axes().quaternion(shown(body, segment.turns).orientation);
+    const Eigen::Quaterniond q =
+        xsens_axes().quaternion(from_xsens_rest(rig[segment.turns].world_from_bone));
     append_big_endian(out, ++id);
     for (const double value : {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()})
       add_real(out, value);

@@ -2,8 +2,9 @@
 //
 // Big-endian, metres, right-handed, +z up, x forward.  760 bytes per body; the character id is the
 // slot.  Segments that no joint of ours stands for lie on the line between those that do: L5, L3
-// and T12 along the spine (tests/golden/mxtp shows them).  A segment's rotation is relative to the
-// body facing +x in T-pose, as far as the joints' own orientations say.
+// and T8 along the spine, shoulders beside it.  Rotations are the rig's of humanoid.h, as MVN's
+// are: a person in T-pose who looks along +x, our +z, has identities only; a segment whose joints
+// are not tracked turns with its parent.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,8 @@ namespace chorus::publish::mxtp {
 inline constexpr std::size_t kSegments = 23;
 inline constexpr std::size_t kDatagramBytes = 24 + 32 * kSegments;
 
-/// One datagram of exactly kDatagramBytes; empty when the pelvis or the head is not tracked.
+/// One datagram of exactly kDatagramBytes; empty when the pelvis or the head is not tracked, or
+/// nothing says where the body faces.
 [[nodiscard]] std::vector<char> encode(const TrackerFrame& frame, const TrackerBody& body);
 
 }  // namespace chorus::publish::mxtp

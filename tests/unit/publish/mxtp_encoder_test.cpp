@@ -10,11 +10,12 @@
 #include "common/geometry/rotation.h"
 #include "tests/support/builders.h"
 #include "tests/support/matchers.h"
+#include "tests/unit/publish/rig_poses.h"
 
 namespace chorus::publish::mxtp {
 namespace {
 
-using testing::VectorNear;
+using chorus::testing::VectorNear;
 
 struct Read {
   explicit Read(const std::vector<char>& bytes) : b(bytes) {}
@@ -55,7 +56,7 @@ TrackerFrame frame_of(const Skeleton<WorldSpace>& skeleton) {
 constexpr std::uint32_t kPelvis = 1, kL5 = 2, kRightHand = 11, kLeftHand = 15, kToe = 23;
 
 TEST(Mxtp, HeaderSaysWhatFollows) {
-  const TrackerFrame frame = frame_of(testing::standing_person({0, 0, 0}));
+  const TrackerFrame frame = frame_of(chorus::testing::standing_person({0, 0, 0}));
   const auto bytes = encode(frame, frame.bodies.at(0));
   ASSERT_EQ(bytes.size(), 760u);
   const Read read(bytes);
@@ -71,7 +72,7 @@ TEST(Mxtp, HeaderSaysWhatFollows) {
 }
 
 TEST(Mxtp, PlacesAreZUpAndXForward) {
-  Skeleton<WorldSpace> body = testing::standing_person({0, 0, 0});
+  Skeleton<WorldSpace> body = chorus::testing::standing_person({0, 0, 0});
   body[JointId::SpineBase].position = {1, 2, 3};
   body[JointId::SpineMid].position = {1, 2.3, 3};
   body[JointId::HandRight].position = {9, 9, 9};
@@ -86,19 +87,50 @@ TEST(Mxtp, PlacesAreZUpAndXForward) {
   EXPECT_THAT(read.place(kLeftHand), VectorNear(Eigen::Vector3d(9, 7, 8), 1e-5));
 }
 
+/// One datagram of a pose that looks along our +z, Xsens' +x.
+std::vector<char> facing_x(TrackerBody body, double yaw_degrees = 0) {
+  publish::testing::move(body, {0, 0, 0}, 180 + yaw_degrees);
+  return encode({}, body);
+}
+
+TEST(Mxtp, ATPoseThatLooksAlongXHasIdentitiesOnly) {
+  const auto bytes = facing_x(publish::testing::t_pose());
+  ASSERT_EQ(bytes.size(), 760u);
+  for (std::uint32_t id = 1; id <= 23; ++id) {
+    EXPECT_LT(angular_distance(Read(bytes).turn(id), Eigen::Quaterniond::Identity()), 1e-3) << id;
+  }
+  EXPECT_GT(Read(bytes).place(kLeftHand).y(), 0.5) << "the left is at +y";
+}
+
 TEST(Mxtp, AYawIsATurnAboutZ) {
-  Skeleton<WorldSpace> body = testing::standing_person({0, 0, 0});
-  body[JointId::SpineBase].orientation = about_y(deg(30));
-  const TrackerFrame frame = frame_of(body);
-  const auto bytes = encode(frame, frame.bodies.at(0));
+  const auto bytes = facing_x(publish::testing::t_pose(), 30);
   const Eigen::Quaterniond expected(Eigen::AngleAxisd(deg(30), Eigen::Vector3d::UnitZ()));
-  EXPECT_LT(angular_distance(Read(bytes).turn(kPelvis), expected), 1e-5);
+  for (const std::uint32_t id : {kPelvis, kRightHand, kToe})
+    EXPECT_LT(angular_distance(Read(bytes).turn(id), expected), 1e-3) << id;
+}
+
+TEST(Mxtp, ALoweredArmAndARaisedLegTurnTheirSegmentsAlone) {
+  using enum JointId;
+  TrackerBody body = publish::testing::t_pose();
+  publish::testing::turn(body, publish::testing::kLeftArm, ShoulderLeft,
+                         publish::testing::about_z(80));
+  publish::testing::turn(body, {KneeLeft, AnkleLeft, FootLeft}, HipLeft,
+                         publish::testing::about_x(40));
+  const auto bytes = facing_x(body);
+  // The left arm falls from +y towards -z; the leg swings from -z towards +x.
+  const Eigen::Quaterniond lowered(Eigen::AngleAxisd(deg(-80), Eigen::Vector3d::UnitX()));
+  const Eigen::Quaterniond raised(Eigen::AngleAxisd(deg(-40), Eigen::Vector3d::UnitY()));
+  constexpr std::uint32_t kLeftUpperArm = 13, kRightUpperArm = 9, kLeftUpperLeg = 20;
+  EXPECT_LT(angular_distance(Read(bytes).turn(kLeftUpperArm), lowered), 1e-3);
+  EXPECT_LT(angular_distance(Read(bytes).turn(kLeftUpperLeg), raised), 1e-3);
+  for (const std::uint32_t id : {kPelvis, kRightUpperArm})
+    EXPECT_LT(angular_distance(Read(bytes).turn(id), Eigen::Quaterniond::Identity()), 1e-3) << id;
 }
 
 TEST(Mxtp, AnUnseenLimbHangsAtItsParentAndNothingIsNotANumber) {
-  Skeleton<WorldSpace> body = testing::standing_person({0, 0, 0});
+  Skeleton<WorldSpace> body = chorus::testing::standing_person({0, 0, 0});
   body[JointId::AnkleLeft].position = {1, 0.1, 2};
-  testing::hide(body[JointId::FootLeft]);
+  chorus::testing::hide(body[JointId::FootLeft]);
   body[JointId::FootLeft].position.setConstant(std::nan(""));
   const TrackerFrame frame = frame_of(body);
   const auto bytes = encode(frame, frame.bodies.at(0));
@@ -107,8 +139,8 @@ TEST(Mxtp, AnUnseenLimbHangsAtItsParentAndNothingIsNotANumber) {
 
 TEST(Mxtp, ABodyWithoutPelvisOrHeadIsNotSent) {
   for (const JointId missing : {JointId::SpineBase, JointId::Head}) {
-    Skeleton<WorldSpace> body = testing::standing_person({0, 0, 0});
-    testing::hide(body[missing]);
+    Skeleton<WorldSpace> body = chorus::testing::standing_person({0, 0, 0});
+    chorus::testing::hide(body[missing]);
     const TrackerFrame frame = frame_of(body);
     EXPECT_TRUE(encode(frame, frame.bodies.at(0)).empty());
   }
