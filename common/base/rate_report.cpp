@@ -14,16 +14,17 @@ RateReport::RateReport(std::string event, log::Level level)
 
 RateReport::~RateReport() {
   const std::lock_guard lock(mutex_);
-  if (total_ != reported_) write_line({});
+  if (total_ != reported_) write_line();
 }
 
 void RateReport::hit(std::string_view detail) {
   const auto now = std::chrono::steady_clock::now();
   const std::lock_guard lock(mutex_);
   ++total_;
+  detail_ = detail;
   if (reported_ != 0 && now - last_line_ < kLineInterval) return;
   last_line_ = now;
-  write_line(detail);
+  write_line();
 }
 
 std::uint64_t RateReport::total() const {
@@ -32,13 +33,13 @@ std::uint64_t RateReport::total() const {
 }
 
 /// Called with the lock held: lines of one event keep their order.
-void RateReport::write_line(std::string_view detail) {
+void RateReport::write_line() {
   const std::uint64_t count = total_ - reported_;
   reported_ = total_;
-  if (detail.empty()) {
+  if (detail_.empty()) {
     log::event(level_, event_, {{"count", count}, {"total", total_}});
   } else {
-    log::event(level_, event_, {{"count", count}, {"total", total_}, {"detail", detail}});
+    log::event(level_, event_, {{"count", count}, {"total", total_}, {"detail", detail_}});
   }
 }
 

@@ -1,8 +1,9 @@
 // Counts events that repeat and lets one line a second through per event.
 //
 // Thread-safe.  `RateReport dropped("frame dropped"); dropped.hit("queue full");` logs the first
-// hit at once and then at most one summary line a second with the count since the last line.  What
-// is still unreported when it is destroyed is reported then, so no event goes uncounted.
+// hit at once and then at most one summary line a second, written by the hit that finds it due,
+// with the count since the last line.  What is still unreported when it is destroyed is reported
+// then, with the detail of the last hit, so no event goes uncounted.
 #pragma once
 
 #include <chrono>
@@ -29,13 +30,14 @@ class RateReport {
   [[nodiscard]] std::uint64_t total() const;
 
  private:
-  void write_line(std::string_view detail);
+  void write_line();
 
   const std::string event_;
   const log::Level level_;
   mutable std::mutex mutex_;
   std::uint64_t total_ = 0;
   std::uint64_t reported_ = 0;
+  std::string detail_;  ///< Of the last hit.
   std::chrono::steady_clock::time_point last_line_{};
 };
 

@@ -52,6 +52,16 @@ TEST(RateReport, ManyHitsGiveFewLinesAndEveryHitIsCountedOnce) {
   EXPECT_LE(lines.count, 2u + static_cast<std::size_t>(whole_seconds.count()));
 }
 
+TEST(RateReport, WhatIsLeftAtTheEndIsSaidWithTheLastReason) {
+  ::testing::internal::CaptureStderr();
+  {
+    RateReport dropped("frame dropped");
+    for (const char* reason : {"queue full", "too old", "malformed"}) dropped.hit(reason);
+  }
+  const std::string text = ::testing::internal::GetCapturedStderr();
+  EXPECT_NE(text.find("frame dropped count=2 total=3 detail=malformed"), std::string::npos) << text;
+}
+
 TEST(RateReport, CountsFromManyThreads) {
   constexpr int kThreads = 4;
   constexpr int kHits = 2'000;
