@@ -46,6 +46,20 @@ class RawClient {
     return true;
   }
 
+  /// As much as the other side takes at once, waiting for it to take anything; 0: it did not.
+  std::size_t say_some(std::string_view bytes, std::chrono::milliseconds time) {
+    pollfd ready{socket_, POLLOUT, 0};
+    if (::poll(&ready, 1, static_cast<int>(time.count())) <= 0) return 0;
+    const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    return sent > 0 ? static_cast<std::size_t>(sent) : 0;
+  }
+
+  /// What comes next; empty at the end of input or when the time is over.
+  std::string hear_some(std::chrono::milliseconds time) {
+    receive(std::chrono::steady_clock::now() + time);
+    return std::exchange(heard_, {});
+  }
+
   /// Reads until `text` has come, the end of input, or the time is over; returns everything unread.
   std::string hear_until(std::string_view text,
                          std::chrono::milliseconds time = std::chrono::seconds(10)) {

@@ -118,6 +118,47 @@ TEST_F(HostileVrpn, AClientThatPingsAndNeverReadsIsClosed) {
   EXPECT_TRUE(good_is_served());
 }
 
+/// Bytes that the server takes from a client that does not read, until it has taken none for a
+/// second or has taken `most`.
+std::size_t bytes_taken(http::test::RawClient& client, std::string_view repeated,
+                        std::size_t most) {
+  std::size_t taken = 0;
+  std::size_t begun = 0;  // Where in `repeated` the next piece begins.
+  while (taken < most) {
+    const std::size_t said = client.say_some(repeated.substr(begun), std::chrono::seconds(1));
+    if (said == 0) break;
+    taken += said;
+    begun = (begun + said) % repeated.size();
+  }
+  return taken;
+}
+
+class PatientVrpn : public test::VrpnRig {};
+
+// Closing the client is the stall limit's work, reading no more from it is kMostAnswers': with an
+// hour of patience only the second keeps its answers from growing without end.
+TEST_F(PatientVrpn, FromAClientThatPingsAndNeverReadsNoMoreIsRead) {
+  constexpr std::size_t kMost = 32U << 20U;  // The system's own buffers take less than half of it.
+  ServerOptions options;
+  options.limits.stall = std::chrono::hours(1);
+  serve(options);
+  RawClient deaf(server->port(), 4096);
+  ASSERT_TRUE(deaf.say(vrpn_cookie() + vrpn_description(-1, 0, "Body5") +
+                       vrpn_description(-2, 0, "vrpn_Base ping_message")));
+  std::string pings;
+  for (int i = 0; i < 1000; ++i) pings += vrpn_message(0, 0, "");
+  EXPECT_LT(bytes_taken(deaf, pings, kMost), kMost);
+  EXPECT_EQ(server->counters().clients, 1u);
+  // Its answers begin to be read, so it is heard again.
+  std::size_t heard = 0;
+  while (deaf.say_some(pings.substr(0, 24), std::chrono::milliseconds(0)) == 0 && heard < kMost) {
+    const std::size_t more = deaf.hear_some(std::chrono::seconds(10)).size();
+    ASSERT_GT(more, 0u);
+    heard += more;
+  }
+  EXPECT_GT(heard, 0u);
+}
+
 TEST_F(HostileVrpn, TenThousandRequestsMakeFewConnections) {
   const int asking = ::socket(AF_INET, SOCK_DGRAM, 0);
   sockaddr_in address{};
