@@ -3,25 +3,10 @@
 #include <thread>
 #include <utility>
 
+#include "common/http/event_loop.h"
 #include "common/http/server_core.h"
 
 namespace chorus::http {
-namespace {
-
-/// Until there is no more work.  Handlers catch what they can name; whatever else is thrown (no
-/// memory) costs the one connection it happened on, not the service.
-void run(net::io_context& io) {
-  while (true) {
-    try {
-      io.run();
-      return;
-    } catch (const std::exception& thrown) {
-      log::error("server handler failed", {{"what", thrown.what()}});
-    }
-  }
-}
-
-}  // namespace
 
 struct Server::Impl {
   std::shared_ptr<ServerCore> core;
@@ -44,7 +29,8 @@ Result<void> Server::start() {
   impl_->core->subscribe();
   impl_->core->accept();
   impl_->core->sweep();
-  impl_->thread = std::thread([core = impl_->core] { run(core->io); });
+  impl_->thread =
+      std::thread([core = impl_->core] { run_events(core->io, "server handler failed"); });
   return {};
 }
 

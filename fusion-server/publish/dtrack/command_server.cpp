@@ -11,6 +11,7 @@
 #include "common/base/log.h"
 #include "common/base/rate_report.h"
 #include "common/http/asio.h"
+#include "common/http/event_loop.h"
 #include "fusion-server/publish/dtrack/dtrack_commands.h"
 
 namespace chorus::publish::dtrack {
@@ -41,18 +42,6 @@ struct Connection {
   SteadyTime deadline;
 };
 using ConnectionPtr = std::shared_ptr<Connection>;
-
-/// Whatever a handler throws (no memory) costs what it was doing, not the program.
-void run(net::io_context& io) {
-  while (true) {
-    try {
-      io.run();
-      return;
-    } catch (const std::exception& thrown) {
-      log::error("command channel failed", {{"what", thrown.what()}});
-    }
-  }
-}
 
 }  // namespace
 
@@ -258,7 +247,7 @@ Result<std::unique_ptr<CommandServer>> CommandServer::start(const CommandServerO
   if (auto ok = impl.listen(); !ok) return pass(ok);
   impl.accept();
   impl.sweep();
-  impl.thread = std::thread([&impl] { run(impl.io); });
+  impl.thread = std::thread([&impl] { http::run_events(impl.io, "command channel failed"); });
   return server;
 }
 

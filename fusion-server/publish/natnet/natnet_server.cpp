@@ -7,9 +7,9 @@
 #include <thread>
 #include <utility>
 
-#include "common/base/log.h"
 #include "common/base/rate_report.h"
 #include "common/http/asio.h"
+#include "common/http/event_loop.h"
 #include "common/time/clock.h"
 
 namespace chorus::publish::natnet {
@@ -103,17 +103,10 @@ error_code Server::Impl::open_group(const net::ip::address_v4& interface) {
   return error;
 }
 
-/// Whatever is thrown (no memory) costs the one event it happened on, not the output.
 void Server::Impl::run() {
-  while (true) {
-    try {
-      if (!receiving) receive();
-      io.run();
-      return;
-    } catch (const std::exception& thrown) {
-      log::error("NatNet handler failed", {{"what", thrown.what()}});
-    }
-  }
+  http::run_events(io, "NatNet handler failed", [this] {
+    if (!receiving) receive();
+  });
 }
 
 void Server::Impl::receive() {

@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "common/base/log.h"
+#include "common/http/event_loop.h"
 
 namespace chorus::publish::vrpn {
 namespace {
@@ -46,7 +46,6 @@ struct Server::Impl {
 
   Result<void> bind(std::uint16_t port);
   Result<void> listen();
-  void run();
   void accept();
   void on_accepted(error_code failed, http::Socket socket);
   void receive_request();
@@ -123,18 +122,6 @@ Result<void> Server::Impl::listen() {
   Result<void> bound = bind(options.port);
   for (int i = 1; options.port == 0 && !bound && i < kPortAttempts; ++i) bound = bind(0);
   return bound;
-}
-
-/// Whatever is thrown (no memory) costs the one event it happened on, not the output.
-void Server::Impl::run() {
-  while (true) {
-    try {
-      io.run();
-      return;
-    } catch (const std::exception& thrown) {
-      log::error("VRPN handler failed", {{"what", thrown.what()}});
-    }
-  }
 }
 
 void Server::Impl::turn_away(const std::string& reason) {
@@ -289,7 +276,7 @@ Result<void> Server::start() {
   s.accept();
   s.receive_request();
   s.sweep();
-  s.thread = std::thread([&s] { s.run(); });
+  s.thread = std::thread([&s] { http::run_events(s.io, "VRPN handler failed"); });
   return {};
 }
 

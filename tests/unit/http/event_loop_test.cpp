@@ -1,0 +1,33 @@
+#include "common/http/event_loop.h"
+
+#include <new>
+
+#include <gtest/gtest.h>
+
+namespace chorus::http {
+namespace {
+
+TEST(RunEvents, WhatAHandlerThrowsIsLoggedAndTheOthersStillRun) {
+  net::io_context io{1};
+  int ran = 0;
+  net::post(io, [] { throw std::bad_alloc(); });
+  net::post(io, [&ran] { ++ran; });
+  ::testing::internal::CaptureStderr();
+  run_events(io, "a server's handler failed");
+  const std::string said = ::testing::internal::GetCapturedStderr();
+  EXPECT_EQ(ran, 1);
+  EXPECT_NE(said.find("a server's handler failed what="), std::string::npos) << said;
+}
+
+TEST(RunEvents, WhatMustBeUnderWayIsStartedAgain) {
+  net::io_context io{1};
+  int prepared = 0;
+  net::post(io, [] { throw std::bad_alloc(); });
+  ::testing::internal::CaptureStderr();
+  run_events(io, "failed", [&prepared] { ++prepared; });
+  (void)::testing::internal::GetCapturedStderr();
+  EXPECT_EQ(prepared, 2);
+}
+
+}  // namespace
+}  // namespace chorus::http
