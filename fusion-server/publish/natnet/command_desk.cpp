@@ -9,6 +9,8 @@ namespace {
 
 constexpr std::size_t kRateFrames = 31;
 constexpr std::string_view kUnknown = "nobody knows this request";
+constexpr std::string_view kTooMany =
+    "there are as many clients already as outputs.natnet.max_clients allows";
 
 /// Requests with one answer; a text that ends in a comma stands for all that begin with it.
 struct Known {
@@ -38,7 +40,7 @@ Reply CommandDesk::answer(std::span<const char> datagram, const Address& from, c
   const auto request = read_request(datagram);
   if (!request) return {{}, "malformed"};
   if (is_an_answer(request->message)) return {{}, "an answer to nothing we asked"};
-  if (!admit(*request, from, now.steady)) return {{}, "there are max_clients of them already"};
+  if (!admit(*request, from, now.steady)) return {{}, kTooMany};
   Reply reply = reply_to(*request, now);
   if (!allowed(reply.bytes.size(), now.steady)) return {{}, "too much is asked of us"};
   return reply;

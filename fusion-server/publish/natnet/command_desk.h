@@ -2,10 +2,11 @@
 //
 // Clients are those that connected or keep alive (in multicast, where connecting only asks for the
 // server's settings, those that keep alive).  They are few, known by address and port, and
-// forgotten when nothing is heard of them for `client_timeout`. Anybody can write in anybody's
-// name, and answers are larger than requests: all answers together get `bytes_per_second`, so that
-// we are of little use against others.  What a server says is never answered, so two servers cannot
-// be made to talk to each other.
+// forgotten when nothing is heard of them for `client_timeout`.
+// Anybody can write in anybody's name, and the protocol has no means to tell.  Answers are larger
+// than requests: all together get `bytes_per_second`.  Frames are not limited so: one datagram
+// turns them on the host it names for `client_timeout`, on at most `max_clients` ports.  What a
+// server says is never answered, so two servers cannot be made to talk to each other.
 #pragma once
 
 #include <chrono>

@@ -28,7 +28,7 @@ void add_vector(Bytes& out, const Eigen::Vector3d& v) {
   for (const double c : {v.x(), v.y(), v.z()}) append(out, static_cast<float>(c));
 }
 
-/// `pose` is a MotiveBone or what has its members.
+/// A rigid body of the frame, or a bone: the same layout.
 void add_pose(Bytes& out, std::int32_t id, const MotiveBone& pose) {
   const Axes& axes = natnet_axes();
   append(out, id);

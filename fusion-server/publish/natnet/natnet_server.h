@@ -13,8 +13,8 @@
 namespace chorus::publish::natnet {
 
 struct ServerOptions {
-  std::string address =
-      "127.0.0.1";  ///< Numeric IPv4: where we listen and what the group goes out by.
+  /// Numeric IPv4: where we listen and what the group goes out by.
+  std::string address = "127.0.0.1";
   std::uint16_t command_port = 1510;  ///< 0: any.
   int multicast_hops = 1;
   DeskOptions desk;  ///< `info` says where frames go.
