@@ -8,6 +8,7 @@
 
 #include "common/resource/frame_resource.h"
 #include "fusion-server/publish/dtrack/dtrack_encoder.h"
+#include "fusion-server/publish/mxtp/mxtp_encoder.h"
 #include "fusion-server/publish/natnet/natnet_encoder.h"
 #include "fusion-server/publish/natnet/natnet_messages.h"
 #include "fusion-server/publish/trackd/trackd_encoder.h"
@@ -78,6 +79,13 @@ TEST(GoldenOutputs, Vmc) {
 
 TEST(GoldenOutputs, VrChat) {
   expect_golden("fused.vrchat", with_sizes(vrchat::encode(golden_frame().bodies.at(1))));
+}
+
+TEST(GoldenOutputs, Mxtp) {
+  const TrackerFrame frame = golden_frame();
+  std::vector<std::vector<char>> datagrams;
+  for (const TrackerBody& body : frame.bodies) datagrams.push_back(mxtp::encode(frame, body));
+  expect_golden("fused.mxtp", with_sizes(datagrams));
 }
 
 TEST(GoldenOutputs, Trackd) {

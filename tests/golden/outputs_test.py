@@ -7,6 +7,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests/support"))
+import mxtp_reader as mxtp  # noqa: E402
 import natnet_reader as natnet  # noqa: E402
 from output_readers import (JOINT_OF_BONE, JOINTS, dtrack_bodies, dtrack_lines, matrix_of, orientation, osc_messages,  # noqa: E402
                             trackd_matrix, trackd_sensors, vmc_bone_places)
@@ -72,6 +73,26 @@ class Golden(unittest.TestCase):
             for angle in messages[f"/tracking/trackers/{number}/rotation"]:
                 self.assertLessEqual(abs(angle), 180)
         self.assertNotIn("/tracking/trackers/8/position", messages)  # the right elbow is not tracked
+
+    def test_mxtp(self):
+        found = [mxtp.read(datagram) for datagram in datagrams("fused.mxtp")]
+        self.assertEqual([body.character for body in found], [0, 1])
+        for body, joints in zip(found, BODIES):
+            self.assertEqual(body.sample, FRAME["sequence"])
+            self.assertEqual(body.time_ms, int(FRAME["capturedNanoseconds"]) // 10**6 % 2**32)
+            compared = 0
+            for name, joint in mxtp.JOINT_OF_SEGMENT.items():
+                if "x" in joints[joint]:
+                    self.assert_near(body.segments[name].place, mxtp.place(joints[joint]), 1e-5, name)
+            for what, got, expected in mxtp.directions(body.segments, joints):
+                self.assert_near(got, expected, 1e-5, what)
+                compared += 1
+            self.assertGreaterEqual(compared, 15)
+        # What is not tracked hangs at its parent and turns with it: shoulder 0.3 of the way to where it would be.
+        left = found[0].segments
+        self.assertEqual(left["LeftUpperArm"].turned, left["LeftShoulder"].turned)
+        self.assertEqual(left["LeftShoulder"].turned, left["T12"].turned)
+        self.assert_near(left["LeftUpperArm"].place, mxtp.place(BODIES[0]["SpineShoulder"]), 1e-5, "LeftUpperArm")
 
     def test_trackd(self):
         sensors = trackd_sensors((GOLDEN / "fused.trackd").read_bytes())

@@ -1,4 +1,4 @@
-"""Simulated sensors, a real chorus-fusion, and what leaves it: DTrack, VMC, VRChat and trackd carry the poses of GET /frame."""
+"""Simulated sensors, a real chorus-fusion, and what leaves it: DTrack, MXTP02, VMC, VRChat and trackd carry the poses of GET /frame."""
 import ctypes
 import json
 import shutil
@@ -12,6 +12,7 @@ import uuid
 from rig import ROOT, Rig, free_port, get, get_json, wait_for
 
 sys.path.insert(0, str(ROOT / "tests/support"))
+import mxtp_reader as mxtp  # noqa: E402
 from output_readers import (JOINT_OF_BONE, JOINTS, dtrack_bodies, dtrack_lines, matrix_of, orientation, osc_messages,  # noqa: E402
                             trackd_matrix, trackd_sensors, vmc_bone_places)
 
@@ -116,6 +117,29 @@ class Outputs(Rig):
                 joint = joints[JOINT_OF_BONE[bone]]
                 self.assert_near(place, [joint[key] for key in "xyz"], PRINTED, bone)
         return True
+
+    def test_mxtp_carries_the_poses_of_frame(self):
+        receiving = receiver(self)
+        fusion = self.tracker(**{"outputs.mxtp.enabled": "true", "outputs.mxtp.targets": target(receiving)})
+        checked = 0
+        for _ in range(MOST):
+            body = mxtp.read(receiving.recv(65536))
+            if get(fusion.url + f"frames/{body.sample}")[0] != 200:
+                continue  # not kept any more
+            self.check_mxtp(self.joints_of(fusion, body.sample), body)
+            checked += 1
+            if checked == ENOUGH:
+                return
+        self.fail(f"only {checked} frames of MXTP02 to compare")
+
+    def check_mxtp(self, joints, body):
+        self.assertEqual(body.character, 0)
+        for name, joint in mxtp.JOINT_OF_SEGMENT.items():
+            if "x" in joints[joint]:
+                self.assert_near(body.segments[name].place, mxtp.place(joints[joint]), PRINTED, name)
+        for what, got, expected in mxtp.directions(body.segments, joints):
+            # Four decimals of short bones: a hand of 15 cm to a thousandth; a plane of two bones less well.
+            self.assert_near(got, expected, 1e-2, what)
 
     def test_trackd_is_there_while_the_server_runs(self):
         key = 0x44000000 + (uuid.uuid4().int & 0xFFFFF) * 2
