@@ -124,9 +124,10 @@ class Outputs(Rig):
         checked = 0
         for _ in range(MOST):
             body = mxtp.read(receiving.recv(65536))
-            if get(fusion.url + f"frames/{body.sample}")[0] != 200:
+            sequence = self.full_sequence(fusion, body.sample, 32)
+            if get(fusion.url + f"frames/{sequence}")[0] != 200:
                 continue  # not kept any more
-            self.check_mxtp(self.joints_of(fusion, body.sample), body)
+            self.check_mxtp(self.joints_of(fusion, sequence), body)
             checked += 1
             if checked == ENOUGH:
                 return
