@@ -25,7 +25,8 @@ class Walker {
 
   /// All 25 joints, tracked, world space.
   [[nodiscard]] Skeleton<WorldSpace> at(Duration since_epoch) const;
-  [[nodiscard]] const Path& path() const noexcept { return path_; }
+  [[nodiscard]] const Path& path() const& noexcept { return path_; }
+  const Path& path() && = delete;  // it would not outlive the walker
 
  private:
   double body_scale_;

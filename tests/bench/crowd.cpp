@@ -58,8 +58,8 @@ synthetic::Person placed(const WalkerScript& script, const Placing& placing) {
 }
 
 double heading_of_line(const WalkerScript& script) {
-  const synthetic::Path& path = synthetic::Walker(script).path();
-  const Eigen::Vector2d from = path.at(Duration{0}).place;
+  const synthetic::Walker walker(script);
+  const Eigen::Vector2d from = walker.path().at(Duration{0}).place;
   return std::atan2(-from.x(), -from.y());  // a line begins at its far end
 }
 
@@ -72,7 +72,8 @@ std::vector<synthetic::Person> crossing_people(std::size_t count, std::uint64_t 
   for (std::size_t i = 0; i < 2 * pairs; ++i) {
     WalkerScript script = script_of(seed, i / 2, PathKind::Line);  // both of a pair keep step
     script.reach = kReach;
-    const double loop = seconds(synthetic::Walker(script).path().loop());
+    const synthetic::Walker walker(script);
+    const double loop = seconds(walker.path().loop());
     const auto pair = static_cast<double>(i / 2);
     const auto pair_count = static_cast<double>(pairs);
     Placing placing;
