@@ -13,8 +13,8 @@ import urllib.request
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests/system/demo"))
-from demo_ports import free_ports  # noqa: E402
+sys.path.insert(0, str(ROOT / "tests/support"))
+from ports import free_ports  # noqa: E402
 
 SENSORS = 6
 TRACKS_WITHIN_S = 60

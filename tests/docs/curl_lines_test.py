@@ -13,8 +13,8 @@ import urllib.request
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests/system/demo"))
-from demo_ports import free_ports, is_listening  # noqa: E402
+sys.path.insert(0, str(ROOT / "tests/support"))
+from ports import free_ports, is_listening  # noqa: E402
 
 BIN = Path(os.environ["CHORUS_BIN"])
 DOCUMENTED_FUSION_PORT = 8080

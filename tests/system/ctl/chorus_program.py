@@ -2,8 +2,10 @@
 
 import os
 import subprocess
+import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "support"))
 BIN = Path(os.environ.get("CHORUS_BIN", "build/dev/bin"))
 CAMERAS = "tests/data/pose2sim_mediapipe"
 

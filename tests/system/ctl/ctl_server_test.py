@@ -2,7 +2,6 @@
 real chorus-sensor processes."""
 
 import json
-import os
 import signal
 import socket
 import subprocess
@@ -15,6 +14,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 from chorus_program import BIN, CAMERAS, chorus
+from ports import free_ports
 
 PLACE = {"x": 1.0, "y": 1.5, "z": 0.0, "qx": 0, "qy": 0, "qz": 0, "qw": 1, "error": 0.012, "chain": ["s1", "s2"]}
 
@@ -146,22 +146,6 @@ class Server(unittest.TestCase):
         code, _, error = chorus("status", "--url", f"http://127.0.0.1:{port}/")
         self.assertEqual(code, 1)
         self.assertIn("is chorus-fusion running there?", error)
-
-
-def free_ports(count):
-    """The first of `count` neighbouring free ports."""
-    for first in range(20000 + os.getpid() % 20000, 60000, count):
-        sockets = [socket.socket() for _ in range(count)]
-        try:
-            for i, each in enumerate(sockets):
-                each.bind(("127.0.0.1", first + i))
-            return first
-        except OSError:
-            continue
-        finally:
-            for each in sockets:
-                each.close()
-    raise unittest.SkipTest("no free ports")
 
 
 def frame_at(url):

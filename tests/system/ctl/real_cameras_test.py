@@ -12,7 +12,8 @@ import unittest
 from pathlib import Path
 
 from chorus_program import BIN, CAMERAS, chorus
-from ctl_server_test import eventually, frame_at, free_ports
+from ctl_server_test import eventually, frame_at
+from ports import free_ports
 
 NAMES = [f"cam0{i}" for i in range(1, 5)]
 FRAMES, RATE_HZ = 100, 60

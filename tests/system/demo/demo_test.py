@@ -9,8 +9,8 @@ import time
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent))
-from demo_ports import free_ports, is_listening  # noqa: E402
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "support"))
+from ports import free_ports, is_listening  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[3]
 BIN = Path(os.environ["CHORUS_BIN"])

@@ -4,8 +4,8 @@ import json
 import os
 import pathlib
 import signal
-import socket
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -15,13 +15,10 @@ import urllib.request
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 BIN = pathlib.Path(os.environ.get("CHORUS_BIN", ROOT / "build/dev/bin"))
+sys.path.insert(0, str(ROOT / "tests/support"))
+from ports import free_port  # noqa: E402
+
 PATIENCE = 40.0  # seconds; a ceiling for loaded machines, nothing is expected to take it
-
-
-def free_port():
-    with socket.socket() as s:
-        s.bind(("127.0.0.1", 0))
-        return s.getsockname()[1]
 
 
 def get(url, accept="application/json", headers=None, timeout=10.0):

@@ -9,8 +9,9 @@ import time
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-sys.path.insert(0, str(ROOT / "tests/system/fusion"))
-from rig import BIN, Rig, free_port, get, get_json, send, wait_for  # noqa: E402
+sys.path[:0] = [str(ROOT / "tests/system/fusion"), str(ROOT / "tests/support")]
+from ports import free_ports  # noqa: E402
+from rig import BIN, Rig, get, get_json, send, wait_for  # noqa: E402
 
 SENSORS = 3
 
@@ -84,7 +85,7 @@ class Cell(Rig):
         self.assertEqual(again.returncode, 1, "a file that exists is never overwritten")
 
         self.assertEqual(self.fuse(self.at / "mine.mcap", "a.mcap"), self.fuse(self.at / "mine.mcap", "b.mcap"))
-        first = free_port()
+        first = free_ports(SENSORS)
         replay = subprocess.Popen([BIN / "chorus", "replay", self.at / "mine.mcap", "--port", str(first)], cwd=ROOT,
                                   stdout=subprocess.PIPE, text=True)
         try:
