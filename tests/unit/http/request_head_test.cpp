@@ -55,6 +55,7 @@ TEST(RequestHead, KeepAliveByVersionAndConnection) {
   EXPECT_TRUE(kept("1.1", "Connection: upgrade\r\n"));
   EXPECT_FALSE(kept("1.1", "Connection: TE, Close\r\n"));
   EXPECT_FALSE(kept("1.1", "Connection: keep-alive\r\nConnection: close\r\n"));
+  EXPECT_FALSE(kept("1.0", "Connection: close, keep-alive\r\n"));  // RFC 9112 9.3
   EXPECT_FALSE(kept("1.0", ""));
   EXPECT_TRUE(kept("1.0", "Connection: Keep-Alive\r\n"));
 }
