@@ -62,7 +62,6 @@ class DatagramReceiver {
              sizeof address);
   }
 
- private:
   static sockaddr_in loopback(std::uint16_t port) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
@@ -71,12 +70,31 @@ class DatagramReceiver {
     return address;
   }
 
+ private:
   int socket_;
   std::uint16_t port_ = 0;
   std::uint16_t sender_port_ = 0;
 };
 
-/// A port that nobody has now.
-[[nodiscard]] inline std::uint16_t free_udp_port() { return DatagramReceiver().port(); }
+/// A port that nobody has now, below those that the kernel gives to others; never the same twice.
+[[nodiscard]] inline std::uint16_t free_port() {
+  constexpr int kFirst = 10'000;
+  constexpr int kCount = 6'000;  // tests in Python take the ones behind
+  static int offset = ::getpid() * 64 % kCount;
+  const auto is_free = [](int kind, std::uint16_t port) {
+    const int probe = ::socket(AF_INET, kind, 0);
+    const sockaddr_in address = DatagramReceiver::loopback(port);
+    const bool bound =
+        ::bind(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+    ::close(probe);
+    return bound;
+  };
+  for (int tried = 0; tried < kCount; ++tried) {
+    offset = (offset + 1) % kCount;
+    const auto port = static_cast<std::uint16_t>(kFirst + offset);
+    if (is_free(SOCK_STREAM, port) && is_free(SOCK_DGRAM, port)) return port;
+  }
+  return 0;
+}
 
 }  // namespace chorus::publish::testing

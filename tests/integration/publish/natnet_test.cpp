@@ -237,7 +237,7 @@ TEST(NatNetOutput, ServesWhatFusionMadeUnderItsConfiguration) {
   OutputsConfig config;
   config.natnet.common.enabled = true;
   config.natnet.common.max_persons = 2;
-  config.natnet.protocol.command_port = publish::testing::free_udp_port();
+  config.natnet.protocol.command_port = publish::testing::free_port();
   auto sinks = open_outputs(config, std::make_shared<SystemClock>());
   ASSERT_THAT(sinks, IsOk());
   ASSERT_EQ(sinks->size(), 1u);

@@ -40,7 +40,7 @@ OutputsConfig dtrack_to(const std::vector<std::string>& targets) {
   OutputsConfig config;
   config.dtrack.common.enabled = true;
   config.dtrack.protocol.targets = targets;
-  config.dtrack.protocol.source_port = testing::free_udp_port();
+  config.dtrack.protocol.source_port = testing::free_port();
   return config;
 }
 
@@ -93,7 +93,7 @@ TEST(DtrackOutput, SendsToTheClientInControlAtThePortItOpened) {
     settings.commands = true;
     settings.send_to_client = allowed;
     // Port 0 would hide which one it is.
-    settings.command.port = testing::free_udp_port();
+    settings.command.port = testing::free_port();
     const auto sink = sink_of(config);
     ASSERT_TRUE(sink);
     RawClient commands(static_cast<std::uint16_t>(settings.command.port));

@@ -13,6 +13,7 @@ from rig import ROOT, Rig, get, get_json, wait_for
 sys.path.insert(0, str(ROOT / "tests/support"))
 import natnet_reader as natnet  # noqa: E402
 from output_readers import matrix_of, orientation  # noqa: E402
+from ports import free_port  # noqa: E402
 
 SENSORS = 3
 PRINTED = 1e-4  # metres; /frame has four decimals
@@ -27,12 +28,6 @@ def udp_socket(test):
     s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 22)
     s.settimeout(20)
     return s
-
-
-def free_udp_port():
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
-        s.bind(("127.0.0.1", 0))
-        return s.getsockname()[1]
 
 
 class Client:
@@ -62,7 +57,7 @@ class Client:
 class NatNet(Rig):
     def tracker(self, **settings):
         sensors = {f"s{i + 1}": self.sensor(i, SENSORS).url for i in range(SENSORS)}
-        self.port = free_udp_port()
+        self.port = free_port()
         fusion = self.fusion(sensors, **{"registration.file": self.given_ring(SENSORS), "outputs.natnet.enabled": "true",
                                          "outputs.natnet.command_port": self.port, **settings})
         wait_for("somebody", lambda: get_json(fusion.url + "frame")["bodies"])
@@ -156,7 +151,7 @@ class NatNet(Rig):
                 stranger.sendto(natnet.request(CONNECT), ("127.0.0.1", self.port))
 
     def test_the_group_gets_the_same(self):
-        member, data_port = udp_socket(self), free_udp_port()
+        member, data_port = udp_socket(self), free_port()
         member.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         member.bind(("", data_port))
         try:

@@ -17,8 +17,10 @@ namespace {
 using record::RecordingState;
 using Stream = Recordings::Stream;
 using std::chrono::seconds;
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::Pair;
 
 RecordingsOptions options_in(const std::string& folder) {
   RecordingsOptions options;
@@ -141,8 +143,10 @@ TEST_F(RecordingRoutes, StartDescribeStopDownload) {
   for (int i = 0; i < 30; ++i) recordings_.recorder(Stream::Raw)->offer(raw(i));
   const auto recorder = recordings_.recorder(Stream::Any);
   const auto ended = ask("DELETE", "/recordings/walk");
-  EXPECT_EQ(ended.status, 202);
-  EXPECT_EQ(nlohmann::json::parse(ended.body).at("state"), "stopping");
+  // Whether the writer is done by now is its affair; the answer says which.
+  EXPECT_THAT(
+      (std::pair(ended.status, nlohmann::json::parse(ended.body).at("state").get<std::string>())),
+      AnyOf(Pair(202, "stopping"), Pair(200, "finished")));
   ASSERT_TRUE(recorder->wait(seconds(20)));
   const auto described = nlohmann::json::parse(ask("GET", "/recordings/walk").body);
   EXPECT_EQ(described.at("state"), "finished");
@@ -176,7 +180,8 @@ TEST_F(RecordingRoutes, EndingOneWaitsForNobodyAndHalfAFileIsNotHandedOut) {
   disk.set_value();
   ASSERT_TRUE(recorder->wait(seconds(20)));
   EXPECT_EQ(ask("DELETE", "/recordings/walk").status, 200) << "it has ended";
-  const auto whole = record::read_recording_bytes(ask("GET", "/recordings/walk.mcap", {}, "*/*").body);
+  const auto whole =
+      record::read_recording_bytes(ask("GET", "/recordings/walk.mcap", {}, "*/*").body);
   ASSERT_TRUE(whole);
   EXPECT_FALSE(whole->truncated);
 }
