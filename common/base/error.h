@@ -1,7 +1,8 @@
 // Why something expected did not happen.
 //
-// An Error says what (code), where (context: a URI, a config key path, a joint, a file and line) and what
-// to change (message, a full sentence for a person).  HTTP status is a total function of the code.
+// An Error says what (code), where (context: a URI, a config key path, a joint, a file and line)
+// and what to change (message, a full sentence for a person).  HTTP status is a total function of
+// the code.
 #pragma once
 
 #include <string>
@@ -10,7 +11,8 @@
 namespace chorus {
 
 enum class ErrorCode {
-  InvalidArgument,  ///< The caller's value is wrong; the message says which and what would be right.
+  InvalidArgument,  ///< The caller's value is wrong; the message says which and what would be
+                    ///< right.
   Malformed,        ///< Bytes that do not follow their format.
   TooLarge,         ///< A stated limit was exceeded.
   NotFound,

@@ -12,7 +12,8 @@
 
 namespace chorus {
 
-/// Names one sensor: 1-64 characters of [A-Za-z0-9_-], safe in a URI, a file name and a metric label.
+/// Names one sensor: 1-64 characters of [A-Za-z0-9_-], safe in a URI, a file name and a metric
+/// label.
 class SensorId {
  public:
   SensorId() = default;

@@ -38,7 +38,7 @@ inline constexpr std::size_t kJointCount = 25;
 enum class JointState : std::uint8_t { NotTracked, Inferred, Tracked };
 
 struct Joint {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();               ///< [m]
   Eigen::Quaterniond orientation = Eigen::Quaterniond(0, 0, 0, 0);  ///< All zero: not given.
   JointState state = JointState::NotTracked;
 

@@ -1,7 +1,6 @@
 // What a service measures of itself, written for Prometheus (text format 0.0.4).
 //
-// Counters end in _total, names carry their unit; never a label per body or client (linked-data
-// C4).
+// Counters end in _total, names carry their unit; never a label per body or client.
 #pragma once
 
 #include <atomic>

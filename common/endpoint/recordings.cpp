@@ -297,13 +297,13 @@ void Recordings::add_routes(http::Router& router) {
   });
   router.action(http::Method::Post, "/recordings/",
                 [this](const Request& request, const PathParams&) { return post(request); });
-  router.action(http::Method::Delete, "/recordings/{name}",
-                [this](const Request&, const PathParams& path) -> Result<http::ActionResult> {
-                  const auto report = stop(path.at("name"));
-                  if (!report) return pass(report);
-                  return http::ActionResult{is_running(*report) ? kAccepted : kOk,
-                                            description(*report), {}};
-                });
+  router.action(
+      http::Method::Delete, "/recordings/{name}",
+      [this](const Request&, const PathParams& path) -> Result<http::ActionResult> {
+        const auto report = stop(path.at("name"));
+        if (!report) return pass(report);
+        return http::ActionResult{is_running(*report) ? kAccepted : kOk, description(*report), {}};
+      });
 }
 
 std::string Recordings::metrics_text() const {

@@ -64,8 +64,8 @@ class Recordings {
   [[nodiscard]] std::shared_ptr<record::Recorder> recorder(Stream stream) const;
 
   [[nodiscard]] Result<record::RecordingReport> start(const RecordingRequest& request);
-  /// Has it ended, without waiting for that (state `stopping`); harmless when it has ended.  NotFound
-  /// when there is none of this name.
+  /// Has it ended, without waiting for that (state `stopping`); harmless when it has ended.
+  /// NotFound when there is none of this name.
   [[nodiscard]] Result<record::RecordingReport> stop(std::string_view name);
 
   /// chorus_recording_*, Prometheus text.

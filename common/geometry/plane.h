@@ -24,8 +24,8 @@ struct Plane {
 /// regression plane); the normal is turned so that it has positive y.
 [[nodiscard]] Result<Plane> fit_plane(std::span<const Eigen::Vector3d> points);
 
-/// The rotation and height that make the plane y = 0: levelled_from_sensor.  Takes the shortest turn of
-/// the normal onto +y, so yaw is kept as it is.
+/// The rotation and height that make the plane y = 0: levelled_from_sensor.  Takes the shortest
+/// turn of the normal onto +y, so yaw is kept as it is.
 [[nodiscard]] Eigen::Isometry3d level(const Plane& floor_in_sensor);
 
 }  // namespace chorus

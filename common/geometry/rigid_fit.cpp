@@ -13,7 +13,8 @@ struct Centred {
   Eigen::Vector3d source = Eigen::Vector3d::Zero();
   Eigen::Vector3d target = Eigen::Vector3d::Zero();
   double weight = 0.0;
-  Eigen::Matrix3d cross = Eigen::Matrix3d::Zero();  ///< sum w (target)(source)^T about the centroids
+  Eigen::Matrix3d cross =
+      Eigen::Matrix3d::Zero();  ///< sum w (target)(source)^T about the centroids
 };
 
 double weight_at(std::span<const double> weights, std::size_t i) {
@@ -29,7 +30,8 @@ Result<Centred> centre(std::span<const Eigen::Vector3d> source,
   for (std::size_t i = 0; i < source.size(); ++i) {
     const double w = weight_at(weights, i);
     if (!(w >= 0)) {
-      return fail(ErrorCode::InvalidArgument, "rigid fit", "weights must be finite and not negative");
+      return fail(ErrorCode::InvalidArgument, "rigid fit",
+                  "weights must be finite and not negative");
     }
     sum.source += w * source[i];
     sum.target += w * target[i];
@@ -42,8 +44,8 @@ Result<Centred> centre(std::span<const Eigen::Vector3d> source,
   sum.source /= sum.weight;
   sum.target /= sum.weight;
   for (std::size_t i = 0; i < source.size(); ++i) {
-    sum.cross += weight_at(weights, i) * (target[i] - sum.target) *
-                 (source[i] - sum.source).transpose();
+    sum.cross +=
+        weight_at(weights, i) * (target[i] - sum.target) * (source[i] - sum.source).transpose();
   }
   return sum;
 }
@@ -56,7 +58,8 @@ RigidFit finish(const Eigen::Matrix3d& rotation, const Centred& at,
   fit.target_from_source.translation() = at.target - rotation * at.source;
   double squares = 0.0;
   for (std::size_t i = 0; i < source.size(); ++i) {
-    squares += weight_at(weights, i) * (target[i] - fit.target_from_source * source[i]).squaredNorm();
+    squares +=
+        weight_at(weights, i) * (target[i] - fit.target_from_source * source[i]).squaredNorm();
   }
   fit.rms = std::sqrt(squares / at.weight);
   return fit;
@@ -69,8 +72,7 @@ Result<RigidFit> fit_rigid(std::span<const Eigen::Vector3d> source,
                            std::span<const double> weights) {
   const Result<Centred> at = centre(source, target, weights);
   if (!at) return pass(at);
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(at->cross,
-                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(at->cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Vector3d spread = svd.singularValues();
   if (source.size() < 3 || !(spread.y() > 1e-9 * spread.x())) {
     return fail(ErrorCode::InvalidArgument, "rigid fit",
@@ -78,8 +80,7 @@ Result<RigidFit> fit_rigid(std::span<const Eigen::Vector3d> source,
   }
   Eigen::Vector3d sign = Eigen::Vector3d::Ones();
   if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) sign.z() = -1.0;
-  const Eigen::Matrix3d rotation =
-      svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+  const Eigen::Matrix3d rotation = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
   return finish(rotation, *at, source, target, weights);
 }
 
@@ -90,8 +91,7 @@ Result<RigidFit> fit_yaw(std::span<const Eigen::Vector3d> source,
   const double cosine = at->cross(0, 0) + at->cross(2, 2);
   const double sine = at->cross(0, 2) - at->cross(2, 0);
   if (std::hypot(cosine, sine) < 1e-12) {
-    return fail(ErrorCode::InvalidArgument, "yaw fit",
-                "needs two pairs that differ horizontally");
+    return fail(ErrorCode::InvalidArgument, "yaw fit", "needs two pairs that differ horizontally");
   }
   const Eigen::Matrix3d rotation = about_y(std::atan2(sine, cosine)).toRotationMatrix();
   return finish(rotation, *at, source, target, weights);

@@ -14,8 +14,8 @@ struct RigidFit {
   double rms = 0.0;  ///< Weighted root mean square residual [m].
 };
 
-/// Minimises sum w |target - target_from_source * source|^2 over rotation and translation.  Needs three
-/// pairs that are not on one line; weights must be finite and >= 0 (empty: all one).
+/// Minimises sum w |target - target_from_source * source|^2 over rotation and translation.  Needs
+/// three pairs that are not on one line; weights must be finite and >= 0 (empty: all one).
 [[nodiscard]] Result<RigidFit> fit_rigid(std::span<const Eigen::Vector3d> source,
                                          std::span<const Eigen::Vector3d> target,
                                          std::span<const double> weights = {});

@@ -12,7 +12,8 @@ namespace chorus {
 /// Unit quaternion nearest to q; identity when q is zero or not finite.
 [[nodiscard]] Eigen::Quaterniond normalised_or_identity(const Eigen::Quaterniond& q);
 
-/// True when all four parts are finite and the norm is within 1e-3 of 1 (Kinect leaves give 0 0 0 0).
+/// True when all four parts are finite and the norm is within 1e-3 of 1 (Kinect leaves give 0 0 0
+/// 0).
 [[nodiscard]] bool is_unit(const Eigen::Quaterniond& q);
 
 /// Rotation vector of q: axis times angle, angle in [0, pi].

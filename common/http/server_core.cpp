@@ -6,8 +6,7 @@ namespace chorus::http {
 namespace {
 
 constexpr std::chrono::milliseconds kSweepInterval{250};
-constexpr std::chrono::milliseconds kAcceptPause{
-    100};  // With no descriptors left, until some close.
+constexpr std::chrono::milliseconds kAcceptPause{100};  // No descriptors left, until some close.
 constexpr std::chrono::seconds kStopTime{2};
 constexpr std::size_t kMaxTurnedAway = 64;  // Beyond the limit, so many still get to read a 503.
 

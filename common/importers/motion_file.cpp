@@ -147,8 +147,7 @@ Result<MotionRecording> read_motion_file(const std::filesystem::path& file, Moti
   out.recording.notes["origin"] = file.filename().string();
   out.recording.notes["joints"] =
       fmt::format("{} of our {} joints are in the file", joints_in(found->persons), kJointCount);
-  out.recording.notes["time"] =
-      fmt::format("{:.6g} Hz in the file, no UTC", first.rate_hz);
+  out.recording.notes["time"] = fmt::format("{:.6g} Hz in the file, no UTC", first.rate_hz);
   add_frames(out, *found, options);
   return out;
 }

@@ -232,7 +232,8 @@ Result<Motion> motion_from_bvh(const Bvh& bvh) {
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const auto& source = (*sources)[j];
       if (!source) continue;
-      if (!(positions[*source].norm() <= kMaxDistance))  // NaN too: numbers that overflow on the way
+      if (!(positions[*source].norm() <=
+            kMaxDistance))  // NaN too: numbers that overflow on the way
         return fail(ErrorCode::Malformed, "frame " + std::to_string(i + 1),
                     "a joint is farther than 10 km; is the unit of lengths right?");
       place(body, static_cast<JointId>(j), positions[*source], JointState::Tracked);

@@ -31,7 +31,8 @@ inline constexpr double kCmuRateHz = 120.0;
 
 /// Knows the joint names of the usual BVH dialects, and our own 25, which count when there is a
 /// SpineBase.  A joint the file has no counterpart for is not tracked or, in other dialects than
-/// ours, inferred from its neighbours; there a file without hips, knees, shoulders, elbows or a neck is refused.
+/// ours, inferred from its neighbours; there a file without hips, knees, shoulders, elbows or a
+/// neck is refused.
 [[nodiscard]] Result<Motion> motion_from_bvh(const Bvh& bvh);
 
 /// The skeleton at `time` [s] after the first frame: positions linear, orientations sign-aligned

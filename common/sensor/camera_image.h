@@ -12,7 +12,7 @@ namespace chorus {
 struct Intrinsics {
   int width = 512;
   int height = 424;
-  double fx = 366.3;  ///< Kinect v2 depth camera, measured (algorithms notes, section 0).
+  double fx = 366.3;  ///< Kinect v2 depth camera, measured on recordings.
   double fy = 366.3;
   double cx = 259.8;
   double cy = 205.6;
@@ -24,7 +24,8 @@ struct Intrinsics {
 struct CameraImage {
   Timestamp captured;
   Intrinsics intrinsics;
-  std::string media_type;  ///< "image/jpeg" (colour) or "image/png" (depth: 16 bit, millimetres, 0 = none)
+  std::string
+      media_type;  ///< "image/jpeg" (colour) or "image/png" (depth: 16 bit, millimetres, 0 = none)
   std::string bytes;
 };
 

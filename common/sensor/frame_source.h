@@ -1,4 +1,5 @@
-// The device seam: whatever yields SensorFrames.  A simulator, a recording or hardware look the same.
+// The device seam: whatever yields SensorFrames.  A simulator, a recording or hardware look the
+// same.
 #pragma once
 
 #include <functional>
@@ -20,8 +21,8 @@ struct DeviceDescription {
   double nominal_rate_hz = 30.0;
 };
 
-/// One capture.  Images are encoded only on demand, so they are functions, called at most once, from
-/// another thread; empty when the device has none or privacy settings forbid them.
+/// One capture.  Images are encoded only on demand, so they are functions, called at most once,
+/// from another thread; empty when the device has none or privacy settings forbid them.
 struct Capture {
   SensorFrame frame;
   std::function<Result<CameraImage>()> color;
@@ -35,8 +36,8 @@ class FrameSource {
   virtual ~FrameSource() = default;
   [[nodiscard]] virtual DeviceDescription describe() const = 0;
 
-  /// Delivers captures in time order from the calling thread until stopped or at its end.  An error is
-  /// final; a stop or the end of a recording is success.
+  /// Delivers captures in time order from the calling thread until stopped or at its end.  An error
+  /// is final; a stop or the end of a recording is success.
   [[nodiscard]] virtual Result<void> run(std::stop_token stop, const Sink& sink) = 0;
 };
 

@@ -12,7 +12,8 @@
 
 namespace chorus {
 
-/// Sensor space: unit normal n (up), offset d [m], n.x + d = 0; d is the sensor's height over the floor.
+/// Sensor space: unit normal n (up), offset d [m], n.x + d = 0; d is the sensor's height over the
+/// floor.
 using FloorPlane = Plane;
 
 struct SensorFrame {

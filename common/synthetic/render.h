@@ -1,6 +1,7 @@
 // Images of a scene as one sensor sees it: capsule bodies on a floor.  Rendered on demand.
 //
-// Not mirrored: sensor x runs to the sensor's left, so column = cx - fx x / z and row = cy - fy y / z.
+// Not mirrored: sensor x runs to the sensor's left, so column = cx - fx x / z and row = cy - fy y /
+// z.
 #pragma once
 
 #include "common/base/result.h"

@@ -9,8 +9,8 @@ namespace chorus::synthetic {
 namespace {
 
 constexpr std::uint64_t kDrawBuild = 201;
-constexpr double kBuildSpread =
-    0.08;  // people are up to so much taller or shorter than the script says
+// People are up to so much taller or shorter than the script says.
+constexpr double kBuildSpread = 0.08;
 
 }  // namespace
 

@@ -8,7 +8,8 @@ namespace chorus {
 struct NtpStatus {
   bool synchronised = false;  ///< STA_UNSYNC is clear and the kernel reports no TIME_ERROR.
   Duration offset{0};         ///< Offset still being corrected; UTC minus this clock.
-  Duration max_error{0};      ///< Kernel's bound on |UTC - this clock|; grows 500 ppm when unsynchronised.
+  Duration max_error{
+      0};  ///< Kernel's bound on |UTC - this clock|; grows 500 ppm when unsynchronised.
   Duration est_error{0};
   double frequency_ppm = 0.0;  ///< Frequency correction applied by the kernel.
 

@@ -81,12 +81,11 @@ std::string to_iso8601(Timestamp t) {
   const std::int64_t of_day = secs - day * kSecondsPerDay;
   const year_month_day date{sys_days{days{day}}};
   std::array<char, 40> text{};
-  const int size = std::snprintf(
-      text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d.%09lldZ",
-      static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
-      static_cast<unsigned>(date.day()), static_cast<int>(of_day / 3600),
-      static_cast<int>(of_day / 60 % 60), static_cast<int>(of_day % 60),
-      static_cast<long long>(ns - secs * kNanosPerSecond));
+  const int size = std::snprintf(text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d.%09lldZ",
+                                 static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
+                                 static_cast<unsigned>(date.day()), static_cast<int>(of_day / 3600),
+                                 static_cast<int>(of_day / 60 % 60), static_cast<int>(of_day % 60),
+                                 static_cast<long long>(ns - secs * kNanosPerSecond));
   return std::string(text.data(), static_cast<std::size_t>(size));
 }
 

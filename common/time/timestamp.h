@@ -1,7 +1,7 @@
 // One time: UTC nanoseconds since the Unix epoch.  Capture time unless a name says otherwise.
 //
-// Timestamp lives on its own clock type, so UTC can never be subtracted from steady time.  UTC may step
-// (NTP), so NtpClock is not steady: use std::chrono::steady_clock for time-outs, never this.
+// Timestamp lives on its own clock type, so UTC can never be subtracted from steady time.  UTC may
+// step (NTP), so NtpClock is not steady: use std::chrono::steady_clock for time-outs, never this.
 #pragma once
 
 #include <chrono>
@@ -9,8 +9,8 @@
 #include <string>
 #include <string_view>
 
-#include "common/base/result.h"
 #include "common/base/duration.h"
+#include "common/base/result.h"
 
 namespace chorus {
 

@@ -1,5 +1,4 @@
-// Which side of a person is which, agreed between all sensors and kept over time (Otto 5.2.2,
-// algorithms notes 2.4).
+// Which side of a person is which, agreed between all sensors and kept over time (Otto 5.2.2).
 //
 // A body tracker believes that everybody faces it: seen from behind, the skeleton is in place but
 // left and right are exchanged.  Joint pairs as vectors left - right therefore agree between two

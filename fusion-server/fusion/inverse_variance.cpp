@@ -11,7 +11,7 @@
 namespace chorus::fusion {
 namespace {
 
-constexpr int kIterations = 8;         // Huber settles in 4-6 (algorithms notes 2.1 H)
+constexpr int kIterations = 8;         // Huber settles in 4-6
 constexpr double kSettled = 1e-6;      // [m]
 constexpr double kShortestRay = 1e-3;  // [m] a joint in the eye has no line of sight
 constexpr double kAxes = 3.0;

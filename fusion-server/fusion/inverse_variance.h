@@ -1,4 +1,4 @@
-// Robust inverse-variance fusion of one joint (algorithms notes 2.1 H).
+// Robust inverse-variance fusion of one joint.
 //
 // Each sensor is sharp across its line of sight and blunt along it:
 //   Sigma_i = across^2 I + (along^2 - across^2) r r^T,   r = unit ray eye -> joint

@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kMillimetresPerMetre = 1000.0;
 constexpr double kMetresPerFoot = 0.3048;
-constexpr double kGimbal =
-    1.0 - 1e-12;  ///< Sine of the middle angle beyond which two axes coincide.
+// Sine of the middle angle beyond which two axes coincide.
+constexpr double kGimbal = 1.0 - 1e-12;
 
 Axes axes(const Eigen::Vector3d& x, const Eigen::Vector3d& y, const Eigen::Vector3d& z,
           double units_per_metre) {

@@ -15,10 +15,10 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kMaxSensors = 64;  // contributor bits of a snapshot
-constexpr std::size_t kMaxBytes = 4u
-                                  << 20;  // 64 sensors with covariance and all edges is below 1 MB
-constexpr double kMaxPlace = 1000.0;      // [m]
-constexpr double kMaxNormError = 0.01;    // written with 5 digits
+// 64 sensors with covariance and all edges are below 1 MB.
+constexpr std::size_t kMaxBytes = 4U << 20U;
+constexpr double kMaxPlace = 1000.0;    // [m]
+constexpr double kMaxNormError = 0.01;  // written with 5 digits
 constexpr int kMaxDepth = 16;
 
 Error wrong(std::string where, std::string what) {

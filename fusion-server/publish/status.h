@@ -45,8 +45,8 @@ struct SessionStatus {
 
 struct Counters {
   std::uint64_t ticks = 0;  ///< Snapshots published.
-  std::uint64_t ticks_skipped =
-      0;  ///< Instants left out because the host was suspended or overloaded.
+  /// Instants left out because the host was suspended or overloaded.
+  std::uint64_t ticks_skipped = 0;
   std::uint64_t frames_dropped = 0;   ///< Lost between poller and pipeline.
   double step_seconds = 0.0;          ///< Spent fusing, in total.
   endpoint::Histogram::Snapshot age;  ///< Instant to publication [s].

@@ -1,5 +1,4 @@
-// All sensors at once: bundle adjustment over the walk with the person's points eliminated
-// (algorithms notes 1.4 step 6).
+// All sensors at once: bundle adjustment over the walk with the person's points eliminated.
 //
 //   minimise over places T_i and points x_k:  sum w (T_i m_ik - x_k)^T S_ik^-1 (T_i m_ik - x_k)
 //

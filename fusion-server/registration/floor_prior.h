@@ -26,7 +26,7 @@ struct FloorPrior {
   double height = 0.0;
 };
 
-/// Each floor is good to 0.4 deg and 10 mm (notes 1.4 step 1); two of them differ by sqrt(2) more.
+/// Each floor is good to 0.4 deg and 10 mm; two of them differ by sqrt(2) more.
 inline constexpr FloorPrior kTwoFloors{deg(0.4) * std::numbers::sqrt2,
                                        mm(10) * std::numbers::sqrt2};
 

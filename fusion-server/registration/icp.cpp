@@ -23,8 +23,8 @@ using Icp = pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ, double>;
 
 constexpr int kRefineIterations = 20;
 constexpr int kSeedIterations = 40;
-constexpr int kYawSeeds = 24;             // notes 1.1: 15 deg apart
-constexpr float kKeptShare = 0.9F;        // notes 1.1: trimmed 90 %
+constexpr int kYawSeeds = 24;             // 15 deg apart
+constexpr float kKeptShare = 0.9F;        // trimmed
 constexpr double kSettled = 1e-9;         // squared metres and 1 - cos of the last step
 constexpr std::size_t kMostPoints = 300;  // a 10 s walk at 30 Hz; more costs time and gives nothing
 constexpr std::size_t kLeastPoints = 10;

@@ -19,7 +19,7 @@ namespace {
 constexpr double kLeastAgreement = 0.3;  // share of inliers below which nothing is believed
 constexpr double kLeastSlimness =
     0.01;                         // lambda2 / lambda1 of the walk: a line at 10 % lateral rms
-constexpr double kBias = mm(10);  // view-dependent joint bias at 90 deg and beyond, notes 1.6
+constexpr double kBias = mm(10);  // view-dependent joint bias at 90 deg and beyond
 constexpr std::size_t kMostPairs = 6000;  // more cost time; successive frames repeat one another
 constexpr double kIcpReach = 0.10;        // [m] beyond it a neck point has no partner
 

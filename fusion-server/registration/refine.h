@@ -1,5 +1,4 @@
-// Six degrees of freedom with the floor as a prior, and a covariance that does not flatter
-// (notes 1.4, 1.6).
+// Six degrees of freedom with the floor as a prior, and a covariance that does not flatter.
 //
 // The closed form holds the floor for exact and errors for equal in all directions.  Here a floor
 // that is a little wrong yields to the walk, and each sensor is blunt along its line of sight:

@@ -20,7 +20,7 @@ struct WalkTrack {
 
 enum class PairMethod {
   TimedRobust,  ///< Time-paired correspondences, closed form, robust re-weighting, ICP refinement.
-  IcpOnly,      ///< Baseline: neck clouds, PCL ICP, no time (algorithms notes 1.1).
+  IcpOnly,      ///< Baseline: neck clouds, PCL ICP, no time (Otto 5.2.1).
 };
 
 enum class JointChoice {

@@ -6,7 +6,7 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kCutoff = 3.0;   // c of Geman-McClure in standard deviations (notes 1.4 step 4)
+constexpr double kCutoff = 3.0;   // c of Geman-McClure in standard deviations
 constexpr double kAnneal = 1.4;   // mu <- mu / 1.4
 constexpr double kTukey = 4.685;  // 95 % efficiency for a Gaussian
 constexpr int kTukeyIterations = 8;

@@ -1,5 +1,4 @@
-// Closed-form rigid fit made robust: graduated non-convexity, then Tukey re-weighting (algorithms
-// notes 1.4).
+// Closed-form rigid fit made robust: graduated non-convexity, then Tukey re-weighting.
 //
 // Starts from nothing (no initial guess) and survives more than half of the pairs being wrong in
 // incoherent ways.

@@ -7,8 +7,8 @@ namespace {
 
 using enum JointId;
 
-// Per-axis sigma of a tracked joint: coloured noise plus view-dependent bias (algorithms notes 6.1,
-// rows 5 and 6).  Only the ratios matter.
+// Per-axis sigma of a tracked joint: coloured noise plus view-dependent bias (after Otto,
+// Figs. 7 and 8).  Only the ratios matter.
 constexpr std::array kNeckSlots{Slot{Neck, Neck, mm(9)}};
 constexpr std::array kCoreSlots{
     Slot{Neck, Neck, mm(9)},

@@ -11,7 +11,7 @@
 namespace chorus::registration {
 
 /// A joint, or the middle of two.  The middle of a mirror pair is the same whichever side the
-/// sensor calls left, so it survives front/rear flips (algorithms notes 1.4).
+/// sensor calls left, so it survives front/rear flips.
 struct Slot {
   JointId first;
   JointId second;

@@ -9,8 +9,8 @@ constexpr int kOk = 200;
 constexpr std::chrono::seconds kAnswerWithin{8};  // the wait below and some network
 constexpr const char* kWait = "wait=5";
 constexpr std::chrono::milliseconds kAfterFailure{250};
-constexpr std::chrono::milliseconds kAfterNothing{
-    10};  // a resource that cannot wait says 304 at once
+// A resource that cannot wait says 304 at once.
+constexpr std::chrono::milliseconds kAfterNothing{10};
 
 }  // namespace
 

@@ -1,4 +1,5 @@
-// An image of one capture, encoded when the first client asks and then kept.
+// An image of one capture, encoded once, ahead of time or by the first client that asks, and then
+// kept.
 #pragma once
 
 #include <functional>

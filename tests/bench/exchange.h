@@ -1,5 +1,5 @@
 // Requests and answers between the fusion host and a sensor host, over a network with one-sided
-// delays (notes on algorithms, 3).
+// delays.
 #pragma once
 
 #include <cstdint>

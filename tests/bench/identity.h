@@ -1,4 +1,4 @@
-// How well answered people keep their identity beside the true ones (algorithms notes 2.5).
+// How well answered people keep their identity beside the true ones.
 //
 // CLEAR-MOT matching: a true person keeps its answer as long as that is within reach, the rest is
 // assigned one-to-one at least distance.  Horizontal distances [m].

@@ -1,5 +1,4 @@
-// How good one person's fused bodies are, instant by instant beside the truth (algorithms
-// notes 2.7).
+// How good one person's fused bodies are, instant by instant beside the truth.
 //
 // Metres, seconds and shares inside; NaN when there was nothing to measure.  Only seen joints have
 // errors; what was not seen shows in coverage().

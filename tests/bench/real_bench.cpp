@@ -25,8 +25,8 @@ using importers::Lateral;
 
 constexpr const char* kFolder = "tests/data/pose2sim_mediapipe";  // run from the repository root
 constexpr double kRateHz = 60.0;                                  // of the recording
-constexpr double kPlainMeanMm = 104;   // issue A's figure for the plain mean of the four
-constexpr double kBestCameraMm = 140;  // and for the best single camera
+constexpr double kPlainMeanMm = 104;   // measured outside this project: plain mean of the four
+constexpr double kBestCameraMm = 140;  // and the best single camera
 
 /// What the importer's depth and bearing are worth, from the same recording (see landmark_fit.h).
 constexpr fusion::NoiseModel kCameraNoise{0.25, 0.025, 3.0};

@@ -13,8 +13,8 @@ struct RegistrationCase {
   Setting setting;
   std::vector<int> lengths;  ///< [s]; the first so many seconds of the longest.
   std::vector<RegistrationMethod> beside;
-  bool corrected = false;    ///< Stamps corrected as the server does it.
-  bool last_only = false;    ///< Score the last sensor alone.
+  bool corrected = false;  ///< Stamps corrected as the server does it.
+  bool last_only = false;  ///< Score the last sensor alone.
   std::size_t draws = 20;
 };
 

@@ -18,7 +18,7 @@ using registration::WalkTrack;
 constexpr double kLost = 0.1;       // a sensor off by more was not registered at all [m]
 constexpr double kChi2Of2 = 5.991;  // 95 % with two degrees of freedom
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kTypicalInflation = 19.0;  // successive pairs are worth so much less (notes 1.6)
+constexpr double kTypicalInflation = 19.0;  // successive pairs are worth so much less
 const Eigen::Vector3d kCentreInScene(0, 1, 0);
 
 /// By configuration alone.

@@ -23,11 +23,11 @@
 namespace chorus::bench {
 namespace {
 
-constexpr double kRate = 30.0;               // [Hz], of sensors and output
-constexpr double kLongRun = 60.0;            // [s], as the claim says
-constexpr double kQuickRun = 6.0;            // [s]
-constexpr double kMaxToWire = 0.050;         // [s], the claim
-constexpr double kMaxCores = 0.5;            // the claim, simulation aside
+constexpr double kRate = 30.0;        // [Hz], of sensors and output
+constexpr double kLongRun = 60.0;     // [s], as the claim says
+constexpr double kQuickRun = 6.0;     // [s]
+constexpr double kMaxToWire = 0.050;  // [s], the claim
+constexpr double kMaxCores = 0.5;     // the claim, simulation aside
 
 /// The last of what the instant had to wait for: of each sensor the first frame at or after it.
 /// Before these the instant cannot be answered, whatever the software does.
@@ -227,7 +227,8 @@ Result<void> run_system(Report& report) {
   }
   report.note(
       "capture_to_wire: from the last capture that an instant had to wait for to the receipt of "
-      "its fused frame, so the configured alignment delay is left out, but not how long a device of "
+      "its fused frame, so the configured alignment delay is left out, but not how long a device "
+      "of "
       "profile A takes to deliver (60 to 120 ms); delivery_to_wire: from when the last of these "
       "frames was to be had at its sensor; instant_to_wire leaves nothing out.");
   report.note(

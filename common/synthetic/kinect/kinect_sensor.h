@@ -1,8 +1,9 @@
 // One body-tracking depth sensor of the workshop: every layer of error, in order, frame by frame.
 //
-// truth -> visibility -> yaw behaviour and flip -> view limits -> states -> bias -> coloured and
-// white error -> gross errors
-// -> drops, gaps, latency, clock.  Deterministic: the same room, place, profile, seed and start
+//   truth -> visibility -> yaw behaviour and flip -> view limits -> states -> bias
+//         -> coloured and white error -> gross errors -> drops, gaps, latency, clock
+//
+// Deterministic: the same room, place, profile, seed and start
 // give the same frames.
 #pragma once
 

@@ -23,7 +23,7 @@ struct Segment {
 
 using enum JointId;
 
-// Order and meaning of the ids 1..23: wire-formats, Xsens MVN real-time network streaming.
+// Order and meaning of the ids 1..23: Xsens, MVN real-time network streaming protocol.
 constexpr std::array<Segment, kSegments> kTable{{
     {SpineBase, SpineBase, 0.0, HumanBone::Hips},           // Pelvis
     {SpineBase, SpineMid, 1.0 / 3.0, HumanBone::Spine},     // L5

@@ -18,8 +18,7 @@ using http::udp;
 
 constexpr std::chrono::milliseconds kSweepInterval{250};
 constexpr std::chrono::milliseconds kConnectTime{2000};
-constexpr std::chrono::milliseconds kAcceptPause{
-    100};  // with no descriptors left, until some close
+constexpr std::chrono::milliseconds kAcceptPause{100};  // No descriptors left, until some close.
 constexpr int kPortAttempts = 16;
 constexpr std::size_t kLongestRequest = 512;
 

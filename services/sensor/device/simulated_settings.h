@@ -8,11 +8,17 @@
 //   ring.pitch_deg [13]
 //   pose.x_m [0]    pose.y_m [1.6]    pose.z_m [0]    pose.yaw_deg [0]    pose.pitch_deg [0]
 //                           instead of the ring
-//   profile [gauss | A | B | C]    profile_draw [0: the nominal parameters; else drawn by this
-//   seed] noise.seed [1] noise.along_mm [25]     noise.across_mm [10]    noise.turn_deg [4] (these
-//   and the following noise.jitter_ms [2]     noise.drop_percent [0]                            for
-//   profile gauss) noise.floor_tilt_deg [0.15]    noise.floor_offset_mm [3] latency_ms [0] from
-//   capture to delivery, beside that of the profile
+//   profile [gauss | A | B | C]
+//   profile_draw [0]        0: the nominal parameters, else drawn by this seed
+//   noise.seed [1]
+//   noise.along_mm [25]     this and the following for profile gauss
+//   noise.across_mm [10]
+//   noise.turn_deg [4]
+//   noise.jitter_ms [2]
+//   noise.drop_percent [0]
+//   noise.floor_tilt_deg [0.15]
+//   noise.floor_offset_mm [3]
+//   latency_ms [0]          from capture to delivery, beside that of the profile
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// Baselines that average views (algorithms notes 2.1 D-E, the cluster rule of peers 6.6).
+// Baselines that average views: all, the tracked ones, or the largest cluster of them.
 #pragma once
 
 #include <vector>

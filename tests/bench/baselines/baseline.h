@@ -2,8 +2,7 @@
 //
 // All of them get the same views as ours: the same alignment, registration, facing and association
 // (pipeline::perceive).  Otto's mean, the plain mean and the heaviest view are the product's own
-// methods; only what the product does not have is written here (algorithms notes 2.1 A-F,
-// peers 6.6).
+// methods; only what the product does not have is written here.
 #pragma once
 
 #include <functional>

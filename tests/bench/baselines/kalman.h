@@ -1,7 +1,7 @@
 // Baselines that filter over time with a constant-velocity Kalman filter per joint.
 //
 // Process: white acceleration of density q; x = (p, v), P the same on every axis because all noise
-// is isotropic.  q after algorithms notes 2.6.
+// is isotropic.
 #pragma once
 
 #include <array>
@@ -53,7 +53,7 @@ struct Stated {
 };
 
 /// The way of OpenPTrack: each frame updates its person's joints as it arrives, by the time of
-/// arrival, and the answer bears that time (peers A3, but with the real elapsed time instead of a
+/// arrival, and the answer bears that time (but with the real elapsed time instead of a
 /// fixed one, and noise to fit the sensors: 25 mm, 75 mm where inferred).  One answer per frame and
 /// person, in order; left and right are put right from frame to frame.  `received` of the frames
 /// must be set.

@@ -1,4 +1,4 @@
-// Baselines that trust one view at a time (algorithms notes 2.1 A-C).
+// Baselines that trust one view at a time.
 #pragma once
 
 #include "tests/bench/baselines/baseline.h"

@@ -1,5 +1,5 @@
-// Any bytes as a frame in every format: an answer or an Error, never a crash; what is accepted can be written
-// and read again, and the template reader never accepts what the parser refuses.
+// Any bytes as a frame in every format: an answer or an Error, never a crash; what is accepted can
+// be written and read again, and the template reader never accepts what the parser refuses.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -97,7 +97,8 @@ TEST(MotionFile, NumbersThatNoMotionHasAreRefused) {
   const auto take = exporters::take_of({exporters::walk()}, 30.0);
   const auto sound = exporters::exported(take, exporters::ExportFormat::Bvh)->files[0].bytes;
   const std::size_t time = sound.find("Frame Time:");
-  const auto slow = sound.substr(0, time) + "Frame Time: 1e300" + sound.substr(sound.find('\n', time));
+  const auto slow =
+      sound.substr(0, time) + "Frame Time: 1e300" + sound.substr(sound.find('\n', time));
   const auto years = import_files(FileFormat::Bvh, {folder.write("years.bvh", slow)});
   ASSERT_THAT(years, FailsWith(ErrorCode::TooLarge));
   EXPECT_THAT(to_string(years.error()), HasSubstr("more than a week"));
