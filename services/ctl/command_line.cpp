@@ -105,7 +105,7 @@ int run_added(const std::vector<Added>& all) {
 int parse_and_run(int argc, const char* const* argv) {
   CLI::App app{"Chorus: many body-tracking sensors, one tracker."};
   app.name("chorus");
-  app.set_version_flag("--version", std::string("chorus 0.1.0"));
+  app.set_version_flag("--version", std::string("chorus " CHORUS_VERSION));
   app.require_subcommand(1);
   app.footer(
       "chorus COMMAND --help explains each with examples.\n"
