@@ -1,6 +1,10 @@
 // Things that stand or move in the room and hide people: a car body, a pillar, a table.
 #pragma once
 
+#include <array>
+#include <optional>
+#include <string_view>
+
 #include <Eigen/Geometry>
 
 #include "common/base/duration.h"
@@ -16,7 +20,29 @@ struct Occluder {
   Duration period{0};
 };
 
+/// What configuration calls a thing, and its usual size.
+struct OccluderKind {
+  std::string_view name;
+  double width = 0.0;   ///< Along its own x [m]
+  double height = 0.0;  ///< [m]
+  double length = 0.0;  ///< Along its own z [m]
+};
+
+/// All are solid boxes: nobody sees through under a table.
+inline constexpr std::array kOccluderKinds{OccluderKind{"car", 0.8, 1.2, 1.8},
+                                           OccluderKind{"pillar", 0.4, 2.5, 0.4},
+                                           OccluderKind{"table", 1.2, 0.75, 0.8}};
+
+/// Where a thing stands: the middle of its underside, and its turn about +y [rad].
+[[nodiscard]] Occluder stand_thing(const OccluderKind& size, const Eigen::Vector3d& foot,
+                                   double yaw);
+
 /// world_from_box at a time since the scene's epoch.
 [[nodiscard]] Eigen::Isometry3d place_of(const Occluder& occluder, Duration since_epoch);
+
+/// Distance along the unit ray from `eye` to a box about the origin, all in the space of the box;
+/// none when the ray misses or the eye is inside.
+[[nodiscard]] std::optional<double> hit_box(const Eigen::Vector3d& half, const Eigen::Vector3d& eye,
+                                            const Eigen::Vector3d& ray);
 
 }  // namespace chorus::synthetic

@@ -15,9 +15,10 @@ constexpr double kMostDepthCode = 65535;  // 16 bit
 constexpr int kJpegQuality = 85;
 constexpr double kTileSize = 0.5;  // of the floor pattern [m]
 constexpr std::uint16_t kNobody = 0;
+constexpr std::uint16_t kThing = 65535;
 constexpr int kMostPixels = 4'000'000;
 
-/// What each pixel sees: distance along its ray, and whose body (0: the floor or nothing).
+/// What each pixel sees: distance along its ray, and whose body (0: the floor or nothing; kThing).
 struct Sight {
   int width = 0;
   int height = 0;
@@ -79,12 +80,18 @@ void see_capsule(Sight& sight, const Capsule& capsule, const Intrinsics& camera,
   }
 }
 
-Result<Sight> look(const Scene& scene, std::size_t sensor, Timestamp instant,
-                   const Intrinsics& camera) {
-  if (sensor >= scene.world_from_sensor.size() || camera.width <= 0 || camera.height <= 0 ||
-      camera.width > kMostPixels / camera.height || !(camera.fx > 0) || !(camera.fy > 0)) {
-    return fail(ErrorCode::InvalidArgument, "render", "there is no such sensor or no such camera");
+void see_box(Sight& sight, const Eigen::Isometry3d& box_from_sensor, const Eigen::Vector3d& half) {
+  for (std::size_t i = 0; i < sight.rays.size(); ++i) {
+    const auto distance = hit_box(half, box_from_sensor.translation(),
+                                  box_from_sensor.linear() * sight.rays[i].cast<double>());
+    if (!distance || *distance >= static_cast<double>(sight.range[i])) continue;
+    sight.range[i] = static_cast<float>(*distance);
+    sight.person[i] = kThing;
   }
+}
+
+/// Every pixel's ray, nothing seen yet.
+Sight open_eyes(const Intrinsics& camera) {
   const auto pixels =
       static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
   Sight sight{camera.width, camera.height,
@@ -96,6 +103,16 @@ Result<Sight> look(const Scene& scene, std::size_t sensor, Timestamp instant,
           ray_of(camera, column, row).cast<float>();
     }
   }
+  return sight;
+}
+
+Result<Sight> look(const Scene& scene, std::size_t sensor, Timestamp instant,
+                   const Intrinsics& camera) {
+  if (sensor >= scene.world_from_sensor.size() || camera.width <= 0 || camera.height <= 0 ||
+      camera.width > kMostPixels / camera.height || !(camera.fx > 0) || !(camera.fy > 0)) {
+    return fail(ErrorCode::InvalidArgument, "render", "there is no such sensor or no such camera");
+  }
+  Sight sight = open_eyes(camera);
   const Eigen::Isometry3d sensor_from_world = scene.world_from_sensor[sensor].inverse();
   see_floor(sight, floor_in_sensor(scene.world_from_sensor[sensor]));
   for (std::size_t person = 0; person < scene.people.size(); ++person) {
@@ -104,10 +121,14 @@ Result<Sight> look(const Scene& scene, std::size_t sensor, Timestamp instant,
       see_capsule(sight, capsule, camera, static_cast<std::uint16_t>(person + 1));
     }
   }
+  for (const Occluder& thing : scene.occluders) {
+    const Eigen::Isometry3d world_from_box = place_of(thing, instant - scene.epoch);
+    see_box(sight, world_from_box.inverse() * scene.world_from_sensor[sensor], thing.half);
+  }
   return sight;
 }
 
-/// Blue, green, red; a person's colour, a chequered floor or the wall.
+/// Blue, green, red; a person's colour, a thing's, a chequered floor or the wall.
 cv::Vec3b shade(const Sight& sight, std::size_t i, const Eigen::Isometry3d& world_from_sensor) {
   const double range = static_cast<double>(sight.range[i]);
   if (!std::isfinite(range)) return {196, 190, 184};
@@ -118,6 +139,8 @@ cv::Vec3b shade(const Sight& sight, std::size_t i, const Eigen::Isometry3d& worl
     const double tile = std::floor(x.x() / kTileSize) + std::floor(x.z() / kTileSize);
     colour = std::fmod(std::abs(tile), 2.0) < 0.5 ? Eigen::Vector3d(150, 160, 165)
                                                   : Eigen::Vector3d(120, 128, 132);
+  } else if (sight.person[i] == kThing) {
+    colour = Eigen::Vector3d(70, 78, 84);
   } else if (sight.person[i] % 2 == 0) {
     colour = Eigen::Vector3d(110, 170, 90);
   }

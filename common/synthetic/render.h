@@ -1,4 +1,5 @@
-// Images of a scene as one sensor sees it: capsule bodies on a floor.  Rendered on demand.
+// Images of a scene as one sensor sees it: capsule bodies and things on a floor.  Rendered on
+// demand.
 //
 // Not mirrored: sensor x runs to the sensor's left, so column = cx - fx x / z and row = cy - fy y /
 // z.

@@ -79,6 +79,17 @@ void limit_view(Skeleton<SensorSpace>& body, const FieldOfView& view) {
   }
 }
 
+void hide_behind(Skeleton<SensorSpace>& body, const Eigen::Isometry3d& box_from_sensor,
+                 const Eigen::Vector3d& half) {
+  for (Joint& joint : body.joints) {
+    const double range = joint.position.norm();
+    if (!joint.seen() || !(range > 0.0)) continue;
+    const auto distance = hit_box(half, box_from_sensor.translation(),
+                                  box_from_sensor.linear() * (joint.position / range));
+    if (distance && *distance < range) joint.state = JointState::Inferred;
+  }
+}
+
 void add_noise(Skeleton<SensorSpace>& body, const GaussianNoise& noise, Draw draw) {
   for (Joint& joint : body.joints) {
     const Eigen::Vector3d error = draw.gauss3();
@@ -112,6 +123,10 @@ std::optional<SensorFrame> observe(const Scene& scene, const SimulatedSensor& se
     BodyFrame body{body_id(sensor, person), frame.captured,
                    to_sensor(sensor_from_world, truth(scene, person, frame.captured))};
     limit_view(body.skeleton, model.view);
+    for (const Occluder& thing : scene.occluders) {
+      const Eigen::Isometry3d world_from_box = place_of(thing, frame.captured - scene.epoch);
+      hide_behind(body.skeleton, world_from_box.inverse() * world_from_sensor, thing.half);
+    }
     if (!is_seen(body.skeleton)) continue;
     add_noise(body.skeleton, model.noise, Draw{model.seed, kNoise, sensor.index, number, person});
     frame.bodies.push_back(std::move(body));

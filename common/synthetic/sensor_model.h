@@ -1,9 +1,9 @@
 // What one simulated sensor reports of a scene: a list of small layers, applied in order.
 //
-// This is the plain profile, "gauss": limited view, white Gaussian noise, jittered time, frame
-// drops.  A real Kinect's error is coloured and depends on the view, and it swaps left and right
-// from behind; none of that is here, so accuracy figures from this profile flatter every method.
-// Everything is a pure function of (scene, sensor, frame number).
+// This is the plain profile, "gauss": limited view, joints behind things, white Gaussian noise,
+// jittered time, frame drops.  A real Kinect's error is coloured and depends on the view, and it
+// swaps left and right from behind; none of that is here, so accuracy figures from this profile
+// flatter every method. Everything is a pure function of (scene, sensor, frame number).
 #pragma once
 
 #include <cstdint>
@@ -83,6 +83,9 @@ struct SimulatedSensor {
 
 /// One layer each, for tests and other profiles.
 void limit_view(Skeleton<SensorSpace>& body, const FieldOfView& view);
+/// Joints behind the box are guessed (Inferred).
+void hide_behind(Skeleton<SensorSpace>& body, const Eigen::Isometry3d& box_from_sensor,
+                 const Eigen::Vector3d& half);
 void add_noise(Skeleton<SensorSpace>& body, const GaussianNoise& noise, Draw draw);
 
 }  // namespace chorus::synthetic

@@ -26,7 +26,8 @@ class Simulated final : public FrameSource {
         time_(std::move(time)) {}
 
   [[nodiscard]] DeviceDescription describe() const override {
-    return {"simulated", "simulated Kinect v2 (profile " + settings_->profile() + ", CMU walking)",
+    return {"simulated",
+            "simulated Kinect v2 (profile " + settings_->profile() + ", " + settings_->people + ")",
             camera_.intrinsics, kRate};
   }
 

@@ -1,9 +1,9 @@
-// The device `simulated`: people made from real CMU walking, seen from a configured place by a
+// The device `simulated`: people made from real motion capture, seen from a configured place by a
 // sensor model of common/synthetic.
 //
 // Where people are is a function of true UTC alone (minus the scene's epoch), so separate processes
 // that share the `scene` keys see the same people at the same instant, whatever their own clocks
-// say.  The keys are in simulated_settings.h.
+// say.  The keys are in simulated_settings.h and scene_settings.h.
 #pragma once
 
 #include <memory>

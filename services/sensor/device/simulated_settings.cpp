@@ -9,9 +9,6 @@
 namespace chorus::sensor_service {
 namespace {
 
-using synthetic::PathKind;
-using synthetic::Scene;
-
 constexpr double kFarthest = 100.0;  // of anything in a room from its origin [m]
 constexpr int kMostSensors = 64;
 constexpr int kMostSeed = 1'000'000'000;
@@ -28,27 +25,6 @@ void read_mm(ConfigReader& config, std::string_view key, double& out, double mos
   double value = to_mm(out);
   config.read(key, value, 0.0, most);
   out = mm(value);
-}
-
-void read_scene(ConfigReader config, Scene& scene) {
-  synthetic::WalkerScript script;
-  int seed = 1;
-  int people = 1;
-  std::size_t path = 0;
-  Duration epoch{0};
-  config.read("seed", seed, 0, kMostSeed);
-  config.read_s("epoch_s", epoch, Duration::zero(), std::chrono::hours(24 * 365 * 200));
-  config.read("people", people, 0, 6);
-  config.read_choice("path", path, {synthetic::kPathNames.begin(), synthetic::kPathNames.end()});
-  config.read("reach_m", script.reach, 0.0, kFarthest);
-  config.read("centre_x_m", script.centre.x(), -kFarthest, kFarthest);
-  config.read("centre_z_m", script.centre.y(), -kFarthest, kFarthest);
-  config.read("speed_m_per_s", script.speed, 0.1, 2.0);
-  config.read("body_scale", script.body_scale, 0.5, 1.5);
-  script.seed = static_cast<std::uint64_t>(seed);
-  script.path = static_cast<PathKind>(std::min(path, synthetic::kPathNames.size() - 1));
-  scene.epoch = Timestamp(epoch);
-  scene.people = synthetic::make_people(script, static_cast<std::size_t>(people));
 }
 
 Eigen::Isometry3d read_ring(ConfigReader config) {
@@ -133,7 +109,9 @@ SimulatedSettings read_simulated_settings(ConfigReader& config, const SensorId& 
   if (config.has("ring") && config.has("pose")) {
     config.complain("pose", "give either ring or pose, not both");
   }
-  read_scene(config.child("scene"), settings.scene);
+  SceneSettings scene = read_scene(config.child("scene"));
+  settings.scene = std::move(scene.scene);
+  settings.people = std::move(scene.people);
   settings.scene.world_from_sensor.push_back(config.has("pose") ? read_pose(config.child("pose"))
                                                                 : read_ring(config.child("ring")));
   const int seed = read_noise(config.child("noise"), settings.plain);

@@ -1,9 +1,6 @@
 // What the device `simulated` can be told.  All keys optional, defaults in brackets:
 //
-//   scene.seed [1]          scene.epoch_s [0 = 1970]   scene.people [1]
-//   scene.path [random | circle | line | stand | turn | assembly]    scene.reach_m [1.2]
-//   scene.centre_x_m [0]    scene.centre_z_m [0]       scene.speed_m_per_s [0.9]
-//   scene.body_scale [1]
+//   scene...               who and what there is to see, in scene_settings.h
 //   ring.index [0]    ring.count [6]    ring.radius_m [3]    ring.height_m [1.6]
 //   ring.pitch_deg [13]
 //   pose.x_m [0]    pose.y_m [1.6]    pose.z_m [0]    pose.yaw_deg [0]    pose.pitch_deg [0]
@@ -22,12 +19,14 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "common/base/config_reader.h"
 #include "common/synthetic/body_sensor.h"
 #include "common/synthetic/scene.h"
 #include "common/synthetic/sensor_choice.h"
 #include "common/synthetic/sensor_model.h"
+#include "services/sensor/device/scene_settings.h"
 
 namespace chorus::sensor_service {
 
@@ -35,6 +34,7 @@ struct SimulatedSettings {
   synthetic::Scene scene;                          ///< One sensor in it: this one.
   synthetic::SimulatedSensor plain;                ///< Profile gauss.
   std::optional<synthetic::SensorChoice> tracker;  ///< Any other profile.
+  std::string people;                              ///< "CMU walking"
   Duration latency{0};
 
   /// A sensor that stands in `scene`, from `start` on.

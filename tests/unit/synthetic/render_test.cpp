@@ -32,6 +32,19 @@ TEST(Hit, BallTubeAndMiss) {
   EXPECT_FALSE(hit({{-1, 0, -3}, {1, 0, -3}, 0.2}, ahead)) << "behind";
 }
 
+TEST(Depth, ShowsAThingBeforeWhoeverItHides) {
+  Scene scene = standing();
+  CameraModel camera;
+  camera.depth_noise = 0.0;
+  scene.occluders = {stand_thing(kOccluderKinds[1], {0, 0, 1.5}, 0.0)};
+  const cv::Mat depth = decoded(*render_depth(scene, 0, kNow, camera));
+  // The ring looks 13 degrees down from 1.6 m; the pillar's front is 1.3 m away horizontally.
+  EXPECT_NEAR(depth.at<std::uint16_t>(212, 256), to_mm(1.3 / std::cos(deg(13))), 10);
+  const cv::Mat free = decoded(*render_color(standing(), 0, kNow, camera));
+  const cv::Mat hidden = decoded(*render_color(scene, 0, kNow, camera));
+  EXPECT_NE(free.at<cv::Vec3b>(212, 256), hidden.at<cv::Vec3b>(212, 256));
+}
+
 TEST(Depth, ShowsTheChestInFrontAndTheFloorBelow) {
   const Scene scene = standing();
   const CameraModel camera;

@@ -1,0 +1,221 @@
+#include "common/synthetic/performance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "common/body/bones.h"
+#include "common/geometry/rotation.h"
+
+namespace chorus::synthetic {
+namespace {
+
+using Body = Skeleton<WorldSpace>;
+using Frames = std::vector<Body>;
+
+constexpr double kToeHeight = 0.03;  // foot joint over the floor when the foot stands [m]
+// Of the frames' lowest feet, the one that stands on the floor; lower ones are noise.
+constexpr double kStandingShare = 0.05;
+// Knee to hip of anybody, from infant to giant [m].
+constexpr double kShortestThigh = 0.1;
+constexpr double kLongestThigh = 0.8;
+constexpr double kMostRate = 1000.0;  // [Hz]
+
+constexpr std::array kRequired{JointId::HipLeft,       JointId::HipRight,   JointId::KneeLeft,
+                               JointId::KneeRight,     JointId::AnkleLeft,  JointId::AnkleRight,
+                               JointId::ElbowLeft,     JointId::ElbowRight, JointId::ShoulderLeft,
+                               JointId::ShoulderRight, JointId::WristLeft,  JointId::WristRight};
+
+struct Share {
+  JointId joint;
+  double weight;
+};
+
+/// Where an absent joint is set: a weighted sum of two others (weights sum to one, and may leave
+/// [0, 1] to extend a bone), and so much to the body's front [m].
+struct Guess {
+  JointId joint;
+  Share first;
+  Share second;
+  double ahead = 0.0;
+};
+
+// Everyday proportions; each row may use those above it.
+constexpr std::array kGuesses{
+    Guess{JointId::SpineBase, {JointId::HipLeft, 0.5}, {JointId::HipRight, 0.5}},
+    Guess{JointId::SpineShoulder, {JointId::ShoulderLeft, 0.5}, {JointId::ShoulderRight, 0.5}},
+    Guess{JointId::SpineMid, {JointId::SpineBase, 0.5}, {JointId::SpineShoulder, 0.5}},
+    Guess{JointId::Head, {JointId::SpineShoulder, 1.45}, {JointId::SpineBase, -0.45}},
+    Guess{JointId::Neck, {JointId::SpineShoulder, 0.7}, {JointId::Head, 0.3}},
+    Guess{JointId::HandLeft, {JointId::WristLeft, 1.25}, {JointId::ElbowLeft, -0.25}},
+    Guess{JointId::HandRight, {JointId::WristRight, 1.25}, {JointId::ElbowRight, -0.25}},
+    Guess{JointId::HandTipLeft, {JointId::WristLeft, 1.55}, {JointId::ElbowLeft, -0.55}},
+    Guess{JointId::HandTipRight, {JointId::WristRight, 1.55}, {JointId::ElbowRight, -0.55}},
+    Guess{JointId::ThumbLeft, {JointId::WristLeft, 1.25}, {JointId::ElbowLeft, -0.25}, 0.05},
+    Guess{JointId::ThumbRight, {JointId::WristRight, 1.25}, {JointId::ElbowRight, -0.25}, 0.05},
+    Guess{JointId::FootLeft, {JointId::AnkleLeft, 1.1}, {JointId::KneeLeft, -0.1}, 0.14},
+    Guess{JointId::FootRight, {JointId::AnkleRight, 1.1}, {JointId::KneeRight, -0.1}, 0.14},
+};
+
+bool is_ever_seen(const Frames& frames, JointId joint) {
+  return std::ranges::any_of(frames, [joint](const Body& body) { return body[joint].seen(); });
+}
+
+std::optional<JointId> missing_joint(const Frames& frames) {
+  for (const JointId joint : kRequired) {
+    if (!is_ever_seen(frames, joint)) return joint;
+  }
+  return std::nullopt;
+}
+
+/// Straight from where the joint was seen last to where it is seen next; held before the first and
+/// after the last.
+void fill_gaps(Frames& frames, JointId joint) {
+  std::optional<std::size_t> last;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (!frames[i][joint].seen()) continue;
+    const std::size_t begin = last ? *last + 1 : 0;
+    const Joint before = frames[last.value_or(i)][joint];
+    for (std::size_t k = begin; k < i; ++k) {
+      const double share =
+          last ? static_cast<double>(k - *last) / static_cast<double>(i - *last) : 0;
+      Joint& filled = frames[k][joint];
+      filled.position = before.position + share * (frames[i][joint].position - before.position);
+      filled.orientation = Eigen::Quaterniond(0, 0, 0, 0);
+    }
+    last = i;
+  }
+  if (!last) return;
+  for (std::size_t k = *last + 1; k < frames.size(); ++k) frames[k][joint] = frames[*last][joint];
+  for (Body& body : frames) body[joint].state = JointState::Tracked;
+}
+
+void guess_absent(Body& body) {
+  const Eigen::Vector3d to_left =
+      body[JointId::HipLeft].position - body[JointId::HipRight].position;
+  const Eigen::Vector3d forward = to_left.cross(Eigen::Vector3d::UnitY()).stableNormalized();
+  for (const Guess& guess : kGuesses) {
+    Joint& joint = body[guess.joint];
+    if (joint.seen()) continue;
+    joint.position = guess.first.weight * body[guess.first.joint].position +
+                     guess.second.weight * body[guess.second.joint].position +
+                     guess.ahead * forward;
+    joint.orientation = Eigen::Quaterniond(0, 0, 0, 0);
+    joint.state = JointState::Tracked;
+  }
+}
+
+/// Orientations of the file stay (they know the twist); others follow from the bones.
+void orient(Body& body) {
+  Body by_bones = body;
+  motion::orient_segments(by_bones);
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    Joint& joint = body.joints[i];
+    if (!is_unit(joint.orientation)) joint.orientation = by_bones.joints[i].orientation;
+  }
+}
+
+Result<void> complete(motion::Motion& role) {
+  if (const auto missing = missing_joint(role.frames)) {
+    return fail(ErrorCode::Unsupported, std::string(name_of(*missing)),
+                "nobody in the motion has this joint; a person needs hips, knees, ankles, "
+                "shoulders, elbows and wrists");
+  }
+  for (std::size_t i = 0; i < kJointCount; ++i) fill_gaps(role.frames, static_cast<JointId>(i));
+  for (Body& body : role.frames) {
+    guess_absent(body);
+    orient(body);
+  }
+  return {};
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+Result<void> has_human_size(const motion::Motion& role) {
+  std::vector<double> thighs;
+  for (const Body& body : role.frames) {
+    thighs.push_back((body[JointId::HipLeft].position - body[JointId::KneeLeft].position).norm());
+  }
+  const double thigh = median(std::move(thighs));
+  if (thigh >= kShortestThigh && thigh <= kLongestThigh) return {};
+  return fail(
+      ErrorCode::InvalidArgument, "thigh",
+      fmt::format("is {:.3g} m long; say how many metres the file's unit of length has", thigh));
+}
+
+double standing_height(const std::vector<motion::Motion>& roles) {
+  std::vector<double> lowest;
+  for (const motion::Motion& role : roles) {
+    for (const Body& body : role.frames) {
+      lowest.push_back(
+          std::min(body[JointId::FootLeft].position.y(), body[JointId::FootRight].position.y()));
+    }
+  }
+  const auto standing = lowest.begin() + static_cast<std::ptrdiff_t>(
+                                             kStandingShare * static_cast<double>(lowest.size()));
+  std::nth_element(lowest.begin(), standing, lowest.end());
+  return *standing;
+}
+
+/// Feet to the floor, the middle of all ways to the origin.
+void to_origin(std::vector<motion::Motion>& roles) {
+  Eigen::Vector3d least = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector3d most = -least;
+  for (const motion::Motion& role : roles) {
+    for (const Body& body : role.frames) {
+      least = least.cwiseMin(body[JointId::SpineBase].position);
+      most = most.cwiseMax(body[JointId::SpineBase].position);
+    }
+  }
+  Eigen::Vector3d origin = 0.5 * (least + most);
+  origin.y() = standing_height(roles) - kToeHeight;
+  for (motion::Motion& role : roles) {
+    for (Body& body : role.frames) {
+      for (Joint& joint : body.joints) joint.position -= origin;
+    }
+  }
+}
+
+Result<void> can_be_played(const motion::Motion& role) {
+  if (role.frames.empty()) return fail(ErrorCode::InvalidArgument, "motion", "has no frames");
+  if (role.frames.size() > kMostMotionFrames) {
+    return fail(ErrorCode::TooLarge, "motion",
+                fmt::format("has {} frames; cut it to {} or export it at a lower rate",
+                            role.frames.size(), kMostMotionFrames));
+  }
+  if (role.rate_hz > 0.0 && role.rate_hz <= kMostRate) return {};
+  return fail(
+      ErrorCode::InvalidArgument, "motion",
+      fmt::format("has {:.6g} frames a second; more than 0 and at most {:.0f} can be played",
+                  role.rate_hz, kMostRate));
+}
+
+}  // namespace
+
+Result<Performance> staged(std::vector<motion::Motion> captured) {
+  // Things and half-tracked bystanders of a take play no role, as long as somebody does.
+  if (captured.size() > 1) {
+    const auto lacks = [](const motion::Motion& role) {
+      return missing_joint(role.frames).has_value();
+    };
+    if (!std::ranges::all_of(captured, lacks)) std::erase_if(captured, lacks);
+  }
+  if (captured.empty()) return fail(ErrorCode::InvalidArgument, "motion", "has nobody in it");
+  for (motion::Motion& role : captured) {
+    if (const auto ok = can_be_played(role); !ok) return pass(ok);
+    if (const auto ok = complete(role); !ok) return pass(ok);
+    if (const auto ok = has_human_size(role); !ok) return pass(ok);
+  }
+  to_origin(captured);
+  return Performance{std::move(captured)};
+}
+
+}  // namespace chorus::synthetic
