@@ -15,7 +15,6 @@ namespace chorus::sensor_service {
 namespace {
 
 constexpr int kMostFrames = 10'000;  // five minutes, 100 MB
-constexpr Duration kLargestClockError = std::chrono::hours(24);
 constexpr std::string_view kDefaultId = "s1";
 
 Result<std::string> text_of(const std::string& path) {
@@ -62,7 +61,7 @@ SensorConfig read_config(ConfigReader& root) {
   int frames_kept = static_cast<int>(config.frames_kept);
   root.read("frames_kept", frames_kept, 1, kMostFrames);
   config.frames_kept = static_cast<std::size_t>(frames_kept);
-  root.read_ms("clock_error_ms", config.clock_error, -kLargestClockError, kLargestClockError);
+  read_clock_errors(root.child("clock"), config.clock);
   read_log(root.child("log"), config.log);
   endpoint::read_recording(root.child("recording"), config.recording);
   return config;
@@ -85,14 +84,13 @@ Device open_replay(ConfigReader& config, const ReplayOptions& options, const Set
 
 /// Both kinds are read whatever the kind is, so that a file may describe both and typing errors
 /// show.
-Device read_device(ConfigReader device, const Setup& setup) {
+Device read_device(ConfigReader device, const Setup& setup, const HostTime& time) {
   std::size_t kind = 0;
   device.read_choice("kind", kind, {"simulated", "replay"});
   auto replay = device.child("replay");
   const ReplayOptions options = read_replay_options(replay);
   auto simulation = device.child("simulated");
-  auto simulated = make_simulated(simulation, setup.config.id,
-                                  {std::make_shared<SystemClock>(), setup.config.clock_error});
+  auto simulated = make_simulated(simulation, setup.config.id, time);
   return kind == 0 ? std::move(simulated) : open_replay(replay, options, setup);
 }
 
@@ -114,9 +112,11 @@ Result<Setup> read_setup(const SetupSource& source) {
   }
   Setup setup;
   setup.config = read_config(*root);
-  setup.clock = std::make_shared<SystemClock>(setup.config.clock_error);
+  const auto world = std::make_shared<SystemClock>();
+  const HostTime time{world, host_clock(setup.config.clock, world->now())};
+  setup.clock = std::make_shared<ErringClock>(time.world, time.host);
   setup.device_text = device_part(*text);
-  auto device = read_device(root->child("device"), setup);
+  auto device = read_device(root->child("device"), setup, time);
   if (auto ok = root->finish(); !ok) return pass(ok);
   if (!device) return pass(device);
   setup.device = std::move(*device);
@@ -135,7 +135,7 @@ std::vector<std::string> restart_keys(const Setup& running, const Setup& wanted)
   listening.bearer_token = a.http.bearer_token;  // changes while running
   compare(a.http == listening, "http");
   compare(a.frames_kept == b.frames_kept, "frames_kept");
-  compare(a.clock_error == b.clock_error, "clock_error_ms");
+  compare(a.clock == b.clock, "clock");
   compare(a.recording == b.recording, "recording");
   compare(running.device_text == wanted.device_text, "device");
   return keys;

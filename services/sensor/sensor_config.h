@@ -12,6 +12,7 @@
 #include "common/endpoint/recordings.h"
 #include "common/sensor/frame_source.h"
 #include "common/time/clock.h"
+#include "services/sensor/host_clock.h"
 
 namespace chorus::sensor_service {
 
@@ -36,7 +37,7 @@ struct SensorConfig {
   HttpConfig http;
   bool images = false;
   std::size_t frames_kept = 90;
-  Duration clock_error{0};  ///< Added to the host's clock: simulated hosts that disagree.
+  ClockErrors clock;  ///< Of a simulated host; a real one's is as NTP keeps it.
   LogConfig log;
   endpoint::RecordingConfig recording;
 
@@ -47,7 +48,7 @@ struct SensorConfig {
 struct Setup {
   SensorConfig config;
   std::string device_text;  ///< The `device` object as written, to tell whether it changed.
-  std::shared_ptr<const Clock> clock;
+  std::shared_ptr<const Clock> clock;  ///< The host's, errors included.
   std::unique_ptr<FrameSource> device;
 };
 

@@ -10,6 +10,14 @@ namespace chorus::sensor_service {
 using http::PathParams;
 using http::Request;
 
+namespace {
+
+// A capture time that goes back by more than this means that the host's clock was set; by less,
+// that the device repeats itself.  The fusion server draws the line at the same place.
+constexpr Duration kLongestRepeat = std::chrono::seconds(1);
+
+}  // namespace
+
 SensorService::SensorService(ServiceOptions options)
     : options_(std::move(options)),
       recent_(options_.frames_kept),
@@ -23,7 +31,10 @@ std::string SensorService::objection(const SensorFrame& frame) const {
     if (!ids.insert(body.id.value).second) return "two bodies have one id";
   }
   if (!sight_) return {};
-  if (frame.captured <= sight_->frame->captured) return "its capture time does not advance";
+  const Duration behind = sight_->frame->captured - frame.captured;
+  if (behind >= Duration::zero() && behind <= kLongestRepeat) {
+    return "its capture time does not advance";
+  }
   if (frame.sequence <= sight_->frame->sequence) return "its sequence number does not advance";
   return {};
 }

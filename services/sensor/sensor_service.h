@@ -45,7 +45,8 @@ class SensorService {
   explicit SensorService(ServiceOptions options);
 
   /// Publishes one capture.  Refused and counted: time or numbering that does not advance, two
-  /// bodies with one id, too many bodies.
+  /// bodies with one id, too many bodies.  Time that goes back by more than a second is a clock
+  /// that was set, and goes on from there.
   void on_capture(Capture capture);
   /// The device will deliver nothing more; health() says why.
   void on_device_end(const Result<void>& how);

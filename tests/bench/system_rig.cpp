@@ -87,7 +87,7 @@ Result<ChildProcess> start_sensor(const SystemCase& asked, int index, std::uint1
        "device.simulated.profile=" + asked.profile, "--set",
        "device.simulated.ring.index=" + number(index), "--set",
        "device.simulated.ring.count=" + number(kSystemSensors), "--set",
-       "clock_error_ms=" + number(asked.clock_error_ms.at(static_cast<std::size_t>(index)))});
+       "clock.offset_ms=" + number(asked.clock_error_ms.at(static_cast<std::size_t>(index)))});
 }
 
 Cpu cpu_of(const Rig& rig) {

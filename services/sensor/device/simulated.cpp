@@ -68,20 +68,24 @@ Capture Simulated::with_images(SensorFrame frame) const {
   constexpr std::size_t kPlace = 0;
   Capture capture;
   capture.frame = std::move(frame);
-  capture.color = [settings = settings_, camera = camera_, instant] {
-    return render_color(settings->scene, kPlace, instant, camera);
+  const auto stamped = [host = time_.host](Result<CameraImage> image) {
+    if (image) image->captured = host.host_time(image->captured);
+    return image;
   };
-  capture.depth = [settings = settings_, camera = camera_, instant] {
-    return render_depth(settings->scene, kPlace, instant, camera);
+  capture.color = [settings = settings_, camera = camera_, instant, stamped] {
+    return stamped(render_color(settings->scene, kPlace, instant, camera));
+  };
+  capture.depth = [settings = settings_, camera = camera_, instant, stamped] {
+    return stamped(render_depth(settings->scene, kPlace, instant, camera));
   };
   return capture;
 }
 
 /// From true time to what this host's clock showed.
 void Simulated::stamp(SensorFrame& frame) const {
-  frame.captured += time_.error;
-  frame.received = time_.world->now() + time_.error;
-  for (BodyFrame& body : frame.bodies) body.captured += time_.error;
+  frame.captured = time_.host.host_time(frame.captured);
+  frame.received = time_.host.host_time(time_.world->now());
+  for (BodyFrame& body : frame.bodies) body.captured = time_.host.host_time(body.captured);
 }
 
 Result<void> Simulated::run(std::stop_token stop, const Sink& sink) {

@@ -137,7 +137,7 @@ class Process(unittest.TestCase):
         self.assertEqual((depth["width"], depth["height"]), (512, 424))
 
     def test_a_simulated_clock_error_shows_everywhere(self):
-        sensor = self.start("--recording", make_recording(self.folder.name), "--set", "clock_error_ms=60000")
+        sensor = self.start("--recording", make_recording(self.folder.name), "--set", "clock.offset_ms=60000")
         answer = sensor.wait_for("/frame", 200)
         ahead = int(answer.json["capturedNanoseconds"]) / 1e9 - time.time()
         self.assertAlmostEqual(ahead, 60, delta=10)

@@ -35,13 +35,15 @@ TEST(SensorConfig, EveryKeyIsRead) {
   const auto setup =
       setup_with({"id=cam-2", "http.address=0.0.0.0", "http.port=9000", "http.bearer_token=secret",
                   "http.allowed_origin=http://a", "images=true", "frames_kept=7",
-                  "clock_error_ms=-250", "log.level=warn", "log.format=json"});
+                  "clock.offset_ms=-250", "clock.drift_ppm=50", "clock.step_ms=-2000",
+                  "clock.step_after_s=30", "log.level=warn", "log.format=json"});
   const SensorConfig& config = setup.config;
   EXPECT_EQ(config.id.str(), "cam-2");
   EXPECT_EQ(config.http, (HttpConfig{"0.0.0.0", 9000, "secret", "http://a"}));
   EXPECT_TRUE(config.images);
   EXPECT_EQ(config.frames_kept, 7u);
-  EXPECT_EQ(config.clock_error, std::chrono::milliseconds(-250));
+  EXPECT_EQ(config.clock, (ClockErrors{std::chrono::milliseconds(-250), 50e-6,
+                                       std::chrono::seconds(-2), std::chrono::seconds(30)}));
   EXPECT_EQ(config.log, (LogConfig{log::Level::Warn, log::Format::Json}));
   const Duration error = setup.clock->now() - SystemClock().now();
   EXPECT_NEAR(seconds(error), -0.25, 0.1);
@@ -77,8 +79,8 @@ TEST(SensorConfig, ChangesThatNeedARestartAreNamed) {
   EXPECT_THAT(
       restart_keys(running, setup_with({"images=true", "log.level=debug", "http.bearer_token=x"})),
       IsEmpty());
-  EXPECT_THAT(restart_keys(running, setup_with({"id=s2", "http.port=1", "clock_error_ms=1"})),
-              ElementsAre("id", "http", "clock_error_ms"));
+  EXPECT_THAT(restart_keys(running, setup_with({"id=s2", "http.port=1", "clock.drift_ppm=1"})),
+              ElementsAre("id", "http", "clock"));
   EXPECT_THAT(restart_keys(running, setup_with({}, path)), ElementsAre("device"));
 }
 

@@ -128,6 +128,21 @@ TEST_F(SensorServiceTest, CapturesThatCannotBeTrueAreRefusedAndCounted) {
   EXPECT_EQ(json("/frame")["sequence"], 7) << "a refused capture does no lasting harm";
 }
 
+TEST_F(SensorServiceTest, AClockThatWasSetBackIsFollowed) {
+  service_.on_capture(capture(0));
+  Capture repeated = capture(1);
+  repeated.frame.captured = kStart - std::chrono::milliseconds(900);
+  service_.on_capture(std::move(repeated));
+  EXPECT_EQ(service_.counters().refused, 1u) << "so little is the device's mistake";
+  for (int i = 1; i < 4; ++i) {
+    Capture back = capture(i);
+    back.frame.captured -= std::chrono::seconds(2);
+    service_.on_capture(std::move(back));
+  }
+  EXPECT_EQ(service_.counters().refused, 1u);
+  EXPECT_EQ(json("/frame")["sequence"], 4);
+}
+
 TEST_F(SensorServiceTest, NotANumberBecomesNotTracked) {
   Capture broken = capture(0);
   broken.frame.bodies[0].skeleton[JointId::Head].position.x() = std::nan("");

@@ -18,9 +18,9 @@ constexpr Timestamp kStart = from_unix_ns(1'795'000'000'000'000'000);
 
 Result<std::unique_ptr<FrameSource>> device(std::string_view json, std::string_view id,
                                             std::shared_ptr<const Clock> clock,
-                                            Duration error = Duration{0}) {
+                                            const synthetic::HostClock& host = {}) {
   ConfigReader config = ConfigReader::parse(json, "test").value();
-  auto made = make_simulated(config, SensorId::parse(id).value(), {std::move(clock), error});
+  auto made = make_simulated(config, SensorId::parse(id).value(), {std::move(clock), host});
   if (const auto ok = config.finish(); !ok) return pass(ok);
   return made;
 }
@@ -71,18 +71,37 @@ TEST(Simulated, TwoProcessesSeeTheSamePersonWhereverTheyStand) {
 }
 
 TEST(Simulated, AHostsClockErrorMovesTheStampsAndNothingElse) {
-  const auto run = [](Duration error) {
-    auto source = device("{}", "s1", std::make_shared<HastyClock>(), error);
+  const auto run = [](double offset) {
+    auto source = device("{}", "s1", std::make_shared<HastyClock>(), {.offset = offset});
     return first_captures(**source, 5);
   };
-  const auto right = run(Duration{0});
-  const auto ahead = run(std::chrono::milliseconds(300));
+  const auto right = run(0.0);
+  const auto ahead = run(0.3);
   for (std::size_t i = 0; i < right.size(); ++i) {
     EXPECT_EQ(ahead[i].frame.captured - right[i].frame.captured, std::chrono::milliseconds(300));
     EXPECT_EQ(ahead[i].frame.bodies.at(0).captured, ahead[i].frame.captured);
     EXPECT_EQ(ahead[i].frame.bodies.at(0).skeleton[JointId::Neck].position,
               right[i].frame.bodies.at(0).skeleton[JointId::Neck].position);
   }
+}
+
+TEST(Simulated, ADriftingClockThatIsSteppedStampsEverythingAlike) {
+  synthetic::HostClock host{.offset = -1.0, .drift = 1e-3, .step = 5.0, .origin = kStart};
+  host.step_at = kStart + std::chrono::milliseconds(500);
+  const auto run = [](const synthetic::HostClock& clock) {
+    auto source = device("{}", "s1", std::make_shared<HastyClock>(), clock);
+    return first_captures(**source, 40);
+  };
+  const auto right = run({});
+  const auto wrong = run(host);
+  EXPECT_GT(right.back().frame.captured, host.step_at) << "the step is within the test";
+  for (std::size_t i = 0; i < right.size(); ++i) {
+    EXPECT_EQ(wrong[i].frame.captured, host.host_time(right[i].frame.captured)) << i;
+    EXPECT_EQ(wrong[i].frame.received, host.host_time(right[i].frame.received)) << i;
+  }
+  const auto image = wrong.back().depth();
+  ASSERT_TRUE(image);
+  EXPECT_EQ(image->captured, wrong.back().frame.captured);
 }
 
 TEST(Simulated, ProfilesOfTheJudgeAreDevicesToo) {

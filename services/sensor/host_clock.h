@@ -1,0 +1,39 @@
+// The clock of a host that is badly set, for tests of everything that has to live with such hosts.
+#pragma once
+
+#include <memory>
+
+#include "common/base/config_reader.h"
+#include "common/synthetic/host_clock.h"
+#include "common/time/clock.h"
+
+namespace chorus::sensor_service {
+
+/// What is wrong with it, counted from the start of the service.
+struct ClockErrors {
+  Duration offset{0};
+  double drift = 0.0;  ///< [s/s]
+  Duration step{0};    ///< As NTP steps a clock, once.
+  Duration step_after = std::chrono::seconds(60);
+
+  bool operator==(const ClockErrors&) const = default;
+};
+
+/// The section "clock"; mistakes are reported by the reader's finish().
+void read_clock_errors(ConfigReader config, ClockErrors& out);
+
+[[nodiscard]] synthetic::HostClock host_clock(const ClockErrors& errors, Timestamp start);
+
+/// What a host's clock shows while the world's shows the true time.
+class ErringClock final : public Clock {
+ public:
+  ErringClock(std::shared_ptr<const Clock> world, const synthetic::HostClock& host)
+      : world_(std::move(world)), host_(host) {}
+  [[nodiscard]] Timestamp now() const override { return host_.host_time(world_->now()); }
+
+ private:
+  std::shared_ptr<const Clock> world_;
+  synthetic::HostClock host_;
+};
+
+}  // namespace chorus::sensor_service
