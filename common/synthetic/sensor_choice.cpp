@@ -1,6 +1,7 @@
 #include "common/synthetic/sensor_choice.h"
 
 #include "common/synthetic/depth/depth_sensor.h"
+#include "common/synthetic/gauss_sensor.h"
 #include "common/synthetic/kinect/kinect_sensor.h"
 
 namespace chorus::synthetic {
@@ -42,6 +43,7 @@ std::unique_ptr<BodySensor> rendered_sensor(const Scene& scene, const SensorChoi
 }  // namespace
 
 bool has_source(std::string_view profile, Source source) {
+  if (profile == kGaussProfile) return false;
   return is_drawn(profile) ||
          (source != Source::Yaw && source != Source::Coloured && source != Source::Visibility);
 }
@@ -52,7 +54,12 @@ Result<std::unique_ptr<BodySensor>> make_sensor(const Scene& scene, const Sensor
     return fail(ErrorCode::InvalidArgument, choice.id.str(), "the scene has no such place");
   if (is_drawn(choice.profile)) return drawn_sensor(scene, choice, start);
   if (is_rendered(choice.profile)) return rendered_sensor(scene, choice, start);
-  return fail(ErrorCode::InvalidArgument, choice.profile, "the sensor profiles are A, B and C");
+  if (choice.profile == kGaussProfile) {
+    return std::make_unique<GaussSensor>(
+        scene, SimulatedSensor{choice.id, choice.place, choice.gauss}, start);
+  }
+  return fail(ErrorCode::InvalidArgument, choice.profile,
+              "the sensor profiles are A, B, C and gauss");
 }
 
 Result<std::vector<SensorFrame>> record(const Scene& scene, const SensorChoice& choice,

@@ -134,14 +134,4 @@ std::optional<SensorFrame> observe(const Scene& scene, const SimulatedSensor& se
   return frame;
 }
 
-std::vector<SensorFrame> observe_all(const Scene& scene, const SimulatedSensor& sensor,
-                                     Timestamp begin, Timestamp end) {
-  std::vector<SensorFrame> frames;
-  for (std::uint64_t number = first_frame_from(sensor, begin); capture_time(sensor, number) <= end;
-       ++number) {
-    if (auto frame = observe(scene, sensor, number)) frames.push_back(*std::move(frame));
-  }
-  return frames;
-}
-
 }  // namespace chorus::synthetic

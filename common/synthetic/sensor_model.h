@@ -76,11 +76,6 @@ struct SimulatedSensor {
 [[nodiscard]] std::optional<SensorFrame> observe(const Scene& scene, const SimulatedSensor& sensor,
                                                  std::uint64_t number);
 
-/// All frames from `begin` to `end`, in order.
-[[nodiscard]] std::vector<SensorFrame> observe_all(const Scene& scene,
-                                                   const SimulatedSensor& sensor, Timestamp begin,
-                                                   Timestamp end);
-
 /// One layer each, for tests and other profiles.
 void limit_view(Skeleton<SensorSpace>& body, const FieldOfView& view);
 /// Joints behind the box are guessed (Inferred).

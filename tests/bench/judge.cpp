@@ -61,20 +61,11 @@ synthetic::Scene scene_of(const Setting& setting, Timestamp begin) {
   return scene;
 }
 
-Recorded record_gauss(const Workshop& workshop, const SensorId& id, std::size_t place) {
-  synthetic::SimulatedSensor sensor;
-  sensor.id = id;
-  sensor.index = place;
-  sensor.model.seed = workshop.setting.seed;
-  return {
-      observe_all(workshop.scene, sensor, workshop.begin, workshop.begin + workshop.setting.length),
-      {}};
-}
-
-Recorded record_tracker(const Workshop& workshop, const SensorId& id, std::size_t place) {
+Recorded record_sensor(const Workshop& workshop, const SensorId& id, std::size_t place) {
   const Setting& setting = workshop.setting;
-  const synthetic::SensorChoice choice{
+  synthetic::SensorChoice choice{
       id, place, setting.profile, setting.seed, setting.stress, setting.seed, setting.seed};
+  choice.gauss.seed = setting.seed;
   const auto sensor = make_sensor(workshop.scene, choice, workshop.begin).value();
   return {record(*sensor, workshop.begin + setting.length), sensor->clock()};
 }
@@ -109,8 +100,7 @@ Workshop draw_workshop(Setting setting) {
   workshop.scene = scene_of(asked, workshop.begin);
   for (std::size_t i = 0; i < asked.places.size(); ++i) {
     const SensorId id = SensorId::parse(fmt::format("s{}", i + 1)).value();
-    Recorded recorded =
-        is_gauss(asked) ? record_gauss(workshop, id, i) : record_tracker(workshop, id, i);
+    Recorded recorded = record_sensor(workshop, id, i);
     synthetic::Draw clock{asked.seed, kDrawClock, i};
     const double offset = clock.uniform(-asked.clock_offset, asked.clock_offset);
     const double drift = clock.uniform(-asked.clock_drift, asked.clock_drift);

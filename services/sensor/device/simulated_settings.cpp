@@ -4,8 +4,6 @@
 #include <array>
 #include <utility>
 
-#include "common/synthetic/gauss_sensor.h"
-
 namespace chorus::sensor_service {
 namespace {
 
@@ -53,8 +51,10 @@ Eigen::Isometry3d read_pose(ConfigReader config) {
   return synthetic::stand_sensor(eye, yaw, pitch);
 }
 
-int read_noise(ConfigReader config, synthetic::SimulatedSensor& sensor) {
-  synthetic::SensorModel& model = sensor.model;
+/// Errors that sensors of one room share come from `seed` alone; the rest differs by the sensor's
+/// id.
+void read_noise(ConfigReader config, synthetic::SensorChoice& choice) {
+  synthetic::SensorModel& model = choice.gauss;
   int seed = 1;
   double dropped = 0;
   config.read("seed", seed, 0, kMostSeed);
@@ -67,45 +67,35 @@ int read_noise(ConfigReader config, synthetic::SimulatedSensor& sensor) {
   config.read_deg("floor_tilt_deg", model.floor.fixed_tilt, 0, 10);
   read_mm(config, "floor_offset_mm", model.floor.fixed_offset, 1000);
   model.sampling.drop_share = dropped / 100.0;
-  model.seed = static_cast<std::uint64_t>(seed) ^ hash_of(sensor.id.str());
-  return seed;
+  choice.seed = choice.bias_seed = static_cast<std::uint64_t>(seed);
+  model.seed = choice.seed ^ hash_of(choice.id.str());
 }
 
-/// Errors that sensors of one room share come from `seed` alone; the rest differs by the sensor's
-/// id.
-std::optional<synthetic::SensorChoice> read_profile(ConfigReader& config, const SensorId& sensor,
-                                                    int seed) {
+void read_profile(ConfigReader& config, synthetic::SensorChoice& choice) {
   std::size_t profile = 0;
   int draw = 0;
   config.read_choice("profile", profile, {kProfiles.begin(), kProfiles.end()});
   config.read("profile_draw", draw, 0, kMostSeed);
-  if (profile == 0) return std::nullopt;
-  synthetic::SensorChoice choice;
-  choice.id = sensor;
   choice.profile = kProfiles.at(profile);
   if (draw > 0) choice.draw = static_cast<std::uint64_t>(draw);
-  choice.seed = static_cast<std::uint64_t>(seed);
-  choice.bias_seed = choice.seed;
   choice.own_clock = false;  // the host's clock is a setting of the service
-  return choice;
 }
 
 }  // namespace
 
 Result<std::unique_ptr<synthetic::BodySensor>> SimulatedSettings::sensor_from(
     Timestamp start) const {
-  if (tracker) return make_sensor(scene, *tracker, start);
-  return std::make_unique<synthetic::GaussSensor>(scene, plain, start);
+  return make_sensor(scene, choice, start);
 }
 
 std::string SimulatedSettings::profile() const {
-  if (!tracker) return std::string(synthetic::kGaussProfile);
-  return tracker->profile + " " + synthetic::frozen_hash(tracker->profile);
+  const std::string hash = synthetic::frozen_hash(choice.profile);
+  return hash.empty() ? choice.profile : choice.profile + " " + hash;
 }
 
 SimulatedSettings read_simulated_settings(ConfigReader& config, const SensorId& sensor) {
   SimulatedSettings settings;
-  settings.plain.id = sensor;
+  settings.choice.id = sensor;
   if (config.has("ring") && config.has("pose")) {
     config.complain("pose", "give either ring or pose, not both");
   }
@@ -114,8 +104,8 @@ SimulatedSettings read_simulated_settings(ConfigReader& config, const SensorId& 
   settings.people = std::move(scene.people);
   settings.scene.world_from_sensor.push_back(config.has("pose") ? read_pose(config.child("pose"))
                                                                 : read_ring(config.child("ring")));
-  const int seed = read_noise(config.child("noise"), settings.plain);
-  settings.tracker = read_profile(config, sensor, seed);
+  read_noise(config.child("noise"), settings.choice);
+  read_profile(config, settings.choice);
   config.read_ms("latency_ms", settings.latency, Duration::zero(), std::chrono::milliseconds(500));
   return settings;
 }

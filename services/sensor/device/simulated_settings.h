@@ -18,23 +18,20 @@
 //   latency_ms [0]          from capture to delivery, beside that of the profile
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "common/base/config_reader.h"
 #include "common/synthetic/body_sensor.h"
 #include "common/synthetic/scene.h"
 #include "common/synthetic/sensor_choice.h"
-#include "common/synthetic/sensor_model.h"
 #include "services/sensor/device/scene_settings.h"
 
 namespace chorus::sensor_service {
 
 struct SimulatedSettings {
-  synthetic::Scene scene;                          ///< One sensor in it: this one.
-  synthetic::SimulatedSensor plain;                ///< Profile gauss.
-  std::optional<synthetic::SensorChoice> tracker;  ///< Any other profile.
-  std::string people;                              ///< "CMU walking"
+  synthetic::Scene scene;          ///< One sensor in it: this one.
+  synthetic::SensorChoice choice;  ///< Of the sensor.
+  std::string people;              ///< "CMU walking"
   Duration latency{0};
 
   /// A sensor that stands in `scene`, from `start` on.

@@ -76,6 +76,22 @@ TEST(SensorChoice, ProfileCIsRenderedAndFitted) {
   EXPECT_NE(nominal, recorded(scene, quiet));
 }
 
+TEST(SensorChoice, GaussIsThePlainModel) {
+  const Scene scene = room();
+  SensorChoice chosen = choice("gauss");
+  chosen.gauss.seed = 7;
+  const auto sensor = make_sensor(scene, chosen, kStart);
+  ASSERT_TRUE(sensor.has_value());
+  const SimulatedSensor plain{chosen.id, 0, chosen.gauss};
+  EXPECT_EQ(necks({*(*sensor)->next()}),
+            necks({*observe(scene, plain, first_frame_from(plain, kStart))}));
+  EXPECT_EQ((*sensor)->clock().offset, 0.0);
+  EXPECT_FALSE(has_source("gauss", Source::White));
+  SensorChoice other = chosen;
+  other.gauss.seed = 8;
+  EXPECT_NE(recorded(scene, chosen), recorded(scene, other));
+}
+
 TEST(SensorChoice, ErrorsOfCThatEmergeAreNoSources) {
   for (const Source source : {Source::Yaw, Source::Coloured, Source::Visibility}) {
     EXPECT_TRUE(has_source("A", source));
@@ -113,6 +129,7 @@ TEST(SensorChoice, TellsWhichParametersMadeTheNumbers) {
   EXPECT_EQ(frozen_hash("A"), kinect::frozen_hash());
   EXPECT_EQ(frozen_hash("C").size(), 12u);
   EXPECT_NE(frozen_hash("C"), frozen_hash("A"));
+  EXPECT_EQ(frozen_hash("gauss"), "");
   EXPECT_EQ(frozen_hash("Z"), "");
 }
 

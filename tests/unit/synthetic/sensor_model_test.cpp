@@ -9,6 +9,7 @@
 
 #include "common/body/bones.h"
 #include "common/body/facing.h"
+#include "common/synthetic/gauss_sensor.h"
 
 namespace chorus::synthetic {
 namespace {
@@ -23,6 +24,12 @@ Scene six_around_one(std::uint64_t seed = 1) {
 
 SimulatedSensor sensor(std::size_t index = 0) {
   return {SensorId::parse("s" + std::to_string(index + 1)).value(), index, {}};
+}
+
+std::vector<SensorFrame> frames_of(const Scene& scene, const SimulatedSensor& one, Timestamp begin,
+                                   Timestamp end) {
+  GaussSensor gauss(scene, one, begin);
+  return record(gauss, end);
 }
 
 TEST(Ring, EverySensorLooksAtTheCentreFromItsHeight) {
@@ -57,7 +64,7 @@ TEST(Observe, IsDeterministicByFrameNumber) {
 
 TEST(Observe, NoiseHasTheStatedSizeAlongAndAcrossTheRay) {
   const Scene scene = six_around_one();
-  const auto frames = observe_all(scene, sensor(), kStart, kStart + std::chrono::seconds(60));
+  const auto frames = frames_of(scene, sensor(), kStart, kStart + std::chrono::seconds(60));
   double along = 0, across = 0;
   int count = 0;
   for (const SensorFrame& frame : frames) {
@@ -85,7 +92,7 @@ TEST(Observe, LabelsAreAnatomicallyRightFromAllSides) {
   int behind = 0;
   for (std::size_t s = 0; s < 6; ++s) {
     for (const auto& frame :
-         observe_all(scene, sensor(s), kStart, kStart + std::chrono::seconds(20))) {
+         frames_of(scene, sensor(s), kStart, kStart + std::chrono::seconds(20))) {
       for (const BodyFrame& body : frame.bodies) {
         const auto exact =
             to_sensor(scene.world_from_sensor[s].inverse(), truth(scene, 0, frame.captured));
@@ -122,7 +129,7 @@ TEST(Sampling, DropsTheStatedShare) {
   const Scene scene = six_around_one();
   SimulatedSensor lossy = sensor();
   lossy.model.sampling.drop_share = 0.2;
-  const auto frames = observe_all(scene, lossy, kStart, kStart + std::chrono::seconds(60));
+  const auto frames = frames_of(scene, lossy, kStart, kStart + std::chrono::seconds(60));
   EXPECT_NEAR(static_cast<double>(frames.size()) / 1800.0, 0.8, 0.04);
 }
 
@@ -185,7 +192,7 @@ TEST(Speed, SixSensorsRunFarFasterThanRealTime) {
   const std::clock_t begin = std::clock();
   std::size_t frames = 0;
   for (std::size_t s = 0; s < 6; ++s) {
-    frames += observe_all(scene, sensor(s), kStart, kStart + std::chrono::seconds(30)).size();
+    frames += frames_of(scene, sensor(s), kStart, kStart + std::chrono::seconds(30)).size();
   }
   const double cpu = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   EXPECT_NEAR(static_cast<double>(frames), 5400, 12);
