@@ -56,8 +56,14 @@ bool ImageDesk::encode_next(const std::stop_token& stop) {
     if (!changed_.wait(lock, stop, [this] { return due(); })) return false;
     sight = offered_;
   }
-  if (sight->color) (void)sight->color->get();
-  if (sight->depth) (void)sight->depth->get();
+  try {
+    if (sight->color) (void)sight->color->get();
+    if (sight->depth) (void)sight->depth->get();
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    if (offered_ == sight) offered_ = nullptr;  // not again and again
+    throw;
+  }
   const std::lock_guard lock(mutex_);
   encoded_ = steady_now_();
   if (on_) pictured_ = std::move(sight);

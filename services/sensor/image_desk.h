@@ -35,7 +35,8 @@ class ImageDesk {
   /// Unavailable before the first.
   [[nodiscard]] Result<SightPtr> ask();
 
-  /// Blocks until images are due, encodes them, and says true; false when asked to stop.
+  /// Blocks until images are due, encodes them, and says true; false when asked to stop.  What an
+  /// encoder throws is in its image; what is thrown all the same costs this capture, not the next.
   bool encode_next(const std::stop_token& stop);
 
  private:

@@ -12,6 +12,8 @@ Result<CameraImage> encoded(const std::function<Result<CameraImage>()>& encode) 
     return encode();
   } catch (const std::exception& failure) {
     return fail(ErrorCode::Internal, "image", failure.what());
+  } catch (...) {
+    return fail(ErrorCode::Internal, "image", "the encoder threw what is no exception");
   }
 }
 

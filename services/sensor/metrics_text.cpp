@@ -12,6 +12,8 @@ std::string metrics_text(const ServiceCounters& service, const http::ServerCount
                number(service.lost));
   text.counter({"chorus_captures_refused_total", "Captures that could not be true."},
                number(service.refused));
+  text.counter({"chorus_failures_total", "Failures of the device, a capture or its images."},
+               number(service.failures));
   text.gauge({"chorus_bodies", "Bodies in the latest frame."}, number(service.bodies));
   text.gauge({"chorus_frame_age_seconds", "Since the latest frame arrived."}, service.age_s);
   endpoint::add_server(text, server);

@@ -1,8 +1,11 @@
 #include "services/sensor/sensor_host.h"
 
+#include <chrono>
+#include <condition_variable>
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <mutex>
 #include <random>
 #include <utility>
 
@@ -54,6 +57,16 @@ http::ServerConfig server_config(const Setup& setup) {
   config.allowed_origin = setup.config.http.allowed_origin;
   config.clock = setup.clock;
   return config;
+}
+
+/// Before the device is tried again; false when asked to stop.
+bool rest(const std::stop_token& stop) {
+  constexpr auto kRest = std::chrono::seconds(1);
+  std::mutex mutex;
+  std::condition_variable_any never;
+  std::unique_lock lock(mutex);
+  never.wait_for(lock, stop, kRest, [] { return false; });
+  return !stop.stop_requested();
 }
 
 sigset_t watched_signals() {
@@ -121,7 +134,7 @@ Result<void> SensorHost::start() {
     while (service_.encode_next(stop)) {
     }
   });
-  device_ = std::jthread([this](std::stop_token stop) { run_device(std::move(stop)); });
+  device_ = std::jthread([this](const std::stop_token& stop) { run_device(stop); });
   return {};
 }
 
@@ -132,18 +145,33 @@ void SensorHost::record(const Sight& sight) {
       record::RawFrame{setup_.config.id, sight.frame, setup_.clock->now(), sight.floor, {}});
 }
 
-void SensorHost::run_device(std::stop_token stop) {
-  Result<void> how;
+/// How a run of the device ended; nothing when it threw, which a new run may not do again.
+std::optional<Result<void>> SensorHost::run_once(const std::stop_token& stop,
+                                                 const FrameSource::Sink& sink) {
   try {
-    how = setup_.device->run(stop,
-                             [this](Capture capture) { service_.on_capture(std::move(capture)); });
+    return setup_.device->run(stop, sink);
   } catch (const std::exception& failure) {
-    how = fail(ErrorCode::Internal, "device", failure.what());
+    service_.on_failure(failure.what());
+  } catch (...) {
+    service_.on_failure("the device threw what is no exception");
   }
+  return std::nullopt;
+}
+
+void SensorHost::run_device(const std::stop_token& stop) {
+  std::uint64_t before = 0;  // frames of earlier runs: numbers go on
+  std::uint64_t latest = 0;
+  const auto take = [&](Capture capture) {
+    capture.frame.sequence += before;
+    latest = capture.frame.sequence;
+    service_.on_capture(std::move(capture));
+  };
+  std::optional<Result<void>> how;
+  while (!(how = run_once(stop, take)) && rest(stop)) before = latest;
   if (stop.stop_requested()) return;
-  service_.on_device_end(how);
-  if (how) return log::info("the device has come to its end");
-  log::error("the device failed", {{"reason", to_string(how.error())}});
+  service_.on_device_end(*how);
+  if (*how) return log::info("the device has come to its end");
+  log::error("the device failed", {{"reason", to_string(how->error())}});
 }
 
 void SensorHost::stop() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -34,7 +35,8 @@ class SensorHost {
  private:
   [[nodiscard]] std::shared_ptr<http::Router> routes();
   void record(const Sight& sight);
-  void run_device(std::stop_token stop);
+  void run_device(const std::stop_token& stop);
+  std::optional<Result<void>> run_once(const std::stop_token& stop, const FrameSource::Sink& sink);
 
   Setup setup_;
   endpoint::Recordings recordings_;

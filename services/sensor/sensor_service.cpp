@@ -1,5 +1,6 @@
 #include "services/sensor/sensor_service.h"
 
+#include <exception>
 #include <unordered_set>
 #include <utility>
 
@@ -39,7 +40,37 @@ std::string SensorService::objection(const SensorFrame& frame) const {
   return {};
 }
 
-void SensorService::on_capture(Capture capture) {
+void SensorService::on_failure(std::string_view reason) noexcept {
+  try {
+    failures_.hit(reason);
+    const std::lock_guard lock(mutex_);
+    ++counters_.failures;
+  } catch (...) {  // not even memory for a line in the log
+  }
+}
+
+void SensorService::on_capture(Capture capture) noexcept {
+  try {
+    publish(std::move(capture));
+  } catch (const std::exception& failure) {
+    on_failure(failure.what());
+  } catch (...) {
+    on_failure("something was thrown that is no exception");
+  }
+}
+
+bool SensorService::encode_next(const std::stop_token& stop) noexcept {
+  try {
+    return images_.encode_next(stop);
+  } catch (const std::exception& failure) {
+    on_failure(failure.what());
+  } catch (...) {
+    on_failure("something was thrown that is no exception");
+  }
+  return true;
+}
+
+void SensorService::publish(Capture capture) {
   SightPtr before;
   {
     const std::lock_guard lock(mutex_);

@@ -36,6 +36,7 @@ struct ServiceCounters {
   std::uint64_t captured = 0;  ///< Frames published.
   std::uint64_t lost = 0;      ///< Gaps in the device's numbering.
   std::uint64_t refused = 0;   ///< Captures that could not be true (see on_capture).
+  std::uint64_t failures = 0;  ///< Of the device, of a capture's way to its documents, of images.
   std::uint64_t bodies = 0;    ///< In the latest frame.
   double age_s = 0.0;          ///< Since the latest capture arrived; 0 before the first.
 };
@@ -47,14 +48,17 @@ class SensorService {
   /// Publishes one capture.  Refused and counted: time or numbering that does not advance, two
   /// bodies with one id, too many bodies.  Time that goes back by more than a second is a clock
   /// that was set, and goes on from there.
-  void on_capture(Capture capture);
+  /// An exception on the way is logged and counted; the next capture is another chance.
+  void on_capture(Capture capture) noexcept;
+  /// The device, or whatever else is at work for this service, threw: logged and counted.
+  void on_failure(std::string_view reason) noexcept;
   /// The device will deliver nothing more; health() says why.
   void on_device_end(const Result<void>& how);
 
   /// Takes effect with the next request.
   void show_images(bool on) { images_.allow(on); }
   /// Work for a thread of its own: blocks until images are due, encodes them; false when stopped.
-  bool encode_next(const std::stop_token& stop) { return images_.encode_next(stop); }
+  bool encode_next(const std::stop_token& stop) noexcept;
 
   [[nodiscard]] endpoint::Health health() const;
   [[nodiscard]] ServiceCounters counters() const;
@@ -65,6 +69,7 @@ class SensorService {
  private:
   using Answer = Result<http::DocumentPtr>;
 
+  void publish(Capture capture);
   [[nodiscard]] std::string objection(const SensorFrame& frame) const;
   [[nodiscard]] Result<SightPtr> sight() const;
   [[nodiscard]] Answer self() const;
@@ -75,6 +80,7 @@ class SensorService {
   const std::shared_ptr<http::LiveDocument> live_ = std::make_shared<http::LiveDocument>();
   RecentFrames recent_;
   RateReport refused_{"capture refused"};
+  RateReport failures_{"a capture or its images failed", log::Level::Error};
   ImageDesk images_;
 
   mutable std::mutex mutex_;  ///< Guards what follows.

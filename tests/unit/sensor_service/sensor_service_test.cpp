@@ -245,6 +245,28 @@ TEST_F(SensorServiceTest, AnEncoderThatFailsIsAnErrorNotACrash) {
   EXPECT_EQ(get(router_, "/images/").status, 200) << "a list without images";
 }
 
+TEST_F(SensorServiceTest, AnEncoderThatThrowsAnythingIsAnErrorToo) {
+  service_.show_images(true);
+  Capture broken = capture(0);
+  broken.depth = []() -> Result<CameraImage> { throw 7; };
+  service_.on_capture(std::move(broken));
+  ASSERT_TRUE(service_.encode_next(stop_.get_token()));
+  EXPECT_EQ(get(router_, "/images/depth").status, 500);
+}
+
+TEST_F(SensorServiceTest, AnExceptionCostsOneCaptureAndIsCounted) {
+  ServiceOptions fragile = options(&now_);
+  int recorded = 0;
+  fragile.record = [&](const Sight&) {
+    if (++recorded == 2) throw std::runtime_error("no memory");
+  };
+  SensorService service(fragile);
+  for (int i = 0; i < 4; ++i) service.on_capture(capture(i));
+  EXPECT_EQ(service.counters().failures, 1u);
+  EXPECT_EQ(service.counters().captured, 4u);
+  EXPECT_EQ(recorded, 4);
+}
+
 TEST_F(SensorServiceTest, ASilentDeviceIsNotHealthyUntilItSpeaksAgain) {
   service_.on_capture(capture(0));
   now_ += std::chrono::milliseconds(1900);
