@@ -15,6 +15,7 @@ void run_events(net::io_context& io, std::string_view failure,
       return;
     } catch (const std::exception& thrown) {
       log::error(failure, {{"what", thrown.what()}});
+      io.restart();  // It takes itself for done when that handler was all that was under way.
     }
   }
 }

@@ -24,13 +24,11 @@ Server::~Server() { stop(); }
 
 Result<void> Server::start() {
   if (auto listening = impl_->core->listen(); !listening) return listening;
-  error_code failed;
-  impl_->port = impl_->core->acceptor.local_endpoint(failed).port();
+  impl_->port = impl_->core->accepting.port();
   impl_->core->subscribe();
-  impl_->core->accept();
-  impl_->core->sweep();
-  impl_->thread =
-      std::thread([core = impl_->core] { run_events(core->io, "server handler failed"); });
+  impl_->thread = std::thread([core = impl_->core] {
+    run_events(core->io, "server handler failed", [&core] { core->ensure(); });
+  });
   return {};
 }
 

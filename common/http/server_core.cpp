@@ -6,21 +6,16 @@ namespace chorus::http {
 namespace {
 
 constexpr std::chrono::milliseconds kSweepInterval{250};
-constexpr std::chrono::milliseconds kAcceptPause{100};  // No descriptors left, until some close.
 constexpr std::chrono::seconds kStopTime{2};
 constexpr std::size_t kMaxTurnedAway = 64;  // Beyond the limit, so many still get to read a 503.
-
-bool is_shortage(error_code failed) {
-  return failed == net::error::no_descriptors || failed == net::error::no_buffer_space ||
-         failed == net::error::no_memory ||
-         failed == boost::system::errc::too_many_files_open_in_system;
-}
 
 }  // namespace
 
 ServerCore::ServerCore(ServerConfig server_config, std::shared_ptr<const Router> routes)
     : config(std::move(server_config)),
       responder(config, std::move(routes)),
+      accepting(io, "accept failed", [this](Socket socket) { welcome(std::move(socket)); }),
+      sweeping(io, kSweepInterval, [this] { sweep(); }),
       now(std::chrono::steady_clock::now()) {
   const std::size_t entries = responder.router().entries().size();
   waiting.resize(entries);
@@ -28,44 +23,18 @@ ServerCore::ServerCore(ServerConfig server_config, std::shared_ptr<const Router>
 }
 
 Result<void> ServerCore::listen() {
-  const std::string where = config.address + ":" + std::to_string(config.port);
-  error_code failed;
-  const auto address = net::ip::make_address(config.address, failed);
-  if (failed)
-    return fail(ErrorCode::InvalidArgument, where,
-                "the address to listen on is a numeric one, such as 127.0.0.1 or 0.0.0.0");
-  const tcp::endpoint endpoint(address, config.port);
-  acceptor.open(endpoint.protocol(), failed);
-  if (!failed) acceptor.set_option(net::socket_base::reuse_address(true), failed);
-  if (!failed) acceptor.bind(endpoint, failed);
-  if (!failed) acceptor.listen(net::socket_base::max_listen_connections, failed);
-  if (!failed) return {};
-  error_code ignored;
-  acceptor.close(ignored);
-  return fail(ErrorCode::Io, where, "cannot listen: " + failed.message());
+  return accepting.listen({config.address, config.port, "http.port"});
 }
 
-void ServerCore::accept() {
-  acceptor.async_accept(
-      [this](error_code failed, Socket socket) { on_accepted(failed, std::move(socket)); });
+void ServerCore::ensure() {
+  accepting.ensure();
+  sweeping.ensure();
 }
 
-void ServerCore::on_accepted(error_code failed, Socket socket) {
-  if (stopping) return;
-  if (failed) {
-    accept_trouble.hit(failed.message());
-    if (!is_shortage(failed)) return accept();
-    accept_timer.expires_after(kAcceptPause);
-    return accept_timer.async_wait([this](error_code cancelled) {
-      if (!cancelled && !stopping) accept();
-    });
-  }
-  const auto remote = socket.remote_endpoint(failed);
-  if (!failed) welcome(std::move(socket), remote);
-  accept();
-}
-
-void ServerCore::welcome(Socket socket, const tcp::endpoint& remote) {
+void ServerCore::welcome(Socket socket) {
+  error_code gone;
+  const tcp::endpoint remote = socket.remote_endpoint(gone);
+  if (gone) return;
   const std::size_t most = config.limits.max_connections;
   if (sessions.size() >= most + kMaxTurnedAway) return;  // Closes it.
   auto connection = std::make_shared<Connection>(*this, std::move(socket), remote);
@@ -95,11 +64,6 @@ void ServerCore::sweep() {
       session->expire();
     }
   }
-  if (stopping && sessions.empty()) return;
-  sweep_timer.expires_after(kSweepInterval);
-  sweep_timer.async_wait([this](error_code cancelled) {
-    if (!cancelled) sweep();
-  });
 }
 
 void ServerCore::subscribe() {
@@ -136,7 +100,7 @@ void ServerCore::forget(const Session* session) {
   if (peer != per_peer.end() && --peer->second == 0) per_peer.erase(peer);
   sessions.erase(session);
   counters.connections_open.store(sessions.size(), std::memory_order_relaxed);
-  if (stopping && sessions.empty()) sweep_timer.cancel();
+  if (stopping && sessions.empty()) sweeping.stop();
 }
 
 void ServerCore::replace(const Session* session, std::shared_ptr<Session> by) {
@@ -148,13 +112,11 @@ void ServerCore::replace(const Session* session, std::shared_ptr<Session> by) {
 void ServerCore::begin_stop() {
   stopping = true;
   stop_deadline = std::chrono::steady_clock::now() + kStopTime;
-  error_code ignored;
-  acceptor.close(ignored);
-  accept_timer.cancel();
+  accepting.stop();
   std::vector<std::shared_ptr<Session>> all;
   for (const auto& [key, session] : sessions) all.push_back(session);
   for (const auto& session : all) session->stop();
-  if (sessions.empty()) sweep_timer.cancel();
+  if (sessions.empty()) sweeping.stop();
 }
 
 }  // namespace chorus::http

@@ -8,9 +8,10 @@
 #include <unordered_map>
 #include <vector>
 
-#include "common/base/rate_report.h"
 #include "common/http/asio.h"
 #include "common/http/connection.h"
+#include "common/http/every.h"
+#include "common/http/listen.h"
 #include "common/http/responder.h"
 #include "common/http/server.h"
 
@@ -33,9 +34,9 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   ServerCore(ServerConfig server_config, std::shared_ptr<const Router> routes);
 
   [[nodiscard]] Result<void> listen();
-  void accept();
-  void on_accepted(error_code failed, Socket socket);
-  void welcome(Socket socket, const tcp::endpoint& remote);
+  /// Starts what must always be under way, as far as it is not.
+  void ensure();
+  void welcome(Socket socket);
   void sweep();
   void subscribe();
   /// From any thread: wakes who waits for the entry, soon; many calls before that count as one.
@@ -52,10 +53,8 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   ServerConfig config;
   Responder responder;
   AtomicCounters counters;
-  Acceptor acceptor{io.get_executor()};
-  Timer sweep_timer{io.get_executor()};
-  Timer accept_timer{io.get_executor()};
-  RateReport accept_trouble{"accept failed"};
+  AcceptLoop accepting;
+  Every sweeping;
 
   SteadyTime now;  ///< Coarse: of the last sweep.
   bool stopping = false;
