@@ -33,12 +33,17 @@ Result<FramePtr> FrameRing::find(std::uint64_t sequence) const {
   const auto it = std::lower_bound(
       frames_.begin(), frames_.end(), sequence,
       [](const FramePtr& frame, std::uint64_t wanted) { return frame->sequence < wanted; });
+  const std::string where = "frames/" + std::to_string(sequence);
   if (it == frames_.end()) {
-    return fail(ErrorCode::NotFound, "frames/" + std::to_string(sequence),
+    return fail(ErrorCode::NotFound, where,
                 "there has not been a frame of this sequence number yet");
   }
   if ((*it)->sequence == sequence) return *it;
-  return fail(ErrorCode::Gone, "frames/" + std::to_string(sequence),
+  if (it != frames_.begin()) {
+    return fail(ErrorCode::NotFound, where,
+                "no frame has this sequence number; its instant was left out");
+  }
+  return fail(ErrorCode::Gone, where,
               "the oldest frame still here is " + std::to_string(frames_.front()->sequence));
 }
 

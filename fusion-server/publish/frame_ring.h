@@ -22,7 +22,8 @@ class FrameRing {
 
   void push(FramePtr frame);
 
-  /// Gone when it was evicted or skipped, NotFound when it has not been yet.
+  /// Gone when it is older than all that are kept; NotFound when no frame has this number: not yet,
+  /// or never, because it was skipped.
   [[nodiscard]] Result<FramePtr> find(std::uint64_t sequence) const;
 
   /// The frame for an instant (xsd:dateTime or nanoseconds since the epoch as integer),

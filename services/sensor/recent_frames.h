@@ -19,8 +19,8 @@ class RecentFrames {
   /// Sequences must increase.
   void add(std::uint64_t sequence, http::DocumentPtr frame);
 
-  /// `sequence` as it stands in the path.  Gone: evicted; NotFound: not yet, never, or not a
-  /// number.
+  /// `sequence` as it stands in the path.  Gone: older than all that are kept; NotFound: no frame
+  /// has this number (not yet, or never, because it was lost), or it is none.
   [[nodiscard]] Result<http::DocumentPtr> find(std::string_view sequence) const;
 
  private:

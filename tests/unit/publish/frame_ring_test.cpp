@@ -43,11 +43,18 @@ TEST(FrameRing, KnowsWhatIsHereWhatIsGoneAndWhatIsNotYet) {
   EXPECT_EQ(ring.find(26).error().code, ErrorCode::NotFound);
 }
 
-TEST(FrameRing, ASkippedSequenceIsGone) {
+TEST(FrameRing, ASkippedSequenceHasNeverBeen) {
   FrameRing ring(10);
-  ring.push(frame(1));
+  ring.push(frame(2));
   ring.push(frame(5));
-  EXPECT_EQ(ring.find(3).error().code, ErrorCode::Gone);
+  const auto skipped = ring.find(3);
+  ASSERT_FALSE(skipped);
+  EXPECT_EQ(skipped.error().code, ErrorCode::NotFound);
+  EXPECT_EQ(skipped.error().message.find("oldest"), std::string::npos);
+  const auto evicted = ring.find(1);
+  ASSERT_FALSE(evicted);
+  EXPECT_EQ(evicted.error().code, ErrorCode::Gone);
+  EXPECT_NE(evicted.error().message.find("still here is 2"), std::string::npos);
 }
 
 TEST(FrameRing, AnswersForAnInstantInEitherSpelling) {
