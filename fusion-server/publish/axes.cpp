@@ -66,13 +66,9 @@ const Axes& xsens_axes() {
 
 const Axes& natnet_axes() { return vrpn_axes(); }
 
-const Eigen::Quaterniond& natnet_rest() {
+const Eigen::Quaterniond& rig_from_ahead_rest() {
   static const Eigen::Quaterniond kHalfTurnAboutUp(0.0, 0.0, 1.0, 0.0);
   return kHalfTurnAboutUp;
-}
-
-Eigen::Quaterniond from_xsens_rest(const Eigen::Quaterniond& world_from_bone) {
-  return world_from_bone * Eigen::Quaterniond(0.0, 0.0, 1.0, 0.0);  // half a turn about +y
 }
 
 // R = Rx(a) Ry(b) Rz(c): R02 = sin b, R12 = -sin a cos b, R22 = cos a cos b, R01 = -cos b sin c,

@@ -37,14 +37,12 @@ struct Axes {
 [[nodiscard]] const Axes& unity_axes();
 /// Xsens MXTP: right-handed, +z up, metres: (z, x, y), so a body that faces +z looks along +x.
 [[nodiscard]] const Axes& xsens_axes();
-/// The same turn counted from Xsens' rest, which looks along our +z; the rig of humanoid.h rests
-/// looking along -z.
-[[nodiscard]] Eigen::Quaterniond from_xsens_rest(const Eigen::Quaterniond& world_from_bone);
-
 /// NatNet, as Motive streams it by default: right-handed, +y up, metres.
 [[nodiscard]] const Axes& natnet_axes();
-/// Directions of the rig at rest (humanoid.h: it looks along -z) from those of Motive's (along +z).
-[[nodiscard]] const Eigen::Quaterniond& natnet_rest();
+
+/// Directions of the rig at rest (humanoid.h: it looks along -z) from those of a rest that looks
+/// along our +z, as Xsens' and Motive's do.
+[[nodiscard]] const Eigen::Quaterniond& rig_from_ahead_rest();
 
 /// R = Rx(eta) Ry(theta) Rz(phi), |theta| <= 90 deg (A.R.T. DTrack2 manual, App. B) [rad].
 [[nodiscard]] Eigen::Vector3d dtrack_angles(const Eigen::Matrix3d& rotation);

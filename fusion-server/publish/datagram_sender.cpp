@@ -58,6 +58,18 @@ void read_targets(ConfigReader& reader, std::vector<std::string>& out) {
   }
 }
 
+void read_multicast(ConfigReader& reader, Multicast& out) {
+  constexpr int kMostHops = 255;
+  reader.read("multicast_address", out.address);
+  error_code error;
+  (void)net::ip::make_address_v4(out.address, error);
+  if (!out.address.empty() && error) {
+    reader.complain("multicast_address",
+                    "must be the numeric IPv4 address of an interface, or empty");
+  }
+  reader.read("multicast_hops", out.hops, 0, kMostHops);
+}
+
 struct DatagramSender::Sockets {
   net::io_context io{1};
   std::optional<DatagramSocket> v4;
@@ -70,6 +82,8 @@ struct DatagramSender::Sockets {
   }
   [[nodiscard]] Result<void> resolve_all(const DatagramOptions& options);
   [[nodiscard]] Result<void> open(const udp& protocol, const DatagramOptions& options);
+  [[nodiscard]] static Result<void> set_multicast(DatagramSocket& socket, const udp& protocol,
+                                                  const Multicast& multicast);
   [[nodiscard]] bool lost(std::span<const char> datagram, const udp::endpoint& target);
 };
 
@@ -102,14 +116,26 @@ Result<void> DatagramSender::Sockets::open(const udp& protocol, const DatagramOp
   socket.emplace(io);
   socket->open(protocol, error);
   if (!error) socket->non_blocking(true, error);
-  if (!error) socket->set_option(net::ip::multicast::hops(options.multicast_hops), error);
-  if (!error) socket->set_option(net::ip::multicast::enable_loopback(true), error);
   if (!error) socket->bind(source, error);
-  if (!error) return {};
+  if (!error) return set_multicast(*socket, protocol, options.multicast);
   const std::string advice =
       error == net::error::address_in_use ? "; set source_port to another, or to 0 for any" : "";
   return fail(ErrorCode::Io, "UDP port " + std::to_string(options.source_port),
               error.message() + advice);
+}
+
+Result<void> DatagramSender::Sockets::set_multicast(DatagramSocket& socket, const udp& protocol,
+                                                    const Multicast& multicast) {
+  error_code error;
+  socket.set_option(net::ip::multicast::hops(multicast.hops), error);
+  if (!error) socket.set_option(net::ip::multicast::enable_loopback(true), error);
+  if (!error && protocol == udp::v4() && !multicast.address.empty()) {
+    const auto interface = net::ip::make_address_v4(multicast.address, error);
+    if (!error) socket.set_option(net::ip::multicast::outbound_interface(interface), error);
+  }
+  if (!error) return {};
+  return fail(ErrorCode::Io, "multicast by " + multicast.address,
+              error.message() + "; multicast_address must be one of this machine's");
 }
 
 bool DatagramSender::Sockets::lost(std::span<const char> datagram, const udp::endpoint& target) {

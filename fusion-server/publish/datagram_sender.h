@@ -27,13 +27,24 @@ struct Target {
 /// The key "targets"; each one must be as above.
 void read_targets(ConfigReader& reader, std::vector<std::string>& out);
 
+/// How datagrams to groups leave.
+struct Multicast {
+  std::string address;  ///< Of the interface, numeric IPv4; empty: that of the default route.
+  int hops = 1;         ///< Routers a datagram may pass, plus one; 0: none leaves this host.
+
+  bool operator==(const Multicast&) const = default;
+};
+
+/// The keys "multicast_address" and "multicast_hops".
+void read_multicast(ConfigReader& reader, Multicast& out);
+
 struct DatagramOptions {
   std::vector<std::string> targets;
   /// 0: any.  Bound to loopback when all targets and `listen_address` are there.
   std::uint16_t source_port = 0;
   /// Not empty: an IPv4 socket is open even without a target; where others may write from.
   std::string listen_address = {};
-  int multicast_hops = 1;  ///< Routers a multicast datagram may pass, plus one.
+  Multicast multicast = {};
 };
 
 /// What somebody sent us.

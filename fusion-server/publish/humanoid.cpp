@@ -271,6 +271,12 @@ void Rig::add_origins() {
 
 }  // namespace
 
+BonePose relative_to(const BonePose& parent, const BonePose& pose) {
+  const Eigen::Quaterniond parent_from_world = parent.world_from_bone.conjugate();
+  return {parent_from_world * (pose.origin - parent.origin),
+          parent_from_world * pose.world_from_bone, pose.known};
+}
+
 HumanBone parent_of(HumanBone bone) { return kParents[static_cast<std::size_t>(bone)]; }
 
 Humanoid humanoid_of(const TrackerBody& body) { return Rig(body).derive(); }

@@ -64,6 +64,9 @@ struct Humanoid {
   }
 };
 
+/// A pose in the world, in the frame of another one there.
+[[nodiscard]] BonePose relative_to(const BonePose& parent, const BonePose& pose);
+
 /// Hips hangs on itself.
 [[nodiscard]] HumanBone parent_of(HumanBone bone);
 

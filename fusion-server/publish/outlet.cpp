@@ -1,5 +1,7 @@
 #include "fusion-server/publish/outlet.h"
 
+#include <exception>
+#include <string>
 #include <utility>
 
 namespace chorus::publish {
@@ -11,7 +13,11 @@ constexpr std::chrono::seconds kPatience{1};  ///< close() wakes earlier.
 }  // namespace
 
 OutletSink::OutletSink(std::unique_ptr<Outlet> outlet, OutletTiming timing)
-    : outlet_(std::move(outlet)), timing_(std::move(timing)), waiting_(kWaiting) {
+    : outlet_(std::move(outlet)),
+      timing_(std::move(timing)),
+      waiting_(kWaiting),
+      trouble_("output " + std::string(outlet_->name()) + " failed", log::Level::Error),
+      keep_slot_(timing_.keep_slot) {
   thread_ = std::jthread([this] { run(); });
 }
 
@@ -24,6 +30,7 @@ void OutletSink::publish(std::shared_ptr<const Snapshot> snapshot) {
 SinkCounters OutletSink::counters() const {
   SinkCounters counters = outlet_->counters();
   counters.frames = sent_;
+  counters.failed += failed_;
   counters.dropped += waiting_.dropped();
   return counters;
 }
@@ -32,14 +39,24 @@ void OutletSink::run() {
   TrackerState state(timing_.slots);
   while (!waiting_.closed()) {
     for (const auto& snapshot : waiting_.take(kPatience)) {
-      TrackerFrame frame = state.advance(*snapshot);
-      if (timing_.latency == Latency::Predicted) {
-        frame = predicted(std::move(frame), timing_.clock->now());
+      try {
+        send(state, *snapshot);
+      } catch (const std::exception& thrown) {
+        ++failed_;
+        trouble_.hit(thrown.what());
       }
-      outlet_->send(frame);
-      ++sent_;
     }
   }
+}
+
+void OutletSink::send(TrackerState& state, const Snapshot& snapshot) {
+  state.keep_slots_for(keep_slot_);
+  TrackerFrame frame = state.advance(snapshot);
+  if (timing_.latency == Latency::Predicted) {
+    frame = predicted(std::move(frame), timing_.clock->now());
+  }
+  outlet_->send(frame);
+  ++sent_;
 }
 
 }  // namespace chorus::publish

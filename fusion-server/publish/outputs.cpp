@@ -29,37 +29,26 @@ void for_each_output(Config& config, const Visitor& visit) {
 
 struct Opening {
   std::shared_ptr<const Clock> clock;
+  Duration keep_slot;
   std::vector<std::unique_ptr<Sink>> sinks;
   Result<void> outcome;
 };
 
-/// Found in the protocol's namespace.  Some announce their bodies beforehand: those are told how
-/// many.
-template <class ProtocolSettings>
-Result<std::unique_ptr<Outlet>> open_protocol(const ProtocolSettings& settings, std::size_t slots) {
-  if constexpr (requires { open_outlet(settings, slots); }) {
-    return open_outlet(settings, slots);
-  } else {
-    return open_outlet(settings);
-  }
-}
-
+/// open_outlet() is found in the protocol's namespace.
 template <class Setting>
 void open_one(std::string_view key, const Setting& output, Opening& opening) {
   if (!output.common.enabled || !opening.outcome) return;
-  const auto slots = static_cast<std::size_t>(output.common.max_persons);
-  auto outlet = open_protocol(output.protocol, slots);
+  const OutletContext context{static_cast<std::size_t>(output.common.max_persons), opening.clock};
+  auto outlet = open_outlet(output.protocol, context);
   if (!outlet) {
     Error error = outlet.error();
     error.context = "outputs." + std::string(key) + ": " + error.context;
     opening.outcome = tl::unexpected<Error>(std::move(error));
     return;
   }
-  OutletTiming timing;
-  timing.latency = output.common.latency;
-  timing.slots = slots;
-  timing.clock = opening.clock;
-  opening.sinks.push_back(std::make_unique<OutletSink>(std::move(*outlet), std::move(timing)));
+  opening.sinks.push_back(std::make_unique<OutletSink>(
+      std::move(*outlet),
+      OutletTiming{output.common.latency, context.slots, context.clock, opening.keep_slot}));
 }
 
 }  // namespace
@@ -78,8 +67,9 @@ void read_outputs(ConfigReader reader, OutputsConfig& out) {
 }
 
 Result<std::vector<std::unique_ptr<Sink>>> open_outputs(const OutputsConfig& config,
-                                                        const std::shared_ptr<const Clock>& clock) {
-  Opening opening{clock, {}, {}};
+                                                        const std::shared_ptr<const Clock>& clock,
+                                                        Duration keep_slot) {
+  Opening opening{clock, keep_slot, {}, {}};
   for_each_output(config, [&opening](std::string_view key, const auto& output) {
     open_one(key, output, opening);
   });

@@ -54,8 +54,9 @@ struct OutputsConfig {
 void read_outputs(ConfigReader reader, OutputsConfig& out);
 
 /// Opens what is enabled.  The first that cannot be opened is the error; its context begins with
-/// "outputs.NAME".
+/// "outputs.NAME".  `keep_slot`: for how long of absence a person finds its slot free.
 [[nodiscard]] Result<std::vector<std::unique_ptr<Sink>>> open_outputs(
-    const OutputsConfig& config, const std::shared_ptr<const Clock>& clock);
+    const OutputsConfig& config, const std::shared_ptr<const Clock>& clock,
+    Duration keep_slot = kKeepSlot);
 
 }  // namespace chorus::publish

@@ -13,7 +13,7 @@ namespace chorus::publish {
 struct SinkCounters {
   std::uint64_t frames = 0;   ///< Handed to the protocol.
   std::uint64_t dropped = 0;  ///< Left out because the output did not keep up: always the oldest.
-  std::uint64_t failed = 0;   ///< Sends that the operating system refused.
+  std::uint64_t failed = 0;   ///< Sends that the operating system refused, frames that broke.
   std::uint64_t refused = 0;  ///< Clients or messages turned away: malformed, or over a limit.
   std::uint64_t clients = 0;  ///< Connected now.
 };
@@ -27,6 +27,9 @@ class Sink {
   virtual void publish(std::shared_ptr<const Snapshot> snapshot) = 0;
   /// Any thread.
   [[nodiscard]] virtual SinkCounters counters() const { return {}; }
+  /// Of sinks that number persons: who is absent no longer than that finds its number free.  Any
+  /// thread.
+  virtual void keep_slots_for(Duration /*absence*/) {}
 };
 
 }  // namespace chorus::publish

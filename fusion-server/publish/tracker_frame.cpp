@@ -45,6 +45,11 @@ void set_velocity(TrackerJoint& now, const TrackerJoint& before, double dt) {
 
 }  // namespace
 
+JointId nearest_tracked(const TrackerBody& body, JointId joint) {
+  while (!body[joint].tracked && joint != JointId::SpineBase) joint = parent_of(joint);
+  return joint;
+}
+
 const TrackerBody* in_slot(const TrackerFrame& frame, std::size_t slot) {
   const auto found = std::find_if(frame.bodies.begin(), frame.bodies.end(),
                                   [&](const TrackerBody& body) { return body.slot == slot; });
@@ -54,18 +59,20 @@ const TrackerBody* in_slot(const TrackerFrame& frame, std::size_t slot) {
 void TrackerState::release_absent(const Snapshot& snapshot) {
   std::set<PersonId> here;
   for (const FusedBody& body : snapshot.bodies) here.insert(body.id);
-  for (auto& person : taken_) {
-    if (person && !here.contains(*person)) person.reset();
+  for (auto& seat : seats_) {
+    if (!seat || here.contains(seat->person)) continue;
+    if (std::chrono::abs(snapshot.instant - seat->seen) > keep_slot_) seat.reset();
   }
   std::erase_if(before_, [&](const auto& entry) { return !here.contains(entry.first); });
 }
 
-std::optional<std::size_t> TrackerState::slot_of(PersonId person) {
-  auto found = std::find(taken_.begin(), taken_.end(), std::optional(person));
-  if (found == taken_.end()) found = std::find(taken_.begin(), taken_.end(), std::nullopt);
-  if (found == taken_.end()) return std::nullopt;
-  *found = person;
-  return static_cast<std::size_t>(found - taken_.begin());
+std::optional<std::size_t> TrackerState::slot_of(PersonId person, Timestamp instant) {
+  auto found = std::find_if(seats_.begin(), seats_.end(),
+                            [&](const auto& seat) { return seat && seat->person == person; });
+  if (found == seats_.end()) found = std::find(seats_.begin(), seats_.end(), std::nullopt);
+  if (found == seats_.end()) return std::nullopt;
+  *found = Seat{person, instant};
+  return static_cast<std::size_t>(found - seats_.begin());
 }
 
 TrackerFrame TrackerState::advance(const Snapshot& snapshot) {
@@ -73,11 +80,11 @@ TrackerFrame TrackerState::advance(const Snapshot& snapshot) {
   TrackerFrame frame;
   frame.sequence = snapshot.sequence;
   frame.instant = snapshot.instant;
-  frame.slots = taken_.size();
+  frame.slots = seats_.size();
   const Duration step = snapshot.instant - instant_;
   const bool continues = step > Duration{0} && step <= kLongestStep;
   for (const FusedBody& fused : snapshot.bodies) {
-    const auto slot = slot_of(fused.id);
+    const auto slot = slot_of(fused.id, snapshot.instant);
     if (!slot) continue;
     TrackerBody body = body_of(fused, *slot);
     const auto before = before_.find(fused.id);

@@ -15,6 +15,9 @@ namespace chorus::publish {
 
 /// Slots a configuration may ask for.
 inline constexpr int kMostSlots = 20;
+/// How long an absent person's slot stays free for it: as long as association looks out for it
+/// (associate::AssociationConfig::coast).
+inline constexpr Duration kKeepSlot = std::chrono::seconds(1);
 
 struct TrackerJoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
@@ -28,7 +31,7 @@ struct TrackerJoint {
 };
 
 struct TrackerBody {
-  std::size_t slot = 0;  ///< 0 .. slots - 1; a person keeps it while tracked.
+  std::size_t slot = 0;  ///< 0 .. slots - 1; a person keeps it while fusion knows it.
   PersonId person;
   std::array<TrackerJoint, kJointCount> joints;
 
@@ -42,23 +45,37 @@ struct TrackerFrame {
   std::vector<TrackerBody> bodies;  ///< In order of slot.
 };
 
+/// The joint itself when it is tracked, else the next tracked one towards the pelvis; the pelvis,
+/// tracked or not, when there is none.  Where every joint must have a place, an unseen limb hangs
+/// there.
+[[nodiscard]] JointId nearest_tracked(const TrackerBody& body, JointId joint);
+
 /// The body in a slot, or nullptr.
 [[nodiscard]] const TrackerBody* in_slot(const TrackerFrame& frame, std::size_t slot);
 
 /// Gives persons their slots and joints their velocities, snapshot after snapshot.
 class TrackerState {
  public:
-  explicit TrackerState(std::size_t slots) : taken_(slots) {}
+  explicit TrackerState(std::size_t slots) : seats_(slots) {}
 
-  /// Persons beyond the last slot are left out (the oldest stay).  A repeated or older instant
-  /// gives zero velocities.
+  void keep_slots_for(Duration absence) { keep_slot_ = absence; }
+
+  /// Persons beyond the last slot are left out (the oldest stay).  The slot of an absent one is
+  /// nobody's until it has been away for longer than it is kept; the instants tell.  A repeated or
+  /// older instant gives zero velocities.
   [[nodiscard]] TrackerFrame advance(const Snapshot& snapshot);
 
  private:
   void release_absent(const Snapshot& snapshot);
-  [[nodiscard]] std::optional<std::size_t> slot_of(PersonId person);
+  [[nodiscard]] std::optional<std::size_t> slot_of(PersonId person, Timestamp instant);
 
-  std::vector<std::optional<PersonId>> taken_;
+  struct Seat {
+    PersonId person;
+    Timestamp seen;
+  };
+
+  std::vector<std::optional<Seat>> seats_;  ///< By slot.
+  Duration keep_slot_ = kKeepSlot;
   std::map<PersonId, TrackerBody> before_;
   Timestamp instant_{};
 };

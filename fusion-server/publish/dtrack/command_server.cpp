@@ -10,8 +10,9 @@
 
 #include "common/base/log.h"
 #include "common/base/rate_report.h"
-#include "common/http/asio.h"
 #include "common/http/event_loop.h"
+#include "common/http/every.h"
+#include "common/http/listen.h"
 #include "fusion-server/publish/dtrack/dtrack_commands.h"
 
 namespace chorus::publish::dtrack {
@@ -25,7 +26,6 @@ using SteadyTime = std::chrono::steady_clock::time_point;
 constexpr std::size_t kMostWaiting = 4096;  ///< Bytes of answers that a client has not read.
 constexpr std::size_t kMostRefused = 64;    ///< Commands.
 constexpr std::chrono::milliseconds kSweep{250};
-constexpr std::chrono::milliseconds kPause{100};  ///< After a failed accept.
 
 struct Connection {
   Connection(http::Socket accepted, std::uint64_t number)
@@ -48,8 +48,8 @@ using ConnectionPtr = std::shared_ptr<Connection>;
 struct CommandServer::Impl {
   explicit Impl(CommandServerOptions settings) : options(std::move(settings)) {}
 
-  [[nodiscard]] Result<void> listen();
-  void accept();
+  /// Starts what must always be under way, as far as it is not.
+  void ensure();
   void welcome(http::Socket socket);
   void read(const ConnectionPtr& connection);
   void obey(const ConnectionPtr& connection);
@@ -63,15 +63,12 @@ struct CommandServer::Impl {
 
   const CommandServerOptions options;
   net::io_context io{1};
-  http::Acceptor acceptor{io};
-  http::Timer sweeper{io};
-  http::Timer pause{io};
+  http::AcceptLoop accepting{io, "DTrack accept failed",
+                             [this](http::Socket socket) { welcome(std::move(socket)); }};
+  http::Every sweeping{io, kSweep, [this] { sweep(); }};
   RateReport turned_away{"DTrack client turned away"};
-  RateReport accept_trouble{"DTrack accept failed"};
   std::list<ConnectionPtr> connections;  ///< Oldest first: the first one is in control.
   Device device;
-  /// Cancelling does not recall a handler that is due already: it must not begin anew.
-  bool stopping = false;
   std::uint64_t next_serial = 1;
   std::atomic<std::uint64_t> refused = 0;
   std::atomic<std::uint64_t> clients = 0;
@@ -81,39 +78,9 @@ struct CommandServer::Impl {
   std::thread thread;
 };
 
-Result<void> CommandServer::Impl::listen() {
-  const std::string where =
-      "command channel at " + options.address + ":" + std::to_string(options.port);
-  error_code error;
-  const auto address = net::ip::make_address(options.address, error);
-  if (error) {
-    return fail(ErrorCode::InvalidArgument, where,
-                "the address to listen on is a numeric one, such as 127.0.0.1 or 0.0.0.0");
-  }
-  const tcp::endpoint place(address, static_cast<std::uint16_t>(options.port));
-  acceptor.open(place.protocol(), error);
-  if (!error) acceptor.set_option(net::socket_base::reuse_address(true), error);
-  if (!error) acceptor.bind(place, error);
-  if (!error) acceptor.listen(net::socket_base::max_listen_connections, error);
-  if (!error) port = acceptor.local_endpoint(error).port();
-  if (!error) return {};
-  return fail(ErrorCode::Io, where, "cannot listen: " + error.message());
-}
-
-void CommandServer::Impl::accept() {
-  if (stopping) return;
-  acceptor.async_accept([this](error_code error, http::Socket socket) {
-    if (stopping) return;
-    if (!error) {
-      welcome(std::move(socket));
-      return accept();
-    }
-    accept_trouble.hit(error.message());  // out of descriptors, for example
-    pause.expires_after(kPause);
-    pause.async_wait([this](error_code aborted) {
-      if (!aborted) accept();
-    });
-  });
+void CommandServer::Impl::ensure() {
+  accepting.ensure();
+  sweeping.ensure();
 }
 
 void CommandServer::Impl::welcome(http::Socket socket) {
@@ -200,7 +167,6 @@ void CommandServer::Impl::close(const ConnectionPtr& connection) {
 
 /// Closes whose time is over.
 void CommandServer::Impl::sweep() {
-  if (stopping) return;
   const SteadyTime now = std::chrono::steady_clock::now();
   const std::list<ConnectionPtr> all = connections;
   for (const ConnectionPtr& connection : all) {
@@ -208,18 +174,11 @@ void CommandServer::Impl::sweep() {
     turn_away(connection, connection->conversation.answered > 0 ? "it has fallen silent"
                                                                 : "it said no command in time");
   }
-  sweeper.expires_after(kSweep);
-  sweeper.async_wait([this](error_code aborted) {
-    if (!aborted) sweep();
-  });
 }
 
 void CommandServer::Impl::stop() {
-  stopping = true;
-  error_code ignored;
-  acceptor.close(ignored);
-  sweeper.cancel();
-  pause.cancel();
+  accepting.stop();
+  sweeping.stop();
   const std::list<ConnectionPtr> all = connections;
   for (const ConnectionPtr& connection : all) close(connection);
 }
@@ -244,10 +203,12 @@ Result<std::unique_ptr<CommandServer>> CommandServer::start(const CommandServerO
   std::unique_ptr<CommandServer> server(new CommandServer);
   server->impl_ = std::make_unique<Impl>(options);
   Impl& impl = *server->impl_;
-  if (auto ok = impl.listen(); !ok) return pass(ok);
-  impl.accept();
-  impl.sweep();
-  impl.thread = std::thread([&impl] { http::run_events(impl.io, "command channel failed"); });
+  const http::ListenAt where{options.address, static_cast<std::uint16_t>(options.port),
+                             "outputs.dtrack.command.port"};
+  if (auto ok = impl.accepting.listen(where); !ok) return pass(ok);
+  impl.port = impl.accepting.port();
+  impl.thread = std::thread(
+      [&impl] { http::run_events(impl.io, "command channel failed", [&impl] { impl.ensure(); }); });
   return server;
 }
 

@@ -3,7 +3,6 @@
 #include <optional>
 #include <utility>
 
-#include "common/time/clock.h"
 #include "fusion-server/publish/datagram_sender.h"
 
 namespace chorus::publish::dtrack {
@@ -16,14 +15,17 @@ constexpr int kMostArrivals = 64;  ///< Read per frame; the rest waits, and the 
 class DtrackOutlet final : public Outlet {
  public:
   DtrackOutlet(const Settings& settings, std::unique_ptr<DatagramSender> sender,
-               std::unique_ptr<CommandServer> commands)
-      : settings_(settings), sender_(std::move(sender)), commands_(std::move(commands)) {}
+               std::unique_ptr<CommandServer> commands, std::shared_ptr<const Clock> clock)
+      : settings_(settings),
+        sender_(std::move(sender)),
+        commands_(std::move(commands)),
+        clock_(std::move(clock)) {}
 
   [[nodiscard]] std::string_view name() const override { return "dtrack"; }
   void send(const TrackerFrame& frame) override {
     listen();
     Content content;
-    content.latency = clock_.now() - frame.instant;
+    content.latency = clock_->now() - frame.instant;
     content.human_model = settings_.human_model;
     content.room = settings_.room;
     const std::string datagram = encode(frame, content);
@@ -52,10 +54,10 @@ class DtrackOutlet final : public Outlet {
     }
   }
 
-  SystemClock clock_;
   Settings settings_;
   std::unique_ptr<DatagramSender> sender_;
   std::unique_ptr<CommandServer> commands_;
+  std::shared_ptr<const Clock> clock_;
   std::optional<Controller> controller_;
   std::optional<Target> client_;
 };
@@ -77,6 +79,7 @@ void read_settings(ConfigReader& reader, Settings& out) {
   constexpr int kMostPort = 65535;
   read_targets(reader, out.targets);
   reader.read("source_port", out.source_port, 0, kMostPort);
+  read_multicast(reader, out.multicast);
   auto room = static_cast<std::size_t>(out.room);
   reader.read_choice("room", room, {"normal", "powerwall"});
   out.room = static_cast<Room>(room);
@@ -84,10 +87,12 @@ void read_settings(ConfigReader& reader, Settings& out) {
   read_command(reader.child("command"), out);
 }
 
-Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings) {
+Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings,
+                                            const OutletContext& context) {
   DatagramOptions options;
   options.targets = settings.targets;
   options.source_port = static_cast<std::uint16_t>(settings.source_port);
+  options.multicast = settings.multicast;
   if (settings.commands) options.listen_address = settings.command.address;
   auto sender = DatagramSender::open(options);
   if (!sender) return pass(sender);
@@ -97,7 +102,8 @@ Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings) {
     if (!started) return pass(started);
     commands = std::move(*started);
   }
-  return std::make_unique<DtrackOutlet>(settings, std::move(*sender), std::move(commands));
+  return std::make_unique<DtrackOutlet>(settings, std::move(*sender), std::move(commands),
+                                        context.clock);
 }
 
 }  // namespace chorus::publish::dtrack

@@ -8,6 +8,7 @@
 
 #include "common/base/config_reader.h"
 #include "common/base/result.h"
+#include "fusion-server/publish/datagram_sender.h"
 #include "fusion-server/publish/dtrack/command_server.h"
 #include "fusion-server/publish/dtrack/dtrack_encoder.h"
 #include "fusion-server/publish/outlet.h"
@@ -17,6 +18,7 @@ namespace chorus::publish::dtrack {
 struct Settings {
   std::vector<std::string> targets{"127.0.0.1:5000"};
   int source_port = 50107;  ///< The controller's; clients behind firewalls write to it.  0: any.
+  Multicast multicast;
   Room room = Room::Normal;
   bool human_model = false;
   bool commands = false;
@@ -29,6 +31,7 @@ struct Settings {
 
 void read_settings(ConfigReader& reader, Settings& out);
 
-[[nodiscard]] Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings);
+[[nodiscard]] Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings,
+                                                          const OutletContext& context);
 
 }  // namespace chorus::publish::dtrack

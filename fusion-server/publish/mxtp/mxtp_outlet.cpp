@@ -10,7 +10,8 @@ namespace chorus::publish::mxtp {
 
 void read_settings(ConfigReader& reader, Settings& out) { read_targets(reader, out.targets); }
 
-Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings) {
+Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings,
+                                            const OutletContext& /*context*/) {
   return open_datagram_outlet("mxtp", settings.targets, [](const TrackerFrame& frame) {
     std::vector<std::vector<char>> datagrams;
     for (const TrackerBody& body : frame.bodies) {

@@ -34,7 +34,7 @@ bool matches(const Known& known, std::string_view text) {
 }  // namespace
 
 CommandDesk::CommandDesk(DeskOptions options)
-    : options_(std::move(options)), allowance_(options_.burst) {}
+    : options_(std::move(options)), allowance_(options_.answers) {}
 
 Reply CommandDesk::answer(std::span<const char> datagram, const Address& from, const Now& now) {
   const auto request = read_request(datagram);
@@ -42,7 +42,9 @@ Reply CommandDesk::answer(std::span<const char> datagram, const Address& from, c
   if (is_an_answer(request->message)) return {{}, "an answer to nothing we asked"};
   if (!admit(*request, from, now.steady)) return {{}, kTooMany};
   Reply reply = reply_to(*request, now);
-  if (!allowed(reply.bytes.size(), now.steady)) return {{}, "too much is asked of us"};
+  if (!allowance_.take(static_cast<double>(reply.bytes.size()), now.steady)) {
+    return {{}, "too much is asked of us"};
+  }
   return reply;
 }
 
@@ -92,16 +94,6 @@ Bytes CommandDesk::reply_to_text(std::string_view text) const {
   const auto* known = std::find_if(kNumbers.begin(), kNumbers.end(),
                                    [text](const Known& each) { return matches(each, text); });
   return known == kNumbers.end() ? Bytes{} : response(known->number);
-}
-
-bool CommandDesk::allowed(std::size_t bytes, SteadyTime now) {
-  const double elapsed = std::chrono::duration<double>(now - counted_).count();
-  allowance_ = std::clamp(allowance_ + elapsed * options_.bytes_per_second, 0.0, options_.burst);
-  counted_ = now;
-  const auto wanted = static_cast<double>(bytes);
-  if (wanted > allowance_) return false;
-  allowance_ -= wanted;
-  return true;
 }
 
 void CommandDesk::newest(std::shared_ptr<const Bytes> frame, Timestamp instant) {

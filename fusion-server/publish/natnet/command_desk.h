@@ -4,7 +4,7 @@
 // server's settings, those that keep alive).  They are few, known by address and port, and
 // forgotten when nothing is heard of them for `client_timeout`.
 // Anybody can write in anybody's name, and the protocol has no means to tell.  Answers are larger
-// than requests: all together get `bytes_per_second`.  Frames are not limited so: one datagram
+// than requests: all together get `answers`.  Frames are not limited so: one datagram
 // turns them on the host it names for `client_timeout`, on at most `max_clients` ports.  What a
 // server says is never answered, so two servers cannot be made to talk to each other.
 #pragma once
@@ -20,10 +20,9 @@
 
 #include "common/time/timestamp.h"
 #include "fusion-server/publish/natnet/natnet_messages.h"
+#include "fusion-server/publish/token_bucket.h"
 
 namespace chorus::publish::natnet {
-
-using SteadyTime = std::chrono::steady_clock::time_point;
 
 /// IPv4: the protocol knows no other.
 struct Address {
@@ -38,8 +37,7 @@ struct DeskOptions {
   Bytes models;  ///< The whole message.
   std::size_t max_clients = 16;
   Duration client_timeout = std::chrono::seconds(10);
-  double bytes_per_second = 262'144.0;
-  double burst = 524'288.0;  ///< Bytes.
+  Allowance answers{262'144.0, 524'288.0};  ///< Bytes.
 };
 
 struct Now {
@@ -68,7 +66,6 @@ class CommandDesk {
   [[nodiscard]] Reply reply_to(const Incoming& request, const Now& now) const;
   [[nodiscard]] Bytes reply_to_text(std::string_view text) const;
   [[nodiscard]] bool admit(const Incoming& request, const Address& from, SteadyTime now);
-  [[nodiscard]] bool allowed(std::size_t bytes, SteadyTime now);
   [[nodiscard]] float frame_rate() const;
   void expire(SteadyTime now);
 
@@ -76,8 +73,7 @@ class CommandDesk {
   std::map<Address, SteadyTime> heard_;  ///< Clients, and when something came of them last.
   std::shared_ptr<const Bytes> frame_;
   std::deque<Timestamp> instants_;  ///< Of the newest frames.
-  double allowance_;
-  SteadyTime counted_{};
+  TokenBucket allowance_;
 };
 
 }  // namespace chorus::publish::natnet

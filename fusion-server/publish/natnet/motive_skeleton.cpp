@@ -36,7 +36,7 @@ std::size_t parent_index(std::size_t bone) {
 /// In the world; `done` has the bones before this one.
 MotiveBone in_world(const Humanoid& rig, std::size_t bone, const MotiveSkeleton& done) {
   const BonePose& pose = rig[kRigBones[bone]];
-  if (pose.known) return {pose.origin, pose.world_from_bone * natnet_rest(), true};
+  if (pose.known) return {pose.origin, pose.world_from_bone * rig_from_ahead_rest(), true};
   if (kTable[bone].parent == 0) return {};
   const MotiveBone& parent = done[parent_index(bone)];
   const auto& [x, y, z] = kTable[bone].offset;
@@ -44,14 +44,15 @@ MotiveBone in_world(const Humanoid& rig, std::size_t bone, const MotiveSkeleton&
           false};
 }
 
+BonePose pose_of(const MotiveBone& bone) { return {bone.position, bone.orientation, true}; }
+
 MotiveSkeleton local(const MotiveSkeleton& world) {
   MotiveSkeleton out = world;
   for (std::size_t i = 0; i < kBoneCount; ++i) {
     if (kTable[i].parent == 0) continue;
-    const MotiveBone& parent = world[parent_index(i)];
-    const Eigen::Quaterniond parent_from_world = parent.orientation.conjugate();
-    out[i].position = parent_from_world * (world[i].position - parent.position);
-    out[i].orientation = parent_from_world * world[i].orientation;
+    const BonePose in_parent = relative_to(pose_of(world[parent_index(i)]), pose_of(world[i]));
+    out[i].position = in_parent.origin;
+    out[i].orientation = in_parent.world_from_bone;
   }
   return out;
 }

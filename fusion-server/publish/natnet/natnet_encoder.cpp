@@ -40,13 +40,11 @@ void add_pose(Bytes& out, std::int32_t id, const MotiveBone& pose) {
   append(out, pose.tracked ? kTracked : std::int16_t{0});
 }
 
-/// Where a joint is, or where the next tracked one towards the pelvis is.
 MotiveBone shown(const TrackerBody& body, JointId id) {
   const TrackerJoint& own = body[id];
-  JointId at = id;
-  while (!body[at].tracked && at != JointId::SpineBase) at = parent_of(at);
-  if (!body[at].tracked) return {};
-  return {body[at].position, own.orientation, own.tracked};
+  const TrackerJoint& at = body[nearest_tracked(body, id)];
+  if (!at.tracked) return {};
+  return {at.position, own.orientation, own.tracked};
 }
 
 void add_rigid_bodies(Bytes& out, const TrackerFrame& frame) {

@@ -6,7 +6,6 @@
 
 #include "common/base/log.h"
 #include "common/http/asio.h"
-#include "common/time/clock.h"
 #include "fusion-server/publish/natnet/natnet_server.h"
 
 namespace chorus::publish::natnet {
@@ -23,22 +22,25 @@ std::optional<std::array<std::uint8_t, 4>> group_of(const std::string& text) {
 /// Encodes on the caller's thread, once for all clients.
 class NatNetOutlet final : public Outlet {
  public:
-  NatNetOutlet(Models models, std::unique_ptr<Server> server)
-      : models_(models), server_(std::move(server)), start_(clock_.now()) {}
+  NatNetOutlet(Models models, std::unique_ptr<Server> server, std::shared_ptr<const Clock> clock)
+      : models_(models),
+        server_(std::move(server)),
+        clock_(std::move(clock)),
+        start_(clock_->now()) {}
 
   [[nodiscard]] std::string_view name() const override { return "natnet"; }
   [[nodiscard]] SinkCounters counters() const override { return server_->counters(); }
   void send(const TrackerFrame& frame) override {
-    const Timestamp now = clock_.now();
+    const Timestamp now = clock_->now();
     server_->publish(
         std::make_shared<const Bytes>(encode_frame(frame, models_, {start_, now, now})),
         frame.instant);
   }
 
  private:
-  SystemClock clock_;
   Models models_;
   std::unique_ptr<Server> server_;
+  std::shared_ptr<const Clock> clock_;
   Timestamp start_;
 };
 
@@ -73,7 +75,8 @@ void read_settings(ConfigReader& reader, Settings& out) {
   read_models(reader, out.models);
 }
 
-Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings, std::size_t slots) {
+Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings,
+                                            const OutletContext& context) {
   ServerOptions options;
   options.address = settings.address;
   options.command_port = static_cast<std::uint16_t>(settings.command_port);
@@ -81,13 +84,14 @@ Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings, std::size_
   options.desk.info.data_port = static_cast<std::uint16_t>(settings.data_port);
   options.desk.info.multicast = settings.transmission == Transmission::Multicast;
   options.desk.info.group = group_of(settings.group).value_or(options.desk.info.group);
-  options.desk.models = encode_models(slots, settings.models);
+  options.desk.models = encode_models(context.slots, settings.models);
   options.desk.max_clients = static_cast<std::size_t>(settings.max_clients);
   options.desk.client_timeout = settings.client_timeout;
+  options.clock = context.clock;
   auto server = Server::start(std::move(options));
   if (!server) return pass(server);
   log::info("NatNet serves", {{"address", settings.address}, {"port", (*server)->port()}});
-  return std::make_unique<NatNetOutlet>(settings.models, std::move(*server));
+  return std::make_unique<NatNetOutlet>(settings.models, std::move(*server), context.clock);
 }
 
 }  // namespace chorus::publish::natnet

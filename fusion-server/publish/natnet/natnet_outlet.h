@@ -29,8 +29,8 @@ struct Settings {
 
 void read_settings(ConfigReader& reader, Settings& out);
 
-/// `slots`: so many bodies are described.
+/// All of the slots are described.
 [[nodiscard]] Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings,
-                                                          std::size_t slots);
+                                                          const OutletContext& context);
 
 }  // namespace chorus::publish::natnet

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <atomic>
-#include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -10,7 +9,8 @@
 #include "common/base/rate_report.h"
 #include "common/http/asio.h"
 #include "common/http/event_loop.h"
-#include "common/time/clock.h"
+#include "common/http/listen.h"
+#include "fusion-server/publish/newest.h"
 
 namespace chorus::publish::natnet {
 namespace {
@@ -51,7 +51,6 @@ struct Server::Impl {
   net::io_context io{1};  // First member: destroyed last, after everything that uses it.
   ServerOptions options;
   CommandDesk desk;
-  SystemClock clock;
   http::DatagramSocket commands{io.get_executor()};
   http::DatagramSocket group{io.get_executor()};
   udp::endpoint group_endpoint;
@@ -64,17 +63,16 @@ struct Server::Impl {
   std::atomic<std::uint64_t> failed = 0;
   std::atomic<std::uint64_t> refused = 0;
   std::atomic<std::uint64_t> clients = 0;
-  std::mutex mutex;
-  std::optional<Pending> pending;  ///< Guarded by mutex: not sent yet.
+  Newest<Pending> newest;  ///< Not sent yet.
   std::thread thread;
 };
 
 Result<void> Server::Impl::open() {
-  const std::string where = options.address + ":" + std::to_string(options.command_port);
+  const http::ListenAt where{options.address, options.command_port, "outputs.natnet.command_port"};
   error_code error;
   const auto address = net::ip::make_address_v4(options.address, error);
   if (error) {
-    return fail(ErrorCode::InvalidArgument, where,
+    return fail(ErrorCode::InvalidArgument, options.address,
                 "the address is a numeric IPv4 address, such as 127.0.0.1 or 0.0.0.0");
   }
   commands.open(udp::v4(), error);
@@ -83,7 +81,7 @@ Result<void> Server::Impl::open() {
   if (!error) commands.bind({address, options.command_port}, error);
   if (!error) port = commands.local_endpoint(error).port();
   if (!error && options.desk.info.multicast) error = open_group(address);
-  if (error) return fail(ErrorCode::Io, where, "cannot listen (UDP): " + error.message());
+  if (error) return http::cannot_listen(where, "UDP", error);
   return {};
 }
 
@@ -121,7 +119,7 @@ void Server::Impl::receive() {
 void Server::Impl::on_datagram(error_code error, std::size_t size) {
   if (!commands.is_open()) return;  // stopped
   if (!error) {
-    const Now now{std::chrono::steady_clock::now(), clock.now()};
+    const Now now{std::chrono::steady_clock::now(), options.clock->now()};
     const Reply reply = desk.answer({incoming.data(), size}, address_of(sender), now);
     if (!reply.refusal.empty()) {
       ++refused;
@@ -133,11 +131,7 @@ void Server::Impl::on_datagram(error_code error, std::size_t size) {
 }
 
 void Server::Impl::deliver() {
-  std::optional<Pending> next;
-  {
-    const std::scoped_lock lock(mutex);
-    next = std::exchange(pending, std::nullopt);
-  }
+  const std::optional<Pending> next = newest.take();
   if (!next || !commands.is_open()) return;
   desk.newest(next->frame, next->instant);
   if (options.desk.info.multicast) send(group, *next->frame, group_endpoint);
@@ -176,16 +170,10 @@ Result<std::unique_ptr<Server>> Server::start(ServerOptions options) {
 std::uint16_t Server::port() const { return impl_->port; }
 
 void Server::publish(std::shared_ptr<const Bytes> frame, Timestamp instant) {
-  bool waiting = false;
-  {
-    const std::scoped_lock lock(impl_->mutex);
-    waiting = impl_->pending.has_value();
-    impl_->pending = Pending{std::move(frame), instant};
-  }
-  if (waiting) {
-    ++impl_->dropped;  // its delivery is already on its way and takes this one
-  } else {
+  if (impl_->newest.put({std::move(frame), instant})) {
     net::post(impl_->io, [impl = impl_.get()] { impl->deliver(); });
+  } else {
+    ++impl_->dropped;
   }
 }
 

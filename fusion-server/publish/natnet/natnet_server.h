@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/base/result.h"
+#include "common/time/clock.h"
 #include "fusion-server/publish/natnet/command_desk.h"
 #include "fusion-server/publish/sink.h"
 
@@ -17,7 +18,8 @@ struct ServerOptions {
   std::string address = "127.0.0.1";
   std::uint16_t command_port = 1510;  ///< 0: any.
   int multicast_hops = 1;
-  DeskOptions desk;  ///< `info` says where frames go.
+  DeskOptions desk;                    ///< `info` says where frames go.
+  std::shared_ptr<const Clock> clock;  ///< What echo requests are answered with.
 };
 
 class Server {

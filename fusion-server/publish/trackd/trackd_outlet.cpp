@@ -51,7 +51,8 @@ void read_settings(ConfigReader& reader, Settings& out) {
   out.unit = static_cast<LengthUnit>(unit);
 }
 
-Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings) {
+Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings,
+                                            const OutletContext& /*context*/) {
   auto tracker =
       segment_of(settings.tracker_key, tracker_block(static_cast<std::size_t>(settings.sensors)));
   if (!tracker) return pass(tracker);

@@ -26,6 +26,7 @@ void read_settings(ConfigReader& reader, Settings& out);
 
 /// Conflict when a segment of that key is there already, unless it is one of our own size and user
 /// whose maker has died: that one is removed first.
-[[nodiscard]] Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings);
+[[nodiscard]] Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings,
+                                                          const OutletContext& context);
 
 }  // namespace chorus::publish::trackd

@@ -31,15 +31,8 @@ osc::Message pose(std::string_view address, std::string_view name, const BonePos
   return message;
 }
 
-/// The same pose in the frame of its parent.
 BonePose local(const Humanoid& rig, HumanBone bone) {
-  BonePose pose = rig[bone];
-  if (bone == HumanBone::Hips) return pose;
-  const BonePose& parent = rig[parent_of(bone)];
-  const Eigen::Quaterniond parent_from_world = parent.world_from_bone.conjugate();
-  pose.origin = parent_from_world * (pose.origin - parent.origin);
-  pose.world_from_bone = parent_from_world * pose.world_from_bone;
-  return pose;
+  return bone == HumanBone::Hips ? rig[bone] : relative_to(rig[parent_of(bone)], rig[bone]);
 }
 
 void add_bones(osc::Bundles& out, const Humanoid& rig) {

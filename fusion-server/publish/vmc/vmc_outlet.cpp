@@ -15,7 +15,8 @@ void read_settings(ConfigReader& reader, Settings& out) {
   reader.read("trackers", out.trackers);
 }
 
-Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings) {
+Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings,
+                                            const OutletContext& /*context*/) {
   const auto slot = static_cast<std::size_t>(settings.slot);
   std::optional<Timestamp> first;
   return open_datagram_outlet(

@@ -12,7 +12,8 @@ void read_settings(ConfigReader& reader, Settings& out) {
   reader.read("head", out.head);
 }
 
-Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings) {
+Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings,
+                                            const OutletContext& /*context*/) {
   using Datagrams = std::vector<std::vector<char>>;
   const auto slot = static_cast<std::size_t>(settings.slot);
   return open_datagram_outlet("vrchat", settings.targets,

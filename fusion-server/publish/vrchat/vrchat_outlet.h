@@ -21,6 +21,7 @@ struct Settings {
 
 void read_settings(ConfigReader& reader, Settings& out);
 
-[[nodiscard]] Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings);
+[[nodiscard]] Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings,
+                                                          const OutletContext& context);
 
 }  // namespace chorus::publish::vrchat

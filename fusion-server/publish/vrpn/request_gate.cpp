@@ -1,24 +1,62 @@
 #include "fusion-server/publish/vrpn/request_gate.h"
 
-#include <algorithm>
+#include <utility>
 
 namespace chorus::publish::vrpn {
+namespace {
 
-RequestGate::Verdict RequestGate::ask(const std::string& asker, SteadyTime now) {
+constexpr std::chrono::seconds kTidyInterval{1};
+
+}  // namespace
+
+RequestGate::Verdict RequestGate::ask(const Asker& asker, SteadyTime now) {
   if (known_.contains(asker)) return Verdict::Repeated;
-  const double elapsed = std::chrono::duration<double>(now - counted_).count();
-  allowance_ = std::clamp(allowance_ + elapsed * limits_.per_second, 0.0, limits_.burst);
-  counted_ = now;
-  if (under_way_.size() >= limits_.most_under_way || allowance_ < 1.0) return Verdict::Refused;
-  allowance_ -= 1.0;
+  if (under_way_.size() >= limits_.most_under_way || !all_.has(1.0, now)) return Verdict::Refused;
+  const std::string& name = name_of_source(asker.address, now);
+  Source& source = sources_.at(name);
+  if (source.under_way >= limits_.most_of_source || !source.allowance.take(1.0, now)) {
+    return Verdict::Refused;
+  }
+  (void)all_.take(1.0, now);
+  ++source.under_way;
   known_.insert(asker);
-  under_way_.insert(asker);
+  under_way_.emplace(asker, name);
   return Verdict::Connect;
 }
 
-void RequestGate::gone(const std::string& asker) {
+/// By which it is found in the table; afterwards it is there.
+const std::string& RequestGate::name_of_source(const std::string& address, SteadyTime now) {
+  if (const auto known = sources_.find(address); known != sources_.end()) return known->first;
+  if (sources_.size() >= limits_.most_sources) tidy(now);
+  const bool room = sources_.size() < limits_.most_sources;
+  const Source fresh{TokenBucket(limits_.source)};
+  return sources_.try_emplace(room ? address : std::string(), fresh).first->first;
+}
+
+/// An address that has its whole allowance is like one that never asked.
+void RequestGate::tidy(SteadyTime now) {
+  if (now - tidied_ < kTidyInterval) return;  // a flood of addresses must not cost us more
+  tidied_ = now;
+  std::erase_if(sources_, [now](const auto& entry) {
+    return entry.second.under_way == 0 && entry.second.allowance.full(now);
+  });
+}
+
+/// Its source, if it was under way.
+RequestGate::Source* RequestGate::finished(const Asker& asker) {
+  const auto found = under_way_.find(asker);
+  if (found == under_way_.end()) return nullptr;
+  Source& source = sources_.at(found->second);
+  --source.under_way;
+  under_way_.erase(found);
+  return &source;
+}
+
+void RequestGate::connected(const Asker& asker) { (void)finished(asker); }
+
+void RequestGate::failed(const Asker& asker) {
   known_.erase(asker);
-  under_way_.erase(asker);
+  if (Source* source = finished(asker)) source->allowance.charge(limits_.failure);
 }
 
 }  // namespace chorus::publish::vrpn

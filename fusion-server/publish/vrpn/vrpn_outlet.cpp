@@ -38,13 +38,15 @@ void read_settings(ConfigReader& reader, Settings& out) {
   reader.read("max_clients", out.max_clients, 1, kMostClients);
 }
 
-Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings, std::size_t slots) {
+Result<std::unique_ptr<Outlet>> open_outlet(const Settings& settings,
+                                            const OutletContext& context) {
   ServerOptions options;
   options.address = settings.address;
   options.port = static_cast<std::uint16_t>(settings.port);
   options.max_clients = static_cast<std::size_t>(settings.max_clients);
+  options.clock = context.clock;
   auto outlet = std::make_unique<VrpnOutlet>(
-      std::move(options), std::make_shared<const Trackers>(slots, settings.joint_trackers));
+      std::move(options), std::make_shared<const Trackers>(context.slots, settings.joint_trackers));
   if (auto started = outlet->start(); !started) return pass(started);
   log::info("VRPN serves", {{"address", settings.address}, {"port", outlet->port()}});
   return outlet;

@@ -1,12 +1,14 @@
 #include "fusion-server/publish/vrpn/vrpn_server.h"
 
 #include <algorithm>
-#include <mutex>
 #include <thread>
 #include <unordered_map>
 #include <utility>
 
 #include "common/http/event_loop.h"
+#include "common/http/every.h"
+#include "common/http/listen.h"
+#include "fusion-server/publish/newest.h"
 
 namespace chorus::publish::vrpn {
 namespace {
@@ -18,7 +20,6 @@ using http::udp;
 
 constexpr std::chrono::milliseconds kSweepInterval{250};
 constexpr std::chrono::milliseconds kConnectTime{2000};
-constexpr std::chrono::milliseconds kAcceptPause{100};  // No descriptors left, until some close.
 constexpr int kPortAttempts = 16;
 constexpr std::size_t kLongestRequest = 512;
 
@@ -36,7 +37,7 @@ struct Server::Impl {
   /// A connection that a datagram asked for and that is not made yet.
   struct Attempt {
     http::Socket socket;
-    std::string asker;
+    Asker asker;
     SteadyTime deadline;
   };
 
@@ -45,14 +46,16 @@ struct Server::Impl {
 
   Result<void> bind(std::uint16_t port);
   Result<void> listen();
-  void accept();
-  void on_accepted(error_code failed, http::Socket socket);
+  /// Starts what must always be under way, as far as it is not.
+  void ensure();
+  void on_accepted(http::Socket socket);
   void receive_request();
   void on_request(error_code failed, std::size_t size);
   void answer_request(const tcp::endpoint& to);
-  void connect_back(const tcp::endpoint& to, const std::string& asker);
+  void connect_back(const tcp::endpoint& to, const Asker& asker);
   void on_connected(error_code failed, const std::shared_ptr<Attempt>& attempt);
-  void welcome(http::Socket socket, const std::string& asker);
+  /// `asker`: it asked to be connected to; none: it came by itself.
+  void welcome(http::Socket socket, const std::optional<Asker>& asker);
   void forget(const Connection* connection);
   void sweep();
   void deliver();
@@ -68,18 +71,18 @@ struct Server::Impl {
 
   struct Client {
     std::shared_ptr<Connection> connection;
-    std::string asker;  ///< Empty: it came by itself.
+    std::optional<Asker> asker;
   };
 
   net::io_context io{1};  // First member: destroyed last, after everything that uses it.
   ServerOptions options;
   std::shared_ptr<const Trackers> trackers;
-  http::Acceptor acceptor{io.get_executor()};
+  http::AcceptLoop accepting{io, "VRPN accept failed",
+                             [this](http::Socket socket) { on_accepted(std::move(socket)); }};
+  http::Every sweeping{io, kSweepInterval, [this] { sweep(); }};
   http::DatagramSocket datagrams{io.get_executor()};
-  http::Timer sweep_timer{io.get_executor()};
-  http::Timer accept_timer{io.get_executor()};
+  bool receiving = false;
   RateReport turned_away{"VRPN client turned away"};
-  RateReport accept_trouble{"VRPN accept failed"};
   ServerCounters counters;
   RequestGate gate;
   std::array<char, kLongestRequest> request{};
@@ -87,33 +90,22 @@ struct Server::Impl {
   std::vector<std::shared_ptr<Attempt>> attempts;
   std::unordered_map<const Connection*, Client> clients;
   bool stopping = false;
-  std::mutex mutex;
-  std::shared_ptr<const Reports> newest;  ///< Guarded by mutex: not delivered yet.
+  Newest<std::shared_ptr<const Reports>> newest;  ///< Not delivered yet.
   std::thread thread;
 };
 
 Result<void> Server::Impl::bind(std::uint16_t port) {
-  const std::string where = options.address + ":" + std::to_string(port);
+  const http::ListenAt where{options.address, port, "outputs.vrpn.port"};
+  const auto address = http::numeric_address(where);
+  if (!address) return pass(address);
+  if (auto bound = accepting.listen(where); !bound) return bound;
+  const udp::endpoint same(*address, accepting.port());
   error_code failed;
-  const auto address = net::ip::make_address(options.address, failed);
-  if (failed) {
-    return fail(ErrorCode::InvalidArgument, where,
-                "the address to listen on is a numeric one, such as 127.0.0.1 or 0.0.0.0");
-  }
-  const tcp::endpoint endpoint(address, port);
-  error_code ignored;
-  acceptor.close(ignored);  // an earlier attempt
-  datagrams.close(ignored);
-  acceptor.open(endpoint.protocol(), failed);
-  if (!failed) acceptor.set_option(net::socket_base::reuse_address(true), failed);
-  if (!failed) acceptor.bind(endpoint, failed);
-  if (!failed) acceptor.listen(net::socket_base::max_listen_connections, failed);
-  if (failed) return fail(ErrorCode::Io, where, "cannot listen (TCP): " + failed.message());
-  const udp::endpoint same(address, acceptor.local_endpoint(failed).port());
-  if (!failed) datagrams.open(same.protocol(), failed);
+  datagrams.close(failed);  // an earlier attempt
+  datagrams.open(same.protocol(), failed);
   if (!failed) datagrams.non_blocking(true, failed);
   if (!failed) datagrams.bind(same, failed);
-  if (failed) return fail(ErrorCode::Io, where, "cannot listen (UDP): " + failed.message());
+  if (failed) return http::cannot_listen(where, "UDP", failed);
   return {};
 }
 
@@ -128,32 +120,24 @@ void Server::Impl::turn_away(const std::string& reason) {
   turned_away.hit(reason);
 }
 
-void Server::Impl::accept() {
-  acceptor.async_accept(
-      [this](error_code failed, http::Socket socket) { on_accepted(failed, std::move(socket)); });
+void Server::Impl::ensure() {
+  accepting.ensure();
+  sweeping.ensure();
+  if (!receiving && !stopping) receive_request();
 }
 
-void Server::Impl::on_accepted(error_code failed, http::Socket socket) {
-  if (stopping) return;
-  if (failed) {
-    accept_trouble.hit(failed.message());
-    accept_timer.expires_after(kAcceptPause);
-    return accept_timer.async_wait([this](error_code cancelled) {
-      if (!cancelled && !stopping) accept();
-    });
-  }
-  if (full()) {
-    turn_away(too_many());
-  } else {
-    welcome(std::move(socket), {});
-  }
-  accept();
+void Server::Impl::on_accepted(http::Socket socket) {
+  if (full()) return turn_away(too_many());
+  welcome(std::move(socket), std::nullopt);
 }
 
 void Server::Impl::receive_request() {
-  datagrams.async_receive_from(
-      net::buffer(request), requester,
-      [this](error_code failed, std::size_t size) { on_request(failed, size); });
+  datagrams.async_receive_from(net::buffer(request), requester,
+                               [this](error_code failed, std::size_t size) {
+                                 receiving = false;
+                                 on_request(failed, size);
+                               });
+  receiving = true;
 }
 
 void Server::Impl::on_request(error_code failed, std::size_t size) {
@@ -171,13 +155,13 @@ void Server::Impl::on_request(error_code failed, std::size_t size) {
 
 void Server::Impl::answer_request(const tcp::endpoint& to) {
   if (full()) return turn_away(too_many());
-  const std::string asker = text_of(to.address()) + ":" + std::to_string(to.port());
+  const Asker asker{text_of(to.address()), to.port()};
   const auto verdict = gate.ask(asker, std::chrono::steady_clock::now());
   if (verdict == RequestGate::Verdict::Refused) turn_away("too many requests");
   if (verdict == RequestGate::Verdict::Connect) connect_back(to, asker);
 }
 
-void Server::Impl::connect_back(const tcp::endpoint& to, const std::string& asker) {
+void Server::Impl::connect_back(const tcp::endpoint& to, const Asker& asker) {
   auto attempt = std::make_shared<Attempt>(Attempt{
       http::Socket(io.get_executor()), asker, std::chrono::steady_clock::now() + kConnectTime});
   attempts.push_back(attempt);
@@ -189,18 +173,26 @@ void Server::Impl::on_connected(error_code failed, const std::shared_ptr<Attempt
   std::erase(attempts, attempt);
   if (stopping) return;
   if (failed) {
-    gate.gone(attempt->asker);
+    gate.failed(attempt->asker);
     return turn_away("it asked to be connected to and did not answer");
   }
   gate.connected(attempt->asker);
-  welcome(std::move(attempt->socket), attempt->asker);
+  try {
+    welcome(std::move(attempt->socket), attempt->asker);
+  } catch (...) {
+    gate.gone(attempt->asker);  // else it could never ask again
+    throw;
+  }
 }
 
-void Server::Impl::welcome(http::Socket socket, const std::string& asker) {
+void Server::Impl::welcome(http::Socket socket, const std::optional<Asker>& asker) {
   error_code gone;
   const auto remote = socket.remote_endpoint(gone);
-  if (gone) return gate.gone(asker);
-  Session session(trackers, {text_of(remote.address()), !asker.empty()});
+  if (gone) {
+    if (asker) gate.gone(*asker);
+    return;
+  }
+  Session session(trackers, {text_of(remote.address()), asker.has_value()});
   const ConnectionContext context{&datagrams, options.clock.get(), &counters, &turned_away,
                                   options.limits};
   auto connection =
@@ -214,7 +206,7 @@ void Server::Impl::welcome(http::Socket socket, const std::string& asker) {
 void Server::Impl::forget(const Connection* connection) {
   const auto found = clients.find(connection);
   if (found == clients.end()) return;
-  gate.gone(found->second.asker);
+  if (found->second.asker) gate.gone(*found->second.asker);
   clients.erase(found);
   counters.clients = clients.size();
 }
@@ -228,31 +220,22 @@ void Server::Impl::sweep() {
   std::vector<std::shared_ptr<Connection>> all;
   for (const auto& [key, client] : clients) all.push_back(client.connection);
   for (const auto& connection : all) connection->sweep(now);
-  sweep_timer.expires_after(kSweepInterval);
-  sweep_timer.async_wait([this](error_code cancelled) {
-    if (!cancelled && !stopping) sweep();
-  });
 }
 
 void Server::Impl::deliver() {
-  std::shared_ptr<const Reports> reports;
-  {
-    const std::scoped_lock lock(mutex);
-    reports = std::exchange(newest, nullptr);
-  }
+  const auto reports = newest.take();
   if (!reports || stopping) return;
   std::vector<std::shared_ptr<Connection>> all;
   for (const auto& [key, client] : clients) all.push_back(client.connection);
-  for (const auto& connection : all) connection->publish(reports);
+  for (const auto& connection : all) connection->publish(*reports);
 }
 
 void Server::Impl::stop() {
   stopping = true;
+  accepting.stop();
+  sweeping.stop();
   error_code ignored;
-  acceptor.close(ignored);
   datagrams.close(ignored);
-  sweep_timer.cancel();
-  accept_timer.cancel();
   for (const auto& attempt : attempts) attempt->socket.close(ignored);
   while (!clients.empty()) {
     const auto connection = clients.begin()->second.connection;
@@ -272,29 +255,18 @@ Server::~Server() {
 Result<void> Server::start() {
   Impl& s = *impl_;
   if (auto bound = s.listen(); !bound) return bound;
-  s.accept();
-  s.receive_request();
-  s.sweep();
-  s.thread = std::thread([&s] { http::run_events(s.io, "VRPN handler failed"); });
+  s.thread =
+      std::thread([&s] { http::run_events(s.io, "VRPN handler failed", [&s] { s.ensure(); }); });
   return {};
 }
 
-std::uint16_t Server::port() const {
-  error_code failed;
-  return impl_->acceptor.local_endpoint(failed).port();
-}
+std::uint16_t Server::port() const { return impl_->accepting.port(); }
 
 void Server::publish(std::shared_ptr<const Reports> reports) {
-  bool pending = false;
-  {
-    const std::scoped_lock lock(impl_->mutex);
-    pending = impl_->newest != nullptr;
-    impl_->newest = std::move(reports);
-  }
-  if (pending) {
-    ++impl_->counters.dropped;  // its delivery is already on its way and takes this one
-  } else {
+  if (impl_->newest.put(std::move(reports))) {
     net::post(impl_->io, [impl = impl_.get()] { impl->deliver(); });
+  } else {
+    ++impl_->counters.dropped;
   }
 }
 

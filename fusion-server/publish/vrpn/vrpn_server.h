@@ -17,7 +17,7 @@ struct ServerOptions {
   std::uint16_t port = 3883;  ///< TCP and UDP; 0: any that is free for both.
   std::size_t max_clients = 64;
   ClientLimits limits = {};
-  std::shared_ptr<const Clock> clock = std::make_shared<SystemClock>();
+  std::shared_ptr<const Clock> clock;  ///< What pings are answered with.
 };
 
 class Server {

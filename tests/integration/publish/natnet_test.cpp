@@ -1,6 +1,8 @@
 // A NatNet server over real sockets: clients of both kinds, and hostile ones.
+#include <atomic>
 #include <functional>
 #include <memory>
+#include <new>
 #include <random>
 #include <thread>
 #include <vector>
@@ -35,6 +37,7 @@ bool wait_for(const std::function<bool()>& holds) {
 ServerOptions options() {
   ServerOptions options;
   options.command_port = 0;
+  options.clock = std::make_shared<SystemClock>();
   options.desk.models = message_of(Message::Models, Bytes(100));
   return options;
 }
@@ -84,6 +87,29 @@ TEST(NatNetServer, AClientGetsFramesWhereItConnectedFrom) {
   publish(*server, 'b');
   EXPECT_EQ(client.next(200), "");
   EXPECT_TRUE(wait_for([&] { return server->counters().clients == 0; }));
+}
+
+/// Fails once, then stands still.
+class ClockThatFailsOnce final : public Clock {
+ public:
+  [[nodiscard]] Timestamp now() const override {
+    if (!failed_.exchange(true)) throw std::bad_alloc();
+    return from_unix_ns(0x0123'4567'89AB'CDEF);
+  }
+
+ private:
+  mutable std::atomic<bool> failed_ = false;
+};
+
+TEST(NatNetServer, WhatIsThrownOverARequestIsNotTheEndOfRequests) {
+  ServerOptions given = options();
+  given.clock = std::make_shared<ClockThatFailsOnce>();
+  const auto server = server_with(std::move(given));
+  DatagramReceiver client;
+  client.say(kConnect, server->port());
+  EXPECT_EQ(client.next(300), "");
+  const std::string echoed = ask(client, *server, "\x0C\0\x08\0"s + "\1\2\3\4\5\6\7\0"s);
+  EXPECT_EQ(echoed, "\x0D\0\x10\0\1\2\3\4\5\6\7\0"s + "\xEF\xCD\xAB\x89\x67\x45\x23\x01"s);
 }
 
 TEST(NatNetServer, WhoNeverConnectedGetsNothing) {

@@ -29,8 +29,10 @@ std::shared_ptr<const Snapshot> somebody(std::uint64_t sequence) {
 }
 
 /// The only sink that is on.
-std::unique_ptr<Sink> sink_of(const OutputsConfig& config) {
-  auto sinks = open_outputs(config, std::make_shared<SystemClock>());
+std::unique_ptr<Sink> sink_of(
+    const OutputsConfig& config,
+    const std::shared_ptr<const Clock>& clock = std::make_shared<SystemClock>()) {
+  auto sinks = open_outputs(config, clock);
   EXPECT_THAT(sinks, IsOk());
   if (!sinks || sinks->size() != 1) return nullptr;
   return std::move(sinks->front());
@@ -60,6 +62,21 @@ TEST(DtrackOutput, SendsEachFrameFromItsPortToAllTargets) {
   }
 }
 
+class LateClock final : public Clock {
+ public:
+  [[nodiscard]] Timestamp now() const override {
+    return chorus::testing::kStart + std::chrono::microseconds(4321);
+  }
+};
+
+TEST(DtrackOutput, TellsItsLatencyByTheClockOfTheServer) {
+  DatagramReceiver receiver;
+  const auto sink = sink_of(dtrack_to({receiver.target()}), std::make_shared<LateClock>());
+  ASSERT_TRUE(sink);
+  sink->publish(somebody(1));
+  EXPECT_NE(receiver.next().find(" 4321\r\n6dcal"), std::string::npos);
+}
+
 TEST(DtrackOutput, ReachesAMulticastGroup) {
   const char* group = "239.255.77.77";
   DatagramReceiver member(true);
@@ -70,6 +87,20 @@ TEST(DtrackOutput, ReachesAMulticastGroup) {
   ASSERT_TRUE(sink);
   sink->publish(somebody(3));
   EXPECT_TRUE(member.next().starts_with("fr 3\r\n"));
+}
+
+TEST(DtrackOutput, ReachesAGroupByTheInterfaceItIsGiven) {
+  const char* group = "239.255.77.79";
+  DatagramReceiver member(true);
+  const bool joined = member.join(group, "127.0.0.1");
+  OutputsConfig config = dtrack_to({std::string(group) + ":" + std::to_string(member.port())});
+  config.dtrack.protocol.multicast = {"127.0.0.1", 0};  // No router, not even another host.
+  const auto sink = sink_of(config);
+  ASSERT_TRUE(sink);
+  sink->publish(somebody(3));
+  const std::string heard = joined ? member.next(1000) : "";
+  if (heard.empty()) GTEST_SKIP() << "this machine has no multicast on loopback";
+  EXPECT_TRUE(heard.starts_with("fr 3\r\n"));
 }
 
 TEST(DtrackOutput, IgnoresWhatIsSaidToItsPort) {

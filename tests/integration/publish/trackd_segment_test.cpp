@@ -60,7 +60,7 @@ TrackerFrame frame_of_somebody() {
 
 TEST(TrackdSegment, AnotherProgramReadsTheHeadInFeet) {
   const Settings settings = settings_of_this_test();
-  const auto outlet = open_outlet(settings);
+  const auto outlet = open_outlet(settings, {});
   ASSERT_THAT(outlet, IsOk());
   const Reader reader(settings.tracker_key);
   EXPECT_EQ(reader.at<std::uint32_t>(0), 1u);
@@ -78,7 +78,7 @@ TEST(TrackdSegment, AnotherProgramReadsTheHeadInFeet) {
 
 TEST(TrackdSegment, AReaderThatWritesNonsenseHarmsOnlyItself) {
   const Settings settings = settings_of_this_test();
-  const auto outlet = open_outlet(settings);
+  const auto outlet = open_outlet(settings, {});
   ASSERT_THAT(outlet, IsOk());
   Reader vandal(settings.tracker_key);
   vandal.scribble();
@@ -89,7 +89,7 @@ TEST(TrackdSegment, AReaderThatWritesNonsenseHarmsOnlyItself) {
 TEST(TrackdSegment, IsGoneAtTheEnd) {
   const Settings settings = settings_of_this_test();
   {
-    const auto outlet = open_outlet(settings);
+    const auto outlet = open_outlet(settings, {});
     ASSERT_THAT(outlet, IsOk());
     EXPECT_TRUE(there(settings.tracker_key) && there(settings.controller_key));
   }
@@ -98,9 +98,9 @@ TEST(TrackdSegment, IsGoneAtTheEnd) {
 
 TEST(TrackdSegment, OneThatIsInUseIsRefusedAndLeftAlone) {
   const Settings settings = settings_of_this_test();
-  const auto first = open_outlet(settings);
+  const auto first = open_outlet(settings, {});
   ASSERT_THAT(first, IsOk());
-  const auto second = open_outlet(settings);
+  const auto second = open_outlet(settings, {});
   ASSERT_THAT(second, FailsWith(ErrorCode::Conflict));
   EXPECT_NE(second.error().message.find("still runs"), std::string::npos);
   EXPECT_TRUE(there(settings.tracker_key));
@@ -118,7 +118,7 @@ void leave_behind(int key, std::size_t bytes) {
 TEST(TrackdSegment, OneOfAnotherSizeIsRefusedAndLeftAlone) {
   const Settings settings = settings_of_this_test();
   leave_behind(settings.tracker_key, 100);
-  const auto outlet = open_outlet(settings);
+  const auto outlet = open_outlet(settings, {});
   ASSERT_THAT(outlet, FailsWith(ErrorCode::Conflict));
   EXPECT_NE(outlet.error().message.find("100 bytes, not 6028"), std::string::npos)
       << outlet.error().message;
@@ -129,7 +129,7 @@ TEST(TrackdSegment, OneOfAnotherSizeIsRefusedAndLeftAlone) {
 TEST(TrackdSegment, OneThatACrashedServerLeftBehindIsReplaced) {
   const Settings settings = settings_of_this_test();
   leave_behind(settings.tracker_key, 6028);
-  const auto outlet = open_outlet(settings);
+  const auto outlet = open_outlet(settings, {});
   ASSERT_THAT(outlet, IsOk());
   EXPECT_EQ(Reader(settings.tracker_key).at<std::uint32_t>(4), 150u);
 }

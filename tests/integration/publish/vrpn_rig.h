@@ -38,6 +38,7 @@ class VrpnRig : public ::testing::Test {
  protected:
   void serve(ServerOptions options = {}) {
     options.port = 0;
+    if (!options.clock) options.clock = std::make_shared<SystemClock>();
     server.emplace(std::move(options), trackers);
     const auto started = server->start();
     ASSERT_TRUE(started) << to_string(started.error());

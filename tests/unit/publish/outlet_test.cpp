@@ -3,6 +3,7 @@
 
 #include <condition_variable>
 #include <mutex>
+#include <new>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -20,6 +21,7 @@ struct Log {
   bool entered = false;
   std::vector<std::uint64_t> sequences;
   std::vector<Timestamp> instants;
+  std::vector<std::size_t> slots;  ///< Of all bodies.
 };
 
 class SlowOutlet final : public Outlet {
@@ -33,6 +35,7 @@ class SlowOutlet final : public Outlet {
     log_->changed.wait(lock, [&] { return log_->open; });
     log_->sequences.push_back(frame.sequence);
     log_->instants.push_back(frame.instant);
+    for (const TrackerBody& body : frame.bodies) log_->slots.push_back(body.slot);
     log_->changed.notify_all();
   }
   [[nodiscard]] SinkCounters counters() const override { return {.failed = 3, .clients = 2}; }
@@ -84,6 +87,60 @@ TEST(OutletSink, AddsItsCountsToThoseOfTheProtocol) {
   EXPECT_EQ(sink.counters().failed, 3u);
   EXPECT_EQ(sink.counters().clients, 2u);
   EXPECT_EQ(sink.name(), "slow");
+}
+
+/// Throws at every other frame.
+class BrokenOutlet final : public Outlet {
+ public:
+  explicit BrokenOutlet(std::shared_ptr<Log> log) : log_(std::move(log)) {}
+  [[nodiscard]] std::string_view name() const override { return "broken"; }
+  void send(const TrackerFrame& frame) override {
+    if (frame.sequence % 2 == 1) throw std::bad_alloc();
+    const std::scoped_lock lock(log_->mutex);
+    log_->sequences.push_back(frame.sequence);
+    log_->changed.notify_all();
+  }
+  [[nodiscard]] SinkCounters counters() const override { return {.failed = 3}; }
+
+ private:
+  std::shared_ptr<Log> log_;
+};
+
+TEST(OutletSink, WhatAnOutletThrowsCostsThatFrameAndIsCounted) {
+  auto log = std::make_shared<Log>();
+  ::testing::internal::CaptureStderr();
+  {
+    OutletSink sink(std::make_unique<BrokenOutlet>(log), {});
+    for (std::uint64_t i = 1; i <= 4; i += 2) {
+      sink.publish(snapshot(i));
+      sink.publish(snapshot(i + 1));
+      wait_until(*log, [&] { return log->sequences.size() == (i + 1) / 2; });
+    }
+    EXPECT_EQ(log->sequences, (std::vector<std::uint64_t>{2, 4}));
+    EXPECT_EQ(sink.counters().failed, 5u);
+  }
+  const std::string said = ::testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("output broken failed"), std::string::npos) << said;
+}
+
+TEST(OutletSink, KeepsSlotsAsLongAsItIsTold) {
+  auto log = std::make_shared<Log>();
+  OutletSink sink(std::make_unique<SlowOutlet>(log), {});
+  sink.keep_slots_for(std::chrono::milliseconds(10));
+  const auto show = [&](int ms, std::uint64_t person) {
+    auto s = std::make_shared<Snapshot>(*snapshot(static_cast<std::uint64_t>(ms)));
+    s->instant += std::chrono::milliseconds(ms);
+    s->bodies.resize(1);
+    s->bodies[0].id = {person};
+    const std::size_t before = log->slots.size();
+    sink.publish(s);
+    wait_until(*log, [&] { return log->slots.size() > before; });
+  };
+  show(0, 1);
+  show(11, 2);
+  sink.keep_slots_for(std::chrono::seconds(5));
+  show(4000, 3);
+  EXPECT_EQ(log->slots, (std::vector<std::size_t>{0, 0, 1}));
 }
 
 TEST(OutletSink, PredictsOnlyWhenAsked) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/http/asio.h"
 #include "fusion-server/publish/datagram_sender.h"
 #include "tests/support/matchers.h"
 
@@ -106,6 +107,54 @@ TEST(Outputs, WhatCannotBeOpenedNamesWhatToChange) {
   EXPECT_THAT(opening_error(R"({"outputs": {"dtrack": {"enabled": true, "source_port": )" +
                             std::to_string((*taken)->source_port()) + "}}}"),
               AllOf(HasSubstr("outputs.dtrack"), HasSubstr("source_port")));
+}
+
+TEST(Outputs, DtracksGroupHasAnInterfaceAndALimit) {
+  const auto config =
+      read(R"({"outputs": {"dtrack": {"multicast_address": "10.1.2.3", "multicast_hops": 4}}})");
+  ASSERT_THAT(config, IsOk());
+  EXPECT_EQ(config->dtrack.protocol.multicast, (Multicast{"10.1.2.3", 4}));
+  for (const char* wrong : {R"("multicast_address": "eth0")", R"("multicast_address": "::1")",
+                            R"("multicast_hops": 256)", R"("multicast_hops": -1)"}) {
+    EXPECT_FALSE(read(std::string(R"({"outputs": {"dtrack": {)") + wrong + "}}}")) << wrong;
+  }
+  // TEST-NET-1: nobody's.
+  EXPECT_THAT(opening_error(R"({"outputs": {"dtrack": {"enabled": true, "source_port": 0,
+                  "targets": ["239.1.2.3:5000"], "multicast_address": "192.0.2.1"}}})"),
+              AllOf(HasSubstr("outputs.dtrack"), HasSubstr("multicast_address")));
+}
+
+/// A port that is taken, by TCP and by UDP, as long as this lives.
+class Taken {
+ public:
+  Taken() : acceptor_(io_, {http::net::ip::address_v4::loopback(), 0}), socket_(io_) {
+    socket_.open(http::udp::v4());
+    socket_.bind({http::net::ip::address_v4::loopback(), acceptor_.local_endpoint().port()});
+    acceptor_.listen();
+  }
+  [[nodiscard]] std::string port() const {
+    return std::to_string(acceptor_.local_endpoint().port());
+  }
+
+ private:
+  http::net::io_context io_;
+  http::Acceptor acceptor_;
+  http::DatagramSocket socket_;
+};
+
+TEST(Outputs, APortThatIsTakenNamesItsKey) {
+  const Taken taken;
+  const auto enabled = [&taken](const std::string& before, const std::string& after) {
+    return opening_error(R"({"outputs": {)" + before + taken.port() + after + "}}");
+  };
+  EXPECT_THAT(enabled(R"("vrpn": {"enabled": true, "port": )", "}"),
+              HasSubstr("set outputs.vrpn.port to"));
+  EXPECT_THAT(enabled(R"("natnet": {"enabled": true, "command_port": )", "}"),
+              HasSubstr("set outputs.natnet.command_port to"));
+  EXPECT_THAT(enabled(R"("dtrack": {"enabled": true, "source_port": 0,
+                      "command": {"enabled": true, "port": )",
+                      "}}"),
+              HasSubstr("set outputs.dtrack.command.port to"));
 }
 
 TEST(Targets, AreHostAndPort) {

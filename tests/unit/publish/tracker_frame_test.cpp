@@ -36,15 +36,55 @@ std::vector<std::pair<std::size_t, std::uint64_t>> slots(const TrackerFrame& fra
   return out;
 }
 
+using Slots = std::vector<std::pair<std::size_t, std::uint64_t>>;
+
 TEST(TrackerSlots, StayWithTheirPersonWhenAnotherLeaves) {
-  using Slots = std::vector<std::pair<std::size_t, std::uint64_t>>;
   TrackerState state(2);
   EXPECT_EQ(slots(state.advance(snapshot(milliseconds(0), {person(4), person(7)}))),
             (Slots{{0, 4}, {1, 7}}));
   EXPECT_EQ(slots(state.advance(snapshot(milliseconds(33), {person(7)}))), (Slots{{1, 7}}));
-  // The newcomer takes the free slot; the third has none.
-  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(66), {person(7), person(8), person(9)}))),
+  // The newcomer takes the slot that is free by then; the third has none.
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(1033), {person(7), person(8), person(9)}))),
             (Slots{{0, 8}, {1, 7}}));
+}
+
+TEST(TrackerSlots, AreFoundAgainAfterAnInstantWithoutAnybody) {
+  TrackerState state(4);
+  (void)state.advance(snapshot(milliseconds(0), {person(3)}));
+  (void)state.advance(snapshot(milliseconds(33), {person(2), person(3)}));
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(66), {}))), Slots{});
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(100), {person(2), person(3)}))),
+            (Slots{{0, 3}, {1, 2}}));
+}
+
+TEST(TrackerSlots, OfAHiddenPersonIsNotGivenToOneWhoEnters) {
+  TrackerState state(4);
+  (void)state.advance(snapshot(milliseconds(0), {person(1), person(2)}));
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(33), {person(2), person(4)}))),
+            (Slots{{1, 2}, {2, 4}}));
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(66), {person(1), person(2), person(4)}))),
+            (Slots{{0, 1}, {1, 2}, {2, 4}}));
+}
+
+TEST(TrackerSlots, AreKeptAsLongAsAskedToTheInstant) {
+  TrackerState state(1);
+  state.keep_slots_for(milliseconds(200));
+  (void)state.advance(snapshot(milliseconds(0), {person(1)}));
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(200), {person(2)}))), Slots{});
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(201), {person(2)}))), (Slots{{0, 2}}));
+  // A clock that is set back by more than that begins anew, as association does.
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(-100), {person(3)}))), (Slots{{0, 3}}));
+}
+
+TEST(TrackerJoints, AnUnseenOneHangsAtTheNextTrackedOneTowardsThePelvis) {
+  FusedBody body = person(1);
+  testing::hide(body.skeleton[JointId::HandLeft]);
+  testing::hide(body.skeleton[JointId::WristLeft]);
+  TrackerState state(1);
+  const TrackerBody sent = state.advance(snapshot(milliseconds(0), {body})).bodies.at(0);
+  EXPECT_EQ(nearest_tracked(sent, JointId::HandLeft), JointId::ElbowLeft);
+  EXPECT_EQ(nearest_tracked(sent, JointId::Head), JointId::Head);
+  EXPECT_EQ(nearest_tracked(TrackerBody{}, JointId::Head), JointId::SpineBase);
 }
 
 TEST(TrackerJoints, WithoutAnOrientationTakeThatOfTheNextOneTowardsThePelvis) {
