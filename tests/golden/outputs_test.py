@@ -84,6 +84,8 @@ class Golden(unittest.TestCase):
             for name, joint in mxtp.JOINT_OF_SEGMENT.items():
                 if "x" in joints[joint]:
                     self.assert_near(body.segments[name].place, mxtp.place(joints[joint]), 1e-5, name)
+            if mxtp.head(joints):
+                self.assert_near(body.segments["Head"].place, mxtp.head(joints), 1e-5, "Head")
             for what, got, expected in mxtp.directions(body.segments, joints):
                 self.assert_near(got, expected, 1e-5, what)
                 compared += 1

@@ -19,7 +19,7 @@ NAMES = ["Pelvis", "L5", "L3", "T12", "T8", "Neck", "Head", "RightShoulder", "Ri
 
 # Segments whose origin is one of our joints.
 JOINT_OF_SEGMENT = {
-    "Pelvis": "SpineBase", "T12": "SpineMid", "Head": "Neck",
+    "Pelvis": "SpineBase", "T12": "SpineMid", "Neck": "SpineShoulder",
     **{side + segment: joint + side for side in ("Left", "Right")
        for segment, joint in (("UpperArm", "Shoulder"), ("ForeArm", "Elbow"), ("Hand", "Wrist"), ("UpperLeg", "Hip"),
                               ("LowerLeg", "Knee"), ("Foot", "Ankle"), ("Toe", "Foot"))}}
@@ -62,6 +62,13 @@ def read(data):
 def place(joint):
     """A joint of /frame in Xsens' axes."""
     return joint["z"], joint["x"], joint["y"]
+
+
+def head(joints):
+    """Where the head begins: MVN's neck ends there, and our Neck is half-way from SpineShoulder; None where those are not tracked."""
+    if "x" not in joints["Neck"] or "x" not in joints["SpineShoulder"]:
+        return None
+    return tuple(2 * n - s for n, s in zip(place(joints["Neck"]), place(joints["SpineShoulder"])))
 
 
 def directions(segments, joints):

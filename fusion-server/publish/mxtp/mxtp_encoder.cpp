@@ -5,7 +5,6 @@
 #include <bit>
 #include <string_view>
 
-#include "common/body/bones.h"
 #include "fusion-server/publish/axes.h"
 #include "fusion-server/publish/big_endian.h"
 #include "fusion-server/publish/humanoid.h"
@@ -13,7 +12,8 @@
 namespace chorus::publish::mxtp {
 namespace {
 
-/// A segment's origin: `share` of the way from one joint to another; it turns as a bone of the rig.
+/// A segment's origin: `share` of the way from one joint to another, beyond it when that is more
+/// than 1; it turns as a bone of the rig.
 struct Segment {
   JointId from;
   JointId to;
@@ -23,15 +23,18 @@ struct Segment {
 
 using enum JointId;
 
-// Order and meaning of the ids 1..23: Xsens, MVN real-time network streaming protocol.
+// Order and meaning of the ids 1..23: Xsens, MVN real-time network streaming protocol.  Neck and
+// head are the inverse of what importing an MVN file makes of them (common/motion): MVN's neck
+// begins where our SpineShoulder is and ends in the joint that its head begins with, our Neck is
+// half-way.
 constexpr std::array<Segment, kSegments> kTable{{
-    {SpineBase, SpineBase, 0.0, HumanBone::Hips},           // Pelvis
-    {SpineBase, SpineMid, 1.0 / 3.0, HumanBone::Spine},     // L5
-    {SpineBase, SpineMid, 2.0 / 3.0, HumanBone::Spine},     // L3
-    {SpineMid, SpineMid, 0.0, HumanBone::Chest},            // T12
-    {SpineMid, SpineShoulder, 0.5, HumanBone::UpperChest},  // T8
-    {SpineShoulder, Neck, 0.5, HumanBone::Neck},            // Neck
-    {Neck, Neck, 0.0, HumanBone::Head},  // Head: its origin is the top of the neck
+    {SpineBase, SpineBase, 0.0, HumanBone::Hips},                   // Pelvis
+    {SpineBase, SpineMid, 1.0 / 3.0, HumanBone::Spine},             // L5
+    {SpineBase, SpineMid, 2.0 / 3.0, HumanBone::Spine},             // L3
+    {SpineMid, SpineMid, 0.0, HumanBone::Chest},                    // T12
+    {SpineMid, SpineShoulder, 0.5, HumanBone::UpperChest},          // T8
+    {SpineShoulder, SpineShoulder, 0.0, HumanBone::Neck},           // Neck
+    {SpineShoulder, Neck, 2.0, HumanBone::Head},                    // Head
     {SpineShoulder, ShoulderRight, 0.3, HumanBone::RightShoulder},  // RightShoulder
     {ShoulderRight, ShoulderRight, 0.0, HumanBone::RightUpperArm},  // RightUpperArm
     {ElbowRight, ElbowRight, 0.0, HumanBone::RightLowerArm},        // RightForearm
@@ -64,15 +67,13 @@ std::uint32_t time_code(const TrackerFrame& frame) {
                                     1'000'000U);  // modulo 2^32, as the field is
 }
 
-/// Where a joint is, or where the nearest tracked joint towards the pelvis is: every datagram
-/// carries all segments, so an unseen limb hangs at its parent.
-const TrackerJoint& shown(const TrackerBody& body, JointId id) {
-  const TrackerJoint* joint = &body[id];
-  while (!joint->tracked && id != SpineBase) {
-    id = parent_of(id);
-    joint = &body[id];
-  }
-  return *joint;
+/// Every datagram carries all segments, so an unseen limb hangs at its parent.
+Eigen::Vector3d origin_of(const Segment& segment, const TrackerBody& body) {
+  const auto place = [&body](JointId id) { return body[nearest_tracked(body, id)].position; };
+  const bool both = body[segment.from].tracked && body[segment.to].tracked;
+  // Beyond a joint leads only a way that is seen.
+  const double share = both ? segment.share : std::min(segment.share, 1.0);
+  return (1.0 - share) * place(segment.from) + share * place(segment.to);
 }
 
 void add_header(Bytes& out, const TrackerFrame& frame, const TrackerBody& body) {
@@ -99,11 +100,9 @@ std::vector<char> encode(const TrackerFrame& frame, const TrackerBody& body) {
   add_header(out, frame, body);
   std::uint32_t id = 0;
   for (const Segment& segment : kTable) {
-    const Eigen::Vector3d x_in_world = (1.0 - segment.share) * shown(body, segment.from).position +
-                                       segment.share * shown(body, segment.to).position;
-    const Eigen::Vector3d p = xsens_axes().position(x_in_world);
+    const Eigen::Vector3d p = xsens_axes().position(origin_of(segment, body));
     const Eigen::Quaterniond q =
-        xsens_axes().quaternion(from_xsens_rest(rig[segment.turns].world_from_bone));
+        xsens_axes().quaternion(rig[segment.turns].world_from_bone * rig_from_ahead_rest());
     append_big_endian(out, ++id);
     for (const double value : {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()})
       add_real(out, value);

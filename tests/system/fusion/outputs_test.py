@@ -138,6 +138,8 @@ class Outputs(Rig):
         for name, joint in mxtp.JOINT_OF_SEGMENT.items():
             if "x" in joints[joint]:
                 self.assert_near(body.segments[name].place, mxtp.place(joints[joint]), PRINTED, name)
+        if mxtp.head(joints):
+            self.assert_near(body.segments["Head"].place, mxtp.head(joints), 3 * PRINTED, "Head")
         for what, got, expected in mxtp.directions(body.segments, joints):
             # Four decimals of short bones: a hand of 15 cm to a thousandth; a plane of two bones less well.
             self.assert_near(got, expected, 1e-2, what)

@@ -1,13 +1,15 @@
 // MXTP02 read back by a decoder written from the format's table, not from the encoder.
 #include "fusion-server/publish/mxtp/mxtp_encoder.h"
 
+#include <array>
 #include <cstring>
-#include <map>
 
 #include <gtest/gtest.h>
 
 #include "common/base/units.h"
+#include "common/body/bones.h"
 #include "common/geometry/rotation.h"
+#include "common/motion/mvnx.h"
 #include "tests/support/builders.h"
 #include "tests/support/matchers.h"
 #include "tests/unit/publish/rig_poses.h"
@@ -85,6 +87,88 @@ TEST(Mxtp, PlacesAreZUpAndXForward) {
   EXPECT_THAT(read.place(kL5), VectorNear(Eigen::Vector3d(3, 1, 2.1), 1e-5));
   EXPECT_THAT(read.place(kRightHand), VectorNear(Eigen::Vector3d(6, 4, 5), 1e-5));
   EXPECT_THAT(read.place(kLeftHand), VectorNear(Eigen::Vector3d(9, 7, 8), 1e-5));
+}
+
+constexpr std::uint32_t kNeck = 6, kHead = 7;
+
+TEST(Mxtp, TheHeadIsAsFarBeyondTheNeckAsThatIsFromTheShoulders) {
+  Skeleton<WorldSpace> body = chorus::testing::standing_person({0, 0, 0});
+  body[JointId::SpineShoulder].position = {0.1, 1.4, 2.0};
+  body[JointId::Neck].position = {0.1, 1.47, 2.02};
+  const TrackerFrame frame = frame_of(body);
+  const auto bytes = encode(frame, frame.bodies.at(0));
+  EXPECT_THAT(Read(bytes).place(kNeck), VectorNear(Eigen::Vector3d(2.0, 0.1, 1.4), 1e-5));
+  EXPECT_THAT(Read(bytes).place(kHead), VectorNear(Eigen::Vector3d(2.04, 0.1, 1.54), 1e-5));
+}
+
+TEST(Mxtp, TheHeadOfWhomOnlyPartOfTheNeckIsSeenStaysOnIt) {
+  const auto place_without = [](JointId missing) {
+    Skeleton<WorldSpace> body = chorus::testing::standing_person({0, 0, 0});
+    body[JointId::SpineMid].position = {0, 1.2, 0};
+    body[JointId::SpineShoulder].position = {0, 1.4, 0};
+    body[JointId::Neck].position = {0, 1.47, 0};
+    chorus::testing::hide(body[missing]);
+    const TrackerFrame frame = frame_of(body);
+    return Read(encode(frame, frame.bodies.at(0))).place(kHead).z();
+  };
+  EXPECT_NEAR(place_without(JointId::SpineShoulder), 1.47, 1e-5);
+  EXPECT_NEAR(place_without(JointId::Neck), 1.4, 1e-5);
+}
+
+/// A file of MVN's that has just what a datagram says: the neck's other end is where the head
+/// begins.
+motion::Mvnx file_of(const std::vector<char>& bytes) {
+  constexpr std::array kLabels{"Pelvis",
+                               "L5",
+                               "L3",
+                               "T12",
+                               "T8",
+                               "Neck",
+                               "Head",
+                               "RightShoulder",
+                               "RightUpperArm",
+                               "RightForeArm",
+                               "RightHand",
+                               "LeftShoulder",
+                               "LeftUpperArm",
+                               "LeftForeArm",
+                               "LeftHand",
+                               "RightUpperLeg",
+                               "RightLowerLeg",
+                               "RightFoot",
+                               "RightToe",
+                               "LeftUpperLeg",
+                               "LeftLowerLeg",
+                               "LeftFoot",
+                               "LeftToe"};
+  motion::Mvnx file;
+  motion::MvnxFrame frame;
+  for (std::uint32_t id = 1; id <= kLabels.size(); ++id) {
+    file.segments.push_back({kLabels.at(id - 1), {}});
+    frame.positions.push_back(Read(bytes).place(id));
+    frame.orientations.push_back(Read(bytes).turn(id));
+  }
+  const Eigen::Vector3d along = Read(bytes).place(kHead) - Read(bytes).place(kNeck);
+  file.segments.at(kNeck - 1).points = {{"jC1Head", {0, 0, along.norm()}}};
+  file.frames.push_back(frame);
+  return file;
+}
+
+TEST(Mxtp, IsReadBackByOurOwnImportOfMvn) {
+  using enum JointId;
+  TrackerBody body = publish::testing::t_pose();
+  publish::testing::turn(body, {Neck, Head}, SpineShoulder, publish::testing::about_x(25));
+  publish::testing::turn(body, publish::testing::kLeftArm, ShoulderLeft,
+                         publish::testing::about_z(60));
+  publish::testing::move(body, {0.5, 0, 2}, 130);
+  const auto motion = motion::motion_from_mvnx(file_of(encode({}, body)));
+  ASSERT_THAT(motion, chorus::testing::IsOk());
+  for (const JointId id : {SpineBase, SpineMid, SpineShoulder, Neck, ShoulderLeft, ElbowLeft,
+                           WristLeft, ShoulderRight, ElbowRight, WristRight, HipLeft, KneeLeft,
+                           AnkleLeft, FootLeft, HipRight, KneeRight, AnkleRight, FootRight}) {
+    EXPECT_THAT(motion->frames.at(0)[id].position, VectorNear(body[id].position, 1e-5))
+        << name_of(id);
+  }
 }
 
 /// One datagram of a pose that looks along our +z, Xsens' +x.
