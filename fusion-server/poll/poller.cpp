@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <exception>
 #include <map>
 #include <mutex>
 #include <random>
@@ -10,6 +11,7 @@
 
 #include "common/base/log.h"
 #include "common/http/asio.h"
+#include "common/http/event_loop.h"
 #include "fusion-server/poll/answer.h"
 
 namespace chorus::poll {
@@ -46,7 +48,9 @@ class Session : public std::enable_shared_from_this<Session> {
     report_.sensor = sensor_;
   }
 
-  void start() { feed(Started{}); }
+  void start() {
+    survive([this] { feed(Started{}); });
+  }
 
   void stop() {
     stopped_ = true;
@@ -62,6 +66,18 @@ class Session : public std::enable_shared_from_this<Session> {
   }
 
  private:
+  /// Whatever is thrown on the way (no memory, a frame nobody thought of) is a failed poll of this
+  /// sensor: it is asked again after its back-off, and the others do not notice.
+  template <class Doing>
+  void survive(const Doing& doing) {
+    try {
+      doing();
+    } catch (const std::exception& thrown) {
+      answered_.reset();
+      feed(Failed{{ErrorCode::Internal, sensor_.url, thrown.what()}});
+    }
+  }
+
   void feed(const Event& event) {
     const double jitter = std::uniform_real_distribution<double>(0.0, 1.0)(random_);
     const Step step = fsm_.resume(event, steady_now(), jitter);
@@ -83,9 +99,9 @@ class Session : public std::enable_shared_from_this<Session> {
     }
     client_.send(std::move(request), at_least_1ms(send.deadline),
                  [weak = weak_from_this(), frame](Result<http::ClientResponse> response) {
-                   if (const auto self = weak.lock(); self && !self->stopped_) {
-                     self->take(std::move(response), frame);
-                   }
+                   const auto self = weak.lock();
+                   if (!self || self->stopped_) return;
+                   self->survive([&] { self->take(std::move(response), frame); });
                  });
   }
 
@@ -93,7 +109,8 @@ class Session : public std::enable_shared_from_this<Session> {
     timer_.expires_after(sleep.duration);
     timer_.async_wait([weak = weak_from_this()](const http::error_code& error) {
       const auto self = weak.lock();
-      if (self && !error && !self->stopped_) self->feed(Woke{});
+      if (!self || error || self->stopped_) return;
+      self->survive([&] { self->feed(Woke{}); });
     });
   }
 
@@ -171,7 +188,7 @@ class Session : public std::enable_shared_from_this<Session> {
 
 struct Poller::Impl {
   explicit Impl(PollerOptions o) : options(std::move(o)), work(http::net::make_work_guard(io)) {
-    thread = std::thread([this] { io.run(); });
+    thread = std::thread([this] { http::run_events(io, "poll handler failed"); });
   }
 
   ~Impl() { stop(); }

@@ -50,7 +50,7 @@ struct PollerOptions {
   PollTimings timings;
   std::size_t max_body_bytes = 2u << 20;
   std::shared_ptr<const Clock> clock;
-  /// Called on the poll thread; must return at once.
+  /// Called on the poll thread; must return at once.  What it throws is a failed poll.
   std::function<void(PolledFrame)> deliver;
 };
 

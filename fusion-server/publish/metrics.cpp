@@ -39,7 +39,8 @@ void add_output(endpoint::MetricsText& out, const Sink& sink) {
   out.counter({"chorus_output_dropped_total",
                "Fused frames left out because the output did not keep up (the oldest go first)."},
               number(counters.dropped), labels);
-  out.counter({"chorus_output_failed_total", "Sends the operating system refused."},
+  out.counter({"chorus_output_failed_total",
+               "Sends the operating system refused, and frames that could not be sent at all."},
               number(counters.failed), labels);
   out.counter({"chorus_output_refused_total", "Clients or messages turned away."},
               number(counters.refused), labels);
@@ -58,8 +59,13 @@ std::string metrics_text(const Status& status, const std::vector<std::unique_ptr
   out.counter({"chorus_dropped_frames_total",
                "Sensor frames dropped because the pipeline did not keep up."},
               number(counters.frames_dropped));
-  out.counter({"chorus_fusion_seconds_total", "Time spent handing fused frames over."},
+  out.counter({"chorus_fusion_seconds_total", "Time spent on fusing frames and handing them over."},
               counters.step_seconds);
+  out.counter({"chorus_pipeline_failures_total", "Turns of the pipeline that broke; see the log."},
+              number(counters.steps_failed));
+  out.counter(
+      {"chorus_worker_failures_total", "Jobs of the registration worker that broke; see the log."},
+      number(counters.jobs_failed));
   out.histogram({"chorus_fused_frame_age_seconds", "Instant to publication of fused frames."},
                 counters.age);
   out.gauge({"chorus_registration_version", "Version of the registration in use."},

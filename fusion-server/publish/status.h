@@ -48,7 +48,9 @@ struct Counters {
   /// Instants left out because the host was suspended or overloaded.
   std::uint64_t ticks_skipped = 0;
   std::uint64_t frames_dropped = 0;   ///< Lost between poller and pipeline.
-  double step_seconds = 0.0;          ///< Spent fusing, in total.
+  std::uint64_t steps_failed = 0;     ///< Turns of the pipeline that broke.
+  std::uint64_t jobs_failed = 0;      ///< Of the registration worker.
+  double step_seconds = 0.0;          ///< Fusing frames and handing them over, on a steady clock.
   endpoint::Histogram::Snapshot age;  ///< Instant to publication [s].
 };
 

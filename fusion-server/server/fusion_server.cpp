@@ -112,6 +112,8 @@ struct FusionServer::Impl {
   }
 
   std::shared_ptr<http::Router> make_router();
+  LoopOptions loop_options(Registration places);
+  void start_polling();
   void take_status(const publish::Status& next);
   Result<void> start_session(Duration target);
   [[nodiscard]] publish::Status status_now() const {
@@ -186,6 +188,39 @@ void FusionServer::Impl::take_status(const publish::Status& next) {
   session_asked = false;
 }
 
+LoopOptions FusionServer::Impl::loop_options(Registration places) {
+  LoopOptions options;
+  options.core = core_config(config);
+  // Sequences rise across restarts (no output is faster than 1 kHz), so that /frames/{seq} and
+  // ETags of an earlier run are never taken for ours by a cache.
+  options.core.first_sequence = static_cast<std::uint64_t>(to_unix_ns(clock->now()) / 1'000'000);
+  options.registration = std::move(places);
+  options.store = RegistrationStore(config.state_dir);
+  options.clock = clock;
+  options.sinks.push_back(&*frames);
+  options.sinks.push_back(&*tap);
+  for (const auto& sink : sinks) options.sinks.push_back(sink.get());
+  options.on_status = [this](const publish::Status& next) { take_status(next); };
+  options.poll_reports = [this] {
+    return poller ? poller->reports() : std::vector<poll::PollReport>{};
+  };
+  return options;
+}
+
+void FusionServer::Impl::start_polling() {
+  poll::PollerOptions options;
+  options.timings = config.poll;
+  options.clock = clock;
+  options.deliver = [this](poll::PolledFrame polled) {
+    tap->raw(raw_frame(polled));
+    sensors->floor(polled.frame.sensor, polled.frame.floor);
+    sensors->relay(polled.frame.sensor, std::move(polled.raw));
+    loop->give(std::move(polled.frame));
+  };
+  poller = std::make_unique<poll::Poller>(std::move(options));
+  poller->poll(config.sensors);
+}
+
 FusionServer::FusionServer(FusionConfig config, std::shared_ptr<const Clock> clock)
     : impl_(std::make_unique<Impl>(std::move(config), std::move(clock))) {}
 
@@ -195,42 +230,17 @@ Result<void> FusionServer::start() {
   Impl& s = *impl_;
   auto registration = initial_registration(s.config);
   if (!registration) return pass(registration);
-  auto sinks = publish::open_outputs(s.config.outputs, s.clock);
+  auto sinks =
+      publish::open_outputs(s.config.outputs, s.clock, s.config.pipeline.association.coast);
   if (!sinks) return pass(sinks);
   s.sinks = std::move(*sinks);
   http::ServerConfig http = s.config.http;
   http.clock = s.clock;
   s.http = std::make_unique<http::Server>(http, s.make_router());
 
-  LoopOptions loop;
-  loop.core = core_config(s.config);
-  // Sequences rise across restarts (no output is faster than 1 kHz), so that /frames/{seq} and
-  // ETags of an earlier run are never taken for ours by a cache.
-  loop.core.first_sequence = static_cast<std::uint64_t>(to_unix_ns(s.clock->now()) / 1'000'000);
-  loop.registration = std::move(*registration);
-  loop.store = RegistrationStore(s.config.state_dir);
-  loop.clock = s.clock;
-  loop.sinks.push_back(&*s.frames);
-  loop.sinks.push_back(&*s.tap);
-  for (const auto& sink : s.sinks) loop.sinks.push_back(sink.get());
-  loop.on_status = [&s](const publish::Status& status) { s.take_status(status); };
-  loop.poll_reports = [&s] {
-    return s.poller ? s.poller->reports() : std::vector<poll::PollReport>{};
-  };
-  s.loop = std::make_unique<PipelineLoop>(std::move(loop));
-
+  s.loop = std::make_unique<PipelineLoop>(s.loop_options(std::move(*registration)));
   if (auto bound = s.http->start(); !bound) return bound;
-  poll::PollerOptions polling;
-  polling.timings = s.config.poll;
-  polling.clock = s.clock;
-  polling.deliver = [&s](poll::PolledFrame polled) {
-    s.tap->raw(raw_frame(polled));
-    s.sensors->floor(polled.frame.sensor, polled.frame.floor);
-    s.sensors->relay(polled.frame.sensor, std::move(polled.raw));
-    s.loop->give(std::move(polled.frame));
-  };
-  s.poller = std::make_unique<poll::Poller>(std::move(polling));
-  s.poller->poll(s.config.sensors);
+  s.start_polling();
   s.loop->start();
   return {};
 }
@@ -249,6 +259,7 @@ void FusionServer::reload(const FusionConfig& next) {
   taken.session = next.session;
   s.loop->ask(core_config(taken));
   s.poller->poll(taken.sensors);
+  for (const auto& sink : s.sinks) sink->keep_slots_for(taken.pipeline.association.coast);
   s.config = std::move(taken);
   log::info("configuration reloaded", {{"sensors", s.config.sensors.size()}});
 }

@@ -14,6 +14,8 @@ constexpr std::size_t kMostFrames = 4096;   // 64 sensors at 30 Hz for two secon
 constexpr std::size_t kMostCommands = 256;  // people, not frames, send these
 constexpr Duration kMostIdle = std::chrono::milliseconds(20);
 constexpr Duration kStatusInterval = std::chrono::milliseconds(200);
+/// What broke may break again at once, at every turn.
+constexpr Duration kAfterFailure = std::chrono::milliseconds(10);
 constexpr Duration kStale = std::chrono::milliseconds(1500);
 
 /// Around one frame interval, the alignment delay, and what nobody should see [s].
@@ -69,15 +71,29 @@ void PipelineLoop::start() {
 
 void PipelineLoop::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
-    const Duration idle = std::min(core_.idle(options_.clock->now()), kMostIdle);
-    for (const SensorFrame& frame : frames_.take(idle)) core_.take(frame);
-    for (Command& command : commands_.take(Duration{0})) obey(std::move(command));
-    take_solutions();
-    const Timestamp now = options_.clock->now();
-    if (auto snapshot = core_.tick(now)) publish(std::move(*snapshot), now);
-    if (auto job = core_.due_job(now)) solve(std::move(*job));
-    if (now - status_at_ >= kStatusInterval || now < status_at_) publish_status(now);
+    try {
+      turn();
+    } catch (const std::exception& thrown) {
+      ++counters_.steps_failed;
+      trouble_.hit(thrown.what());
+      std::this_thread::sleep_for(kAfterFailure);
+    }
   }
+}
+
+void PipelineLoop::turn() {
+  const Duration idle = std::min(core_.idle(options_.clock->now()), kMostIdle);
+  for (const SensorFrame& frame : frames_.take(idle)) core_.take(frame);
+  for (Command& command : commands_.take(Duration{0})) obey(std::move(command));
+  take_solutions();
+  const auto begun = std::chrono::steady_clock::now();
+  const Timestamp now = options_.clock->now();
+  if (auto snapshot = core_.tick(now)) {
+    publish(std::move(*snapshot));
+    counters_.step_seconds += seconds(std::chrono::steady_clock::now() - begun);
+  }
+  if (auto job = core_.due_job(now)) solve(std::move(*job));
+  if (now - status_at_ >= kStatusInterval || now < status_at_) publish_status(now);
 }
 
 void PipelineLoop::obey(Command command) {
@@ -100,13 +116,11 @@ void PipelineLoop::obey(Command command) {
   publish_status(options_.clock->now());
 }
 
-void PipelineLoop::publish(Snapshot snapshot, Timestamp begun) {
+void PipelineLoop::publish(Snapshot snapshot) {
   const auto shared = std::make_shared<const Snapshot>(std::move(snapshot));
   for (publish::Sink* sink : options_.sinks) sink->publish(shared);
-  const Timestamp done = options_.clock->now();
   ++counters_.ticks;
-  counters_.step_seconds += std::max(0.0, seconds(done - begun));
-  age_.observe(seconds(done - shared->instant));
+  age_.observe(seconds(options_.clock->now() - shared->instant));
 }
 
 void PipelineLoop::solve(SolveJob job) {
@@ -179,6 +193,7 @@ void PipelineLoop::publish_status(Timestamp now) {
   status.session = core_.session();
   status.counters = counters_;
   status.counters.age = age_.snapshot();
+  status.counters.jobs_failed = worker_.failed();
   status.counters.ticks_skipped = core_.skipped();
   status.counters.frames_dropped = frames_.dropped();
   options_.on_status(status);

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "common/base/rate_report.h"
 #include "common/time/clock.h"
 #include "fusion-server/poll/poller.h"
 #include "fusion-server/publish/handover.h"
@@ -51,8 +52,9 @@ class PipelineLoop {
 
  private:
   void run(const std::stop_token& stop);
+  void turn();
   void obey(Command command);
-  void publish(Snapshot snapshot, Timestamp computed);
+  void publish(Snapshot snapshot);
   void solve(SolveJob job);
   void take_solutions();
   void publish_status(Timestamp now);
@@ -67,6 +69,7 @@ class PipelineLoop {
   publish::Counters counters_;
   endpoint::Histogram age_;  ///< Instant to publication [s].
   Timestamp status_at_{};
+  RateReport trouble_{"pipeline step failed", log::Level::Error};
   Worker worker_;
   std::jthread thread_;
 };

@@ -1,17 +1,22 @@
 // The thread for what takes long: solving a registration, writing it to disk.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
+#include <cstdint>
 #include <deque>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <stop_token>
 #include <thread>
 
+#include "common/base/log.h"
+
 namespace chorus::server {
 
 /// Runs jobs one after the other.  The owner bounds how many are out; stopping drops those not
-/// begun.
+/// begun.  What a job throws is logged and counted.
 class Worker {
  public:
   Worker() : thread_([this](const std::stop_token& stop) { run(stop); }) {}
@@ -24,6 +29,9 @@ class Worker {
     arrived_.notify_one();
   }
 
+  /// Jobs that threw.  Any thread.
+  [[nodiscard]] std::uint64_t failed() const noexcept { return failed_; }
+
  private:
   void run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
@@ -34,10 +42,20 @@ class Worker {
         job = std::move(jobs_.front());
         jobs_.pop_front();
       }
-      job();
+      attempt(job);
     }
   }
 
+  void attempt(const std::function<void()>& job) {
+    try {
+      job();
+    } catch (const std::exception& thrown) {
+      ++failed_;
+      log::error("background job failed", {{"what", thrown.what()}});
+    }
+  }
+
+  std::atomic<std::uint64_t> failed_ = 0;
   std::mutex mutex_;
   std::condition_variable_any arrived_;
   std::deque<std::function<void()>> jobs_;

@@ -6,6 +6,8 @@
 #include <condition_variable>
 #include <map>
 #include <mutex>
+#include <new>
+#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -71,6 +73,7 @@ class Polling : public ::testing::Test {
     options.timings.max_backoff = milliseconds(50);
     options.deliver = [this](PolledFrame polled) {
       const std::scoped_lock lock(mutex_);
+      if (polled.frame.sequence == throws_at_) throw std::bad_alloc();
       frames_[polled.frame.sensor].push_back(polled.frame);
       arrived_.notify_all();
     };
@@ -112,6 +115,7 @@ class Polling : public ::testing::Test {
   std::condition_variable arrived_;
   std::map<SensorId, std::vector<SensorFrame>> frames_;
   std::uint64_t sequence_ = 0;
+  std::optional<std::uint64_t> throws_at_;  ///< Guarded by mutex_: whom deliver() fails at.
   std::unique_ptr<Poller> poller_;
 };
 
@@ -177,6 +181,23 @@ TEST_F(Polling, SensorsComeAndGo) {
   poller_->poll({{sensor_id("s2"), s2.url()}});
   ASSERT_EQ(poller_->reports().size(), 1u);
   expect_every_frame(s2, "s2", 2);
+}
+
+TEST_F(Polling, WhatIsThrownOverAFrameIsAFailedPollAndNotTheEnd) {
+  FakeSensor s1("s1");
+  FakeSensor s2("s2");
+  {
+    const std::scoped_lock lock(mutex_);
+    throws_at_ = 7;
+  }
+  poller_->poll({{sensor_id("s1"), s1.url()}, {sensor_id("s2"), s2.url()}});
+  s1.send(7, clock_->now());
+  EXPECT_TRUE(wait_until([](const PollReport& r) { return r.failures == 1; }, "s1"));
+  EXPECT_NE(poller_->reports().at(0).last_error.find("bad_alloc"), std::string::npos);
+  sequence_ = 7;
+  expect_every_frame(s1, "s1", 3);
+  expect_every_frame(s2, "s2", 3);
+  EXPECT_TRUE(wait_until([](const PollReport& r) { return r.state == SensorState::Live; }, "s1"));
 }
 
 TEST_F(Polling, AnEndlessStreamOfTheSameFrameIsNotASpin) {
