@@ -2,31 +2,19 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
-#include <string>
-#include <vector>
-
-#include <CLI/CLI.hpp>
 
 #include "common/base/log.h"
+#include "fusion-server/server/command_line.h"
 #include "fusion-server/server/fusion_server.h"
 
 namespace {
 
 using namespace chorus;
-
-constexpr int kBadStart = 2;  ///< Wrong configuration or address in use; nothing else ends us.
-
-struct Arguments {
-  std::string config;
-  std::vector<std::string> overrides;
-  std::string log_format = "text";
-  std::string log_level = "info";
-  bool check = false;
-};
+using server::CommandLine;
 
 int refuse(const Error& error) {
   std::fprintf(stderr, "chorus-fusion: %s\n", to_string(error).c_str());
-  return kBadStart;
+  return server::kExitMistaken;
 }
 
 /// Signals are taken one by one by the main thread, so that no handler interrupts anybody.
@@ -39,53 +27,48 @@ sigset_t block_signals() {
   return signals;
 }
 
-void reload(server::FusionServer& fusion, const Arguments& arguments) {
-  const auto next = server::load_fusion_config(arguments.config, arguments.overrides);
+void reload(server::FusionServer& fusion, const CommandLine& command) {
+  const auto next = server::load_fusion_config(command.config, command.overrides);
   if (next) return fusion.reload(*next);
   log::error("configuration not reloaded, the old one stays",
              {{"reason", to_string(next.error())}});
 }
 
-int run(const Arguments& arguments) {
-  const auto level = log::parse_level(arguments.log_level);
-  const auto format = log::parse_format(arguments.log_format);
-  if (!level) return refuse(level.error());
-  if (!format) return refuse(format.error());
+Result<void> set_up_log(const CommandLine& command) {
+  const auto level = log::parse_level(command.log_level);
+  if (!level) return pass(level);
+  const auto format = log::parse_format(command.log_format);
+  if (!format) return pass(format);
   log::configure(*level, *format);
-  const auto config = server::load_fusion_config(arguments.config, arguments.overrides);
-  if (!config) return refuse(config.error());
-  if (arguments.check) {
-    std::printf("%s is good: %zu sensors\n", arguments.config.c_str(), config->sensors.size());
-    return 0;
-  }
+  return {};
+}
 
+int serve(const CommandLine& command, const server::FusionConfig& config) {
   const sigset_t signals = block_signals();
-  server::FusionServer fusion(*config, std::make_shared<SystemClock>());
+  server::FusionServer fusion(config, std::make_shared<SystemClock>());
   if (const auto started = fusion.start(); !started) return refuse(started.error());
-  log::info("fusion server ready", {{"address", config->http.address},
+  log::info("fusion server ready", {{"address", config.http.address},
                                     {"port", fusion.port()},
-                                    {"sensors", config->sensors.size()}});
+                                    {"sensors", config.sensors.size()}});
   int signal = 0;
-  while (sigwait(&signals, &signal) == 0 && signal == SIGHUP) reload(fusion, arguments);
+  while (sigwait(&signals, &signal) == 0 && signal == SIGHUP) reload(fusion, command);
   log::info("stopping", {{"signal", signal}});
   fusion.stop();
-  return 0;
+  return server::kExitStopped;
+}
+
+int run(const CommandLine& command) {
+  if (const auto ok = set_up_log(command); !ok) return refuse(ok.error());
+  const auto config = server::load_fusion_config(command.config, command.overrides);
+  if (!config) return refuse(config.error());
+  if (!command.check_only) return serve(command, *config);
+  std::printf("%s is good: %zu sensors\n", command.config.c_str(), config->sensors.size());
+  return server::kExitStopped;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Polls body-tracking sensors, registers and fuses them, and answers as one tracker.",
-               "chorus-fusion");
-  Arguments arguments;
-  app.add_option("--config", arguments.config, "Configuration file (deploy/config/fusion.json)")
-      ->required();
-  app.add_option("--set", arguments.overrides, "PATH=VALUE, such as http.port=8090; repeatable")
-      ->take_all();
-  app.add_option("--log-format", arguments.log_format, "text or json");
-  app.add_option("--log-level", arguments.log_level, "debug, info, warn or error");
-  app.add_flag("--check", arguments.check, "Say whether the configuration is good, and end");
-  app.footer("SIGHUP reloads the configuration, SIGTERM stops.");
-  CLI11_PARSE(app, argc, argv);
-  return run(arguments);
+  const CommandLine command = server::read_command_line(argc, argv);
+  return command.exit ? *command.exit : run(command);
 }

@@ -37,6 +37,13 @@ class Program(Rig):
             self.assertIn(expected, text, name)
             self.assertNotIn("terminate", text)
 
+    def test_wrong_options_end_with_2_and_help_with_0(self):
+        for options in ((), ("--no-such-option",), ("--config",), ("--config", "deploy/config/fusion.json", "--log-level", "loud")):
+            code, text = self.run_to_end(*options)
+            self.assertEqual(code, 2, f"{options}: {text}")
+        code, text = self.run_to_end("--help")
+        self.assertEqual((code, "Exit codes: 0" in text), (0, True), text)
+
     def test_check_judges_a_file_and_starts_nothing(self):
         code, text = self.run_to_end("--config", "deploy/config/fusion.json", "--check")
         self.assertEqual((code, "is good: 6 sensors" in text), (0, True), text)
@@ -52,6 +59,7 @@ class Program(Rig):
         self.assertEqual(code, 2, text)
         self.assertIn(str(port), text)
         self.assertIn("in use", text.lower())
+        self.assertIn("set http.port to", text)
 
     def test_a_corrupt_stored_registration_is_reported_and_survived(self):
         state = pathlib.Path(self.folder.name) / "state"
