@@ -20,10 +20,12 @@ using Frames = std::vector<Body>;
 constexpr double kToeHeight = 0.03;  // foot joint over the floor when the foot stands [m]
 // Of the frames' lowest feet, the one that stands on the floor; lower ones are noise.
 constexpr double kStandingShare = 0.05;
-// Knee to hip of anybody, from infant to giant [m].
-constexpr double kShortestThigh = 0.1;
-constexpr double kLongestThigh = 0.8;
+// Knee to hip of anybody from eight years to giant; narrow enough that inches taken for centimetres
+// do not pass [m].
+constexpr double kShortestThigh = 0.25;
+constexpr double kLongestThigh = 0.65;
 constexpr double kMostRate = 1000.0;  // [Hz]
+constexpr double kFastest = 30.0;     // any joint, a thrower's hand included [m/s]
 
 constexpr std::array kRequired{JointId::HipLeft,       JointId::HipRight,   JointId::KneeLeft,
                                JointId::KneeRight,     JointId::AnkleLeft,  JointId::AnkleRight,
@@ -148,7 +150,8 @@ Result<void> has_human_size(const motion::Motion& role) {
   if (thigh >= kShortestThigh && thigh <= kLongestThigh) return {};
   return fail(
       ErrorCode::InvalidArgument, "thigh",
-      fmt::format("is {:.3g} m long; say how many metres the file's unit of length has", thigh));
+      fmt::format("is {:.3g} m long; metres_per_unit must say what the file's unit of length is",
+                  thigh));
 }
 
 double standing_height(const std::vector<motion::Motion>& roles) {
@@ -198,6 +201,26 @@ Result<void> can_be_played(const motion::Motion& role) {
                   role.rate_hz, kMostRate));
 }
 
+/// Some programs (Xsens MVN) put a T-pose before the motion: nobody gets from there to the second
+/// frame in time.
+bool starts_with_pose(const motion::Motion& role) {
+  if (role.frames.size() < 3) return false;
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    const Joint& first = role.frames[0].joints[i];
+    const Joint& second = role.frames[1].joints[i];
+    const double way = (second.position - first.position).norm();
+    if (first.seen() && second.seen() && way * role.rate_hz > kFastest) return true;
+  }
+  return false;
+}
+
+void drop_pose(std::vector<motion::Motion>& roles) {
+  if (!std::ranges::any_of(roles, starts_with_pose)) return;
+  for (motion::Motion& role : roles) {
+    if (!role.frames.empty()) role.frames.erase(role.frames.begin());
+  }
+}
+
 }  // namespace
 
 Result<Performance> staged(std::vector<motion::Motion> captured) {
@@ -209,6 +232,7 @@ Result<Performance> staged(std::vector<motion::Motion> captured) {
     if (!std::ranges::all_of(captured, lacks)) std::erase_if(captured, lacks);
   }
   if (captured.empty()) return fail(ErrorCode::InvalidArgument, "motion", "has nobody in it");
+  drop_pose(captured);
   for (motion::Motion& role : captured) {
     if (const auto ok = can_be_played(role); !ok) return pass(ok);
     if (const auto ok = complete(role); !ok) return pass(ok);

@@ -1,7 +1,8 @@
 // Captured motion (BVH, ASF/AMC, C3D, MVNX) made fit to be somebody's truth.
 //
 // A simulated person has all 25 joints at every instant: gaps are filled, joints that the file does
-// not have are set where the others put them.  Paths, turns and speeds stay as captured.
+// not have are set where the others put them.  A T-pose before the motion is left out.  Paths,
+// turns and speeds stay as captured.
 #pragma once
 
 #include <filesystem>

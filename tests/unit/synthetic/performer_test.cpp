@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 
 #include "common/motion/cmu_walk.h"
@@ -101,6 +102,15 @@ TEST(Performance, AGapIsCrossedStraightAndAnAbsentFootGuessed) {
   EXPECT_LT(foot, 0.2);
 }
 
+TEST(Performance, APoseBeforeTheMotionIsLeftOut) {
+  motion::Motion role = take()->roles[0];
+  const std::size_t count = role.frames.size();
+  role.frames.insert(role.frames.begin(), role.frames[0]);
+  EXPECT_EQ(staged({role})->roles[0].frames.size(), count + 1) << "standing still is no pose";
+  role.frames[0][JointId::WristLeft].position += Eigen::Vector3d(0.6, 0.6, 0);
+  EXPECT_EQ(staged({role})->roles[0].frames.size(), count);
+}
+
 TEST(Performance, WhatCannotBePlayedIsRefusedWithTheReason) {
   const record::TemporaryFolder folder;
   std::ofstream(folder / "lost.amc") << "1\n";
@@ -110,7 +120,8 @@ TEST(Performance, WhatCannotBePlayedIsRefusedWithTheReason) {
   EXPECT_THAT(refusal({folder / "walk.fbx"}), HasSubstr(".bvh, .amc (with its .asf)"));
   EXPECT_THAT(refusal({folder / "lost.amc"}), HasSubstr("lost.asf"));
   EXPECT_THAT(refusal({folder / "torn.bvh"}), HasSubstr("torn.bvh"));
-  EXPECT_THAT(refusal({folder / "sit.bvh", 1.0}), HasSubstr("unit of length"));
+  EXPECT_THAT(refusal({folder / "sit.bvh", 1.0}), HasSubstr("metres_per_unit"));
+  EXPECT_THAT(refusal({folder / "sit.bvh", 0.0254}), HasSubstr("metres_per_unit"));
   std::filesystem::create_directory(folder / "all.bvh");
   EXPECT_THAT(refusal({folder / "all.bvh"}), HasSubstr("folder"));
   EXPECT_FALSE(staged({}));
@@ -187,7 +198,15 @@ TEST(Performer, SeveralPeopleStandApartAndDoNotMoveAlike) {
     const auto one = people[i](t);
     const auto other = people[(i + 1) % people.size()](t);
     EXPECT_GT((one[JointId::Neck].position - other[JointId::Neck].position).norm(), 0.5);
-    EXPECT_NE(one[JointId::Neck].position.y(), other[JointId::Neck].position.y());
+    // What neither size nor place changes: how the hands stand to each other.
+    const auto spread = [](const Skeleton<WorldSpace>& body) {
+      const auto between = [&](JointId a, JointId b) {
+        return (body[a].position - body[b].position).norm();
+      };
+      return between(JointId::HandLeft, JointId::HandRight) /
+             between(JointId::HipLeft, JointId::HipRight);
+    };
+    EXPECT_GT(std::abs(spread(one) - spread(other)), 0.02);
   }
   const auto alone = make_performers(take(), script, 1);
   EXPECT_EQ(alone[0](t)[JointId::Neck].position,
