@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/log.h"
+#include "common/resource/json_guard.h"
 
 namespace chorus::endpoint {
 namespace {
@@ -97,9 +98,13 @@ Result<RecordingRequest> parse_recording_request(std::string_view body, bool has
   RecordingRequest request;
   request.fused = has_fused;
   if (body.find_first_not_of(" \t\r\n") == std::string_view::npos) return request;
-  const auto json = nlohmann::json::parse(body, nullptr, false);
-  if (!json.is_object()) return wrong("send a JSON object, such as {\"seconds\": 60}");
-  for (const auto& [key, value] : json.items()) {
+  constexpr resource::JsonLimits kLimits{4096, 4};
+  const auto json = resource::parse_json(body, kLimits);
+  if (!json || !json->is_object()) {
+    const std::string reason = json ? "" : "; " + to_string(json.error());
+    return wrong("send a JSON object, such as {\"seconds\": 60}" + reason);
+  }
+  for (const auto& [key, value] : json->items()) {
     if (auto ok = take(key, value, request); !ok) return pass(ok);
   }
   if (request.fused && !has_fused) return wrong("a sensor has no fused frames to record");

@@ -5,13 +5,12 @@
 
 #include "common/body/bones.h"
 #include "common/rdf/utf8.h"
+#include "common/resource/contributors.h"
 #include "common/resource/frame_facts.h"
 
 namespace chorus::resource {
 namespace {
 
-/// Contributor bits are 64 (frame_resource.h).
-constexpr std::size_t kMaxSensors = 64;
 /// The two forms of one time may differ by rounding, not by more.
 constexpr Duration kTimeTolerance = std::chrono::milliseconds(1);
 

@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "common/body/bones.h"
+#include "common/resource/contributors.h"
 #include "common/resource/frame_facts.h"
 
 namespace chorus::resource {
@@ -130,7 +131,6 @@ class Template {
   }
 
   bool sensors() {
-    constexpr std::size_t kMaxSensors = 64;
     do {
       std::string_view sensor;
       if (!name(sensor) || frame_.sensors.size() == kMaxSensors) return false;

@@ -1,6 +1,9 @@
 // The frame in JSON and JSON-LD, from a template.  Linked: @context, typed joints, decimals as
 // strings.
+#include <algorithm>
+
 #include "common/body/bones.h"
+#include "common/resource/contributors.h"
 #include "common/resource/frame_parts.h"
 
 namespace chorus::resource {
@@ -109,7 +112,7 @@ class JsonFrame {
   void put_names(std::uint64_t bits) {
     pen_.put("[");
     std::string_view comma;
-    for (std::size_t i = 0; i < sensors_.size() && i < 64; ++i) {
+    for (std::size_t i = 0; i < std::min(sensors_.size(), kMaxSensors); ++i) {
       if ((bits >> i & 1U) == 0) continue;
       pen_.put(comma);
       pen_.put(sensors_[i]);

@@ -1,6 +1,9 @@
 // The compact profile in Turtle, from a template.  frame_fast_reader.cpp follows this layout byte
 // for byte.
+#include <algorithm>
+
 #include "common/body/bones.h"
+#include "common/resource/contributors.h"
 #include "common/resource/frame_parts.h"
 #include "common/resource/terms.h"
 
@@ -96,7 +99,7 @@ class TurtleFrame {
 
   void put_names(std::uint64_t bits) {
     std::string_view comma;
-    for (std::size_t i = 0; i < sensors_.size() && i < 64; ++i) {
+    for (std::size_t i = 0; i < std::min(sensors_.size(), kMaxSensors); ++i) {
       if ((bits >> i & 1U) == 0) continue;
       pen_.put(comma);
       pen_.put(sensors_[i]);
@@ -169,8 +172,9 @@ class TurtleFrame {
     pen_.put("  ch:state ch:");
     pen_.put(name_of(joint.state));
     if (joint.variance) put_number(" ;\n  ch:variance ", *joint.variance, kVarianceDecimals);
-    const std::uint64_t known =
-        sensors_.size() >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << sensors_.size()) - 1;
+    const std::uint64_t known = sensors_.size() >= kMaxSensors
+                                    ? ~std::uint64_t{0}
+                                    : (std::uint64_t{1} << sensors_.size()) - 1;
     if (joint.state != JointState::NotTracked && (contributors & known) != 0) {
       pen_.put(" ;\n  ch:contributor ");
       put_names(contributors);

@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/resource/contributors.h"
+#include "common/resource/json_guard.h"
 #include "fusion-server/publish/registration_resource.h"
 
 namespace chorus::publish {
@@ -14,22 +16,15 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMaxSensors = 64;  // contributor bits of a snapshot
-// 64 sensors with covariance and all edges are below 1 MB.
-constexpr std::size_t kMaxBytes = 4U << 20U;
+using resource::kMaxSensors;
+
+// All sensors with covariance and all edges are below 1 MB.
+constexpr resource::JsonLimits kLimits{4U << 20U, 16};
 constexpr double kMaxPlace = 1000.0;    // [m]
 constexpr double kMaxNormError = 0.01;  // written with 5 digits
-constexpr int kMaxDepth = 16;
 
 Error wrong(std::string where, std::string what) {
   return {ErrorCode::Malformed, "registration: " + std::move(where), std::move(what)};
-}
-
-std::vector<std::string> names_of(const std::vector<SensorId>& sensors) {
-  std::vector<std::string> names;
-  names.reserve(sensors.size());
-  for (const SensorId& sensor : sensors) names.push_back(sensor.str());
-  return names;
 }
 
 json sensor_json(const SensorId& id, const Extrinsics& place) {
@@ -156,7 +151,9 @@ Result<void> read_sensors(const json& root, Registration& out) {
   if (it == root.end() || !it->is_object() || it->empty()) {
     return tl::unexpected(wrong("sensors", "an object of sensor places is missing"));
   }
-  if (it->size() > kMaxSensors) return tl::unexpected(wrong("sensors", "at most 64 are possible"));
+  if (it->size() > kMaxSensors)
+    return tl::unexpected(
+        wrong("sensors", "at most " + std::to_string(kMaxSensors) + " are possible"));
   for (const auto& [name, object] : it->items()) {
     auto id = SensorId::parse(name);
     if (!id) return tl::unexpected(wrong("sensors." + name, id.error().message));
@@ -213,17 +210,6 @@ Result<Registration> registration_of(const json& root) {
   return out;
 }
 
-/// A file nested deeper than any registration is; nlohmann's parser does not bound it.
-bool too_deep(std::string_view text) {
-  int depth = 0;
-  for (const char c : text) {
-    if (c == '{' || c == '[') ++depth;
-    if (c == '}' || c == ']') --depth;
-    if (depth > kMaxDepth) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 std::string write_registration(const Registration& registration) {
@@ -249,11 +235,10 @@ std::string write_registration(const Registration& registration) {
 }
 
 Result<Registration> read_registration(std::string_view text) {
-  if (text.size() > kMaxBytes || too_deep(text)) {
-    return tl::unexpected(wrong("document", "larger or deeper nested than any registration"));
-  }
+  const auto document = resource::parse_json(text, kLimits);
+  if (!document) return tl::unexpected(wrong("document", to_string(document.error())));
   try {
-    return registration_of(json::parse(text));
+    return registration_of(*document);
   } catch (const json::exception& e) {
     return tl::unexpected(wrong("document", e.what()));
   }

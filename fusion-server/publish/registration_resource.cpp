@@ -16,13 +16,6 @@ constexpr std::array<std::pair<Verdict, std::string_view>, 4> kVerdicts{{
     {Verdict::Refused, "Refused"},
 }};
 
-std::vector<std::string> names_of(const std::vector<SensorId>& sensors) {
-  std::vector<std::string> names;
-  names.reserve(sensors.size());
-  for (const SensorId& sensor : sensors) names.push_back(sensor.str());
-  return names;
-}
-
 Node sensor_node(const SensorId& id, const Extrinsics& place) {
   const Eigen::Vector3d p = place.world_from_sensor.translation();
   const Eigen::Quaterniond q(place.world_from_sensor.rotation());
@@ -66,6 +59,13 @@ Node session_node(const SessionStatus& session) {
 }
 
 }  // namespace
+
+std::vector<std::string> names_of(const std::vector<SensorId>& sensors) {
+  std::vector<std::string> names;
+  names.reserve(sensors.size());
+  for (const SensorId& sensor : sensors) names.push_back(sensor.str());
+  return names;
+}
 
 std::string_view name_of(Verdict verdict) noexcept {
   for (const auto& [value, name] : kVerdicts) {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/resource/node.h"
 #include "fusion-server/flow.h"
@@ -12,6 +14,8 @@ namespace chorus::publish {
 
 [[nodiscard]] resource::Node registration_node(const Registration& registration,
                                                const SessionStatus& session);
+
+[[nodiscard]] std::vector<std::string> names_of(const std::vector<SensorId>& sensors);
 
 /// The word on the wire: "Good", "Provisional", "Refused", "None".
 [[nodiscard]] std::string_view name_of(Verdict verdict) noexcept;

@@ -5,13 +5,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/base/log.h"
+#include "common/resource/json_guard.h"
 #include "fusion-server/publish/registration_resource.h"
 
 namespace chorus::publish {
 namespace {
 
-constexpr double kLeastSeconds = 8.0;
-constexpr double kMostSeconds = 300.0;
 constexpr int kAccepted = 202;
 constexpr int kNoContent = 204;
 
@@ -22,18 +22,21 @@ Result<Duration> parse_session_request(std::string_view body, Duration fallback)
     return fail(ErrorCode::InvalidArgument, "registration", std::move(message));
   };
   if (body.find_first_not_of(" \t\r\n") == std::string_view::npos) return fallback;
-  constexpr std::size_t kMostBytes = 4096;
-  if (body.size() > kMostBytes) return wrong("the body is at most {\"seconds\": 30}");
-  const auto json = nlohmann::json::parse(body, nullptr, false);
-  if (!json.is_object()) return wrong("send a JSON object, such as {\"seconds\": 30}");
-  for (const auto& [key, value] : json.items()) {
+  constexpr resource::JsonLimits kLimits{4096, 4};
+  const auto json = resource::parse_json(body, kLimits);
+  if (!json || !json->is_object()) {
+    const std::string reason = json ? "" : "; " + to_string(json.error());
+    return wrong("send a JSON object, such as {\"seconds\": 30}" + reason);
+  }
+  for (const auto& [key, value] : json->items()) {
     if (key != "seconds") return wrong("\"" + key + "\" is not known; only \"seconds\" is");
   }
-  if (json.empty()) return fallback;
-  const auto& value = json.at("seconds");
+  if (json->empty()) return fallback;
+  const auto& value = json->at("seconds");
   const double wanted = value.is_number() ? value.get<double>() : std::nan("");
-  if (!(wanted >= kLeastSeconds && wanted <= kMostSeconds)) {
-    return wrong("\"seconds\" is a number from 8 to 300");
+  if (!(wanted >= kShortestSession && wanted <= kLongestSession)) {
+    return wrong("\"seconds\" is a number from " + log::number_text(kShortestSession) + " to " +
+                 log::number_text(kLongestSession));
   }
   return from_seconds(wanted);
 }

@@ -10,6 +10,11 @@
 
 namespace chorus::publish {
 
+/// How long a session may be asked to collect [s]: shorter walks cannot be solved, longer ones only
+/// take memory.
+inline constexpr double kShortestSession = 8.0;
+inline constexpr double kLongestSession = 300.0;
+
 /// What the routes ask of whoever owns the registration.  Called on the server's thread; must only
 /// post.
 struct RegistrationControl {

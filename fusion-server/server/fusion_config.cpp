@@ -7,14 +7,14 @@
 #include <utility>
 
 #include "common/base/config_reader.h"
+#include "common/resource/contributors.h"
+#include "fusion-server/publish/registration_resources.h"
 
 namespace chorus::server {
 namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
-
-constexpr std::size_t kMaxSensors = 64;  // contributor bits of a snapshot
 
 void read_http(ConfigReader reader, http::ServerConfig& out) {
   reader.read("address", out.address);
@@ -55,7 +55,9 @@ void read_sensor(ConfigReader& reader, FusionConfig& out, std::set<SensorId>& kn
 void read_sensors(ConfigReader& root, FusionConfig& out) {
   std::set<SensorId> known;
   for (ConfigReader& reader : root.items("sensors")) read_sensor(reader, out, known);
-  if (out.sensors.size() > kMaxSensors) root.complain("sensors", "at most 64 are possible");
+  if (out.sensors.size() > resource::kMaxSensors) {
+    root.complain("sensors", "at most " + std::to_string(resource::kMaxSensors) + " are possible");
+  }
 }
 
 void read_poll(ConfigReader reader, poll::PollTimings& out) {
@@ -141,7 +143,7 @@ void read_pairing(ConfigReader& reader, registration::RegistrationConfig& out) {
 void read_registration(ConfigReader reader, FusionConfig& out) {
   reader.read("auto", out.session.automatic);
   double target = chorus::seconds(out.session.target);
-  reader.read("seconds", target, 8.0, 300.0);
+  reader.read("seconds", target, publish::kShortestSession, publish::kLongestSession);
   out.session.target = from_seconds(target);
   reader.read_s("first_solve_s", out.session.first_solve, seconds(2), seconds(60));
   reader.read_s("solve_every_s", out.session.solve_every, seconds(1), seconds(60));

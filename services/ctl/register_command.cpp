@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "fusion-server/publish/registration_resources.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
 #include "services/ctl/registration_report.h"
@@ -87,12 +88,10 @@ Result<int> run_register(const RegisterArguments& arguments) {
 }  // namespace
 
 Run add_register(CLI::App& options) {
-  constexpr double kShortest = 1.0;  // [s]
-  constexpr double kLongest = 3600.0;
   const auto arguments = std::make_shared<RegisterArguments>();
   options.add_option("--url", arguments->url, "The fusion server")->capture_default_str();
   options.add_option("--seconds", arguments->seconds, "Length of the walk")
-      ->check(CLI::Range(kShortest, kLongest))
+      ->check(CLI::Range(publish::kShortestSession, publish::kLongestSession))
       ->capture_default_str();
   options.add_flag("--fresh", arguments->fresh, "Forget the registration there is before starting");
   options.add_flag("--json", arguments->json, "Report as JSON");

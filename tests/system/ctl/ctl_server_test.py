@@ -91,9 +91,9 @@ class Server(unittest.TestCase):
 
     def test_register_follows_the_session_to_its_verdict(self):
         server = self.stand_in()
-        code, out, error = chorus("register", "--url", server.url, "--seconds", "5", "--fresh")
+        code, out, error = chorus("register", "--url", server.url, "--seconds", "8", "--fresh")
         self.assertEqual(code, 0, error)
-        self.assertEqual(server.calls, [("DELETE", "/registration"), ("POST", "/registration", {"seconds": 5.0})])
+        self.assertEqual(server.calls, [("DELETE", "/registration"), ("POST", "/registration", {"seconds": 8.0})])
         self.assertIn("registration: Good, master s1", out)
         self.assertIn("s1 > s2", out)
         self.assertIn("walk through the room: 20% None\n", error)

@@ -51,7 +51,9 @@ TEST(CommandLine, TellsWrongUsageFromFailure) {
   EXPECT_EQ(run({"import", "ntu", "x", "--out", "y", "--start", "yesterday"}).code, kExitUsage);
   EXPECT_EQ(run({"import", "ntu", "x", "--out", "y", "--floor", "1,2,3"}).code, kExitUsage);
   EXPECT_EQ(run({"fuse", "x", "--out", "y", "--method", "magic"}).code, kExitUsage);
-  EXPECT_EQ(run({"register", "--seconds", "0"}).code, kExitUsage);
+  for (const char* seconds : {"0", "7.9", "300.1"}) {
+    EXPECT_EQ(run({"register", "--seconds", seconds}).code, kExitUsage) << seconds;
+  }
   EXPECT_EQ(run({"replay", "x", "--port", "70000"}).code, kExitUsage);
   EXPECT_EQ(run({"fuse", "/nowhere", "--out", "y"}).code, kExitFailed);
   EXPECT_EQ(run({"import", "ntu", "/nowhere", "--out", "y"}).code, kExitFailed);

@@ -53,7 +53,7 @@ TEST(RecordingRequest, SaysWhatIsWrong) {
   for (const char* body :
        {"[]", "{", R"({"name":"../x"})", R"({"name":5})", R"({"seconds":0})", R"({"seconds":"5"})",
         R"({"seconds":1e9})", R"({"raw":1})", R"({"nmae":"x"})", R"({"raw":false,"fused":false})",
-        R"({"name":""})", R"({"name":"a.mcap"})"}) {
+        R"({"name":""})", R"({"name":"a.mcap"})", R"({"name":"a","name":"b"})"}) {
     const auto wrong = parse_recording_request(body, true);
     ASSERT_FALSE(wrong) << body;
     EXPECT_EQ(wrong.error().code, ErrorCode::InvalidArgument) << body;

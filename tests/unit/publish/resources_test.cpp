@@ -143,7 +143,8 @@ TEST(SessionRequest, IsSecondsOrNothing) {
   EXPECT_EQ(*parse_session_request(" {} ", fallback), fallback);
   EXPECT_EQ(*parse_session_request(R"({"seconds": 12.5})", fallback), from_seconds(12.5));
   for (const char* wrong : {"nonsense", "[]", "7", R"({"seconds": "30"})", R"({"seconds": 1})",
-                            R"({"seconds": 1e9})", R"({"second": 30})", R"({"seconds": null})"}) {
+                            R"({"seconds": 1e9})", R"({"second": 30})", R"({"seconds": null})",
+                            R"({"seconds": 30, "seconds": 40})", R"({"seconds": [[[[[30]]]]]})"}) {
     const auto read = parse_session_request(wrong, fallback);
     ASSERT_FALSE(read) << wrong;
     EXPECT_EQ(read.error().code, ErrorCode::InvalidArgument);
