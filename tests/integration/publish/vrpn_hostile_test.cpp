@@ -181,6 +181,50 @@ TEST_F(HostileVrpn, TenThousandRequestsMakeFewConnections) {
   ::close(asking);
 }
 
+/// Asks the server again and again, from 127.0.0.2, to be connected to on ports where nobody
+/// listens.
+class Flood {
+ public:
+  explicit Flood(std::uint16_t server) : asking_(::socket(AF_INET, SOCK_DGRAM, 0)) {
+    sockaddr_in own{};
+    own.sin_family = AF_INET;
+    own.sin_addr.s_addr = htonl(INADDR_LOOPBACK + 1);
+    ::bind(asking_, reinterpret_cast<sockaddr*>(&own), sizeof own);
+    thread_ = std::jthread([this, server](const std::stop_token& stop) { run(stop, server); });
+  }
+  ~Flood() {
+    thread_ = {};
+    ::close(asking_);
+  }
+  Flood(const Flood&) = delete;
+  Flood& operator=(const Flood&) = delete;
+
+ private:
+  void run(const std::stop_token& stop, std::uint16_t server) const {
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    to.sin_port = htons(server);
+    for (int i = 0; !stop.stop_requested(); ++i) {
+      const std::string text = "127.0.0.2 " + std::to_string(1024 + i % 60'000);
+      ::sendto(asking_, text.c_str(), text.size() + 1, 0, reinterpret_cast<sockaddr*>(&to),
+               sizeof to);
+      if (i % 5 == 0) std::this_thread::sleep_for(milliseconds(1));
+    }
+  }
+
+  int asking_;
+  std::jthread thread_;
+};
+
+TEST_F(HostileVrpn, AFloodOfRequestsFromOneHostDoesNotLockOutAnother) {
+  const Flood flood(server->port());
+  ASSERT_TRUE(wait_until([&] { return server->counters().refused > 500; }));
+  VrpnClient other({"Body0"});
+  EXPECT_TRUE(other.request(server->port()));
+  EXPECT_TRUE(good_is_served());
+}
+
 TEST_F(HostileVrpn, ClientsBeyondTheLimitAreTurnedAway) {
   std::vector<std::unique_ptr<VrpnClient>> clients;
   for (int i = 0; i < 19; ++i) {
