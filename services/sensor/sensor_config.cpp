@@ -69,17 +69,25 @@ SensorConfig read_config(ConfigReader& root) {
 
 using Device = Result<std::unique_ptr<FrameSource>>;
 
-Device open_replay(ConfigReader& config, const ReplayOptions& options, const Setup& setup) {
+/// What replaying needs beside the recording.
+struct ReplaySettings {
+  ReplayOptions options;
+  HostTime time;
+};
+
+Device open_replay(ConfigReader& config, const ReplaySettings& settings, const SensorId& id) {
+  const ReplayOptions& options = settings.options;
   if (options.recording.empty()) {
     config.complain("recording", "name the recording to replay, a .mcap file");
     return nullptr;
   }
-  auto recording = record::read_frame_recording(options.recording, {}, setup.config.id);
+  auto recording = record::read_frame_recording(options.recording, {}, id);
   if (!recording) return pass(recording);
   for (const auto& [name, note] : recording->notes) {
     if (name.starts_with("damage.")) log::warn("recording is damaged", {{"note", note}});
   }
-  return make_replay(std::move(*recording), options, setup.config.id, {setup.clock, {}});
+  return make_replay(std::move(*recording), options, id,
+                     {settings.time.world, {}, settings.time.host});
 }
 
 /// Both kinds are read whatever the kind is, so that a file may describe both and typing errors
@@ -91,7 +99,7 @@ Device read_device(ConfigReader device, const Setup& setup, const HostTime& time
   const ReplayOptions options = read_replay_options(replay);
   auto simulation = device.child("simulated");
   auto simulated = make_simulated(simulation, setup.config.id, time);
-  return kind == 0 ? std::move(simulated) : open_replay(replay, options, setup);
+  return kind == 0 ? std::move(simulated) : open_replay(replay, {options, time}, setup.config.id);
 }
 
 std::string device_part(const std::string& text) {

@@ -78,6 +78,9 @@ class Replay final : public FrameSource {
   [[nodiscard]] Result<ReplaySchedule> schedule(Timestamp start) const;
 
  private:
+  [[nodiscard]] bool is_as_recorded() const {
+    return !options_.epoch_at && options_.epoch == ReplayEpoch::AsRecorded;
+  }
   [[nodiscard]] Capture capture(const ReplaySchedule& schedule, const Turn& turn) const;
 
   record::FrameRecording recording_;
@@ -107,7 +110,7 @@ Result<ReplaySchedule> Replay::schedule(Timestamp start) const {
   timing.speed = options_.speed;
   timing.loop = options_.loop;
   timing.epoch = options_.epoch_at.value_or(start);
-  if (!options_.epoch_at && options_.epoch == ReplayEpoch::AsRecorded) timing.epoch = timing.origin;
+  if (is_as_recorded()) timing.epoch = timing.origin;
   return ReplaySchedule::make(captured_, timing);
 }
 
@@ -117,24 +120,25 @@ Capture Replay::capture(const ReplaySchedule& schedule, const Turn& turn) const 
   out.frame.sensor = sensor_;
   out.frame.sequence = schedule.sequence(turn);
   const Timestamp due = schedule.due(turn);
-  const Duration shift = due - out.frame.captured;
+  const Timestamp shown = is_as_recorded() ? due : time_.host.host_time(due);
+  const Duration shift = shown - out.frame.captured;
   for (BodyFrame& body : out.frame.bodies) body.captured += shift;
-  out.frame.captured = due;
-  out.frame.received = time_.clock->now();
+  out.frame.captured = shown;
+  out.frame.received = time_.host.host_time(time_.world->now());
   if (!out.frame.floor) out.frame.floor = recording_.floor;
   return out;
 }
 
 Result<void> Replay::run(std::stop_token stop, const Sink& sink) {
-  const Timestamp start = time_.clock->now();
+  const Timestamp start = time_.world->now();
   const auto plan = schedule(start);
   if (!plan) return pass(plan);
   // Delivery runs on the clock as it is; "as recorded" frames are stamped in their own time.
-  const bool as_recorded = !options_.epoch_at && options_.epoch == ReplayEpoch::AsRecorded;
-  const Duration ahead = as_recorded ? start - origin_of(recording_, options_) : Duration::zero();
+  const Duration ahead =
+      is_as_recorded() ? start - origin_of(recording_, options_) : Duration::zero();
   for (Turn turn = plan->first_from(start - ahead); !plan->over(turn);) {
     const Timestamp due = plan->due(turn) + ahead;
-    const Timestamp now = time_.clock->now();
+    const Timestamp now = time_.world->now();
     if (now - due > kLatest) {
       turn = plan->first_from(now - ahead);
       continue;
@@ -182,7 +186,7 @@ Result<std::unique_ptr<FrameSource>> make_replay(record::FrameRecording recordin
                                                  const ReplayOptions& options,
                                                  const SensorId& sensor, ReplayClock time) {
   if (!time.wait) {
-    time.wait = [clock = time.clock](std::stop_token stop, Timestamp until) {
+    time.wait = [clock = time.world](std::stop_token stop, Timestamp until) {
       return wait_on(*clock, stop, until);
     };
   }

@@ -9,6 +9,7 @@
 #include "common/base/config_reader.h"
 #include "common/record/frame_recording.h"
 #include "common/sensor/frame_source.h"
+#include "common/synthetic/host_clock.h"
 #include "common/time/clock.h"
 
 namespace chorus::sensor_service {
@@ -35,10 +36,12 @@ struct ReplayOptions {
 /// Waits until the clock shows an instant; false when asked to stop before.
 using WaitUntil = std::function<bool(std::stop_token, Timestamp)>;
 
-/// Where the replay's time comes from.
+/// Where the replay's time comes from.  It plays by true time, so that people are where they were
+/// seen together whatever the hosts' clocks say; frames are stamped by the host's.
 struct ReplayClock {
-  std::shared_ptr<const Clock> clock;
-  WaitUntil wait;  ///< Empty: really waits.
+  std::shared_ptr<const Clock> world;
+  WaitUntil wait;  ///< Until the world's clock shows it.  Empty: really waits.
+  synthetic::HostClock host = {};
 };
 
 /// The device; frames carry the id `sensor` whatever the recording says.

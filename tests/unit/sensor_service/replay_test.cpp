@@ -36,14 +36,15 @@ struct Played {
   std::shared_ptr<FakeClock> clock = std::make_shared<FakeClock>(kStart);
   std::vector<Capture> captures;
   Result<void> result;
+  synthetic::HostClock host = {};
 
   void play(const record::FrameRecording& from, const ReplayOptions& options, std::size_t at_most) {
     std::stop_source stop;
-    auto device =
-        make_replay(from, options, sensor_id("s1"), {clock, [&](auto, Timestamp until) {
-                                                       clock->set(std::max(until, clock->now()));
-                                                       return !stop.stop_requested();
-                                                     }});
+    const auto wait = [&](auto, Timestamp until) {
+      clock->set(std::max(until, clock->now()));
+      return !stop.stop_requested();
+    };
+    auto device = make_replay(from, options, sensor_id("s1"), {clock, wait, host});
     ASSERT_TRUE(device) << to_string(device.error());
     result = (*device)->run(stop.get_token(), [&](Capture capture) {
       captures.push_back(std::move(capture));
@@ -67,6 +68,21 @@ TEST(Replay, StampsFramesAnewAndKeepsTheirSteps) {
     EXPECT_EQ(frame.bodies[0].id.value, 7u);
     ASSERT_TRUE(frame.floor) << "the recording's floor plane is kept";
     EXPECT_EQ(frame.floor->offset, 1.2);
+  }
+}
+
+TEST(Replay, AHostsClockStampsFramesButDoesNotMoveWhatWasSeen) {
+  Played right, wrong;
+  wrong.host = {.offset = 2.0, .drift = 1e-3, .step = -5.0, .origin = kStart};
+  wrong.host.step_at = kStart + 10 * kFrameInterval;
+  for (Played* each : {&right, &wrong}) each->play(recording(30), {.epoch_at = kStart}, 20);
+  ASSERT_EQ(wrong.captures.size(), right.captures.size());
+  for (std::size_t i = 0; i < right.captures.size(); ++i) {
+    const SensorFrame& frame = wrong.captures[i].frame;
+    EXPECT_EQ(frame.sequence, right.captures[i].frame.sequence);
+    EXPECT_EQ(frame.captured, wrong.host.host_time(right.captures[i].frame.captured)) << i;
+    EXPECT_EQ(frame.received, wrong.host.host_time(right.captures[i].frame.received)) << i;
+    EXPECT_EQ(frame.bodies.at(0).captured, frame.captured);
   }
 }
 
