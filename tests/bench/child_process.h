@@ -3,7 +3,6 @@
 
 #include <sys/types.h>
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -28,8 +27,5 @@ class ChildProcess {
   explicit ChildProcess(pid_t pid) : pid_(pid) {}
   pid_t pid_ = -1;
 };
-
-/// A loopback port nobody listened on just now.
-[[nodiscard]] std::uint16_t unused_port();
 
 }  // namespace chorus::bench

@@ -11,14 +11,19 @@ namespace {
 constexpr double kLow = 0.05;
 constexpr double kHigh = 0.95;
 
-double badness(double value) {
-  return std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
+/// Lower is better; no value is infinitely bad.
+double badness(double value, Better better) {
+  if (std::isnan(value)) return std::numeric_limits<double>::infinity();
+  return better == Better::Lower ? value : -value;
 }
 
 }  // namespace
 
-Comparison::Comparison(std::string case_name, std::string metric, std::string unit)
-    : case_name_(std::move(case_name)), metric_(std::move(metric)), unit_(std::move(unit)) {}
+Comparison::Comparison(std::string case_name, std::string metric, std::string unit, Better better)
+    : case_name_(std::move(case_name)),
+      metric_(std::move(metric)),
+      unit_(std::move(unit)),
+      better_(better) {}
 
 const Comparison::Method& Comparison::find(const std::string& name) const {
   static const Method kNone{};
@@ -36,11 +41,15 @@ void Comparison::add(const std::string& method, std::size_t draw, double value) 
 }
 
 Spread Comparison::spread_of(const std::string& method) const {
-  const std::vector<double>& values = find(method).values;
-  const auto failed = std::count_if(values.begin(), values.end(),
-                                    [](double value) { return !std::isfinite(value); });
-  return {median(values), percentile(values, kLow), percentile(values, kHigh),
-          static_cast<std::size_t>(failed), values.size()};
+  std::vector<double> bad;
+  for (const double value : find(method).values) bad.push_back(badness(value, better_));
+  const auto failed =
+      std::count_if(bad.begin(), bad.end(), [](double value) { return !std::isfinite(value); });
+  const auto count = static_cast<std::size_t>(failed);
+  if (better_ == Better::Higher) {
+    return {-median(bad), -percentile(bad, kHigh), -percentile(bad, kLow), count, bad.size()};
+  }
+  return {median(bad), percentile(bad, kLow), percentile(bad, kHigh), count, bad.size()};
 }
 
 double Comparison::won_percent(const std::string& baseline) const {
@@ -53,7 +62,7 @@ double Comparison::won_percent(const std::string& baseline) const {
     if (at == theirs.draws.end()) continue;
     const double beside = theirs.values[static_cast<std::size_t>(at - theirs.draws.begin())];
     ++both;
-    won += badness(ours.values[i]) < badness(beside) ? 1U : 0U;
+    won += badness(ours.values[i], better_) < badness(beside, better_) ? 1U : 0U;
   }
   return both == 0 ? kNoRatio : 100.0 * static_cast<double>(won) / static_cast<double>(both);
 }
@@ -72,6 +81,13 @@ void Comparison::report(Report& report) const {
     report.row(std::move(beside));
   }
   if (methods_.size() == 1) report.row(std::move(row));
+}
+
+void Comparison::report_wins(Report& report) const {
+  for (const Method& each : methods_) {
+    if (each.name == kOurs) continue;
+    report.row(case_name_, "win_percent", won_percent(each.name), "%", each.name);
+  }
 }
 
 }  // namespace chorus::bench

@@ -1,4 +1,4 @@
-// Methods side by side on the same draws: one value per method and draw, lower is better.
+// Methods side by side on the same draws: one value per method and draw.
 //
 // Uniform result: the median of ours with its 5-95 % range, beside each baseline's own, how many
 // draws gave no value, and in how many ours was strictly better.
@@ -13,10 +13,13 @@ namespace chorus::bench {
 
 inline constexpr const char* kOurs = "ours";
 
+enum class Better { Lower, Higher };
+
 class Comparison {
  public:
   /// "ring6-30s-A", "position_mm", "mm".
-  Comparison(std::string case_name, std::string metric, std::string unit);
+  Comparison(std::string case_name, std::string metric, std::string unit,
+             Better better = Better::Lower);
 
   /// NaN: this draw gave no value.  It counts as infinitely bad and as failed.  Once per method and
   /// draw.
@@ -28,6 +31,8 @@ class Comparison {
 
   /// One row per baseline, in the order they were first added; without any, one row of ours.
   void report(Report& report) const;
+  /// One row "win_percent" per baseline.
+  void report_wins(Report& report) const;
 
  private:
   struct Method {
@@ -40,6 +45,7 @@ class Comparison {
   std::string case_name_;
   std::string metric_;
   std::string unit_;
+  Better better_;
   std::vector<Method> methods_;
 };
 

@@ -11,6 +11,7 @@
 #include "common/body/bones.h"
 #include "tests/bench/baselines/averaging.h"
 #include "tests/bench/baselines/kalman.h"
+#include "tests/bench/labelled_error.h"
 
 namespace chorus::bench {
 namespace {
@@ -31,13 +32,13 @@ constexpr std::array kMetrics{
            [](const Answers& a) { return to_mm(mpjpe(a, JointGroup::Extremities)); }},
     Metric{"bias_free_mm", "mm",
            [](const Answers& a) { return to_mm(bias_free_mpjpe(a, JointGroup::All)); }},
-    Metric{"rest_jitter_mm", "mm",
-           [](const Answers& a) { return to_mm(jitter_at_rest(a, JointGroup::All)); }},
-    Metric{"bone_variation_percent", "%",
-           [](const Answers& a) { return kPercent * bone_variation(a); }},
+    Metric{"jitter_core_mm", "mm",
+           [](const Answers& a) { return to_mm(jitter_at_rest(a, JointGroup::Centre)); }},
+    Metric{"jitter_extremity_mm", "mm",
+           [](const Answers& a) { return to_mm(jitter_at_rest(a, JointGroup::Extremities)); }},
+    Metric{"bone_cv_percent", "%", [](const Answers& a) { return kPercent * bone_variation(a); }},
     Metric{"jumps_per_minute", "1/min", jumps_per_minute},
-    Metric{"label_errors_percent", "%",
-           [](const Answers& a) { return kPercent * label_error_share(a); }},
+    Metric{"flip_percent", "%", [](const Answers& a) { return kPercent * label_error_share(a); }},
     Metric{"latency_ms", "ms", [](const Answers& a) { return kToMs * latency(a); }},
     Metric{"missing_percent", "%", [](const Answers& a) { return kPercent * (1.0 - coverage(a)); }},
 };
@@ -82,18 +83,10 @@ auto nearest(const Candidates& candidates, const Body& exact, const Core& core) 
   return best;
 }
 
-double misfit(const Body& body, const Body& exact) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < kJointCount; ++i) {
-    if (body.joints[i].seen()) sum += (body.joints[i].position - exact.joints[i].position).norm();
-  }
-  return sum;
-}
-
 Person with_true_labels(Person person, const Body& exact) {
   for (SensorView& view : person.views) {
-    const Body other = exchanged(view.skeleton);
-    if (misfit(other, exact) < misfit(view.skeleton, exact)) view.skeleton = other;
+    const LabelledError error = labelled_error(view.skeleton, exact);
+    if (error.exchanged < error.as_given) view.skeleton = exchanged(view.skeleton);
   }
   return person;
 }
@@ -134,10 +127,11 @@ Answers answers_of(const Stage& stage, const Contender& contender) {
     const auto person =
         nearest(moment.people, exact, [](const Person& each) { return core_of(each); });
     if (person != moment.people.end()) {
+      const Person given = contender.true_labels ? with_true_labels(*person, exact) : *person;
       baselines::Method& method = methods[person->id];
-      if (!method) method = contender.begin();
-      answer.body = method(contender.true_labels ? with_true_labels(*person, exact) : *person,
-                           moment.instant);
+      if (!method && contender.told == nullptr) method = contender.begin();
+      answer.body =
+          contender.told != nullptr ? contender.told(given, exact) : method(given, moment.instant);
     }
     answers.push_back(std::move(answer));
   }
@@ -212,6 +206,8 @@ std::vector<Contender> all_contenders() {
   Contender labelled = ours({}, "ours-true-labels");
   labelled.true_labels = true;
   contenders.push_back(std::move(labelled));
+  contenders.push_back({"oracle-weights", {}, true, baselines::error_weighted_mean});
+  contenders.push_back({"bound", {}, true, baselines::nearest_mean});
   return contenders;
 }
 

@@ -9,6 +9,7 @@
 
 #include "fusion-server/fusion/fuse.h"
 #include "tests/bench/baselines/baseline.h"
+#include "tests/bench/baselines/oracle.h"
 #include "tests/bench/judge.h"
 #include "tests/bench/metrics.h"
 #include "tests/bench/moments.h"
@@ -29,6 +30,7 @@ struct Contender {
   std::string name;
   std::function<baselines::Method()> begin;
   bool true_labels = false;  ///< Gets each view with left and right exchanged where that is true.
+  baselines::Told told = nullptr;  ///< Instead of `begin`: made knowing the truth.
 };
 
 /// The product's default, the method of the tables' first column.

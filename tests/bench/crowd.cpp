@@ -13,12 +13,13 @@ using synthetic::PathKind;
 using synthetic::WalkerScript;
 
 constexpr double kFullTurn = 2.0 * std::numbers::pi;
-constexpr double kPassing = 0.5;   // [m] between two who cross
-constexpr double kCircling = 0.8;  // [m]
-constexpr double kReach = 1.3;     // of those who cross [m]
-constexpr double kWorkRing = 1.0;  // where the working places lie [m]
-constexpr double kGap = 0.4;       // between people at work [m]
-enum Purpose : std::uint64_t { kBuild = 701, kSpeed, kHour };
+constexpr double kCircling = 0.8;                      // [m]
+constexpr double kReach = 1.3;                         // of those who cross [m]
+constexpr double kWorkRing = 1.0;                      // where the working places lie [m]
+constexpr double kGap = 0.4;                           // between people at work [m]
+constexpr double kStint = 10.0;                        // of one person of a relay [s]
+constexpr double kLeastPause = 0.3, kMostPause = 2.0;  // [s]
+enum Purpose : std::uint64_t { kBuild = 701, kSpeed, kHour, kPause };
 
 /// Of different build, and somewhere in their loop.
 WalkerScript script_of(std::uint64_t seed, std::size_t person, PathKind path) {
@@ -65,7 +66,8 @@ double heading_of_line(const WalkerScript& script) {
 
 }  // namespace
 
-std::vector<synthetic::Person> crossing_people(std::size_t count, std::uint64_t seed) {
+std::vector<synthetic::Person> crossing_people(std::size_t count, std::uint64_t seed,
+                                               double passing) {
   std::vector<synthetic::Person> people;
   const std::size_t pairs = std::max<std::size_t>(1, count / 2);
   const double hour = synthetic::Draw{seed, kHour}.uniform(0.0, 10.0);
@@ -81,7 +83,7 @@ std::vector<synthetic::Person> crossing_people(std::size_t count, std::uint64_t 
                   (i % 2 == 0 ? 0.0 : std::numbers::pi);
     placing.delay = hour + 0.5 * loop * pair / pair_count;  // each pair meets at its own time
     const Eigen::Vector3d left = about_y(heading_of_line(script)) * Eigen::Vector3d::UnitX();
-    script.centre = 0.5 * kPassing * Eigen::Vector2d(left.x(), left.z());
+    script.centre = 0.5 * passing * Eigen::Vector2d(left.x(), left.z());
     people.push_back(placed(script, placing));
   }
   return people;
@@ -115,6 +117,30 @@ std::vector<synthetic::Person> people_around(double radius, std::uint64_t seed) 
   return {placed(script, {}), placed(script, opposite)};
 }
 
+std::vector<synthetic::Person> relayed_people(std::uint64_t seed, Timestamp begin) {
+  std::vector<synthetic::Person> people;
+  synthetic::Draw pauses{seed, kPause};
+  double enters = -kStint;  // the first one was there before
+  double behind = 0.0;      // the walk stands still while nobody walks it [s]
+  for (std::size_t i = 0; i < 3; ++i) {
+    WalkerScript script = script_of(seed, i, PathKind::Random);
+    script.seed = seed;  // one walk for all
+    const double leaves = i < 2 ? kStint * static_cast<double>(i + 1) : 1e9;
+    people.push_back(
+        [walk = placed(script, {0.0, 0.0, -behind}), begin, enters, leaves](Duration since_epoch) {
+          Skeleton<WorldSpace> body = walk(since_epoch);
+          const double time = seconds(Timestamp{since_epoch} - begin);
+          if (time >= enters && time < leaves) return body;
+          for (Joint& joint : body.joints) joint.position.x() += 2.0 * kOutside;
+          return body;
+        });
+    const double pause = pauses.uniform(kLeastPause, kMostPause);
+    enters = leaves + pause;
+    behind += pause;
+  }
+  return people;
+}
+
 synthetic::Occluder car_body() {
   synthetic::Occluder box;
   box.half = {0.4, 0.6, 0.9};
@@ -133,6 +159,27 @@ synthetic::Occluder table() {
   synthetic::Occluder box;
   box.half = {0.6, 0.375, 0.4};
   box.world_from_box.translation().y() = box.half.y();
+  return box;
+}
+
+std::vector<Eigen::Isometry3d> places_behind_screen() {
+  constexpr double kDistance = 3.0;  // [m]
+  constexpr double kHeight = 1.6;    // [m]
+  constexpr double kAside = 0.25;    // [m]
+  std::vector<Eigen::Isometry3d> places;
+  for (const double aside : {-kAside, kAside}) {
+    places.push_back(
+        synthetic::stand_sensor({-kDistance, kHeight, aside}, 0.25 * kFullTurn, deg(13)));
+  }
+  return places;
+}
+
+synthetic::Occluder screen() {
+  // A third of the way to the sensors: its shadow on the crossing is half as wide again, less half
+  // of how far apart the sensors are.
+  synthetic::Occluder box;
+  box.half = {0.05, 1.25, 0.3};
+  box.world_from_box.translation() = Eigen::Vector3d(-1.0, box.half.y(), 0.0);
   return box;
 }
 

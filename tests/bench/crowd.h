@@ -12,9 +12,17 @@
 
 namespace chorus::bench {
 
-/// `count` people (2, 4 or 6) who walk to and fro through the middle; two and two pass each other
-/// there with 0.5 m between their necks, again and again.
-[[nodiscard]] std::vector<synthetic::Person> crossing_people(std::size_t count, std::uint64_t seed);
+/// `count` people (2, 4 or 6) who walk to and fro along z through the middle; two and two pass each
+/// other there with `passing` [m] between their necks, again and again.
+[[nodiscard]] std::vector<synthetic::Person> crossing_people(std::size_t count, std::uint64_t seed,
+                                                             double passing = 0.5);
+
+/// Three people, one after the other on one walk: each leaves the room somewhere and the next one
+/// enters there, 0.3 to 2 s later.  The first is there at `begin`; nobody comes back.
+[[nodiscard]] std::vector<synthetic::Person> relayed_people(std::uint64_t seed, Timestamp begin);
+
+/// Out of the room: further from the middle than anybody in it [m].
+inline constexpr double kOutside = 50.0;
 
 /// One stands in the middle, the other walks around them at 0.8 m: each hides the other from every
 /// sensor in turn.
@@ -30,5 +38,10 @@ namespace chorus::bench {
 [[nodiscard]] synthetic::Occluder car_body();  ///< In the middle, 1.8 m long, 1.2 m high.
 [[nodiscard]] synthetic::Occluder pillar();    ///< Beside the middle, 0.4 m wide, to the ceiling.
 [[nodiscard]] synthetic::Occluder table();     ///< In the middle, 1.2 x 0.8 m, 0.75 m high.
+
+/// Two sensors beside each other that look along +x at people who cross along z, and a screen
+/// before the place where they pass: for 0.65 m of the way neither sensor sees either of them.
+[[nodiscard]] std::vector<Eigen::Isometry3d> places_behind_screen();
+[[nodiscard]] synthetic::Occluder screen();
 
 }  // namespace chorus::bench

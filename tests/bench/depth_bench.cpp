@@ -16,6 +16,7 @@
 #include "common/geometry/rotation.h"
 #include "common/synthetic/draw.h"
 #include "common/synthetic/sensor_choice.h"
+#include "tests/bench/labelled_error.h"
 #include "tests/bench/log_statistics.h"
 #include "tests/bench/over_draws.h"
 #include "tests/bench/report.h"
@@ -51,19 +52,14 @@ struct Tally {
 };
 
 void Tally::add(const Skeleton<SensorSpace>& body, const Skeleton<SensorSpace>& exact) {
-  double as_given = 0;
-  double as_mirrored = 0;
-  for (std::size_t i = 0; i < kJointCount; ++i) {
-    const Joint& joint = body.joints[i];
-    if (!joint.seen()) continue;
-    as_given += (joint.position - exact.joints[i].position).norm();
-    as_mirrored += (joint.position - exact[mirror(static_cast<JointId>(i))].position).norm();
-    inferred += joint.state == JointState::Inferred;
-    ++joints;
+  const LabelledError error = labelled_error(body, exact);
+  for (const Joint& joint : body.joints) {
+    joints += joint.seen() ? 1U : 0U;
+    inferred += joint.state == JointState::Inferred ? 1U : 0U;
   }
-  given += as_given;
-  repaired += std::min(as_given, as_mirrored);
-  exchanged += as_mirrored < as_given;
+  given += error.as_given;
+  repaired += std::min(error.as_given, error.exchanged);
+  exchanged += error.exchanged < error.as_given ? 1U : 0U;
   ++seen;
 }
 
@@ -160,14 +156,14 @@ double share(std::size_t part, std::size_t whole) {
   return whole == 0 ? std::nan("") : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// Median over the draws that have the view, with the 5-95 % range beside it.
+/// Over the draws that have the view.
 void spread(Report& report, const std::string& name, const std::string& metric,
             std::vector<double> values, const char* unit) {
   std::erase_if(values, [](double value) { return std::isnan(value); });
   if (values.empty()) return;
-  report.row(
-      name, metric, median(values), unit,
-      fmt::format("5-95 %: {:.3g}-{:.3g}", percentile(values, 0.05), percentile(values, 0.95)));
+  Row row{name, metric, median(values), unit, "", kNoRatio};
+  row.spread = {row.value, percentile(values, 0.05), percentile(values, 0.95), 0, values.size()};
+  report.row(std::move(row));
 }
 
 template <class Value>

@@ -1,5 +1,4 @@
 // chorus-bench http: /frame beside nginx with the same bytes, and how old a long-polled frame is.
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <thread>
@@ -7,6 +6,7 @@
 #include "common/http/server.h"
 #include "tests/bench/http_load.h"
 #include "tests/bench/report.h"
+#include "tests/bench/statistics.h"
 
 namespace chorus::bench {
 namespace {
@@ -74,18 +74,6 @@ ServingProcess::Serve serving(double rate_hz) {
   };
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-double percentile(std::vector<double>& values, double p) {
-  const auto at = static_cast<std::size_t>(p / 100.0 * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
-  return values[at];
-}
-
 struct Load {
   std::vector<double> requests_per_s;
   std::vector<double> cpu_us;
@@ -137,8 +125,8 @@ Result<void> longpoll_300(Report& report) {
   auto ages = run_long_polls(load);
   if (!ages) return pass(ages);
   constexpr double kMsPerSecond = 1000.0;
-  const double p99 = percentile(ages->ages, 99.0) * kMsPerSecond;
-  report.row("longpoll-300", "data_age_p50_ms", percentile(ages->ages, 50.0) * kMsPerSecond, "ms");
+  const double p99 = percentile(ages->ages, 0.99) * kMsPerSecond;
+  report.row("longpoll-300", "data_age_p50_ms", percentile(ages->ages, 0.5) * kMsPerSecond, "ms");
   report.row("longpoll-300", "data_age_p99_ms", p99, "ms");
   report.row("longpoll-300", "frames_repeated_or_missed",
              static_cast<double>(ages->repeated_or_missed), "frames");

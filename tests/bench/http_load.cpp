@@ -1,8 +1,6 @@
 #include "tests/bench/http_load.h"
 
-#include <arpa/inet.h>
 #include <fcntl.h>
-#include <netinet/in.h>
 #include <sched.h>
 #include <signal.h>
 #include <sys/socket.h>
@@ -20,33 +18,16 @@
 #include <thread>
 
 #include "tests/bench/process_time.h"
+#include "tests/support/free_port.h"
 
 namespace chorus::bench {
 namespace {
 
 namespace fs = std::filesystem;
 
-sockaddr_in loopback(std::uint16_t port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  address.sin_port = htons(port);
-  return address;
-}
-
-std::uint16_t free_port() {
-  const int probe = ::socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address = loopback(0);
-  socklen_t size = sizeof address;
-  ::bind(probe, reinterpret_cast<sockaddr*>(&address), size);
-  ::getsockname(probe, reinterpret_cast<sockaddr*>(&address), &size);
-  ::close(probe);
-  return ntohs(address.sin_port);
-}
-
 bool answers(std::uint16_t port) {
   const int probe = ::socket(AF_INET, SOCK_STREAM, 0);
-  const sockaddr_in address = loopback(port);
+  const sockaddr_in address = testing::loopback(port);
   const bool connected =
       ::connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
   ::close(probe);
@@ -78,13 +59,12 @@ std::string nginx_config(const std::string& folder, std::uint16_t port) {
   return text.str();
 }
 
-Result<std::string> nginx_folder(const std::string& body, std::uint16_t port) {
-  std::string folder = (fs::temp_directory_path() / "chorus-bench-XXXXXX").string();
-  if (::mkdtemp(folder.data()) == nullptr)
-    return fail(ErrorCode::Io, folder, "cannot make a temporary folder");
-  fs::create_directory(fs::path(folder) / "www");
-  std::ofstream(fs::path(folder) / "www" / "frame", std::ios::binary) << body;
-  std::ofstream(fs::path(folder) / "nginx.conf") << nginx_config(folder, port);
+Result<ScratchFolder> nginx_folder(const std::string& body, std::uint16_t port) {
+  auto folder = ScratchFolder::make();
+  if (!folder) return folder;
+  fs::create_directory(folder->path() / "www");
+  std::ofstream(folder->path() / "www" / "frame", std::ios::binary) << body;
+  std::ofstream(folder->path() / "nginx.conf") << nginx_config(folder->path().string(), port);
   return folder;
 }
 
@@ -140,20 +120,21 @@ Result<ServingProcess> ServingProcess::fork(const Serve& serve) {
 }
 
 Result<ServingProcess> ServingProcess::nginx(const std::string& body) {
-  const std::uint16_t port = free_port();
-  const auto folder = nginx_folder(body, port);
-  if (!folder) return pass(folder);
-  const std::string config = *folder + "/nginx.conf";
-  const std::string errors = *folder + "/error.log";
+  const std::uint16_t port = testing::free_port();
+  auto made = nginx_folder(body, port);
+  if (!made) return pass(made);
+  const std::string folder = made->path().string();
+  const std::string config = folder + "/nginx.conf";
+  const std::string errors = folder + "/error.log";
   ServingProcess process;
-  process.folder_ = *folder;
+  process.folder_.emplace(std::move(*made));
   process.port_ = port;
   process.pid_ = ::fork();
   if (process.pid_ == 0) {
     keep_to_side(Side::Server);
-    ::execlp("nginx", "nginx", "-e", errors.c_str(), "-p", folder->c_str(), "-c", config.c_str(),
+    ::execlp("nginx", "nginx", "-e", errors.c_str(), "-p", folder.c_str(), "-c", config.c_str(),
              nullptr);
-    ::execl("/usr/sbin/nginx", "nginx", "-e", errors.c_str(), "-p", folder->c_str(), "-c",
+    ::execl("/usr/sbin/nginx", "nginx", "-e", errors.c_str(), "-p", folder.c_str(), "-c",
             config.c_str(), nullptr);
     std::_Exit(1);
   }
@@ -167,7 +148,7 @@ ServingProcess::ServingProcess(ServingProcess&& other) noexcept
     : pid_(std::exchange(other.pid_, -1)),
       life_line_(std::exchange(other.life_line_, -1)),
       port_(other.port_),
-      folder_(std::exchange(other.folder_, {})) {}
+      folder_(std::move(other.folder_)) {}
 
 ServingProcess::~ServingProcess() {
   if (life_line_ >= 0) ::close(life_line_);
@@ -175,8 +156,6 @@ ServingProcess::~ServingProcess() {
     ::kill(pid_, SIGTERM);
     ::waitpid(pid_, nullptr, 0);
   }
-  std::error_code ignored;
-  if (!folder_.empty()) fs::remove_all(folder_, ignored);
 }
 
 double ServingProcess::cpu_seconds() const { return cpu_seconds_of(pid_); }

@@ -5,10 +5,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/base/result.h"
+#include "tests/bench/scratch_folder.h"
 
 namespace chorus::bench {
 
@@ -35,7 +37,7 @@ class ServingProcess {
   pid_t pid_ = -1;
   int life_line_ = -1;  ///< The child ends when this closes.
   std::uint16_t port_ = 0;
-  std::string folder_ = {};  ///< nginx's; removed at the end.
+  std::optional<ScratchFolder> folder_ = {};  ///< nginx's.
 };
 
 /// Servers run on one core and the load on another, the same for every server; what runs on one

@@ -1,7 +1,5 @@
 // 300 long-polling clients in a process of their own, one epoll loop, no library between socket and
 // stamp.
-#include <arpa/inet.h>
-#include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/epoll.h>
 #include <sys/socket.h>
@@ -18,6 +16,7 @@
 #include <utility>
 
 #include "tests/bench/http_load.h"
+#include "tests/support/free_port.h"
 
 namespace chorus::bench {
 namespace {
@@ -50,13 +49,10 @@ bool ask(Client& client) {
 
 bool connect(Client& client, std::uint16_t port) {
   client.socket = ::socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  address.sin_port = htons(port);
+  const sockaddr_in address = testing::loopback(port);
   const int on = 1;
   ::setsockopt(client.socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-  return ::connect(client.socket, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0;
+  return ::connect(client.socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
 }
 
 /// The body of a complete answer; nothing while some of it is missing.

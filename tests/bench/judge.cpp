@@ -8,6 +8,7 @@
 
 #include "common/geometry/rotation.h"
 #include "common/synthetic/draw.h"
+#include "common/synthetic/kinect/kinect_sensor.h"
 #include "common/synthetic/sensor_model.h"
 
 namespace chorus::bench {
@@ -61,8 +62,22 @@ synthetic::Scene scene_of(const Setting& setting, Timestamp begin) {
   return scene;
 }
 
+Recorded record_adjusted(const Workshop& workshop, const SensorId& id, std::size_t place) {
+  const Setting& setting = workshop.setting;
+  synthetic::kinect::Profile profile =
+      synthetic::kinect::draw_profile(setting.profile, setting.seed);
+  for (const synthetic::Stress& stress : setting.stress) {
+    profile = with_source(std::move(profile), stress.source, stress.factor);
+  }
+  setting.adjust(profile);
+  synthetic::kinect::KinectSensor sensor(
+      workshop.scene, {id, place, std::move(profile), setting.seed, setting.seed}, workshop.begin);
+  return {record(sensor, workshop.begin + setting.length), sensor.clock()};
+}
+
 Recorded record_sensor(const Workshop& workshop, const SensorId& id, std::size_t place) {
   const Setting& setting = workshop.setting;
+  if (setting.adjust) return record_adjusted(workshop, id, place);
   synthetic::SensorChoice choice{
       id, place, setting.profile, setting.seed, setting.stress, setting.seed, setting.seed};
   choice.gauss.seed = setting.seed;
@@ -91,12 +106,16 @@ std::size_t index_of_sensor(const Workshop& workshop, const SensorId& sensor) {
 
 }  // namespace
 
+Timestamp begin_of(std::uint64_t seed) {
+  synthetic::Draw begin{seed, kDrawBegin};
+  return from_unix_ns(kSomeTime) + from_seconds(begin.uniform(0.0, kLatestBegin));
+}
+
 Workshop draw_workshop(Setting setting) {
   Workshop workshop;
   workshop.setting = std::move(setting);
   const Setting& asked = workshop.setting;
-  synthetic::Draw begin{asked.seed, kDrawBegin};
-  workshop.begin = from_unix_ns(kSomeTime) + from_seconds(begin.uniform(0.0, kLatestBegin));
+  workshop.begin = begin_of(asked.seed);
   workshop.scene = scene_of(asked, workshop.begin);
   for (std::size_t i = 0; i < asked.places.size(); ++i) {
     const SensorId id = SensorId::parse(fmt::format("s{}", i + 1)).value();

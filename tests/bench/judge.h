@@ -6,6 +6,7 @@
 // centre.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ struct Setting {
   std::string profile = "A";
   std::uint64_t seed = 1;
   std::vector<synthetic::Stress> stress = {};  ///< Not for "gauss".
+  /// Single parameters changed after the draw; for A and B only.
+  std::function<void(synthetic::kinect::Profile&)> adjust = {};
   std::vector<Eigen::Isometry3d> places = ring_places(synthetic::Ring{});
   synthetic::PathKind walk = synthetic::PathKind::Random;
   std::size_t persons = 1;
@@ -42,6 +45,9 @@ struct Workshop {
   std::vector<registration::WalkTrack> tracks;  ///< s1, s2, ...; stamped by their hosts' clocks.
   std::vector<synthetic::HostClock> clocks;
 };
+
+/// When the walk of a draw begins, true time.
+[[nodiscard]] Timestamp begin_of(std::uint64_t seed);
 
 /// Builds the scene and records every sensor.  Same setting, same frames.  An unknown profile is a
 /// mistake of the caller (throws).

@@ -1,9 +1,9 @@
 #include "tests/bench/live_cell.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <deque>
-#include <filesystem>
 #include <fstream>
 #include <utility>
 
@@ -14,13 +14,15 @@
 #include "common/http/server.h"
 #include "common/resource/frame_resource.h"
 #include "tests/support/builders.h"
+#include "tests/support/free_port.h"
+#include "tests/support/vrpn/vrpn_client.h"
 
 namespace chorus::bench {
 namespace {
 
 using std::chrono::milliseconds;
 
-constexpr int kSensors = 6;
+constexpr double kRate = 30.0;  // [Hz]
 constexpr Duration kInterval{33'333'333};
 constexpr double kRadius = 3.0;  // [m]
 constexpr double kHeight = 1.4;  // [m]
@@ -35,6 +37,37 @@ std::vector<Skeleton<WorldSpace>> people(int count) {
     out.push_back(testing::standing_person({x, 0, z}, deg(50.0 * i)));
   }
   return out;
+}
+
+struct Received {
+  Timestamp instant;
+  Timestamp when;
+};
+
+/// One VRPN client and nothing else on this thread: when each frame came.
+std::vector<Received> receive_frames(testing::VrpnClient& client, double run_seconds) {
+  std::vector<Received> out;
+  const SystemClock clock;
+  const auto end =
+      std::chrono::steady_clock::now() + std::chrono::nanoseconds(from_seconds(run_seconds));
+  while (std::chrono::steady_clock::now() < end) {
+    const auto message = client.next("vrpn_Tracker Pos_Quat", milliseconds(200));
+    if (message) out.push_back({from_unix_ns(message->time_us * 1000), clock.now()});
+  }
+  return out;
+}
+
+/// How many bodies /frame has just now.
+int bodies_now(const LiveCell& cell) {
+  const auto answer = http::fetch({"127.0.0.1", cell.port, "/frame"},
+                                  {"GET", "/frame", {{"Accept", "application/json"}}, {}});
+  int bodies = 0;
+  if (!answer) return bodies;
+  constexpr std::string_view kBody = "\"bodyId\"";
+  for (auto at = answer->body.find(kBody); at != std::string::npos;
+       at = answer->body.find(kBody, at + 1))
+    ++bodies;
+  return bodies;
 }
 
 }  // namespace
@@ -139,21 +172,15 @@ std::optional<Timestamp> ExactSensors::last_needed_capture(Timestamp instant) co
   return last;
 }
 
-LiveCell::~LiveCell() {
-  fusion.clear();
-  std::error_code ignored;
-  if (!folder.empty()) std::filesystem::remove_all(folder, ignored);
-}
-
-Result<LiveCell> start_cell(int persons) {
-  LiveCell cell;
-  char pattern[] = "/tmp/chorus-bench-XXXXXX";
-  if (::mkdtemp(pattern) == nullptr) return fail(ErrorCode::Io, pattern, "cannot make a folder");
-  cell.folder = pattern;
-  cell.sensors = std::make_unique<ExactSensors>(kSensors, persons);
-  cell.port = unused_port();
-  cell.vrpn_port = unused_port();
-  const std::string places = cell.folder + "/places.json";
+Result<LiveCell> start_cell(int sensors, int persons) {
+  auto folder = ScratchFolder::make();
+  if (!folder) return pass(folder);
+  LiveCell cell{std::make_unique<ExactSensors>(sensors, persons),
+                std::move(*folder),
+                {},
+                testing::free_port(),
+                testing::free_port()};
+  const std::string places = (cell.folder.path() / "places.json").string();
   std::ofstream(places) << cell.sensors->places();
   auto fusion = ChildProcess::start(
       "chorus-fusion",
@@ -166,17 +193,33 @@ Result<LiveCell> start_cell(int persons) {
   const auto begun = std::chrono::steady_clock::now();
   while (std::chrono::steady_clock::now() - begun < kPatience) {
     std::this_thread::sleep_for(milliseconds(200));
-    const auto answer = http::fetch({"127.0.0.1", cell.port, "/frame"},
-                                    {"GET", "/frame", {{"Accept", "application/json"}}, {}});
-    if (!answer) continue;
-    int bodies = 0;
-    for (auto at = answer->body.find("\"bodyId\""); at != std::string::npos;
-         at = answer->body.find("\"bodyId\"", at + 1))
-      ++bodies;
-    if (bodies == persons) return cell;
+    if (bodies_now(cell) == persons) return cell;
   }
   return fail(ErrorCode::Timeout, "chorus-fusion",
               "the people were not all fused in half a minute");
+}
+
+Result<Lateness> watch(const LiveCell& cell, double run_seconds) {
+  testing::VrpnClient client({"Body0_Neck"});
+  if (!client.request(cell.vrpn_port)) {
+    return fail(ErrorCode::Io, "vrpn", "the server cannot be reached");
+  }
+  Lateness out;
+  std::vector<Received> frames;
+  constexpr double kPart = 1.0;  // the sensors remember three seconds
+  for (double done = 0.0; done < run_seconds; done += kPart) {
+    for (const Received& frame : receive_frames(client, kPart)) {
+      frames.push_back(frame);
+      const auto needed = cell.sensors->last_needed_capture(frame.instant);
+      if (needed) out.beyond_capture.push_back(seconds(frame.when - *needed));
+    }
+  }
+  if (frames.size() < 2) return fail(ErrorCode::Internal, "vrpn", "no frames came");
+  const double span = seconds(frames.back().when - frames.front().when);
+  out.output_hz = static_cast<double>(frames.size() - 1) / span;
+  const double instants = seconds(frames.back().instant - frames.front().instant) * kRate;
+  out.lost = static_cast<std::size_t>(std::llround(instants)) + 1 - frames.size();
+  return out;
 }
 
 }  // namespace chorus::bench

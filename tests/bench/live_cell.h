@@ -13,6 +13,7 @@
 #include "common/base/result.h"
 #include "common/time/timestamp.h"
 #include "tests/bench/child_process.h"
+#include "tests/bench/scratch_folder.h"
 
 namespace chorus::bench {
 
@@ -40,18 +41,22 @@ class ExactSensors {
 
 struct LiveCell {
   std::unique_ptr<ExactSensors> sensors;
-  std::vector<ChildProcess> fusion;  ///< One.
+  ScratchFolder folder;
+  std::vector<ChildProcess> fusion;  ///< One; ends before its folder goes.
   std::uint16_t port = 0;
   std::uint16_t vrpn_port = 0;
-  std::string folder;
-  ~LiveCell();
-  LiveCell() = default;
-  LiveCell(LiveCell&&) = default;
-  LiveCell& operator=(LiveCell&&) = delete;
 };
 
 /// Started, and so many bodies are fused.
-[[nodiscard]] Result<LiveCell> start_cell(int persons);
+[[nodiscard]] Result<LiveCell> start_cell(int sensors, int persons);
+
+/// What one VRPN client of the first person sees.
+struct Lateness {
+  std::vector<double> beyond_capture;  ///< Of each frame, since the last capture it needed [s].
+  double output_hz = 0.0;
+  std::size_t lost = 0;
+};
+[[nodiscard]] Result<Lateness> watch(const LiveCell& cell, double run_seconds);
 
 /// What clients at rest in a room do: take what comes.
 struct ClientCounts {

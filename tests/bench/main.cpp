@@ -71,6 +71,10 @@ int main(int argc, char** argv) {
     if (each.name == nullptr) continue;
     app.add_subcommand(each.name, each.summary)->callback([&chosen, &each] { chosen = &each; });
   }
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kFailed;  // --help is no failure
+  }
   return chosen == nullptr ? kFailed : run(*chosen, options, json_path);
 }

@@ -1,17 +1,17 @@
 #include "tests/bench/output_receivers.h"
 
-#include <arpa/inet.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <string>
 #include <thread>
 #include <utility>
 
 #include "fusion-server/publish/handover.h"
 #include "fusion-server/publish/outputs.h"
-#include "tests/bench/child_process.h"
+#include "tests/support/free_port.h"
 #include "tests/support/vrpn/vrpn_client.h"
 
 namespace chorus::bench {
@@ -21,14 +21,6 @@ using publish::OutputsConfig;
 
 constexpr int kPersons = 6;
 constexpr int kReceiveBuffer = 4 << 20;
-
-sockaddr_in loopback(std::uint16_t port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  address.sin_port = htons(port);
-  return address;
-}
 
 Result<std::unique_ptr<publish::Sink>> open_sink(const OutputsConfig& config) {
   auto sinks = publish::open_outputs(config, std::make_shared<SystemClock>());
@@ -83,7 +75,7 @@ Result<OpenedOutput> open_vrpn() {
   OutputsConfig config;
   config.vrpn.common.enabled = true;
   config.vrpn.common.max_persons = kPersons;
-  config.vrpn.protocol.port = unused_port();
+  config.vrpn.protocol.port = testing::free_port();
   auto sink = open_sink(config);
   if (!sink) return pass(sink);
   auto receiver = std::make_unique<VrpnReceiver>();
@@ -93,11 +85,71 @@ Result<OpenedOutput> open_vrpn() {
   return OpenedOutput{std::move(receiver), std::move(*sink)};
 }
 
+/// Connects, keeps the connection alive, and counts frames; what else the server says is not one.
+class NatNetReceiver final : public Receiver {
+ public:
+  NatNetReceiver() = default;
+  /// True once the server has answered.
+  [[nodiscard]] bool connect(std::uint16_t port) {
+    port_ = port;
+    say(kConnect);
+    std::vector<pollfd> sockets;
+    socket_.add_sockets(sockets);
+    constexpr int kPatienceMs = 5000;
+    const bool answered = ::poll(sockets.data(), sockets.size(), kPatienceMs) > 0;
+    (void)read();
+    return answered;
+  }
+  void add_sockets(std::vector<pollfd>& out) const override { socket_.add_sockets(out); }
+  [[nodiscard]] std::size_t read() override {
+    if (std::chrono::steady_clock::now() - said_ > kKeepAliveEvery) say(kKeepAlive);
+    std::size_t frames = 0;
+    socket_.take([&](std::string_view datagram) {
+      if (datagram.empty() || datagram.front() != kFrame) return;
+      ++frames;
+      bytes_ += datagram.size();
+    });
+    return frames;
+  }
+  [[nodiscard]] std::size_t bytes() const override { return bytes_; }
+
+ private:
+  // The first of the four bytes of a message without content, and of a frame.
+  static constexpr char kConnect = 0;
+  static constexpr char kFrame = 7;
+  static constexpr char kKeepAlive = 10;
+  static constexpr std::chrono::seconds kKeepAliveEvery{1};
+
+  void say(char message) {
+    const std::array<char, 4> request{message, 0, 0, 0};
+    socket_.say({request.data(), request.size()}, port_);
+    said_ = std::chrono::steady_clock::now();
+  }
+  DatagramReceiver socket_;
+  std::uint16_t port_ = 0;
+  std::size_t bytes_ = 0;
+  std::chrono::steady_clock::time_point said_{};
+};
+
+Result<OpenedOutput> open_natnet() {
+  OutputsConfig config;
+  config.natnet.common.enabled = true;
+  config.natnet.common.max_persons = kPersons;
+  config.natnet.protocol.command_port = testing::free_port();
+  auto sink = open_sink(config);
+  if (!sink) return pass(sink);
+  auto receiver = std::make_unique<NatNetReceiver>();
+  if (!receiver->connect(static_cast<std::uint16_t>(config.natnet.protocol.command_port))) {
+    return fail(ErrorCode::Io, "natnet", "the server does not answer");
+  }
+  return OpenedOutput{std::move(receiver), std::move(*sink)};
+}
+
 class BareSink final : public publish::Sink {
  public:
   BareSink(std::uint16_t port, std::size_t count, std::size_t bytes)
       : bytes_(bytes), count_(count), socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
-    const sockaddr_in to = loopback(port);
+    const sockaddr_in to = testing::loopback(port);
     ::connect(socket_, reinterpret_cast<const sockaddr*>(&to), sizeof to);
     thread_ = std::jthread([this] { run(); });
   }
@@ -130,7 +182,7 @@ class BareSink final : public publish::Sink {
 }  // namespace
 
 DatagramReceiver::DatagramReceiver() : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
-  sockaddr_in own = loopback(0);
+  sockaddr_in own = testing::loopback(0);
   socklen_t size = sizeof own;
   ::setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &kReceiveBuffer, sizeof kReceiveBuffer);
   ::bind(socket_, reinterpret_cast<sockaddr*>(&own), size);
@@ -144,15 +196,28 @@ void DatagramReceiver::add_sockets(std::vector<pollfd>& out) const {
   out.push_back({socket_, POLLIN, 0});
 }
 
-std::size_t DatagramReceiver::read() {
+void DatagramReceiver::take(const std::function<void(std::string_view)>& each) const {
   std::array<char, 65536> datagram;
-  std::size_t count = 0;
   while (true) {
     const ssize_t got = ::recv(socket_, datagram.data(), datagram.size(), MSG_DONTWAIT);
-    if (got < 0) return count;
-    ++count;
-    bytes_ += static_cast<std::size_t>(got);
+    if (got < 0) return;
+    each({datagram.data(), static_cast<std::size_t>(got)});
   }
+}
+
+void DatagramReceiver::say(std::string_view bytes, std::uint16_t to) const {
+  const sockaddr_in address = testing::loopback(to);
+  ::sendto(socket_, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&address),
+           sizeof address);
+}
+
+std::size_t DatagramReceiver::read() {
+  std::size_t count = 0;
+  take([&](std::string_view datagram) {
+    ++count;
+    bytes_ += datagram.size();
+  });
+  return count;
 }
 
 const std::vector<OutputRow>& output_rows() {
@@ -163,6 +228,7 @@ const std::vector<OutputRow>& output_rows() {
       {"vmc", open_datagrams<&OutputsConfig::vmc>},
       {"vrchat", open_datagrams<&OutputsConfig::vrchat>},
       {"mxtp", open_datagrams<&OutputsConfig::mxtp>},
+      {"natnet", open_natnet},
   };
   return kRows;
 }

@@ -4,6 +4,7 @@
 #include <poll.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,9 @@ class DatagramReceiver final : public Receiver {
   void add_sockets(std::vector<pollfd>& out) const override;
   [[nodiscard]] std::size_t read() override;
   [[nodiscard]] std::size_t bytes() const override { return bytes_; }
+  /// Each that has come since the last call, for receivers that look into them; does not wait.
+  void take(const std::function<void(std::string_view)>& each) const;
+  void say(std::string_view bytes, std::uint16_t to) const;
 
  private:
   int socket_ = -1;

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "common/http/html.h"
+
 namespace chorus::bench {
 namespace {
 
@@ -27,29 +29,6 @@ constexpr int kMostTicks = 50;
 // Okabe and Ito: told apart by colour-blind people too.
 constexpr std::array<std::string_view, 7> kPalette{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                    "#b8860b", "#56b4e9", "#333333"};
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 /// 1, 2 or 5 times a power of ten.
 double round_step(double range) {
@@ -107,7 +86,8 @@ Scale scale_of(const Plot& plot) {
 }
 
 std::string text(double x, double y, std::string_view how, std::string_view what) {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", x, y, how, escaped(what));
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", x, y, how,
+                     http::escaped_html(what));
 }
 
 std::string line(const Eigen::Vector2d& from, const Eigen::Vector2d& to, std::string_view colour) {

@@ -11,7 +11,6 @@
 #include "tests/bench/report.h"
 #include "tests/bench/statistics.h"
 #include "tests/support/builders.h"
-#include "tests/support/vrpn/vrpn_client.h"
 
 namespace chorus::bench {
 namespace {
@@ -186,52 +185,6 @@ Result<void> sinks_6_persons(Report& report) {
   return {};
 }
 
-struct Received {
-  Timestamp instant;
-  Timestamp when;
-};
-
-/// One VRPN client and nothing else on this thread: when each frame came.
-std::vector<Received> receive_frames(testing::VrpnClient& client, double run_seconds) {
-  std::vector<Received> out;
-  const SystemClock clock;
-  const auto end = Steady::now() + std::chrono::nanoseconds(from_seconds(run_seconds));
-  while (Steady::now() < end) {
-    const auto message = client.next("vrpn_Tracker Pos_Quat", milliseconds(200));
-    if (message) out.push_back({from_unix_ns(message->time_us * 1000), clock.now()});
-  }
-  return out;
-}
-
-struct Lateness {
-  std::vector<double> beyond_capture;  ///< Of each frame [s].
-  double output_hz = 0.0;
-  std::size_t lost = 0;
-};
-
-Result<Lateness> watch(const LiveCell& cell, double run_seconds) {
-  testing::VrpnClient client({"Body0_Neck"});
-  if (!client.request(cell.vrpn_port)) {
-    return fail(ErrorCode::Io, "vrpn", "the server cannot be reached");
-  }
-  Lateness out;
-  std::vector<Received> frames;
-  constexpr double kPart = 1.0;  // the sensors remember three seconds
-  for (double done = 0.0; done < run_seconds; done += kPart) {
-    for (const Received& frame : receive_frames(client, kPart)) {
-      frames.push_back(frame);
-      const auto needed = cell.sensors->last_needed_capture(frame.instant);
-      if (needed) out.beyond_capture.push_back(seconds(frame.when - *needed));
-    }
-  }
-  if (frames.size() < 2) return fail(ErrorCode::Internal, "vrpn", "no frames came");
-  const double span = seconds(frames.back().when - frames.front().when);
-  out.output_hz = static_cast<double>(frames.size() - 1) / span;
-  const double instants = seconds(frames.back().instant - frames.front().instant) * kRate;
-  out.lost = static_cast<std::size_t>(std::llround(instants)) + 1 - frames.size();
-  return out;
-}
-
 void report_lateness(Report& report, const std::string& name, const Lateness& seen,
                      const Lateness* alone) {
   const auto ratio = [&](double share) {
@@ -297,7 +250,7 @@ Result<void> clients_400(Report& report, const LiveCell& cell, const Lateness& a
 }
 
 Result<void> through_the_server(Report& report) {
-  const auto cell = start_cell(1);
+  const auto cell = start_cell(6, 1);
   if (!cell) return pass(cell);
   const double run_seconds = report.quick() ? 4.0 : 30.0;
   const auto alone = watch(*cell, run_seconds);

@@ -15,6 +15,8 @@
 #include "common/record/session_reader.h"
 #include "tests/bench/child_process.h"
 #include "tests/bench/report.h"
+#include "tests/bench/scratch_folder.h"
+#include "tests/support/free_port.h"
 
 namespace chorus::bench {
 namespace {
@@ -35,25 +37,6 @@ double run_seconds(const Report& report) {
   if (wanted != nullptr) return std::clamp(std::atof(wanted), kQuickRun, 3600.0);
   return report.quick() ? kQuickRun : kLongRun;
 }
-
-/// A folder that goes with the run.
-class Scratch {
- public:
-  Scratch() {
-    std::string name = (fs::temp_directory_path() / "chorus-bench-record-XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 struct Rig {
   std::vector<ChildProcess> sensors;
@@ -77,7 +60,7 @@ Result<Rig> start_rig(const fs::path& folder) {
   Rig rig;
   nlohmann::json list = nlohmann::json::array();
   for (int i = 0; i < kSensors; ++i) {
-    const std::uint16_t port = unused_port();
+    const std::uint16_t port = testing::free_port();
     const std::string id = "s" + std::to_string(i + 1);
     auto sensor = ChildProcess::start("chorus-sensor",
                                       {"--id", id, "--port", std::to_string(port), "--set",
@@ -87,7 +70,7 @@ Result<Rig> start_rig(const fs::path& folder) {
     rig.sensors.push_back(std::move(*sensor));
     list.push_back({{"id", id}, {"url", "http://127.0.0.1:" + std::to_string(port) + "/"}});
   }
-  rig.port = unused_port();
+  rig.port = testing::free_port();
   auto fusion = ChildProcess::start(
       "chorus-fusion",
       {"--config", "deploy/config/fusion.json", "--set", "http.port=" + std::to_string(rig.port),
@@ -176,6 +159,7 @@ double json_lines_cores(const fs::path& recording, const fs::path& out, double s
 struct Measured {
   double idle_cores = 0.0;  ///< chorus-fusion, not recording.
   double busy_cores = 0.0;  ///< The same, recording.
+  double json_lines_cores = kNoRatio;
   nlohmann::json report;
 };
 
@@ -193,37 +177,23 @@ Result<Measured> measure(const Rig& rig, double seconds) {
   return measured;
 }
 
-}  // namespace
-
-Result<void> run_record(Report& report) {
-  const Scratch scratch;
-  const double seconds = run_seconds(report);
-  const auto rig = start_rig(scratch.path() / "rec");
-  if (!rig) return pass(rig);
-  if (auto ok = wait_until_steady(*rig); !ok) return ok;
-  const auto measured = measure(*rig, seconds);
-  if (!measured) return pass(measured);
-  const fs::path recorded = scratch.path() / "rec/bench";
-  const auto contents = contents_of(recorded);
-  if (!contents) return pass(contents);
-  const double lines = json_lines_cores(recorded, scratch.path() / "lines", seconds);
-
+void report_recording(Report& report, const Measured& measured, const Contents& contents,
+                      double seconds) {
   const std::string c = "six-plus-fused";
-  const double cost = measured->busy_cores - measured->idle_cores;
-  const auto bytes = measured->report.value("bytes", 0.0);
-  const double lost = static_cast<double>(contents->lost) + measured->report.value("dropped", 0.0);
-  report.profile("gauss");
+  const double cost = measured.busy_cores - measured.idle_cores;
+  const auto bytes = measured.report.value("bytes", 0.0);
+  const double lost = static_cast<double>(contents.lost) + measured.report.value("dropped", 0.0);
   report.row(c, "run_s", seconds, "s");
-  report.row(c, "cpu_cores", cost, "cores", "json-lines", cost / lines);
-  report.row(c, "cpu_cores_fusion_idle", measured->idle_cores, "cores");
-  report.row(c, "cpu_cores_fusion_recording", measured->busy_cores, "cores");
+  report.row(c, "cpu_cores", cost, "cores", "json-lines", cost / measured.json_lines_cores);
+  report.row(c, "cpu_cores_fusion_idle", measured.idle_cores, "cores");
+  report.row(c, "cpu_cores_fusion_recording", measured.busy_cores, "cores");
   report.row(c, "lost_frames", lost, "frames");
-  report.row(c, "frames", static_cast<double>(contents->frames), "frames", "expected",
-             static_cast<double>(contents->frames) / (kStreams * kRate * seconds));
+  report.row(c, "frames", static_cast<double>(contents.frames), "frames", "expected",
+             static_cast<double>(contents.frames) / (kStreams * kRate * seconds));
   constexpr double kMegabyte = 1e6;
   report.row(c, "file_mb_per_min", bytes / kMegabyte * 60.0 / seconds, "MB/min", "json-lines",
-             bytes / static_cast<double>(contents->json_bytes));
-  report.condition("seven streams are in the file", contents->streams == kStreams);
+             bytes / static_cast<double>(contents.json_bytes));
+  report.condition("seven streams are in the file", contents.streams == kStreams);
   report.condition("nothing is lost", lost == 0.0);
   report.condition("recording costs less than 10 % of a core", cost < kMaxCores);
   report.note(
@@ -231,6 +201,25 @@ Result<void> run_record(Report& report) {
       "length.  json-lines writes the same frames as uncompressed text: no scenes for viewers, no "
       "index, no checksums, no compression.  CHORUS_RECORD_SECONDS=600 for the claim's ten "
       "minutes.");
+}
+
+}  // namespace
+
+Result<void> run_record(Report& report) {
+  report.profile("gauss");
+  const auto scratch = ScratchFolder::make();
+  if (!scratch) return pass(scratch);
+  const double seconds = run_seconds(report);
+  const auto rig = start_rig(scratch->path() / "rec");
+  if (!rig) return pass(rig);
+  if (auto ok = wait_until_steady(*rig); !ok) return ok;
+  auto measured = measure(*rig, seconds);
+  if (!measured) return pass(measured);
+  const fs::path recorded = scratch->path() / "rec/bench";
+  const auto contents = contents_of(recorded);
+  if (!contents) return pass(contents);
+  measured->json_lines_cores = json_lines_cores(recorded, scratch->path() / "lines", seconds);
+  report_recording(report, *measured, *contents, seconds);
   return {};
 }
 

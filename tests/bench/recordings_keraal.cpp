@@ -1,4 +1,4 @@
-#include "tests/bench/recordings_keraal.h"
+#include "tests/bench/recordings.h"
 
 #include <algorithm>
 #include <array>

@@ -13,8 +13,9 @@ struct RegistrationCase {
   Setting setting;
   std::vector<int> lengths;  ///< [s]; the first so many seconds of the longest.
   std::vector<RegistrationMethod> beside;
-  bool corrected = false;  ///< Stamps corrected as the server does it.
-  bool last_only = false;  ///< Score the last sensor alone.
+  bool corrected = false;    ///< Stamps corrected as the server does it.
+  bool last_only = false;    ///< Score the last sensor alone.
+  double table1 = kNoRatio;  ///< What the paper has for such a pair [mm].
   std::size_t draws = 20;
 };
 
@@ -32,8 +33,9 @@ struct MethodScores {
 [[nodiscard]] std::vector<std::vector<MethodScores>> run_case(const RegistrationCase& each,
                                                               std::uint64_t first_seed);
 
-/// The rows of one length.
-void report_case(Report& report, const std::string& name, const std::vector<MethodScores>& scores);
+/// The rows of one length; `table1` [mm] stands beside the positions where it is a number.
+void report_case(Report& report, const std::string& name, const std::vector<MethodScores>& scores,
+                 double table1 = kNoRatio);
 
 [[nodiscard]] double lost_percent(const std::vector<Score>& draws);
 [[nodiscard]] double refused_percent(const std::vector<Score>& draws);

@@ -8,6 +8,7 @@
 
 #include "common/http/asio.h"
 #include "common/http/client.h"
+#include "tests/support/free_port.h"
 
 namespace chorus::bench {
 namespace {
@@ -103,7 +104,7 @@ Result<Rig> start_rig(const SystemCase& asked) {
   Rig rig;
   std::string list;
   for (int i = 0; i < kSystemSensors; ++i) {
-    const std::uint16_t port = unused_port();
+    const std::uint16_t port = testing::free_port();
     const std::string id = "s" + std::to_string(i + 1);
     auto sensor = start_sensor(asked, i, port);
     if (!sensor) return pass(sensor);
@@ -112,7 +113,7 @@ Result<Rig> start_rig(const SystemCase& asked) {
     list += (list.empty() ? "" : ",") + std::string(R"({"id":")") + id +
             R"(","url":"http://127.0.0.1:)" + std::to_string(port) + "/\"}";
   }
-  rig.port = unused_port();
+  rig.port = testing::free_port();
   auto fusion = ChildProcess::start(
       "chorus-fusion", {"--config", "deploy/config/fusion.json", "--set",
                         "http.port=" + std::to_string(rig.port), "--set", "sensors=[" + list + "]",

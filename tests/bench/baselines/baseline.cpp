@@ -13,7 +13,7 @@ std::span<const Baseline> all() {
       Baseline{"best-skeleton", best_skeleton},
       Baseline{"joint-counting", joint_counting},
       Baseline{"substitution", substitution},
-      Baseline{"mean", [] { return product(fusion::Method::Mean); }},
+      Baseline{"flip-fixed-mean", [] { return product(fusion::Method::Mean); }},
       Baseline{"tracked-mean", tracked_mean},
       Baseline{"otto", [] { return product(fusion::Method::Otto); }},
       Baseline{"otto-kalman", otto_kalman},

@@ -1,8 +1,9 @@
 // What else one could do with the views of one person: the methods our fusion is held against.
 //
 // All of them get the same views as ours: the same alignment, registration, facing and association
-// (pipeline::perceive).  Otto's mean, the plain mean and the heaviest view are the product's own
-// methods; only what the product does not have is written here.
+// (pipeline::perceive), so left and right are put right for all of them: the mean is called
+// flip-fixed-mean for that.  Otto's mean, the plain mean and the heaviest view are the product's
+// own methods; only what the product does not have is written here.
 #pragma once
 
 #include <functional>

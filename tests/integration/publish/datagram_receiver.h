@@ -12,13 +12,15 @@
 #include <string>
 #include <string_view>
 
+#include "tests/support/free_port.h"
+
 namespace chorus::publish::testing {
 
 class DatagramReceiver {
  public:
   /// `everywhere`: on all interfaces, as groups need it.
   explicit DatagramReceiver(bool everywhere = false) : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
-    sockaddr_in address = loopback(0);
+    sockaddr_in address = chorus::testing::loopback(0);
     if (everywhere) address.sin_addr.s_addr = htonl(INADDR_ANY);
     ::bind(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address);
     socklen_t size = sizeof address;
@@ -56,18 +58,10 @@ class DatagramReceiver {
   [[nodiscard]] std::uint16_t sender_port() const { return sender_port_; }
 
   void say(std::string_view bytes, std::uint16_t to, const char* host = "127.0.0.1") const {
-    sockaddr_in address = loopback(to);
+    sockaddr_in address = chorus::testing::loopback(to);
     ::inet_pton(AF_INET, host, &address.sin_addr);
     ::sendto(socket_, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&address),
              sizeof address);
-  }
-
-  static sockaddr_in loopback(std::uint16_t port) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    address.sin_port = htons(port);
-    return address;
   }
 
  private:
@@ -76,25 +70,6 @@ class DatagramReceiver {
   std::uint16_t sender_port_ = 0;
 };
 
-/// A port that nobody has now, below those that the kernel gives to others; never the same twice.
-[[nodiscard]] inline std::uint16_t free_port() {
-  constexpr int kFirst = 10'000;
-  constexpr int kCount = 6'000;  // tests in Python take the ones behind
-  static int offset = ::getpid() * 64 % kCount;
-  const auto is_free = [](int kind, std::uint16_t port) {
-    const int probe = ::socket(AF_INET, kind, 0);
-    const sockaddr_in address = DatagramReceiver::loopback(port);
-    const bool bound =
-        ::bind(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-    ::close(probe);
-    return bound;
-  };
-  for (int tried = 0; tried < kCount; ++tried) {
-    offset = (offset + 1) % kCount;
-    const auto port = static_cast<std::uint16_t>(kFirst + offset);
-    if (is_free(SOCK_STREAM, port) && is_free(SOCK_DGRAM, port)) return port;
-  }
-  return 0;
-}
+using chorus::testing::free_port;
 
 }  // namespace chorus::publish::testing

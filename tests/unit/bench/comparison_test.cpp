@@ -41,6 +41,31 @@ TEST(Comparison, WinsOnlyWhereStrictlyBetterOnTheSameDraw) {
   EXPECT_TRUE(std::isnan(comparison.won_percent("nobody")));
 }
 
+TEST(Comparison, WhereHigherIsBetterAFailedDrawIsTheLowest) {
+  Comparison comparison("crossing", "idf1", "%", Better::Higher);
+  for (const auto& [draw, value] : {std::pair{1, 90.0}, {2, 80.0}, {3, kNone}}) {
+    comparison.add(kOurs, static_cast<std::size_t>(draw), value);
+    comparison.add("icp", static_cast<std::size_t>(draw), 85.0);
+  }
+  const Spread ours = comparison.spread_of(kOurs);
+  EXPECT_DOUBLE_EQ(ours.median, 80.0);
+  EXPECT_DOUBLE_EQ(ours.high, 89.0);
+  EXPECT_EQ(ours.low, -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(ours.failed, 1u);
+  EXPECT_NEAR(comparison.won_percent("icp"), 100.0 / 3.0, 1e-9);
+}
+
+TEST(Comparison, ReportsWinsAsRowsOfTheirOwn) {
+  Report report({"registration", 1, false});
+  Comparison comparison = three_draws();
+  comparison.add("icp", 1, 4.0);
+  comparison.report_wins(report);
+  ASSERT_EQ(report.rows().size(), 1u);
+  EXPECT_EQ(report.rows()[0].metric, "win_percent");
+  EXPECT_EQ(report.rows()[0].baseline, "icp");
+  EXPECT_DOUBLE_EQ(report.rows()[0].value, 100.0);
+}
+
 TEST(Comparison, ReportsOneRowPerBaselineAndOursAloneWithoutAny) {
   Report report({"registration", 1, false});
   three_draws().report(report);

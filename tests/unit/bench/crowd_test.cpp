@@ -51,6 +51,47 @@ TEST(CrossingPeople, OfSeveralPairsDoNotWalkThroughEachOther) {
   }
 }
 
+TEST(CrossingPeople, PassAsCloselyAsAsked) {
+  EXPECT_NEAR(least_distance(crossing_people(2, 1, 0.3)), 0.3, 0.1);
+}
+
+TEST(RelayedPeople, EnterWhereTheLastOneLeftAndNeverMeet) {
+  const Timestamp begin = from_unix_ns(1'795'000'000'000'000'000);
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const auto people = relayed_people(seed, begin);
+    std::vector<Eigen::Vector2d> entered;
+    std::vector<Eigen::Vector2d> left;
+    for (double time = 0; time < 30; time += 0.01) {
+      const double now = seconds(begin.time_since_epoch()) + time;
+      int inside = 0;
+      for (std::size_t i = 0; i < people.size(); ++i) {
+        const Eigen::Vector2d place = neck_at(people[i], now);
+        if (place.norm() > kOutside) continue;
+        ++inside;
+        if (entered.size() == i) entered.push_back(place);
+        left.resize(entered.size());
+        left[i] = place;
+      }
+      EXPECT_LE(inside, 1) << seed << " " << time;
+    }
+    ASSERT_EQ(entered.size(), 3u) << seed;
+    EXPECT_LT((entered[1] - left[0]).norm(), 0.1) << seed;
+    EXPECT_LT((entered[2] - left[1]).norm(), 0.1) << seed;
+  }
+}
+
+TEST(Screen, HidesWhoCrossesBehindItFromEverySensor) {
+  for (const Eigen::Isometry3d& place : places_behind_screen()) {
+    const Eigen::Vector3d eye = place.translation();
+    const Eigen::Vector3d neck(0, 1.4, 0);
+    const double share = (screen().world_from_box.translation().x() - eye.x()) / -eye.x();
+    const Eigen::Vector3d through = eye + share * (neck - eye);
+    EXPECT_LT(std::abs(through.z()), screen().half.z());
+    EXPECT_LT(through.y(), 2.0 * screen().half.y());
+    EXPECT_GT((place.linear() * Eigen::Vector3d::UnitZ()).x(), 0.9);  // looks that way
+  }
+}
+
 TEST(CircledPerson, StandsInTheMiddleOfTheOthersWay) {
   const auto people = circled_person(1);
   ASSERT_EQ(people.size(), 2u);
