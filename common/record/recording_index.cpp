@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <sstream>
 #include <system_error>
 
 #include <nlohmann/json.hpp>
+
+#include "common/base/file.h"
 
 namespace chorus::record {
 namespace {
@@ -98,27 +98,15 @@ Result<void> write_index(const fs::path& folder, const RecordingReport& report) 
     json["files"].push_back(
         {{"name", file.name}, {"started", to_iso8601(file.started)}, {"bytes", file.bytes}});
   }
-  const fs::path path = folder / kIndexFile;
-  const fs::path partial = folder / (std::string(kIndexFile) + ".partial");
-  std::ofstream out(partial, std::ios::binary | std::ios::trunc);
-  out << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
-  out.close();
-  std::error_code error;
-  if (out) fs::rename(partial, path, error);
-  if (!out || error) return fail(ErrorCode::Io, path.string(), "the index cannot be written");
-  return {};
+  return replace_file(folder / kIndexFile,
+                      json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 Result<RecordingReport> read_index(const fs::path& folder) {
   const fs::path path = folder / kIndexFile;
-  std::error_code error;
-  const auto size = fs::file_size(path, error);
-  if (error) return fail(ErrorCode::NotFound, path.string(), error.message());
-  if (size > kMostIndexBytes) return fail(ErrorCode::TooLarge, path.string(), "this is no index");
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  const auto json = nlohmann::json::parse(text.str(), nullptr, false);
+  const auto text = read_file(path, kMostIndexBytes);
+  if (!text) return pass(text);
+  const auto json = nlohmann::json::parse(*text, nullptr, false);
   const bool usable = json.is_object() && time_at(json, "started");
   if (!usable) return fail(ErrorCode::Malformed, path.string(), "this is no index of a recording");
   RecordingReport report;

@@ -1,0 +1,57 @@
+#include "common/base/file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "tests/support/matchers.h"
+#include "tests/unit/record/temporary_folder.h"
+
+namespace chorus {
+namespace {
+
+namespace fs = std::filesystem;
+using chorus::testing::FailsWith;
+using chorus::testing::IsOk;
+using record::bytes_of;
+using record::TemporaryFolder;
+
+TEST(File, IsReadWholeWithinItsBound) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "a") << std::string(200'000, 'x');
+  EXPECT_EQ(read_file(folder / "a", 200'000).value().size(), 200'000u);
+  EXPECT_THAT(read_file(folder / "a", 199'999), FailsWith(ErrorCode::TooLarge));
+  EXPECT_THAT(read_file(folder / "none", 10), FailsWith(ErrorCode::NotFound));
+  EXPECT_THAT(read_file(folder / "", 10), FailsWith(ErrorCode::Io));
+  std::ofstream(folder / "empty") << "";
+  EXPECT_EQ(read_file(folder / "empty", 0).value(), "");
+}
+
+TEST(File, IsReplacedAtOnceAndKeepsItsRightsAndItsLinks) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "a") << "old";
+  fs::permissions(folder / "a", fs::perms::owner_read | fs::perms::owner_write);
+  fs::create_symlink(folder / "a", folder / "link");
+  ASSERT_THAT(replace_file(folder / "link", "new"), IsOk());
+  EXPECT_EQ(bytes_of(folder / "a"), "new");
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+  EXPECT_EQ(fs::status(folder / "a").permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_FALSE(fs::exists(folder / "a.partial"));
+}
+
+TEST(File, ThatCannotBeReplacedStaysAsItWas) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "a") << "old";
+  fs::create_directory(folder / "a.partial");
+  EXPECT_THAT(replace_file(folder / "a", "new"), FailsWith(ErrorCode::Io));
+  EXPECT_EQ(bytes_of(folder / "a"), "old");
+  EXPECT_THAT(replace_file(folder / "no/such", "new"), FailsWith(ErrorCode::Io));
+}
+
+TEST(File, DevicesAreWrittenToAndNotReplaced) {
+  ASSERT_THAT(replace_file("/dev/null", "gone"), IsOk());
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+}  // namespace
+}  // namespace chorus
