@@ -12,6 +12,7 @@ namespace chorus::exporters {
 namespace {
 
 constexpr std::size_t kBlock = 512;
+constexpr std::size_t kMostBlocks = 255;  // of parameters: their number is one byte
 constexpr std::size_t kMaxPersons = 100;
 constexpr std::size_t kLabelsPerParameter = 255;  // dimensions are bytes
 constexpr std::size_t kMostFrames = 65535;        // of a 16-bit word
@@ -219,6 +220,10 @@ Result<std::string> c3d_of(const Take& take) {
     return fail(ErrorCode::TooLarge, "C3D", "cannot name the joints of more than 100 persons.");
   // The length of the parameters does not hang on the number of the block after them.
   const std::size_t blocks = parameters_of(take, 0).size() / kBlock;
+  if (blocks > kMostBlocks)
+    return fail(ErrorCode::TooLarge, "C3D",
+                "has no room for the names of so many persons with such long ids; export some of "
+                "them: --person ID.");
   const std::size_t data_start = 2 + blocks;
   std::string bytes = header_of(take, data_start) + parameters_of(take, data_start);
   for (std::size_t f = 0; f < take.frames; ++f) {

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <map>
+#include <numeric>
+#include <optional>
 #include <string>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -25,6 +29,7 @@ constexpr double kLongestSeconds = 7 * 24 * 3600.0;
 struct Captured {
   std::string device;
   std::vector<motion::Motion> persons;
+  std::vector<std::uint64_t> ids;  ///< Of the persons.
   std::map<std::string, std::string> notes = {};
 };
 
@@ -35,12 +40,36 @@ std::string list_of(const std::vector<std::string>& labels) {
   return labels.size() > kShownLabels ? text + " ..." : text;
 }
 
+/// "P10" -> 10: what our own export calls a person.
+std::optional<std::uint64_t> person_named(std::string_view name) {
+  if (!name.starts_with('P')) return std::nullopt;
+  name.remove_prefix(1);
+  std::uint64_t id = 0;
+  const char* last = name.data() + name.size();
+  const auto [end, error] = std::from_chars(name.data(), last, id);
+  if (error != std::errc{} || end != last) return std::nullopt;
+  return id;
+}
+
+/// The ids in the names, if all have one of their own; else 1, 2, ... in the order of the file.
+std::vector<std::uint64_t> ids_of(const std::vector<motion::C3dSubject>& subjects) {
+  std::vector<std::uint64_t> ids;
+  for (const auto& subject : subjects) {
+    const auto id = person_named(subject.name);
+    if (id && std::find(ids.begin(), ids.end(), *id) == ids.end()) ids.push_back(*id);
+  }
+  if (ids.size() == subjects.size()) return ids;
+  ids.resize(subjects.size());
+  std::iota(ids.begin(), ids.end(), std::uint64_t{1});
+  return ids;
+}
+
 Result<Captured> captured_c3d(const std::string& bytes, const std::string& origin) {
   const auto c3d = motion::parse_c3d(bytes, origin);
   if (!c3d) return pass(c3d);
   auto found = motion::motion_from_c3d(*c3d);
   if (!found) return fail(found.error().code, origin, to_string(found.error()));
-  Captured out{"C3D (" + c3d->processor + ")", {}};
+  Captured out{"C3D (" + c3d->processor + ")", {}, ids_of(found->subjects)};
   for (auto& subject : found->subjects) out.persons.push_back(std::move(subject.motion));
   if (!found->unused_labels.empty())
     out.notes["labels"] =
@@ -54,7 +83,7 @@ Result<Captured> captured_bvh(const std::string& text, const std::string& origin
   if (!bvh) return pass(bvh);
   auto motion = motion::motion_from_bvh(*bvh);
   if (!motion) return fail(motion.error().code, origin, to_string(motion.error()));
-  return Captured{"BVH", {std::move(*motion)}};
+  return Captured{"BVH", {std::move(*motion)}, {1}};
 }
 
 Result<Captured> captured_mvnx(const std::string& text, const std::string& origin) {
@@ -62,7 +91,7 @@ Result<Captured> captured_mvnx(const std::string& text, const std::string& origi
   if (!mvnx) return pass(mvnx);
   auto motion = motion::motion_from_mvnx(*mvnx);
   if (!motion) return fail(motion.error().code, origin, to_string(motion.error()));
-  Captured out{"Xsens MVN (MVNX)", {std::move(*motion)}};
+  Captured out{"Xsens MVN (MVNX)", {std::move(*motion)}, {1}};
   if (!mvnx->sensors.empty())
     out.notes["sensors"] =
         fmt::format("orientations of {} inertial sensors are not kept", mvnx->sensors.size());
@@ -117,8 +146,8 @@ void add_frames(MotionRecording& out, const Captured& captured, const ImportOpti
     for (std::size_t p = 0; p < captured.persons.size(); ++p) {
       const Skeleton<WorldSpace>& body = captured.persons[p].frames[f];
       if (!anybody(body)) continue;
-      frame.bodies.push_back({BodyId{p + 1}, instant, as_seen(body)});
-      out.truth.push_back({f, body, p + 1});
+      frame.bodies.push_back({BodyId{captured.ids[p]}, instant, as_seen(body)});
+      out.truth.push_back({f, body, captured.ids[p]});
     }
     out.recording.frames.push_back(std::move(frame));
   }

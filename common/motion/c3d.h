@@ -47,7 +47,7 @@ struct C3dSubject {
 };
 
 struct C3dMotion {
-  std::vector<C3dSubject> subjects;
+  std::vector<C3dSubject> subjects;        ///< In the order in which the file names them.
   std::vector<std::string> unused_labels;  ///< Points that are no joint of ours.
 };
 

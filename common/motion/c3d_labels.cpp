@@ -4,6 +4,8 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "common/body/bones.h"
 #include "common/motion/c3d.h"
@@ -130,15 +132,18 @@ std::string labels_shown(const C3d& c3d) {
   return c3d.labels.size() > kShownLabels ? text + " ..." : text;
 }
 
-/// Points by subject and label.
-std::map<std::string, Labels> subjects_of(const C3d& c3d) {
-  std::map<std::string, Labels> subjects;
+/// Points by subject and label; the subjects in the order in which the file names them.
+std::vector<std::pair<std::string, Labels>> subjects_of(const C3d& c3d) {
+  std::vector<std::pair<std::string, Labels>> subjects;
+  std::map<std::string, std::size_t> known;
   for (std::size_t p = 0; p < c3d.labels.size(); ++p) {
     const std::string& label = c3d.labels[p];
     const std::size_t colon = label.find(':');
     const bool prefixed = colon != std::string::npos;
-    subjects[prefixed ? label.substr(0, colon) : ""].emplace(
-        prefixed ? label.substr(colon + 1) : label, p);
+    const std::string name = prefixed ? label.substr(0, colon) : "";
+    const auto [at, fresh] = known.emplace(name, subjects.size());
+    if (fresh) subjects.emplace_back(name, Labels{});
+    subjects[at->second].second.emplace(prefixed ? label.substr(colon + 1) : label, p);
   }
   return subjects;
 }

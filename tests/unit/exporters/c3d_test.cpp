@@ -181,6 +181,21 @@ TEST(C3dExport, AHundredPersonsStillFitTheirParameters) {
               FailsWith(ErrorCode::TooLarge));
 }
 
+TEST(C3dExport, IdsTooLongForTheParametersAreRefusedInsteadOfACorruptFile) {
+  Take take = take_of(std::vector(100, std::vector{asymmetric_person()}), 30);
+  for (std::size_t p = 0; p < take.persons.size(); ++p)
+    take.persons[p].person = PersonId{1'000'000'000'000'000'000 + p};
+  const auto refused = c3d_of(take);
+  ASSERT_THAT(refused, FailsWith(ErrorCode::TooLarge));
+  EXPECT_THAT(to_string(refused.error()), ::testing::HasSubstr("--person"));
+  take.persons.resize(60);
+  const auto bytes = c3d_of(take);
+  ASSERT_THAT(bytes, IsOk());
+  const auto read = motion::parse_c3d(*bytes, "crowd.c3d");
+  ASSERT_THAT(read, IsOk());
+  EXPECT_EQ(read->labels.back(), "P1000000000000000059:ThumbRight");
+}
+
 TEST(C3dExport, OurOwnReaderGivesTheSameJoints) {
   const Take take = two_frames();
   const auto read = motion::parse_c3d(c3d_of(take).value(), "two.c3d");

@@ -3,9 +3,12 @@
 
 #include <gmock/gmock.h>
 
+#include <set>
+
 #include "common/exporters/export_formats.h"
 #include "common/exporters/skeleton_fit.h"
 #include "common/importers/formats.h"
+#include "common/motion/c3d.h"
 #include "tests/support/matchers.h"
 #include "tests/unit/exporters/poses.h"
 #include "tests/unit/importers/import_files.h"
@@ -47,6 +50,46 @@ TEST(MotionFile, AnExportedC3dComesBackWithBothPersons) {
   for (const TruthFrame& truth : set->truth)
     ASSERT_THAT(truth.skeleton,
                 SkeletonNear(take.persons[truth.person - 1].poses[truth.index].skeleton, 1e-6));
+}
+
+std::set<std::uint64_t> persons_in(const ImportedSet& set) {
+  std::set<std::uint64_t> persons;
+  for (const TruthFrame& truth : set.truth) persons.insert(truth.person);
+  return persons;
+}
+
+TEST(MotionFile, PersonsOfOurOwnC3dKeepTheirIds) {
+  const ScratchFolder folder;
+  auto take = two_persons();
+  take.persons[0].person = PersonId{10};
+  take.persons[1].person = PersonId{2};
+  const auto bytes = exporters::exported(take, exporters::ExportFormat::C3d)->files[0].bytes;
+  const auto set = import_files(FileFormat::C3d, {folder.write("walk.c3d", bytes)});
+  ASSERT_THAT(set, IsOk());
+  EXPECT_EQ(persons_in(*set), (std::set<std::uint64_t>{2, 10}));
+  for (const TruthFrame& truth : set->truth)
+    ASSERT_THAT(
+        truth.skeleton,
+        SkeletonNear(take.persons[truth.person == 10 ? 0 : 1].poses[truth.index].skeleton, 1e-6));
+}
+
+TEST(MotionFile, OtherSubjectsAreNumberedInTheOrderOfTheFile) {
+  const ScratchFolder folder;
+  motion::C3dSpec spec;
+  for (const char* subject : {"Zoe:", "Adam:"}) {
+    for (const char* label : {"LHJC", "RHJC", "LKJC"})
+      spec.labels.push_back(std::string(subject) + label);
+  }
+  const auto c3d = motion::parse_c3d(motion::C3dBuilder(spec).bytes(), "two.c3d");
+  ASSERT_THAT(c3d, IsOk());
+  const auto found = motion::motion_from_c3d(*c3d);
+  ASSERT_THAT(found, IsOk());
+  ASSERT_EQ(found->subjects.size(), 2u);
+  EXPECT_EQ(found->subjects[0].name, "Zoe");
+  const auto read = read_motion_file(folder.write("two.c3d", motion::C3dBuilder(spec).bytes()),
+                                     MotionFormat::C3d);
+  ASSERT_THAT(read, IsOk());
+  for (const TruthFrame& truth : read->truth) EXPECT_LE(truth.person, 2u);
 }
 
 TEST(MotionFile, AnExportedBvhComesBackInTheUnitItWasWrittenIn) {
