@@ -5,11 +5,13 @@
 #include <deque>
 #include <exception>
 #include <mutex>
+#include <random>
 #include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "common/base/file.h"
 #include "common/base/log.h"
 
 namespace chorus::record {
@@ -43,10 +45,24 @@ std::string file_name(const RecorderOptions& options, std::size_t part, Timestam
   return options.name + "-" + number + "-" + utc_name(now) + ".mcap";
 }
 
+/// "20261121T073000Z-1f0c93ab": two runs that begin in the same second differ, too.
+std::string run_id(Timestamp now) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::random_device random;
+  std::string id = utc_name(now) + "-";
+  for (int i = 0; i < 8; ++i) id += kDigits[random() % kDigits.size()];
+  return id;
+}
+
+RecorderOptions identified(RecorderOptions options) {
+  if (options.id.empty()) options.id = run_id(options.clock->now());
+  return options;
+}
+
 }  // namespace
 
 struct Recorder::Impl {
-  explicit Impl(RecorderOptions o) : options(std::move(o)) {}
+  explicit Impl(RecorderOptions o) : options(identified(std::move(o))) {}
   ~Impl() {
     ask_to_stop();
     if (thread.joinable()) thread.join();
@@ -77,6 +93,7 @@ struct Recorder::Impl {
   std::optional<SessionWriter> writer;
   std::optional<PlacesChanged> places;  ///< Each file begins with them.
   Timestamp file_started;
+  bool index_lost = false;
   std::chrono::steady_clock::time_point rested = std::chrono::steady_clock::now();
 
   mutable std::mutex mutex;  ///< Guards what follows.
@@ -103,6 +120,7 @@ Result<void> Recorder::Impl::begin() {
                   "the folder cannot be made: " + error.message());
     }
     if (!fresh) return fail(ErrorCode::Conflict, options.folder.string(), "it exists already");
+    sync_folder(options.folder.parent_path());
   }
   auto ok = enough_space(place, options.limits.min_free_bytes);
   if (ok) ok = next_file();
@@ -122,11 +140,12 @@ Result<void> Recorder::Impl::next_file() {
   const fs::path path =
       rotates() ? options.folder / file_name(options, part, file_started) : options.file;
   SessionHead head = options.head;
-  head.metadata["recording"] = options.name;
+  head.metadata["recording"] = options.id;
   head.metadata["part"] = std::to_string(part);
   auto opened = SessionWriter::create(path, head);
   if (!opened) return pass(opened);
   writer.emplace(std::move(*opened));
+  sync_folder(path.parent_path());
   {
     const std::scoped_lock lock(mutex);
     report.files.push_back({path.filename().string(), file_started, writer->bytes()});
@@ -148,7 +167,17 @@ void Recorder::Impl::store_index() {
     const std::scoped_lock lock(mutex);
     now = report;
   }
-  (void)write_index(options.folder, now);  // the recording itself is worth more than its index
+  if (now.state != RecordingState::Failed) now.reason.clear();  // what ails the index heals with it
+  const auto stored = write_index(options.folder, now);
+  // The recording itself is worth more than its index: it goes on.
+  if (!stored && !index_lost) {
+    log::error("the recording's index is not written; without it a restart forgets the recording",
+               {{"name", options.name}, {"reason", to_string(stored.error())}});
+  }
+  index_lost = !stored;
+  const std::scoped_lock lock(mutex);
+  if (report.state != RecordingState::Failed)
+    report.reason = stored ? std::string{} : to_string(stored.error());
 }
 
 std::vector<RecordedEvent> Recorder::Impl::take() {
@@ -178,12 +207,14 @@ Result<void> Recorder::Impl::write(const RecordedEvent& event) {
   return {};
 }
 
-/// Once a second: nothing stays in memory for longer, and the disk is not filled to its brim.
+/// Once a second: nothing stays in memory for longer, the disk has it for certain, and is not
+/// filled to its brim.
 Result<void> Recorder::Impl::rest() {
   const auto now = std::chrono::steady_clock::now();
   if (now - rested < kRest) return {};
   rested = now;
   if (auto ok = writer->flush(); !ok) return ok;
+  if (auto ok = writer->sync(); !ok) return ok;
   note_size();
   store_index();
   return enough_space(rotates() ? options.folder : options.file.parent_path(),
@@ -284,19 +315,6 @@ bool Recorder::wait(std::chrono::milliseconds patience) {
 RecordingReport Recorder::report() const {
   const std::scoped_lock lock(impl_->mutex);
   return impl_->report;
-}
-
-Result<std::vector<fs::path>> recording_files(const fs::path& path) {
-  std::error_code error;
-  if (!fs::is_directory(path, error)) return std::vector<fs::path>{path};
-  std::vector<fs::path> files;
-  for (fs::directory_iterator it(path, error), end; !error && it != end; it.increment(error)) {
-    if (it->path().extension() == ".mcap") files.push_back(it->path());
-  }
-  if (error) return fail(ErrorCode::Io, path.string(), error.message());
-  if (files.empty()) return fail(ErrorCode::NotFound, path.string(), "holds no .mcap recording");
-  std::sort(files.begin(), files.end());
-  return files;
 }
 
 }  // namespace chorus::record

@@ -29,6 +29,8 @@ struct RecorderLimits {
 
 struct RecorderOptions {
   std::string name;
+  /// Of this run, in every file of it, so that no two runs are taken for one.  Empty: made up.
+  std::string id = {};
   /// A new folder for the files and their index.json ...
   std::filesystem::path folder = {};
   /// ... or one file, which is not rotated and has no index.
@@ -62,9 +64,5 @@ class Recorder {
   explicit Recorder(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
-
-/// Files of a recording: the file itself, or the .mcap files of a folder in order of their names.
-[[nodiscard]] Result<std::vector<std::filesystem::path>> recording_files(
-    const std::filesystem::path& path);
 
 }  // namespace chorus::record

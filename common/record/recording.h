@@ -42,8 +42,6 @@ struct WriterOptions {
   Duration chunk_duration =
       std::chrono::seconds(1);  ///< at this span of log time: what a crash can lose.
   std::string library = "chorus";
-  bool sync =
-      false;  ///< Also wait for the disk after each chunk: survives a power cut, not only a crash.
 };
 
 class RecordingWriter {
@@ -64,9 +62,11 @@ class RecordingWriter {
                                             const std::map<std::string, std::string>& values);
   /// Closes the open chunk and hands it to the operating system, for whoever falls silent.
   [[nodiscard]] Result<void> flush();
+  /// Waits until the disk has what was flushed: that survives a power cut, not only a crash.
+  [[nodiscard]] Result<void> sync();
   /// In the file, without the open chunk.
   [[nodiscard]] std::uint64_t bytes() const;
-  /// Writes the last chunk, the summary and the footer.
+  /// Writes the last chunk, the summary and the footer, and waits for the disk.
   [[nodiscard]] Result<void> close();
 
  private:

@@ -67,6 +67,7 @@ struct RecordingWriter::Impl {
   bool closed = false;
   std::optional<Error> failure;  ///< The first IO error; nothing is written after it.
   std::uint64_t offset = 0;      ///< Bytes written so far.
+  std::uint64_t synced = 0;      ///< Of them, those the disk has for certain.
   std::uint32_t crc = 0;         ///< Over all of them.
 
   std::map<std::pair<std::string, std::string>, std::uint16_t> schema_ids;
@@ -99,6 +100,13 @@ struct RecordingWriter::Impl {
       if (count < 0) return fail_with("write");
       bytes.remove_prefix(static_cast<std::size_t>(count));
     }
+    return {};
+  }
+
+  Result<void> sync() {
+    if (synced == offset) return {};
+    if (::fdatasync(file) != 0) return fail_with("sync");
+    synced = offset;
     return {};
   }
 
@@ -164,9 +172,7 @@ Result<void> RecordingWriter::Impl::close_chunk() {
   entry.u64(packed.size()).u64(chunk.records.size());
   chunk_indexes.push_back(mcap::record(Op::ChunkIndex, entry.bytes()));
   chunk = {};
-  if (auto ok = put(body + indexes); !ok) return ok;
-  if (options.sync && ::fdatasync(file) != 0) return fail_with("sync");
-  return {};
+  return put(body + indexes);
 }
 
 std::string RecordingWriter::Impl::statistics() const {
@@ -319,6 +325,11 @@ Result<void> RecordingWriter::flush() {
   return impl_->close_chunk();
 }
 
+Result<void> RecordingWriter::sync() {
+  if (auto ok = impl_->usable(); !ok) return ok;
+  return impl_->sync();
+}
+
 std::uint64_t RecordingWriter::bytes() const { return impl_->offset; }
 
 Result<void> RecordingWriter::close() {
@@ -329,7 +340,7 @@ Result<void> RecordingWriter::close() {
   const std::string data_end = ByteWriter().u32(impl_->crc).bytes();
   if (auto ok = impl_->put(mcap::record(Op::DataEnd, data_end)); !ok) return ok;
   if (auto ok = impl_->write_summary(); !ok) return ok;
-  if (impl_->options.sync && ::fdatasync(impl_->file) != 0) return impl_->fail_with("sync");
+  if (auto ok = impl_->sync(); !ok) return ok;
   const int file = std::exchange(impl_->file, -1);
   if (::close(file) != 0) return impl_->fail_with("close");
   return {};

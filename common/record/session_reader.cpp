@@ -1,5 +1,6 @@
 #include "common/record/session_reader.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <optional>
@@ -15,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::string_view kFusedTopic = "/frame";
 constexpr std::string_view kSensorsPrefix = "/sensors/";
 
 Result<FloorPlane> read_floor(const std::string& text) {
@@ -86,18 +88,26 @@ class Sorting {
   /// The file being read.
   struct Source {
     fs::path file;
-    std::string recording;       ///< Its name, when it is one of several files.
+    std::string recording;       ///< The run it was recorded in, when that may have several files.
+    std::string part;            ///< Which of them it is.
     FrameRecording description;  ///< What its metadata says of one sensor.
     bool single = false;         ///< The metadata names a sensor: /frame is its own.
   };
-  struct Stream {
-    FrameRecording recording;
+  /// Which files may follow each other: those of one recording, each part once.
+  struct Line {
+    std::string recording;
+    std::set<std::string> parts;
     std::vector<fs::path> files;
     std::size_t newest = 0;  ///< Number of the last of them.
-    std::string part_of;     ///< Name of the recording that its files belong to.
+  };
+  struct Stream {
+    FrameRecording recording;
+    Line line;
     std::optional<FloorPlane> floor;
     std::optional<Duration> shift;  ///< None: the times are ours already.
     std::size_t left_out = 0;
+    std::size_t kept_before = 0;          ///< Frames there were when this file began.
+    std::optional<Timestamp> newest_out;  ///< Of the frames of this file that were left out.
   };
 
   void describe(const Recording& recording);
@@ -106,19 +116,22 @@ class Sorting {
   Result<void> take_frame(const Message& message, const Topic& topic);
   Result<void> append(Stream& stream, SensorFrame frame) const;
   Result<Stream*> stream_of(const SensorId& sensor);
+  [[nodiscard]] bool begins_or_follows(Line& line) const;
+  [[nodiscard]] Result<void> check_order(const Stream& stream) const;
   [[nodiscard]] std::string where() const { return source_.file.string(); }
 
   const SessionQuery& query_;
   Source source_;
   std::size_t files_ = 0;   ///< Read so far, this one included.
   std::size_t frames_ = 0;  ///< Seen so far, on all topics.
-  std::vector<std::string> damage_;
   std::map<SensorId, Stream> streams_;
+  Line fused_;
   Session out_;
 };
 
 void Sorting::describe(const Recording& recording) {
-  damage_.insert(damage_.end(), recording.notes.begin(), recording.notes.end());
+  for (const std::string& note : recording.notes)
+    out_.damage.push_back(source_.file.filename().string() + ": " + note);
   for (const Channel& channel : recording.channels) {
     if (const auto topic = topic_of(channel.topic); topic && topic->sensor)
       out_.cell.insert(*topic->sensor);
@@ -127,8 +140,25 @@ void Sorting::describe(const Recording& recording) {
   if (found == recording.metadata.end()) return;
   read_metadata(found->second, source_.description);
   source_.single = !source_.description.sensor.str().empty();
-  const auto name = found->second.find("recording");
-  if (name != found->second.end()) source_.recording = name->second;
+  const auto said = [&](const char* key) {
+    const auto value = found->second.find(key);
+    return value == found->second.end() ? std::string{} : value->second;
+  };
+  source_.recording = said("recording");
+  source_.part = said("part");
+}
+
+/// False: this file is of another recording, or the same part once more.
+bool Sorting::begins_or_follows(Line& line) const {
+  if (line.newest == files_) return true;  // a file named twice is two files
+  if (line.files.empty()) line.recording = source_.recording;
+  const bool follows = !line.recording.empty() && line.recording == source_.recording &&
+                       (source_.part.empty() || !line.parts.contains(source_.part));
+  if (!line.files.empty() && !follows) return false;
+  line.parts.insert(source_.part);
+  line.files.push_back(source_.file);
+  line.newest = files_;
+  return true;
 }
 
 /// The stream, which this file begins or, as the next file of its recording, goes on with.
@@ -139,16 +169,16 @@ Result<Sorting::Stream*> Sorting::stream_of(const SensorId& sensor) {
     if (source_.single) stream.recording = source_.description;
     stream.recording.sensor = sensor;
     stream.floor = stream.recording.floor;
-    stream.part_of = source_.recording;
   }
-  if (!fresh && stream.newest == files_) return &stream;  // a file named twice is two files
-  if (!fresh && (stream.part_of.empty() || stream.part_of != source_.recording)) {
-    return fail(
-        ErrorCode::Conflict, where(),
-        "is a recording of sensor " + sensor.str() + ", and so is " + stream.files.back().string());
+  if (stream.line.newest == files_) return &stream;
+  if (!begins_or_follows(stream.line)) {
+    return fail(ErrorCode::Conflict, where(),
+                "is a recording of sensor " + sensor.str() + ", and so is " +
+                    stream.line.files.back().string() +
+                    "; they are not parts of one recording: name one of them");
   }
-  stream.files.push_back(source_.file);
-  stream.newest = files_;
+  stream.kept_before = stream.recording.frames.size();
+  stream.newest_out.reset();
   return &stream;
 }
 
@@ -167,6 +197,7 @@ Result<void> Sorting::append(Stream& stream, SensorFrame frame) const {
   }
   if (!query_.strict || stream.shift) {  // a clock that was corrected may step back
     ++stream.left_out;
+    stream.newest_out = std::max(stream.newest_out.value_or(frame.captured), frame.captured);
     return {};
   }
   const bool repeats = frame.captured == frames.back().captured;
@@ -188,6 +219,11 @@ Result<void> Sorting::take_frame(const Message& message, const Topic& topic) {
                     to_string(frame.error()));
   }
   if (maybe_fused && frame->space == resource::SpaceKind::World) {
+    if (!begins_or_follows(fused_)) {
+      return fail(ErrorCode::Conflict, where(),
+                  "holds fused frames, and so does " + fused_.files.back().string() +
+                      "; they are not parts of one recording: name one of them");
+    }
     out_.fused.push_back(std::move(*frame));
     return {};
   }
@@ -229,14 +265,29 @@ Result<void> Sorting::take(const Message& message) {
 }
 
 Result<void> Sorting::add(Recording recording, const fs::path& file) {
-  source_ = {file, {}, {}, false};
+  source_ = {file, {}, {}, {}, false};
   ++files_;
   describe(recording);
   for (Message& message : recording.messages) {
     if (auto ok = take(message); !ok) return ok;
     std::string().swap(message.data);  // the frame read is smaller than its text
   }
+  for (const auto& [sensor, stream] : streams_) {
+    if (auto ok = check_order(stream); !ok) return ok;
+  }
   return {};
+}
+
+/// A part of which nothing could be used is no part of what came before, whatever it says.
+Result<void> Sorting::check_order(const Stream& stream) const {
+  const auto& frames = stream.recording.frames;
+  const bool unused = stream.line.newest == files_ && stream.line.files.size() > 1 &&
+                      frames.size() == stream.kept_before && stream.newest_out;
+  if (!unused || frames.empty() || *stream.newest_out >= frames.back().captured) return {};
+  return fail(
+      ErrorCode::Conflict, where(),
+      "all its frames of sensor " + stream.recording.sensor.str() + " are older than the end of " +
+          stream.line.files[stream.line.files.size() - 2].string() + "; fuse the two one by one");
 }
 
 Session Sorting::finish() {
@@ -246,13 +297,13 @@ Session Sorting::finish() {
   }
   for (auto& [sensor, stream] : streams_) {
     auto& notes = stream.recording.notes;
-    for (std::size_t i = 0; i < damage_.size(); ++i)
-      notes["damage." + std::to_string(i + 1)] = damage_[i];
+    for (std::size_t i = 0; i < out_.damage.size(); ++i)
+      notes["damage." + std::to_string(i + 1)] = out_.damage[i];
     if (stream.left_out > 0)
       notes["left_out"] =
           std::to_string(stream.left_out) + " frames that go back in time or out of it";
     out_.sensors.push_back(std::move(stream.recording));
-    out_.files[sensor] = std::move(stream.files);
+    out_.files[sensor] = std::move(stream.line.files);
   }
   return std::move(out_);
 }
@@ -263,11 +314,12 @@ Result<Session> read_session(const std::vector<fs::path>& files, const SessionQu
   ReadLimits limits = query.limits;
   const std::string own = std::string(kSensorsPrefix) + query.only.str() + "/";
   limits.wanted = [&query, &own](std::string_view topic) {
+    if (!query.raw) return topic == kFusedTopic;
     const bool others = !query.only.str().empty() && topic.starts_with(kSensorsPrefix);
     return !is_scene(topic) && (!others || topic.starts_with(own));
   };
   Sorting sorting(query);
-  for (const fs::path& file : files) {
+  for (const fs::path& file : in_log_order(files)) {
     auto recording = read_recording(file, limits);
     if (!recording) return pass(recording);
     if (auto ok = sorting.add(std::move(*recording), file); !ok) return pass(ok);

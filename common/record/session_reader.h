@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "common/record/frame_recording.h"
-#include "common/record/recorder.h"
+#include "common/record/recording_files.h"
+#include "common/resource/frame_resource.h"
 
 namespace chorus::record {
 
@@ -22,6 +23,7 @@ struct Session {
   /// Every registration of the recording as JSON, oldest first.
   std::vector<std::string> registrations;
   std::vector<resource::FrameResource> fused;  ///< Only when asked for.
+  std::vector<std::string> damage;             ///< Lost parts, "FILE: what and why".
 };
 
 struct SessionQuery {
@@ -31,13 +33,15 @@ struct SessionQuery {
   /// Strict: frames that repeat or go back in time are Malformed.  Else they are left out and
   /// noted, as a fusion server does.
   bool strict = false;
+  bool raw = true;  ///< False: of a cell, nothing but the fused frames.
 };
 
-/// `path`: one file, or a folder with all the files in it.
+/// `path`: one file, or a folder with all the files in it, read in the order they were written.
 [[nodiscard]] Result<Session> read_session(const std::filesystem::path& path,
                                            const SessionQuery& query = {});
-/// Several files as one: those of one recording follow each other; files of different recordings
-/// must be of different sensors (Conflict).
+/// Several files as one, in whatever order: those of one recording follow each other by time;
+/// files of different recordings must be of different sensors, and only one of them may hold fused
+/// frames where those are asked for (Conflict).
 [[nodiscard]] Result<Session> read_session(const std::vector<std::filesystem::path>& files,
                                            const SessionQuery& query = {});
 

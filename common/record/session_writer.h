@@ -68,6 +68,8 @@ class SessionWriter {
   [[nodiscard]] Result<void> write(const PlacesChanged& places);
   /// Hands the open chunk to the operating system.
   [[nodiscard]] Result<void> flush() { return writer_.flush(); }
+  /// Waits until the disk has what was flushed.
+  [[nodiscard]] Result<void> sync() { return writer_.sync(); }
   [[nodiscard]] Result<void> close() { return writer_.close(); }
 
   [[nodiscard]] std::uint64_t bytes() const { return writer_.bytes(); }

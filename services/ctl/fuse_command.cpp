@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "common/record/session_writer.h"
 #include "common/resource/frame_resource.h"
 #include "fusion-server/pipeline/offline.h"
 #include "fusion-server/publish/registration_file.h"

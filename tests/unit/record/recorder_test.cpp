@@ -3,15 +3,69 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
+#include <condition_variable>
 #include <csignal>
 #include <future>
 #include <limits>
+#include <map>
+#include <mutex>
 #include <random>
 
 #include "common/record/session_reader.h"
 #include "tests/support/builders.h"
 #include "tests/unit/record/temporary_folder.h"
+
+namespace chorus::record {
+namespace {
+
+/// Which files this process has asked the disk to keep.
+class Disk {
+ public:
+  static Disk& of_test() {
+    static Disk disk;
+    return disk;
+  }
+
+  void note(int file) {
+    std::error_code error;
+    const auto link = "/proc/self/fd/" + std::to_string(file);
+    const std::string path = std::filesystem::read_symlink(link, error).string();
+    const std::scoped_lock lock(mutex_);
+    ++syncs_[path];
+    noted_.notify_all();
+  }
+
+  std::size_t syncs_of(const std::filesystem::path& path) {
+    const std::scoped_lock lock(mutex_);
+    return syncs_[path.string()];
+  }
+
+  bool waits_for_sync_of(const std::string& path) {
+    std::unique_lock lock(mutex_);
+    return noted_.wait_for(lock, std::chrono::seconds(20), [&] { return syncs_[path] > 0; });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable noted_;
+  std::map<std::string, std::size_t> syncs_;
+};
+
+}  // namespace
+}  // namespace chorus::record
+
+// In place of the C library's: what is asked for is noted, then done.
+extern "C" int fdatasync(int file) {
+  chorus::record::Disk::of_test().note(file);
+  return static_cast<int>(::syscall(SYS_fdatasync, file));
+}
+extern "C" int fsync(int file) {
+  chorus::record::Disk::of_test().note(file);
+  return static_cast<int>(::syscall(SYS_fsync, file));
+}
 
 namespace chorus::record {
 namespace {
@@ -132,6 +186,51 @@ TEST(Recorder, BeginsANewFileWhenTheTimeIsUpAndEachStandsAlone) {
     ASSERT_TRUE(session);
     EXPECT_THAT(session->registrations, SizeIs(1)) << file.name;
   }
+}
+
+TEST(Recorder, TwoRunsAreNeverTakenForOne) {
+  const TemporaryFolder folder;
+  RecorderOptions options = options_in(folder);
+  options.folder.clear();
+  options.clock = std::make_shared<FakeClock>(kStart);  // in the very same instant
+  for (const char* name : {"b.mcap", "a.mcap"}) {
+    options.file = folder / name;
+    auto recorder = Recorder::start(options);
+    ASSERT_TRUE(recorder);
+    for (int i = 0; i < 5; ++i) (*recorder)->offer(raw(i + (name[0] == 'a' ? 100 : 0)));
+  }
+  const auto both = read_session({folder / "a.mcap", folder / "b.mcap"});
+  ASSERT_FALSE(both);
+  EXPECT_EQ(both.error().code, ErrorCode::Conflict);
+  EXPECT_TRUE(read_session(folder / "a.mcap"));
+}
+
+TEST(Recorder, WaitsForTheDiskOnceASecondAndAtTheEnd) {
+  const TemporaryFolder folder;
+  auto recorder = Recorder::start(options_in(folder));
+  ASSERT_TRUE(recorder);
+  (*recorder)->offer(raw(0));
+  const std::string file = (folder / "recordings/rec" / (*recorder)->report().files[0].name);
+  EXPECT_TRUE(Disk::of_test().waits_for_sync_of(file)) << "while it goes on";
+  (*recorder)->offer(raw(1));
+  const std::size_t before = Disk::of_test().syncs_of(file);
+  (void)stopped(**recorder);
+  EXPECT_GT(Disk::of_test().syncs_of(file), before);
+  EXPECT_GT(Disk::of_test().syncs_of(folder / "recordings/rec"), 0u) << "the file's name";
+  EXPECT_GT(Disk::of_test().syncs_of(folder / "recordings"), 0u) << "the folder's";
+}
+
+TEST(Recorder, AnIndexThatCannotBeWrittenIsReported) {
+  const TemporaryFolder folder;
+  auto recorder = Recorder::start(options_in(folder));
+  ASSERT_TRUE(recorder);
+  std::filesystem::remove(folder / "recordings/rec/index.json");
+  std::filesystem::create_directory(folder / "recordings/rec/index.json");
+  (*recorder)->offer(raw(0));
+  const RecordingReport report = stopped(**recorder);
+  EXPECT_EQ(report.state, RecordingState::Finished) << "the frames are worth more";
+  EXPECT_EQ(report.frames, 1u);
+  EXPECT_THAT(report.reason, HasSubstr("index.json"));
 }
 
 TEST(Recorder, BeginsANewFileWhenOneIsFull) {

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/record/session_writer.h"
 #include "tests/support/builders.h"
 #include "tests/unit/record/temporary_folder.h"
 
@@ -202,6 +203,92 @@ TEST(Session, AFolderIsReadAsOneRecording) {
   const auto mixed = read_session(folder / "rec");
   ASSERT_FALSE(mixed) << "two recordings of one sensor are no recording";
   EXPECT_EQ(mixed.error().code, ErrorCode::Conflict);
+}
+
+struct PartFile {
+  std::string name;
+  std::string recording;
+  std::string part;
+  int first = 0;  ///< Frame it begins with; it holds ten.
+};
+
+void write_part(const std::filesystem::path& folder, const PartFile& part) {
+  std::filesystem::create_directory(folder);
+  auto writer = SessionWriter::create(
+      folder / part.name, {{{"recording", part.recording}, {"part", part.part}}, false});
+  ASSERT_TRUE(writer);
+  for (int i = part.first; i < part.first + 10; ++i) {
+    ASSERT_TRUE(writer->write(raw("s1", i)));
+    ASSERT_TRUE(writer->write(fused(i)));
+  }
+  ASSERT_TRUE(writer->close());
+}
+
+TEST(Session, PartsFollowEachOtherByTimeWhateverTheyAreCalledNow) {
+  const TemporaryFolder folder;
+  write_part(folder / "rec", {"z.mcap", "r", "1", 0});
+  write_part(folder / "rec", {"b.mcap", "r", "2", 10});
+  write_part(folder / "rec", {"a.mcap", "r", "3", 20});
+  const auto session = read_session(folder / "rec", {.fused = true});
+  ASSERT_TRUE(session) << to_string(session.error());
+  EXPECT_THAT(session->sensors.at(0).frames, SizeIs(30));
+  EXPECT_EQ(session->sensors[0].notes.count("left_out"), 0u);
+  EXPECT_THAT(session->fused, SizeIs(30));
+  EXPECT_EQ(session->files.begin()->second.front().filename(), "z.mcap");
+}
+
+TEST(Session, TheSamePartTwiceIsNoRecording) {
+  const TemporaryFolder folder;
+  write_part(folder / "rec", {"a.mcap", "r", "1", 0});
+  write_part(folder / "rec", {"copy.mcap", "r", "1", 0});
+  const auto session = read_session(folder / "rec");
+  ASSERT_FALSE(session);
+  EXPECT_EQ(session.error().code, ErrorCode::Conflict);
+  EXPECT_THAT(session.error().message, HasSubstr("a.mcap"));
+}
+
+TEST(Session, OfTwoRecordingsTheFusedFramesAreNotMixed) {
+  const TemporaryFolder folder;
+  write_part(folder / "rec", {"a.mcap", "r", "1", 0});
+  write_part(folder / "rec", {"b.mcap", "q", "1", 10});
+  SessionQuery query{.fused = true};
+  query.raw = false;
+  const auto both = read_session(folder / "rec", query);
+  ASSERT_FALSE(both);
+  EXPECT_EQ(both.error().code, ErrorCode::Conflict);
+  const auto one = read_session(folder / "rec/a.mcap", query);
+  ASSERT_TRUE(one);
+  EXPECT_THAT(one->fused, SizeIs(10));
+  EXPECT_THAT(one->sensors, SizeIs(0)) << "they were not asked for";
+}
+
+TEST(Session, APartThatIsWhollyEarlierIsAnErrorAndNotLeftOut) {
+  const TemporaryFolder folder;
+  write_part(folder / "rec", {"a.mcap", "r", "1", 100});
+  auto writer =
+      SessionWriter::create(folder / "rec/b.mcap", {{{"recording", "r"}, {"part", "2"}}, false});
+  for (int i = 0; i < 5; ++i) {
+    RawFrame old = raw("s1", i);
+    old.received = kStart + kFrameInterval * (200 + i);  // told late
+    ASSERT_TRUE(writer->write(old));
+  }
+  ASSERT_TRUE(writer->close());
+  const auto session = read_session(folder / "rec");
+  ASSERT_FALSE(session);
+  EXPECT_EQ(session.error().code, ErrorCode::Conflict);
+  EXPECT_THAT(to_string(session.error()), HasSubstr("b.mcap"));
+}
+
+TEST(Session, DamageNamesItsFile) {
+  const TemporaryFolder folder;
+  write_session(folder / "a.mcap");
+  const std::string bytes = bytes_of(folder / "a.mcap");
+  std::ofstream(folder / "a.mcap", std::ios::binary | std::ios::trunc)
+      << bytes.substr(0, bytes.size() - 40);
+  const auto session = read_session(folder / "a.mcap");
+  ASSERT_TRUE(session);
+  ASSERT_THAT(session->damage, SizeIs(1));
+  EXPECT_THAT(session->damage[0], HasSubstr("a.mcap: the end is missing"));
 }
 
 TEST(Session, NonsenseOnAKnownTopicIsNamed) {
