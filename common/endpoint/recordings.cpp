@@ -55,6 +55,13 @@ tl::unexpected<Error> wrong(std::string message) {
   return fail(ErrorCode::InvalidArgument, std::string(kWhere), std::move(message));
 }
 
+/// Why a recording did not start, without where this host keeps its files when that is no help.
+tl::unexpected<Error> refused(const Error& error, const std::string& name) {
+  if (error.code != ErrorCode::Conflict) return tl::unexpected<Error>(error);
+  return fail(ErrorCode::Conflict, std::string(kWhere) + "/" + name,
+              "there is a recording of this name already: choose another `name`");
+}
+
 /// One key of the body of a POST.
 Result<void> take(const std::string& key, const nlohmann::json& value, RecordingRequest& out) {
   if (key == "name" && value.is_string()) {
@@ -172,7 +179,9 @@ Result<RecordingReport> Recordings::start(const RecordingRequest& request) {
     }
   }
   record::RecorderOptions options;
-  options.name = request.name.empty() ? record::utc_name(options_.clock->now()) : request.name;
+  const std::string name =
+      request.name.empty() ? record::utc_name(options_.clock->now()) : request.name;
+  options.name = name;
   options.folder = fs::path(options_.config.folder) / options.name;
   options.head = options_.head;
   options.limits = options_.config.limits;
@@ -181,7 +190,7 @@ Result<RecordingReport> Recordings::start(const RecordingRequest& request) {
   auto recorder = record::Recorder::start(std::move(options));
   if (!recorder) {
     log::error("recording not started", {{"reason", to_string(recorder.error())}});
-    return pass(recorder);
+    return refused(recorder.error(), name);
   }
   const RecordingReport report = (*recorder)->report();
   log::info("recording", {{"name", report.name}});

@@ -53,7 +53,8 @@ TEST(RecordingRequest, SaysWhatIsWrong) {
   for (const char* body :
        {"[]", "{", R"({"name":"../x"})", R"({"name":5})", R"({"seconds":0})", R"({"seconds":"5"})",
         R"({"seconds":1e9})", R"({"raw":1})", R"({"nmae":"x"})", R"({"raw":false,"fused":false})",
-        R"({"name":""})", R"({"name":"a.mcap"})", R"({"name":"a","name":"b"})"}) {
+        R"({"name":""})", R"({"name":"a.mcap"})", R"({"name":"a","name":"b"})",
+        R"({"name":[[[[[[[[]]]]]]]]})"}) {
     const auto wrong = parse_recording_request(body, true);
     ASSERT_FALSE(wrong) << body;
     EXPECT_EQ(wrong.error().code, ErrorCode::InvalidArgument) << body;
@@ -84,6 +85,17 @@ TEST(Recordings, RunsOneAtATimeAndOnlyWhatWasAskedFor) {
   EXPECT_EQ(again.error().code, ErrorCode::Conflict);
   EXPECT_THAT(recordings.metrics_text(), HasSubstr("\nchorus_recording_frames_total 10\n"));
   EXPECT_THAT(recordings.metrics_text(), HasSubstr("\nchorus_recording_active 1\n"));
+}
+
+TEST(Recordings, ANameThatIsTakenAsksForAnotherAndDoesNotSayWhereFilesAre) {
+  const record::TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "rec/walk");
+  Recordings recordings(options_in((folder / "rec").string()));
+  const auto refused = recordings.start({"walk", Duration{0}, true, true});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::Conflict);
+  EXPECT_THAT(refused.error().message, HasSubstr("choose another `name`"));
+  EXPECT_THAT(to_string(refused.error()), Not(HasSubstr((folder / "rec").string())));
 }
 
 TEST(Recordings, AreOffWithoutAFolder) {
