@@ -45,31 +45,42 @@ exporters::ExportFormat format_of(const std::string& name) {
 }
 
 Result<std::vector<std::string>> write_files(const exporters::Exported& exported,
-                                             const std::string& out) {
+                                             const ExportArguments& arguments) {
+  const std::string& out = arguments.out;
   if (out == "-" && exported.files.size() > 1)
     return fail(ErrorCode::InvalidArgument, "standard output",
                 "can take one file; this format holds one person. Name one with --person.");
   std::vector<std::string> written;
   for (const exporters::ExportedFile& file : exported.files) {
     written.push_back(with_suffix(out, file.suffix));
+    if (auto ok = may_write(written.back(), {arguments.source}); !ok) return pass(ok);
     const auto done = write_text(written.back(), file.bytes);
     if (!done) return pass(done);
   }
   return written;
 }
 
-void report(const exporters::Take& take, const exporters::Exported& exported,
-            const std::vector<std::string>& written, bool as_json) {
+struct Done {
+  const exporters::Take& take;
+  const exporters::Exported& exported;
+  const std::vector<std::string>& notes;  ///< Of the source.
+  const std::vector<std::string>& written;
+};
+
+void report(const Done& done, bool as_json) {
+  const auto& [take, exported, notes, written] = done;
   if (as_json) {
     nlohmann::json persons = nlohmann::json::array();
     for (const auto& track : take.persons) persons.push_back(track.person.value);
     std::cerr << nlohmann::json{{"files", written},       {"frames", take.frames},
                                 {"rateHz", take.rate_hz}, {"start", to_iso8601(take.start)},
-                                {"persons", persons},     {"remarks", exported.remarks}}
+                                {"persons", persons},     {"remarks", exported.remarks},
+                                {"notes", notes}}
                      .dump(2)
               << '\n';
     return;
   }
+  for (const std::string& note : notes) std::cerr << "note: " << note << '\n';
   std::cerr << fmt::format("{} persons, {} frames at {:.6g} Hz from {}\n", take.persons.size(),
                            take.frames, take.rate_hz, to_iso8601(take.start));
   for (const std::string& remark : exported.remarks) std::cerr << remark << '\n';
@@ -79,23 +90,24 @@ void report(const exporters::Take& take, const exporters::Exported& exported,
 }
 
 Result<int> run_export(const ExportArguments& arguments) {
-  auto samples = read_fused_frames(
-      arguments.source, std::chrono::milliseconds(std::llround(arguments.seconds * 1e3)));
-  if (!samples) return pass(samples);
+  if (auto ok = may_write(arguments.out, {arguments.source}); !ok) return pass(ok);
+  auto source = read_fused_frames(arguments.source,
+                                  std::chrono::milliseconds(std::llround(arguments.seconds * 1e3)));
+  if (!source) return pass(source);
   exporters::TakeOptions options;
   options.rate_hz = arguments.rate_hz;
   options.max_gap = std::chrono::milliseconds(arguments.max_gap_ms);
   if (arguments.person) options.person = PersonId{*arguments.person};
-  const auto take = exporters::make_take(std::move(*samples), options);
+  const auto take = exporters::make_take(std::move(source->samples), options);
   if (!take) return pass(take);
   exporters::ExportOptions how;
   how.file_name = std::filesystem::path(arguments.out).filename().string();
   how.units_per_metre = arguments.unit == "m" ? 1.0 : 100.0;
   const auto exported = exporters::exported(*take, format_of(arguments.format), how);
   if (!exported) return pass(exported);
-  const auto written = write_files(*exported, arguments.out);
+  const auto written = write_files(*exported, arguments);
   if (!written) return pass(written);
-  report(*take, *exported, *written, arguments.json);
+  report({*take, *exported, source->notes, *written}, arguments.json);
   return kExitOk;
 }
 

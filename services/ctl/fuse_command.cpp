@@ -91,25 +91,37 @@ Result<void> write_fused(const std::string& file, const pipeline::OfflineResult&
   return writer->close();
 }
 
+/// What writing must not destroy: all that is read.
+Result<void> check_outputs(const FuseArguments& arguments,
+                           std::vector<std::filesystem::path> read) {
+  read.emplace_back(arguments.registration);
+  read.emplace_back(arguments.options.config);
+  if (auto ok = may_write(arguments.out, read); !ok) return ok;
+  return may_write(arguments.save_registration, read);
+}
+
 Result<void> write_result(const std::string& file, const pipeline::OfflineResult& result) {
   if (!file.ends_with(".mcap")) return write_text(file, ndjson_of(result.snapshots));
   const std::string partial = file + ".partial";
   std::error_code error;
   std::filesystem::remove(partial, error);
   auto ok = write_fused(partial, result);
+  if (ok) ok = may_write(file, {});  // made by somebody else meanwhile
   if (ok) std::filesystem::rename(partial, file, error);
   if (ok && error) ok = fail(ErrorCode::Io, file, error.message());
   if (!ok) std::filesystem::remove(partial, error);
   return ok;
 }
 
-nlohmann::json summary_of(const pipeline::OfflineResult& result, std::size_t sensors) {
+nlohmann::json summary_of(const pipeline::OfflineResult& result, std::size_t sensors,
+                          const std::vector<std::string>& notes) {
   const auto with_bodies = std::count_if(result.snapshots.begin(), result.snapshots.end(),
                                          [](const Snapshot& s) { return !s.bodies.empty(); });
   return {
       {"sensors", sensors},
       {"frames", result.snapshots.size()},
       {"framesWithBodies", with_bodies},
+      {"notes", notes},
       {"registration", nlohmann::json::parse(publish::write_registration(result.registration))}};
 }
 
@@ -130,8 +142,10 @@ Result<int> run_fuse(const FuseArguments& arguments) {
   if (!config) return pass(config);
   const auto files = find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
   if (!files) return pass(files);
-  auto session = read_recordings(*files);
+  if (auto ok = check_outputs(arguments, *files); !ok) return pass(ok);
+  auto session = read_recordings(*files, arguments.json ? nullptr : &std::cerr);
   if (!session) return pass(session);
+  const auto notes = notes_of(*session);
   const auto extrinsics = read_extrinsics(arguments, *session);
   if (!extrinsics) return pass(extrinsics);
   const auto tracks = tracks_of(std::move(*session));
@@ -144,7 +158,7 @@ Result<int> run_fuse(const FuseArguments& arguments) {
         write_text(arguments.save_registration, publish::write_registration(result->registration));
     if (!saved) return pass(saved);
   }
-  const nlohmann::json summary = summary_of(*result, tracks.size());
+  const nlohmann::json summary = summary_of(*result, tracks.size(), notes);
   print_summary(summary, arguments);
   // A file of empty frames is not what anybody asked for; the report says why.
   return summary["framesWithBodies"].get<std::size_t>() > 0 ? kExitOk : kExitFailed;

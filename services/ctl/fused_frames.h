@@ -13,12 +13,17 @@ namespace chorus::ctl {
 
 using FusedSamples = std::vector<exporters::FusedSample>;
 
+struct FusedFrames {
+  FusedSamples samples;
+  std::vector<std::string> notes;  ///< What is missing: damage, gaps, failures.
+};
+
 /// By the look of `source`: http://... is a fusion server (or anything with its /frame in world
 /// space), listened to for `listen`; "-" is NDJSON on standard input; a file that begins as MCAP,
 /// or a folder of .mcap, is a recording; any other file is NDJSON.  Frames in a sensor's own space
-/// are refused: they have to be fused first.
-[[nodiscard]] Result<FusedSamples> read_fused_frames(const std::string& source,
-                                                     std::chrono::milliseconds listen);
+/// are refused: they have to be fused first.  What a server has said is kept when it fails later.
+[[nodiscard]] Result<FusedFrames> read_fused_frames(const std::string& source,
+                                                    std::chrono::milliseconds listen);
 
 /// One /frame document a line; blank lines are fine.  `origin` names the text in messages.
 [[nodiscard]] Result<FusedSamples> read_fused_lines(std::istream& lines, const std::string& origin);

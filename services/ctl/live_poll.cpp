@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "services/ctl/service_client.h"
+
 namespace chorus::ctl {
 namespace {
 
@@ -9,15 +11,30 @@ constexpr int kOk = 200;
 constexpr std::chrono::seconds kAnswerWithin{8};  // the wait below and some network
 constexpr const char* kWait = "wait=5";
 constexpr std::chrono::milliseconds kAfterFailure{250};
-// A resource that cannot wait says 304 at once.
+// A resource that cannot wait says 304 at once, or has no ETag to wait with.
 constexpr std::chrono::milliseconds kAfterNothing{10};
 
 }  // namespace
 
-LivePoll::LivePoll(http::net::io_context& io, const http::Url& base, Options options,
-                   Deliver deliver)
+void StreamCount::take(std::uint64_t sequence) {
+  if (frames > 0 && sequence > last + 1) missed += sequence - last - 1;
+  last = sequence;
+  ++frames;
+}
+
+void StreamCount::fail(const Error& why) {
+  ++failed;
+  error = to_string(why);
+}
+
+void StreamCount::cannot_read(const Error& why) {
+  ++unreadable;
+  error = to_string(why);
+}
+
+LivePoll::LivePoll(http::net::io_context& io, const http::Url& base, Options options, Takers takers)
     : options_(std::move(options)),
-      deliver_(std::move(deliver)),
+      takers_(std::move(takers)),
       client_(io, base.host, base.port),
       timer_(io) {
   std::string prefix = base.target;
@@ -45,18 +62,24 @@ void LivePoll::ask() {
 }
 
 void LivePoll::take(const Result<http::ClientResponse>& answer) {
-  if (!answer) return ask_after(kAfterFailure);
-  answered_ = std::chrono::steady_clock::now();
-  if (answer->status == kOk) {
-    const auto etag = answer->headers.find("etag");
-    etag_ = etag == answer->headers.end() ? std::string() : etag->second;
-    deliver_(*answer);
-    if (stopped_) return;
+  if (answer) answered_ = std::chrono::steady_clock::now();
+  const bool failed = !answer || answer->status >= kFirstErrorStatus;
+  if (failed) {
+    takers_.failure(answer ? refusal_of(*answer, options_.target) : answer.error(),
+                    answer ? answer->status : 0);
   }
+  if (!failed && answer->status == kOk) deliver(*answer);
+  if (stopped_) return;
   if (options_.every.count() > 0) return ask_after(options_.every);
+  if (failed) return ask_after(kAfterFailure);
   if (answer->status == kOk && !etag_.empty()) return ask();
-  constexpr int kFirstError = 400;
-  ask_after(answer->status >= kFirstError ? kAfterFailure : kAfterNothing);
+  ask_after(kAfterNothing);
+}
+
+void LivePoll::deliver(const http::ClientResponse& answer) {
+  const auto etag = answer.headers.find("etag");
+  etag_ = etag == answer.headers.end() ? std::string() : etag->second;
+  takers_.answer(answer);
 }
 
 void LivePoll::ask_after(std::chrono::milliseconds pause) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -9,6 +10,20 @@
 #include "common/http/client.h"
 
 namespace chorus::ctl {
+
+/// What came of a resource whose answers are numbered frames.
+struct StreamCount {
+  std::uint64_t frames = 0;
+  std::uint64_t missed = 0;      ///< Gaps in the sequence.
+  std::uint64_t failed = 0;      ///< Requests without an answer, or refused.
+  std::uint64_t unreadable = 0;  ///< Answers that are no frame.
+  std::uint64_t last = 0;
+  std::string error;  ///< The last one.
+
+  void take(std::uint64_t sequence);
+  void fail(const Error& why);
+  void cannot_read(const Error& why);
+};
 
 class LivePoll {
  public:
@@ -18,10 +33,14 @@ class LivePoll {
     /// Not a long poll but asked anew so often; zero: long poll.
     std::chrono::milliseconds every{0};
   };
-  using Deliver = std::function<void(const http::ClientResponse&)>;
+  /// Both are called on the thread of `io`.
+  struct Takers {
+    std::function<void(const http::ClientResponse&)> answer;  ///< With status 200.
+    /// Status 0 is no answer at all; it is asked again all the same, a moment later.
+    std::function<void(const Error&, int status)> failure;
+  };
 
-  /// `deliver` gets answers with status 200, on the thread of `io`.  Failures are tried again.
-  LivePoll(http::net::io_context& io, const http::Url& base, Options options, Deliver deliver);
+  LivePoll(http::net::io_context& io, const http::Url& base, Options options, Takers takers);
 
   void start() { ask(); }
   void stop();
@@ -32,10 +51,11 @@ class LivePoll {
  private:
   void ask();
   void take(const Result<http::ClientResponse>& answer);
+  void deliver(const http::ClientResponse& answer);
   void ask_after(std::chrono::milliseconds pause);
 
   Options options_;
-  Deliver deliver_;
+  Takers takers_;
   http::AsyncClient client_;
   http::Timer timer_;
   std::string etag_;

@@ -91,28 +91,46 @@ Result<std::unique_ptr<LiveRecording>> LiveRecording::start(http::net::io_contex
   return live;
 }
 
-void LiveRecording::poll(LivePoll::Options what, LivePoll::Deliver deliver) {
-  polls_.emplace_back(io_, options_.service, std::move(what), std::move(deliver));
+void LiveRecording::poll_frames(const std::string& topic, Take take) {
+  StreamCount& count = counts_[topic];
+  polls_.emplace_back(
+      io_, options_.service, LivePoll::Options{topic},
+      LivePoll::Takers{std::move(take), [&count](const Error& error, int) { count.fail(error); }});
+}
+
+void LiveRecording::poll_state(LivePoll::Options what, Take take) {
+  const std::string path = what.target;
+  polls_.emplace_back(
+      io_, options_.service, std::move(what),
+      LivePoll::Takers{[this, path, take = std::move(take)](const http::ClientResponse& answer) {
+                         troubles_.erase(path);
+                         take(answer);
+                       },
+                       [this, path](const Error& error, int) {
+                         // What a service does not have, such as a floor, is no trouble.
+                         if (error.code != ErrorCode::NotFound) troubles_[path] = to_string(error);
+                       }});
 }
 
 void LiveRecording::poll_raw(const SensorId& sensor, const std::string& prefix) {
-  poll({prefix + "floor-plane", "application/json", kFloorEvery},
-       [this, sensor](const http::ClientResponse& answer) {
-         const auto floor = resource::read_floor_plane(answer.body, resource::Format::Json);
-         if (floor) floors_[sensor] = *floor;
-       });
-  poll({prefix + "frame"},
-       [this, sensor, topic = prefix + "frame"](const http::ClientResponse& answer) {
-         take_raw(sensor, topic, answer);
-       });
+  poll_state({prefix + "floor-plane", "application/json", kFloorEvery},
+             [this, sensor, prefix](const http::ClientResponse& answer) {
+               const auto floor = resource::read_floor_plane(answer.body, resource::Format::Json);
+               if (floor) floors_[sensor] = *floor;
+               if (!floor) troubles_[prefix + "floor-plane"] = to_string(floor.error());
+             });
+  poll_frames(prefix + "frame",
+              [this, sensor, topic = prefix + "frame"](const http::ClientResponse& answer) {
+                take_raw(sensor, topic, answer);
+              });
 }
 
 void LiveRecording::poll_tracker(const nlohmann::json& sensors) {
-  poll({"/registration", "application/json"},
-       [this](const http::ClientResponse& answer) { take_registration(answer); });
+  poll_state({"/registration", "application/json"},
+             [this](const http::ClientResponse& answer) { take_registration(answer); });
   if (options_.raw) {
-    poll({"/sensors/", "application/json", kClocksEvery},
-         [this](const http::ClientResponse& answer) { take_clocks(answer); });
+    poll_state({"/sensors/", "application/json", kClocksEvery},
+               [this](const http::ClientResponse& answer) { take_clocks(answer); });
     for (const auto& [name, sensor] : sensors.items()) {
       if (const auto id = SensorId::parse(name)) {
         clocks_[*id] = clock_of(sensor);
@@ -121,22 +139,15 @@ void LiveRecording::poll_tracker(const nlohmann::json& sensors) {
     }
   }
   if (options_.fused) {
-    poll({"/frame"}, [this](const http::ClientResponse& answer) { take_fused(answer); });
+    poll_frames("/frame", [this](const http::ClientResponse& answer) { take_fused(answer); });
   }
-}
-
-void LiveRecording::count(const std::string& topic, std::uint64_t sequence) {
-  StreamCount& one = counts_[topic];
-  if (one.frames > 0 && sequence > one.last + 1) one.missed += sequence - one.last - 1;
-  one.last = sequence;
-  ++one.frames;
 }
 
 void LiveRecording::take_raw(const SensorId& sensor, const std::string& topic,
                              const http::ClientResponse& answer) {
   auto frame = resource::read_frame(answer.body, resource::Format::Turtle);
-  if (!frame) return;
-  count(topic, frame->sequence);
+  if (!frame) return counts_[topic].cannot_read(frame.error());
+  counts_[topic].take(frame->sequence);
   record::RawFrame raw{sensor,
                        std::make_shared<const resource::FrameResource>(std::move(*frame)),
                        received(answer),
@@ -148,8 +159,8 @@ void LiveRecording::take_raw(const SensorId& sensor, const std::string& topic,
 
 void LiveRecording::take_fused(const http::ClientResponse& answer) {
   auto frame = resource::read_frame(answer.body, resource::Format::Turtle);
-  if (!frame) return;
-  count("/frame", frame->sequence);
+  if (!frame) return counts_["/frame"].cannot_read(frame.error());
+  counts_["/frame"].take(frame->sequence);
   const Timestamp instant = frame->captured;
   recorder_->offer(record::FusedFrame{instant, received(answer),
                                       [frame = std::make_shared<const resource::FrameResource>(
@@ -165,6 +176,7 @@ void LiveRecording::take_clocks(const http::ClientResponse& answer) {
 
 void LiveRecording::take_registration(const http::ClientResponse& answer) {
   const auto registration = publish::read_registration(answer.body);
+  if (!registration) troubles_["/registration"] = to_string(registration.error());
   if (!registration || registration->sensors.empty()) return;
   record::PlacesChanged changed{received(answer), publish::write_registration(*registration), {}};
   for (const auto& [sensor, place] : registration->sensors)

@@ -22,12 +22,6 @@ struct LiveRecordingOptions {
   bool fused = true;
 };
 
-struct StreamCount {
-  std::uint64_t frames = 0;
-  std::uint64_t missed = 0;  ///< Gaps in the sequence.
-  std::uint64_t last = 0;
-};
-
 /// Everything on the thread of one io_context; the file on the recorder's.
 class LiveRecording {
  public:
@@ -38,8 +32,10 @@ class LiveRecording {
   /// Ends polling and waits for the file.
   [[nodiscard]] record::RecordingReport stop();
 
-  /// By topic: "/frame", "/sensors/s1/frame".
+  /// By topic: "/frame", "/sensors/s1/frame"; all that the service announced, from the beginning.
   [[nodiscard]] const std::map<std::string, StreamCount>& counts() const { return counts_; }
+  /// What went wrong with the states beside the frames (clocks, registration), by path.
+  [[nodiscard]] const std::map<std::string, std::string>& troubles() const { return troubles_; }
   /// How long nothing at all has answered.
   [[nodiscard]] std::chrono::steady_clock::duration silence() const;
 
@@ -47,7 +43,9 @@ class LiveRecording {
   LiveRecording(http::net::io_context& io, LiveRecordingOptions options)
       : io_(io), options_(std::move(options)) {}
 
-  void poll(LivePoll::Options what, LivePoll::Deliver deliver);
+  using Take = std::function<void(const http::ClientResponse&)>;
+  void poll_frames(const std::string& topic, Take take);
+  void poll_state(LivePoll::Options what, Take take);
   void poll_raw(const SensorId& sensor, const std::string& prefix);
   void poll_tracker(const nlohmann::json& sensors);
   void take_raw(const SensorId& sensor, const std::string& topic,
@@ -55,13 +53,13 @@ class LiveRecording {
   void take_fused(const http::ClientResponse& answer);
   void take_clocks(const http::ClientResponse& answer);
   void take_registration(const http::ClientResponse& answer);
-  void count(const std::string& topic, std::uint64_t sequence);
 
   http::net::io_context& io_;
   LiveRecordingOptions options_;
   std::unique_ptr<record::Recorder> recorder_;
   std::deque<LivePoll> polls_;
   std::map<std::string, StreamCount> counts_;
+  std::map<std::string, std::string> troubles_;
   std::map<SensorId, record::ClockModel> clocks_;
   std::map<SensorId, FloorPlane> floors_;
 };

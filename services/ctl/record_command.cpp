@@ -5,6 +5,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include "services/ctl/command.h"
@@ -85,17 +86,26 @@ class Watch {
   End end_ = End::Asked;
 };
 
+nlohmann::json stream_json(const StreamCount& count) {
+  nlohmann::json json{{"frames", count.frames},
+                      {"missed", count.missed},
+                      {"failed", count.failed},
+                      {"unreadable", count.unreadable}};
+  if (!count.error.empty()) json["lastError"] = count.error;
+  return json;
+}
+
 nlohmann::json summary_of(const LiveRecording& live, const record::RecordingReport& report,
                           const std::string& file) {
   nlohmann::json streams = nlohmann::json::object();
-  for (const auto& [topic, count] : live.counts())
-    streams[topic] = {{"frames", count.frames}, {"missed", count.missed}};
+  for (const auto& [topic, count] : live.counts()) streams[topic] = stream_json(count);
   return {{"file", file},
           {"seconds", chorus::seconds(report.stopped.value_or(report.started) - report.started)},
           {"bytes", report.bytes()},
           {"frames", report.frames},
           {"dropped", report.dropped},
-          {"streams", streams}};
+          {"streams", streams},
+          {"troubles", live.troubles()}};
 }
 
 void print_summary(const nlohmann::json& summary, bool json) {
@@ -103,14 +113,52 @@ void print_summary(const nlohmann::json& summary, bool json) {
     std::cout << summary.dump(2) << '\n';
     return;
   }
-  std::vector<std::vector<std::string>> rows{{"stream", "frames", "missed"}};
+  std::vector<std::vector<std::string>> rows{
+      {"stream", "frames", "missed", "failed", "unreadable"}};
   for (const auto& [topic, count] : summary["streams"].items())
-    rows.push_back({topic, count["frames"].dump(), count["missed"].dump()});
+    rows.push_back({topic, count["frames"].dump(), count["missed"].dump(), count["failed"].dump(),
+                    count["unreadable"].dump()});
   constexpr double kMegabyte = 1e6;
   std::cout << table(rows)
             << fmt::format("{}: {:.1f} s, {:.2f} MB\n", summary["file"].get<std::string>(),
                            summary["seconds"].get<double>(),
                            summary["bytes"].get<double>() / kMegabyte);
+  for (const auto& [topic, count] : summary["streams"].items()) {
+    if (count.contains("lastError"))
+      std::cerr << fmt::format("{}: the last error: {}\n", topic,
+                               count["lastError"].get<std::string>());
+  }
+  for (const auto& [path, trouble] : summary["troubles"].items())
+    std::cerr << fmt::format("{}: the last error: {}\n", path, trouble.get<std::string>());
+}
+
+/// Announced by the service, and never a frame of it.
+std::vector<std::string> silent_streams(const LiveRecording& live) {
+  std::vector<std::string> silent;
+  for (const auto& [topic, count] : live.counts()) {
+    if (count.frames == 0) silent.push_back(topic);
+  }
+  return silent;
+}
+
+Result<int> judge(const LiveRecording& live, const record::RecordingReport& report, End end,
+                  const RecordArguments& arguments) {
+  if (report.state != record::RecordingState::Finished) {
+    return fail(ErrorCode::Io, arguments.out,
+                report.reason.empty() ? "the file could not be finished in time" : report.reason);
+  }
+  if (end == End::Gone) {
+    return fail(ErrorCode::Unavailable, arguments.url,
+                "has not answered for ten seconds; what came before is in " + arguments.out);
+  }
+  if (report.frames == 0)
+    return fail(ErrorCode::Unavailable, arguments.url, "delivered no frame in this time");
+  if (const auto silent = silent_streams(live); !silent.empty()) {
+    return fail(ErrorCode::Unavailable, arguments.url,
+                fmt::format("delivered no frame of {}; the others are in {}",
+                            fmt::join(silent, ", "), arguments.out));
+  }
+  return kExitOk;
 }
 
 Result<int> run_record(const RecordArguments& arguments) {
@@ -127,17 +175,7 @@ Result<int> run_record(const RecordArguments& arguments) {
   const End end = Watch(io, **live, arguments).run();
   const auto report = (*live)->stop();
   print_summary(summary_of(**live, report, arguments.out), arguments.json);
-  if (report.state != record::RecordingState::Finished) {
-    return fail(ErrorCode::Io, arguments.out,
-                report.reason.empty() ? "the file could not be finished in time" : report.reason);
-  }
-  if (end == End::Gone) {
-    return fail(ErrorCode::Unavailable, arguments.url,
-                "has not answered for ten seconds; what came before is in " + arguments.out);
-  }
-  if (report.frames == 0)
-    return fail(ErrorCode::Unavailable, arguments.url, "delivered no frame in this time");
-  return kExitOk;
+  return judge(**live, report, end, arguments);
 }
 
 }  // namespace

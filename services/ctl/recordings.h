@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <iosfwd>
+#include <string>
 #include <vector>
 
 #include "common/base/result.h"
@@ -14,8 +16,11 @@ namespace chorus::ctl {
     const std::vector<std::filesystem::path>& inputs);
 
 /// Read whole; refuses none at all, and two of the same sensor unless they are parts of one
-/// recording.
+/// recording.  What was damaged or left out is told on `notes`, unless that is null.
 [[nodiscard]] Result<record::Session> read_recordings(
-    const std::vector<std::filesystem::path>& files);
+    const std::vector<std::filesystem::path>& files, std::ostream* notes);
+
+/// What reading had to leave out, a line each: damage once, then by sensor.
+[[nodiscard]] std::vector<std::string> notes_of(const record::Session& session);
 
 }  // namespace chorus::ctl

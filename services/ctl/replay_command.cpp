@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <optional>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -15,12 +14,12 @@
 #include "services/ctl/child_processes.h"
 #include "services/ctl/command.h"
 #include "services/ctl/recordings.h"
+#include "services/ctl/replay_round.h"
 
 namespace chorus::ctl {
 namespace {
 
-constexpr Duration kHeadStart = std::chrono::seconds(1);            // for every process to come up
-constexpr Duration kBetweenRounds = std::chrono::milliseconds(33);  // one frame, as between others
+constexpr Duration kHeadStart = std::chrono::seconds(1);  // for every process to come up
 constexpr int kLastPort = 65535;
 
 struct ReplayArguments {
@@ -34,12 +33,6 @@ struct ReplayArguments {
 struct Part {
   SensorId sensor;
   std::filesystem::path from;  ///< A file, or the folder of a recording with several.
-};
-
-/// Where a set begins and how long one round lasts, when the recordings do not note it themselves.
-struct Round {
-  Timestamp origin;
-  Duration period{0};
 };
 
 Result<std::vector<Part>> parts_of(const record::Session& session) {
@@ -56,20 +49,6 @@ Result<std::vector<Part>> parts_of(const record::Session& session) {
     parts.push_back({sensor, files.size() == 1 ? files.front() : folder});
   }
   return parts;
-}
-
-/// Streams of one cell share their beginning; without it each would start at its own first frame.
-std::optional<Round> round_of(const record::Session& session) {
-  if (session.cell.empty()) return std::nullopt;
-  Timestamp first = Timestamp::max();
-  Timestamp last = Timestamp::min();
-  for (const auto& sensor : session.sensors) {
-    if (sensor.frames.empty()) continue;
-    first = std::min(first, sensor.frames.front().captured);
-    last = std::max(last, sensor.frames.back().captured);
-  }
-  if (last < first) return std::nullopt;
-  return Round{first, last - first + kBetweenRounds};
 }
 
 Child sensor_process(const Part& part, int port, const ReplayArguments& arguments,
@@ -95,8 +74,11 @@ Result<int> run_replay(const ReplayArguments& arguments) {
   const auto files = find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
   if (!files) return pass(files);
   // Read now: a broken recording, or two of one sensor, should not start half a cell.
-  const auto session = read_recordings(*files);
+  const auto session = read_recordings(*files, &std::cerr);
   if (!session) return pass(session);
+  if (of_different_times(*session))
+    std::cerr
+        << "note: these recordings are of different times; each starts at its own beginning\n";
   const auto parts = parts_of(*session);
   if (!parts) return pass(parts);
   if (arguments.port + static_cast<int>(parts->size()) - 1 > kLastPort)

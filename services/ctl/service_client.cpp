@@ -8,24 +8,25 @@
 namespace chorus::ctl {
 namespace {
 
-constexpr int kFirstErrorStatus = 400;
-
 /// Where the server wants a bearer token (writing from another host).
 constexpr const char* kTokenVariable = "CHORUS_TOKEN";
 
-/// The two words of a problem document, or the bare status.
-tl::unexpected<Error> refused(const http::ClientResponse& answer, const std::string& where) {
+}  // namespace
+
+Error refusal_of(const http::ClientResponse& answer, const std::string& where) {
   const auto problem = nlohmann::json::parse(answer.body, nullptr, false);
   std::string message = fmt::format("answers with status {}", answer.status);
   for (const char* key : {"title", "detail"}) {
     if (problem.is_object() && problem.contains(key) && problem[key].is_string())
       message += ": " + problem[key].get<std::string>();
   }
-  const auto code = answer.status == 409 ? ErrorCode::Conflict : ErrorCode::Unavailable;
-  return fail(code, where, message);
+  constexpr int kNotFound = 404;
+  constexpr int kConflict = 409;
+  auto code = ErrorCode::Unavailable;
+  if (answer.status == kNotFound) code = ErrorCode::NotFound;
+  if (answer.status == kConflict) code = ErrorCode::Conflict;
+  return {code, where, message};
 }
-
-}  // namespace
 
 Result<ServiceClient> ServiceClient::of(std::string_view url) {
   auto base = http::parse_url(url);
@@ -62,7 +63,7 @@ Result<nlohmann::json> ServiceClient::ask(std::string_view method, std::string_v
   if (!answer)
     return fail(answer.error().code, where,
                 answer.error().message + "; is chorus-fusion running there?");
-  if (answer->status >= kFirstErrorStatus) return refused(*answer, where);
+  if (answer->status >= kFirstErrorStatus) return tl::unexpected<Error>(refusal_of(*answer, where));
   if (answer->body.empty()) return nlohmann::json();
   auto parsed = nlohmann::json::parse(answer->body, nullptr, false);
   if (parsed.is_discarded())

@@ -12,6 +12,11 @@
 
 namespace chorus::ctl {
 
+inline constexpr int kFirstErrorStatus = 400;
+
+/// What a problem document says, or the bare status; `where` was asked.
+[[nodiscard]] Error refusal_of(const http::ClientResponse& answer, const std::string& where);
+
 inline constexpr const char* kDefaultServer = "http://127.0.0.1:8080/";
 
 class ServiceClient {

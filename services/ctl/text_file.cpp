@@ -1,20 +1,21 @@
 #include "services/ctl/text_file.h"
 
-#include <fstream>
+#include <algorithm>
 #include <iostream>
+#include <system_error>
 
-#include "common/importers/text_rows.h"
+#include "common/base/file.h"
 
 namespace chorus::ctl {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kMaxTextBytes = 16u << 20;
 
 }  // namespace
 
-Result<std::string> read_text(const std::string& file) {
-  return importers::read_bounded(file, kMaxTextBytes);
-}
+Result<std::string> read_text(const std::string& file) { return read_file(file, kMaxTextBytes); }
 
 Result<void> write_text(const std::string& file, std::string_view text) {
   if (file == "-") {
@@ -22,9 +23,24 @@ Result<void> write_text(const std::string& file, std::string_view text) {
     if (std::cout) return {};
     return fail(ErrorCode::Io, "standard output", "cannot be written.");
   }
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  out << text;
-  if (!out.flush()) return fail(ErrorCode::Io, file, "cannot be written; is its folder there?");
+  std::error_code error;
+  const fs::path folder = fs::path(file).parent_path();
+  if (!folder.empty() && !fs::is_directory(folder, error))
+    return fail(ErrorCode::Io, file, "cannot be written; is its folder there?");
+  return replace_file(file, text);
+}
+
+Result<void> may_write(const std::string& file, const std::vector<fs::path>& inputs) {
+  std::error_code error;
+  if (file == "-" || !fs::is_regular_file(file, error)) return {};
+  for (const fs::path& input : inputs) {
+    if (fs::equivalent(file, input, error) && !error)
+      return fail(ErrorCode::InvalidArgument, file,
+                  "is what is read here; writing it would destroy it. Name another file.");
+  }
+  if (fs::path(file).extension() == ".mcap")
+    return fail(ErrorCode::Conflict, file,
+                "exists already, and a recording is never overwritten. Name another file.");
   return {};
 }
 

@@ -134,6 +134,39 @@ class Offline(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("metod", error)
 
+    def test_no_input_and_no_recording_is_ever_overwritten(self):
+        walk = self.at / "walk.mcap"
+        walk.write_bytes((self.recordings / "cam01.mcap").read_bytes())
+        link = self.at / "link.ndjson"
+        link.symlink_to(walk)
+        kept = walk.read_bytes()
+        for out, reason in ((walk, "is what is read here"), (link, "is what is read here"),
+                            (self.recordings / "cam02.mcap", "never overwritten")):
+            code, _, error = chorus("fuse", walk, "--out", out, *SETTINGS)
+            self.assertEqual(code, 1, out)
+            self.assertIn(reason, error)
+            self.assertEqual(walk.read_bytes(), kept, out)
+        fused = self.at / "fused.ndjson"
+        given = ["--registration", self.recordings / "registration.json"]
+        self.assertEqual(self.fuse("fused.ndjson", *SETTINGS, *given)[0], 0)
+        code, _, error = chorus("export", fused, "--format", "csv", "--out", fused)
+        self.assertEqual(code, 1)
+        self.assertIn("is what is read here", error)
+        self.assertTrue(frames_of(fused))
+
+    def test_damage_is_told_and_stands_in_the_json(self):
+        damaged = self.at / "damaged"
+        damaged.mkdir()
+        for file in self.recordings.glob("*.mcap"):
+            (damaged / file.name).write_bytes(file.read_bytes())
+        cut = damaged / "cam02.mcap"
+        cut.write_bytes(cut.read_bytes()[:-100])
+        given = [*SETTINGS, "--registration", self.recordings / "registration.json"]
+        _, _, error = chorus("fuse", damaged, "--out", self.at / "damaged.ndjson", *given)
+        self.assertIn("note: cam02.mcap: the end is missing", error)
+        _, _, error = chorus("fuse", damaged, "--out", self.at / "damaged.ndjson", *given, "--json")
+        self.assertEqual(len(json.loads(error)["notes"]), 1)
+
     def test_recordings_of_an_older_import_are_pointed_out(self):
         stale = self.at / "stale"
         stale.mkdir()

@@ -108,6 +108,24 @@ class Cell(Rig):
         again = self.sensor(1, **{"id": "other", "device.kind": "replay", "device.replay.recording": folder / "a"})
         self.assertTrue(get_json(again.url + "frame")["bodies"])
 
+    def test_two_recordings_of_one_sensor_are_not_taken_for_one(self):
+        sensor, folder = self.sensor(0), pathlib.Path(self.folder.name) / "two"
+        folder.mkdir()
+        for name in ("b.mcap", "a.mcap"):  # the later one comes first by name
+            self.assertEqual(chorus("record", sensor.url, "--out", folder / name, "--seconds", 1).returncode, 0)
+        done = chorus("fuse", folder, "--out", folder / "x.ndjson")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("not parts of one recording", done.stderr)
+
+    def test_a_name_that_is_taken_asks_for_another(self):
+        folder = pathlib.Path(self.folder.name) / "rec"
+        (folder / "walk").mkdir(parents=True)
+        sensor = self.sensor(0, **{"recording.folder": folder, "recording.min_free_mb": 0})
+        status, _, body = send("POST", sensor.url + "recordings/", b'{"name": "walk"}')
+        self.assertEqual(status, 409)
+        self.assertIn(b"choose another `name`", body)
+        self.assertNotIn(str(folder).encode(), body)
+
     def test_kill_costs_at_most_the_open_chunk(self):
         fusion = self.cell()
         send("POST", fusion.url + "recordings/", b'{"name": "walk"}')

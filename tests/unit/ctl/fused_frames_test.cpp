@@ -2,10 +2,12 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "common/http/server.h"
 #include "common/record/recording.h"
 #include "common/resource/frame_resource.h"
 #include "tests/support/builders.h"
@@ -79,10 +81,73 @@ TEST(FusedFrames, RecordingsGiveTheirFusedTopicOnly) {
     }
     ASSERT_THAT(writer.close(), IsOk());
   }
-  const auto samples = read_fused_frames(file.string(), {});
-  ASSERT_THAT(samples, IsOk());
-  EXPECT_EQ(samples->size(), 3u);
+  const auto frames = read_fused_frames(file.string(), {});
+  ASSERT_THAT(frames, IsOk());
+  EXPECT_EQ(frames->samples.size(), 3u);
   std::filesystem::remove(file);
+}
+
+/// A server whose /frame is whatever a function says.
+struct FrameServer {
+  explicit FrameServer(std::function<Result<http::DocumentPtr>(int request)> answer)
+      : server({}, routes(std::move(answer))) {
+    EXPECT_THAT(server.start(), IsOk());
+  }
+  std::shared_ptr<const http::Router> routes(std::function<Result<http::DocumentPtr>(int)> answer) {
+    auto router = std::make_shared<http::Router>();
+    router->get("/frame",
+                [this, answer = std::move(answer)](const http::Request&, const http::PathParams&) {
+                  return answer(++asked);
+                });
+    return router;
+  }
+  [[nodiscard]] std::string url() const {
+    return "http://127.0.0.1:" + std::to_string(server.port()) + "/frame";
+  }
+  std::atomic<int> asked = 0;
+  http::Server server;
+};
+
+constexpr std::chrono::milliseconds kListen{1500};
+
+TEST(FusedFrames, WhatAServerSaidIsKeptWhenItFailsLaterAndGapsAreTold) {
+  FrameServer cell([](int request) -> Result<http::DocumentPtr> {
+    if (request == 2) return fail(ErrorCode::Internal, "frame", "an accident");
+    if (request == 3) return http::make_document("application/json", "{", {"3"});
+    const int frame = request == 1 ? 1 : 5;
+    // A server that has been restarted may say the same frame under another ETag.
+    return http::make_document("application/json", frame_text(frame),
+                               {std::to_string(std::min(request, 6))});
+  });
+  const auto frames = read_fused_frames(cell.url(), kListen);
+  ASSERT_THAT(frames, IsOk());
+  EXPECT_EQ(frames->samples.size(), 2u) << "each frame once";
+  EXPECT_THAT(frames->notes, ::testing::IsSupersetOf({std::string("3 frames were missed"),
+                                                      std::string("1 requests failed"),
+                                                      std::string("1 answers could not be used")}));
+}
+
+TEST(FusedFrames, AServerWithoutAFrameIsAskedWithPausesOnOneConnection) {
+  FrameServer cell([](int) -> Result<http::DocumentPtr> {
+    return fail(ErrorCode::Unavailable, "frame", "nobody has been fused yet");
+  });
+  const auto frames = read_fused_frames(cell.url(), kListen);
+  ASSERT_THAT(frames, FailsWith(ErrorCode::Unavailable));
+  EXPECT_THAT(to_string(frames.error()), HasSubstr("nobody has been fused yet"));
+  EXPECT_LT(cell.asked, 20);
+  EXPECT_EQ(cell.server.counters().connections_total, 1u);
+}
+
+TEST(FusedFrames, AServerThatRefusesFromTheStartIsNotWaitedFor) {
+  FrameServer cell([](int) -> Result<http::DocumentPtr> {
+    return http::make_document("application/json", frame_text(1, resource::SpaceKind::Sensor), {});
+  });
+  EXPECT_THAT(read_fused_frames(cell.url(), std::chrono::hours(1)),
+              FailsWith(ErrorCode::Unsupported));
+  FrameServer none([](int) -> Result<http::DocumentPtr> {
+    return fail(ErrorCode::NotFound, "frame", "no such thing");
+  });
+  EXPECT_THAT(read_fused_frames(none.url(), std::chrono::hours(1)), FailsWith(ErrorCode::NotFound));
 }
 
 TEST(FusedFrames, SourcesThatAreNoneAreRefused) {

@@ -1,0 +1,58 @@
+#include "services/ctl/text_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/matchers.h"
+#include "tests/unit/record/temporary_folder.h"
+
+namespace chorus::ctl {
+namespace {
+
+namespace fs = std::filesystem;
+using chorus::testing::FailsWith;
+using chorus::testing::IsOk;
+using record::bytes_of;
+using record::TemporaryFolder;
+using ::testing::HasSubstr;
+
+TEST(TextFile, NoInputIsEverWritten) {
+  const TemporaryFolder folder;
+  const std::string walk = (folder / "walk.ndjson").string();
+  std::ofstream(walk) << "frames";
+  fs::create_symlink(walk, folder / "link.csv");
+  EXPECT_THAT(may_write(walk, {walk}), FailsWith(ErrorCode::InvalidArgument));
+  EXPECT_THAT(may_write((folder / "link.csv").string(), {"", walk}),
+              FailsWith(ErrorCode::InvalidArgument))
+      << "by whatever name";
+  EXPECT_THAT(may_write(walk, {"-", "http://127.0.0.1:8080/", folder / "other"}), IsOk());
+  EXPECT_THAT(may_write((folder / "new.csv").string(), {walk}), IsOk());
+}
+
+TEST(TextFile, NoRecordingIsEverOverwritten) {
+  const TemporaryFolder folder;
+  const std::string walk = (folder / "walk.mcap").string();
+  EXPECT_THAT(may_write(walk, {}), IsOk());
+  std::ofstream(walk) << "frames";
+  const auto refused = may_write(walk, {});
+  ASSERT_THAT(refused, FailsWith(ErrorCode::Conflict));
+  EXPECT_THAT(to_string(refused.error()), HasSubstr("never overwritten"));
+}
+
+TEST(TextFile, WhatCannotBeWrittenLeavesWhatWasThere) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "a.csv").string();
+  ASSERT_THAT(write_text(file, "old"), IsOk());
+  fs::create_directory(folder / "a.csv.partial");  // in the way
+  EXPECT_THAT(write_text(file, "new"), FailsWith(ErrorCode::Io));
+  EXPECT_EQ(bytes_of(file), "old");
+  fs::remove(folder / "a.csv.partial");
+  ASSERT_THAT(write_text(file, "new"), IsOk());
+  EXPECT_EQ(bytes_of(file), "new");
+  const auto nowhere = write_text((folder / "no/such/a.csv").string(), "x");
+  ASSERT_THAT(nowhere, FailsWith(ErrorCode::Io));
+  EXPECT_THAT(to_string(nowhere.error()), HasSubstr("is its folder there?"));
+}
+
+}  // namespace
+}  // namespace chorus::ctl
