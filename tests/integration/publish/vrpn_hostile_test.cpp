@@ -220,8 +220,12 @@ class Flood {
 TEST_F(HostileVrpn, AFloodOfRequestsFromOneHostDoesNotLockOutAnother) {
   const Flood flood(server->port());
   ASSERT_TRUE(wait_until([&] { return server->counters().refused > 500; }));
-  VrpnClient other({"Body0"});
-  EXPECT_TRUE(other.request(server->port()));
+  // One may be lucky; each asks ten times.
+  std::vector<std::unique_ptr<VrpnClient>> others;
+  for (int i = 0; i < 14; ++i) {
+    others.push_back(std::make_unique<VrpnClient>(std::vector<std::string>{"Body0"}));
+    ASSERT_TRUE(others.back()->request(server->port())) << i;
+  }
   EXPECT_TRUE(good_is_served());
 }
 
