@@ -12,7 +12,8 @@
 namespace chorus::synthetic {
 namespace {
 
-// Everyday figures; nothing depends on their exact values.
+// Everyday figures, estimates of ours without a measured source; nothing depends on their exact
+// values.
 constexpr double kAcceleration = 1.2;      // mean, when starting and stopping [m/s^2]
 constexpr double kTurnRate = deg(110);     // mean, turning on the spot [rad/s]
 constexpr double kTurnSettling = 0.3;      // extra time of every turn [s]

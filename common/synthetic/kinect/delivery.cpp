@@ -8,7 +8,24 @@
 namespace chorus::synthetic::kinect {
 namespace {
 
-enum Purpose : std::uint64_t { kPhase = 961, kJitter, kDrop, kGap, kGapAt, kLatency, kClock };
+enum Purpose : std::uint64_t {
+  kPhase = 961,
+  kJitter,
+  kDrop,
+  kGap,
+  kGapAt,
+  kLatency,
+  kClock,
+  kSlow
+};
+
+/// Half the rate for the moment, for every sensor on its own: every other frame is not taken.
+bool is_slow(const Delivery& delivery, std::uint64_t number, const ErrorKeys& keys) {
+  if (!(delivery.slow_time > 0)) return false;
+  const double time = static_cast<double>(number) * delivery.period;
+  const auto block = static_cast<std::uint64_t>(time / delivery.slow_time);
+  return Draw{kSlow, keys.seed, keys.sensor, block}.uniform() < delivery.slow_share;
+}
 
 }  // namespace
 
@@ -17,8 +34,11 @@ HostClock draw_clock(const ClockError& clock, Timestamp origin, const ErrorKeys&
   HostClock host;
   host.offset = clock.offset * draw.gauss();
   host.drift = clock.drift * draw.gauss();
-  host.step = clock.step;
   host.origin = origin;
+  if (draw.uniform() < clock.step_chance) {
+    host.step = draw.uniform() < 0.5 ? clock.step : -clock.step;
+    host.step_at = origin + from_seconds(draw.uniform() * clock.step_within);
+  }
   return host;
 }
 
@@ -39,6 +59,7 @@ std::uint64_t first_frame(const Delivery& delivery, Timestamp instant, const Err
 }
 
 bool is_dropped(const Delivery& delivery, std::uint64_t number, const ErrorKeys& keys) {
+  if (number % 2 == 1 && is_slow(delivery, number, keys)) return true;
   return Draw{kDrop, keys.seed, keys.sensor, number}.uniform() < delivery.drop_share;
 }
 

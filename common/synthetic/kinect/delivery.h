@@ -9,7 +9,7 @@
 
 namespace chorus::synthetic::kinect {
 
-/// A host's clock drawn from the profile.
+/// A host's clock drawn from the profile; some step once, some time after the origin.
 [[nodiscard]] HostClock draw_clock(const ClockError& clock, Timestamp origin,
                                    const ErrorKeys& keys);
 
@@ -19,7 +19,7 @@ namespace chorus::synthetic::kinect {
 /// The first frame exposed at or after the instant.
 [[nodiscard]] std::uint64_t first_frame(const Delivery& delivery, Timestamp instant,
                                         const ErrorKeys& keys);
-/// Lost on the way.
+/// Lost on the way, or never taken: the odd ones of an episode at half the rate.
 [[nodiscard]] bool is_dropped(const Delivery& delivery, std::uint64_t number,
                               const ErrorKeys& keys);
 /// The tracker has lost this person for the moment.

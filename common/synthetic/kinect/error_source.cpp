@@ -1,6 +1,7 @@
 #include "common/synthetic/kinect/error_source.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace chorus::synthetic::kinect {
 namespace {
@@ -11,13 +12,22 @@ double share(double value, double factor) { return std::clamp(value * factor, 0.
 
 void scale(Visibility& visibility, double factor) {
   visibility.inferred_visible = share(visibility.inferred_visible, factor);
+  visibility.hidden_scale *= factor;
   if (factor <= 0) visibility.rays = 0;
 }
 
+/// Towards half a turn below 1, towards the reliable angle above.
+double flip_angle(double angle, double reliable, double factor) {
+  if (factor < 1) return angle + (1.0 - factor) * (deg(180) - angle);
+  return reliable + (angle - reliable) / factor;
+}
+
 void scale(YawBehaviour& yaw, double factor) {
-  yaw.shoulder_slope = std::max(0.0, 1.0 - factor * (1.0 - yaw.shoulder_slope));
-  yaw.hip_slope = std::max(0.0, 1.0 - factor * (1.0 - yaw.hip_slope));
-  if (factor <= 0) yaw.flip_to_rear = deg(360);  // never
+  yaw.shoulder_slope = std::pow(yaw.shoulder_slope, factor);
+  yaw.hip_slope = std::pow(yaw.hip_slope, factor);
+  yaw.flip_to_front = flip_angle(yaw.flip_to_front, yaw.reliable, factor);
+  yaw.flip_to_rear =
+      factor > 0 ? flip_angle(yaw.flip_to_rear, yaw.reliable, factor) : deg(360);  // never
 }
 
 void scale(JointBias& bias, double factor) {
@@ -40,6 +50,7 @@ void scale(GrossError& gross, double factor) {
 
 void scale(Delivery& delivery, double factor) {
   delivery.drop_share = std::min(kMostDropped, delivery.drop_share * factor);
+  delivery.slow_share = share(delivery.slow_share, factor);
   delivery.gaps_per_minute *= factor;
   delivery.jitter *= factor;
   delivery.latency_jitter *= factor;
@@ -49,6 +60,7 @@ void scale(ClockError& clock, double factor) {
   clock.offset *= factor;
   clock.drift *= factor;
   clock.step *= factor;
+  clock.step_chance = share(clock.step_chance, factor);
 }
 
 }  // namespace

@@ -10,8 +10,10 @@ namespace {
 
 enum Purpose : std::uint64_t { kGhost = 941, kGhostPlace, kSwap, kIds };
 
-constexpr std::uint64_t kGhostId = 900'000;
+// Nobody's id is a ghost's; which numbers they are means nothing.
 constexpr std::uint64_t kMaxId = 800'000;
+constexpr std::uint64_t kGhostId = 900'000;
+constexpr std::uint64_t kGhostIds = 1000;
 
 using enum JointId;
 constexpr std::array kLeft{KneeLeft, AnkleLeft, FootLeft};
@@ -41,16 +43,17 @@ std::optional<BodyFrame> ghost(const GrossError& gross, double time, const Error
   Draw draw{kGhost, keys.seed, keys.sensor, block};
   if (draw.uniform() >= gross.ghosts_per_minute * gross.ghost_time / 60.0) return std::nullopt;
   Draw place{kGhostPlace, keys.seed, keys.sensor};  // the same piece of furniture each time
-  const Eigen::Vector3d base(place.uniform(-1.2, 1.2), -0.6, place.uniform(2.0, 4.0));
-  BodyFrame body{BodyId{kGhostId + block % 1000}, Timestamp{}, {}};
+  const Eigen::Vector3d base(place.uniform(-gross.ghost_aside, gross.ghost_aside),
+                             -gross.ghost_below, place.uniform(gross.ghost_near, gross.ghost_far));
+  BodyFrame body{BodyId{kGhostId + block % kGhostIds}, Timestamp{}, {}};
   for (Joint& joint : body.skeleton.joints) {
-    joint.position = base + 0.25 * place.gauss3();
+    joint.position = base + gross.ghost_limb * place.gauss3();
     joint.state = JointState::Inferred;
   }
   constexpr std::array kTrunk{SpineBase, SpineMid, SpineShoulder, Neck, Head};
   for (std::size_t i = 0; i < kTrunk.size(); ++i) {
     body.skeleton[kTrunk[i]].position =
-        base + 0.18 * static_cast<double>(i) * Eigen::Vector3d::UnitY();
+        base + gross.ghost_joint * static_cast<double>(i) * Eigen::Vector3d::UnitY();
     body.skeleton[kTrunk[i]].state = JointState::Tracked;
   }
   return body;

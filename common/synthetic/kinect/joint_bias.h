@@ -2,7 +2,7 @@
 //
 // Sensor-polar frame at the joint: radial (horizontally away from the sensor), lateral (to the
 // sensor's left), up. Harmonics of the facing angle with coefficients that belong partly to the SDK
-// (all people) and partly to the person.
+// (all people) and partly to the person.  A joint with a leader errs mostly as that one does.
 #pragma once
 
 #include <array>
@@ -29,6 +29,6 @@ using PersonHarmonics = std::array<Harmonics, kJointCount>;
 
 /// Error of one joint [m] in sensor space, to be added to its position.
 [[nodiscard]] Eigen::Vector3d joint_bias(JointId id, const Eigen::Vector3d& joint, double facing,
-                                         const JointBias& bias, const Harmonics& harmonics);
+                                         const JointBias& bias, const PersonHarmonics& harmonics);
 
 }  // namespace chorus::synthetic::kinect

@@ -6,15 +6,32 @@
 
 #include "common/body/bones.h"
 #include "common/synthetic/kinect/joint_noise_table.h"
+#include "common/synthetic/kinect/leader.h"
 
 namespace chorus::synthetic::kinect {
 namespace {
 
-enum Purpose : std::uint64_t { kOwn = 922, kCore, kTail, kState, kWhite, kTeleport };
+enum Purpose : std::uint64_t { kOwn = 922, kCore, kTail, kState, kWhite, kTeleport, kHidden };
 
 constexpr double kTurnUnit = deg(22.5);  // the unit of turn_growth
 
 bool is_core(JointId id) { return mirror(id) == id; }
+
+/// Shoulders and hips sit on the trunk.
+bool is_girdle(JointId id) {
+  using enum JointId;
+  return id == ShoulderLeft || id == ShoulderRight || id == HipLeft || id == HipRight;
+}
+
+bool is_foot(JointId id) {
+  using enum JointId;
+  return id == AnkleLeft || id == AnkleRight || id == FootLeft || id == FootRight;
+}
+
+double tau_of(JointId id, const ColouredError& coloured) {
+  if (is_core(id)) return coloured.core_tau;
+  return is_foot(id) ? coloured.foot_tau : coloured.limb_tau;
+}
 
 std::uint64_t block_of(double time, double length) {
   return static_cast<std::uint64_t>(std::max(0.0, std::floor(time / length)));
@@ -36,10 +53,10 @@ double tail_scale(const ColouredError& coloured, double time, const ErrorKeys& k
   return std::min(coloured.most_tail, std::sqrt((nu - 2.0) / std::max(chi_square, 1e-3)));
 }
 
-/// The error's standard deviation against the table's: where the SDK's body is turned wrongly, and
-/// off the best distance.
-double growth(const Stand& stand, const ColouredError& coloured) {
-  const double turned = std::abs(stand.misjudged) / kTurnUnit;
+/// The error's standard deviation against the table's: of the trunk where the SDK's body is turned
+/// wrongly (limbs are turned or hidden then), and of all off the best distance.
+double growth(JointId id, const Stand& stand, const ColouredError& coloured) {
+  const double turned = is_core(id) ? std::abs(stand.misjudged) / kTurnUnit : 0.0;
   const double off =
       std::max(0.0, std::abs(stand.distance - coloured.best_distance) - coloured.good_depth);
   return (1.0 + coloured.turn_growth * turned) * (1.0 + coloured.distance_growth * off * off);
@@ -48,9 +65,7 @@ double growth(const Stand& stand, const ColouredError& coloured) {
 /// Where a guess is drawn to: the bone hanging straight down from its parent; shoulders and hips
 /// have no such rest.
 Eigen::Vector3d resting_place(const Skeleton<SensorSpace>& body, JointId id) {
-  using enum JointId;
-  if (id == ShoulderLeft || id == ShoulderRight || id == HipLeft || id == HipRight)
-    return body[id].position;
+  if (is_girdle(id)) return body[id].position;
   for (const Bone& bone : kBones) {
     if (bone.child != id || !body[bone.parent].seen()) continue;
     const Eigen::Vector3d& parent = body[bone.parent].position;
@@ -80,7 +95,7 @@ Eigen::Vector3d lattice_noise(std::initializer_list<std::uint64_t> key, double t
 
 JointState shown_state(JointId id, double visible_share, double time, const Visibility& visibility,
                        const ErrorKeys& keys) {
-  const double visible = is_core(id) ? 0.0 : visibility.inferred_visible;
+  const double visible = is_core(id) || is_girdle(id) ? 0.0 : visibility.inferred_visible;
   const double chance =
       visible_share * visible + (1.0 - visible_share) * visibility.inferred_occluded;
   const std::uint64_t block = block_of(time, std::max(visibility.state_hold, 1e-3));
@@ -107,16 +122,20 @@ Eigen::Vector3d SmoothNoise::value() const {
 
 double activity(double speed, const ColouredError& coloured) {
   const double moving = std::clamp(speed / std::max(coloured.moving_speed, 1e-3), 0.0, 1.0);
-  return coloured.rest_share + (1.0 - coloured.rest_share) * moving;
+  return coloured.rest_share + (1.0 - coloured.rest_share) * moving * moving;
 }
 
-void advance(ColouredState& state, const Stand& stand, const Moment& moment,
-             const ColouredError& coloured, const ErrorKeys& keys) {
+void advance(ColouredState& state, const Stand& stand, const Moment& moment, const Profile& profile,
+             const ErrorKeys& keys) {
+  const ColouredError& coloured = profile.coloured;
   const auto stamp = static_cast<std::uint64_t>(std::max(0.0, moment.time * 1e6));
   for (std::size_t i = 0; i < kJointCount; ++i) {
-    const double tau = is_core(static_cast<JointId>(i)) ? coloured.core_tau : coloured.limb_tau;
-    state.joint[i].advance(moment.dt * activity(stand.speed[i], coloured), tau,
+    state.joint[i].advance(moment.dt * activity(stand.speed[i], coloured),
+                           tau_of(static_cast<JointId>(i), coloured),
                            Draw{kOwn, keys.seed, keys.sensor, keys.person, i, stamp});
+    // Nothing holds a guess in its place: its time passes at rest, too.
+    state.hidden[i].advance(moment.dt, profile.visibility.hidden_tau,
+                            Draw{kHidden, keys.seed, keys.sensor, keys.person, i, stamp});
   }
   const double core_speed = stand.speed[index_of(JointId::SpineShoulder)];
   state.shared.look(stand.view, coloured, {keys.seed, keys.person});
@@ -126,10 +145,9 @@ void advance(ColouredState& state, const Stand& stand, const Moment& moment,
 
 namespace {
 
-/// The unit-variance coloured error of one joint: shared by all sensors that see the same side, by
-/// the core, and its own.
-Eigen::Vector3d coloured_unit(std::size_t i, const ColouredState& state,
-                              const ColouredError& coloured) {
+/// The unit-variance coloured error of one joint on its own account: shared by all sensors that see
+/// the same side, by the core, and its own.
+Eigen::Vector3d own_unit(std::size_t i, const ColouredState& state, const ColouredError& coloured) {
   const double shared = static_cast<JointId>(i) == JointId::Neck ? coloured.neck_correlation
                                                                  : coloured.sensor_correlation;
   const double core =
@@ -139,7 +157,27 @@ Eigen::Vector3d coloured_unit(std::size_t i, const ColouredState& state,
          std::sqrt(std::max(0.0, 1.0 - shared - core)) * state.joint[i].value();
 }
 
-Eigen::Vector3d white_error(std::size_t i, const Stand& stand, const Profile& profile,
+/// The same with the part in which it follows its neighbour.
+Eigen::Vector3d coloured_unit(std::size_t i, const ColouredState& state,
+                              const ColouredError& coloured) {
+  const auto led_by = leader(static_cast<JointId>(i));
+  if (!led_by) return own_unit(i, state, coloured);
+  return std::sqrt(coloured.follow_share) * own_unit(index_of(*led_by), state, coloured) +
+         std::sqrt(1.0 - coloured.follow_share) * own_unit(i, state, coloured);
+}
+
+/// A unit error stretched along the ray to the joint.
+Eigen::Vector3d stretched(const Eigen::Vector3d& unit, const Eigen::Vector3d& ray, double factor) {
+  return unit + (factor - 1.0) * ray.dot(unit) * ray;
+}
+
+Eigen::Vector3d hidden_error(std::size_t i, const ColouredState& state, const Stand& stand,
+                             const Visibility& visibility, const Eigen::Vector3d& ray) {
+  const double sigma = mm(kJointNoise[i].hidden) * visibility.hidden_scale * stand.hidden[i];
+  return sigma * stretched(state.hidden[i].value(), ray, visibility.hidden_depth);
+}
+
+Eigen::Vector3d white_error(std::size_t i, const Stand& stand, const Profile& profile, bool guessed,
                             const Eigen::Vector3d& draw) {
   const JointNoise& row = kJointNoise[i];
   const double size = std::abs(stand.view.facing);
@@ -148,9 +186,13 @@ Eigen::Vector3d white_error(std::size_t i, const Stand& stand, const Profile& pr
   const double rest = ends + side * side * (row.rest_side - ends);
   const double moving = activity(stand.speed[i], profile.coloured);
   const Eigen::Vector3d walking(row.white_x, row.white_y, row.white_z);
-  const Eigen::Vector3d sigma =
-      Eigen::Vector3d::Constant(rest) + moving * (walking - Eigen::Vector3d::Constant(rest));
-  return mm(profile.white_scale) * sigma.cwiseProduct(draw);
+  Eigen::Vector3d sigma = mm(1.0) * (Eigen::Vector3d::Constant(rest) +
+                                     moving * (walking - Eigen::Vector3d::Constant(rest)));
+  if (guessed) {
+    const double more = moving * profile.white_inferred;
+    sigma = (sigma.array().square() + more * more).sqrt();
+  }
+  return profile.white_scale * sigma.cwiseProduct(draw);
 }
 
 }  // namespace
@@ -158,7 +200,6 @@ Eigen::Vector3d white_error(std::size_t i, const Stand& stand, const Profile& pr
 void add_errors(Skeleton<SensorSpace>& body, const ColouredState& state, const Stand& stand,
                 double time, const Profile& profile, const ErrorKeys& keys) {
   const ColouredError& coloured = profile.coloured;
-  const double grown = growth(stand, coloured);
   const Skeleton<SensorSpace> exact = body;
   Draw white{kWhite, keys.seed, keys.sensor, keys.person,
              static_cast<std::uint64_t>(std::max(0.0, time * 1e6))};
@@ -168,18 +209,16 @@ void add_errors(Skeleton<SensorSpace>& body, const ColouredState& state, const S
     Joint& joint = body.joints[i];
     if (!joint.seen()) continue;
     const bool guessed = joint.state == JointState::Inferred;
-    double sigma = mm(kJointNoise[i].coloured) * coloured.scale * grown;
+    double sigma = mm(kJointNoise[i].coloured) * coloured.scale * growth(id, stand, coloured);
     if (guessed) {
       sigma = std::max(sigma * coloured.inferred_factor, coloured.inferred_least);
       joint.position += coloured.inferred_pull * (resting_place(exact, id) - joint.position);
     }
-    const Eigen::Vector3d unit = coloured_unit(i, state, coloured);
     const Eigen::Vector3d ray = exact.joints[i].position.stableNormalized();
-    const Eigen::Vector3d along = ray.dot(unit) * ray;
     joint.position += sigma * tail_scale(coloured, time, keys, i) *
-                      (unit + (coloured.depth_factor - 1.0) * along);
-    joint.position +=
-        (guessed ? profile.white_inferred : 1.0) * white_error(i, stand, profile, white_draw);
+                      stretched(coloured_unit(i, state, coloured), ray, coloured.depth_factor);
+    joint.position += hidden_error(i, state, stand, profile.visibility, ray);
+    joint.position += white_error(i, stand, profile, guessed, white_draw);
     joint.position += teleport(id, time, profile.gross, keys);
   }
 }

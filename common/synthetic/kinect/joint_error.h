@@ -36,9 +36,10 @@ class SmoothNoise {
 };
 
 /// The coloured error's memory: one process per joint and one common to the core, each sensor's
-/// own, and the part that sensors share.
+/// own, and the part that sensors share; a second one per joint for when it is hidden.
 struct ColouredState {
   std::array<SmoothNoise, kJointCount> joint{};
+  std::array<SmoothNoise, kJointCount> hidden{};
   SmoothNoise core;
   SharedError shared;
 };
@@ -46,9 +47,10 @@ struct ColouredState {
 /// How the body stands and moves: what scales the error.
 struct Stand {
   View view;
-  double misjudged = 0.0;                   ///< Yaw the SDK is wrong by [rad]
-  double distance = 2.5;                    ///< Sensor to neck [m]
-  std::array<double, kJointCount> speed{};  ///< Of each joint [m/s]
+  double misjudged = 0.0;                    ///< Yaw the SDK is wrong by [rad]
+  double distance = 2.5;                     ///< Sensor to neck [m]
+  std::array<double, kJointCount> speed{};   ///< Of each joint [m/s]
+  std::array<double, kJointCount> hidden{};  ///< Of each joint as labelled, noticed share: 0 seen.
 };
 
 /// Smooth unit-variance noise over one coordinate (time [s]) with correlation length `tau`; pure.
@@ -59,8 +61,8 @@ struct Stand {
 /// moving.
 [[nodiscard]] double activity(double speed, const ColouredError& coloured);
 
-/// Tracked or inferred, in runs of about `state_hold`; occluded joints mostly inferred, core joints
-/// never when visible.
+/// Tracked or inferred, in runs of about `state_hold`; occluded joints mostly inferred, core
+/// joints, shoulders and hips never when visible.
 [[nodiscard]] JointState shown_state(JointId id, double visible_share, double time,
                                      const Visibility& visibility, const ErrorKeys& keys);
 
@@ -71,10 +73,10 @@ struct Moment {
 };
 
 /// One frame further.
-void advance(ColouredState& state, const Stand& stand, const Moment& moment,
-             const ColouredError& coloured, const ErrorKeys& keys);
+void advance(ColouredState& state, const Stand& stand, const Moment& moment, const Profile& profile,
+             const ErrorKeys& keys);
 
-/// Adds coloured and white error and teleports to every seen joint.
+/// Adds coloured and white error, that of hidden joints, and teleports to every seen joint.
 void add_errors(Skeleton<SensorSpace>& body, const ColouredState& state, const Stand& stand,
                 double time, const Profile& profile, const ErrorKeys& keys);
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "common/body/bones.h"
 #include "common/body/facing.h"
 #include "common/synthetic/kinect/floor_estimate.h"
 
@@ -26,6 +27,17 @@ void limit(Skeleton<SensorSpace>& body, const ViewLimits& view) {
       joint.state = JointState::Inferred;
     }
   }
+}
+
+/// What is hidden of each joint as the SDK labels it.
+std::array<double, kJointCount> as_labelled(const std::array<double, kJointCount>& hidden,
+                                            const FlipState& flip) {
+  std::array<double, kJointCount> labelled{};
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    const double other = hidden[index_of(mirror(static_cast<JointId>(i)))];
+    labelled[i] = (1.0 - flip.blend) * hidden[i] + flip.blend * other;
+  }
+  return labelled;
 }
 
 /// The SDK reports a body when it has its trunk.
@@ -82,17 +94,20 @@ std::optional<Skeleton<SensorSpace>> KinectSensor::shown(std::size_t person, Tim
   const auto visible = visible_share(exact, person, obstacles_, profile.visibility);
 
   Memory& memory = memory_[person];
+  notice(memory.hidden, visible, profile.delivery.period, profile.visibility);
   advance(memory.flip, facing, profile.delivery.period, profile.yaw);
   stand.misjudged = misjudged_yaw(facing, memory.flip, profile.yaw);
-  advance(memory.coloured, stand, {time, profile.delivery.period}, profile.coloured, keys(person));
+  stand.hidden = as_labelled(memory.hidden, memory.flip);
+  advance(memory.coloured, stand, {time, profile.delivery.period}, profile, keys(person));
   memory.before = exact;
 
   Skeleton<SensorSpace> labelled = exact;
   for (std::size_t i = 0; i < kJointCount; ++i) {
+    const auto id = static_cast<JointId>(i);
     labelled.joints[i].state =
-        shown_state(static_cast<JointId>(i), visible[i], time, profile.visibility, keys(person));
-    labelled.joints[i].position += joint_bias(static_cast<JointId>(i), exact.joints[i].position,
-                                              facing, profile.bias, memory.bias[i]);
+        shown_state(id, 1.0 - memory.hidden[i], time, profile.visibility, keys(person));
+    labelled.joints[i].position +=
+        joint_bias(id, exact.joints[i].position, facing, profile.bias, memory.bias);
   }
   Skeleton<SensorSpace> body = as_shown(labelled, facing, memory.flip, profile.yaw);
   limit(body, profile.view);

@@ -42,6 +42,7 @@ class KinectSensor final : public BodySensor {
  private:
   struct Memory {
     FlipState flip;
+    std::array<double, kJointCount> hidden{};  ///< Noticed share of each joint.
     ColouredState coloured;
     PersonHarmonics bias{};
     std::optional<Skeleton<SensorSpace>> before;  ///< One frame ago, exactly.

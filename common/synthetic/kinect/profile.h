@@ -24,7 +24,8 @@ struct Delivery {
   double drop_share = 0;
   double gaps_per_minute = 0, gap_least = 0, gap_most = 0;  ///< [s]
   double gap_block = 10;                                    ///< At most one gap starts in each [s]
-  double latency = 0, latency_jitter = 0;                   ///< [s]
+  double slow_share = 0, slow_time = 0;    ///< Of the time at half the rate; least length [s]
+  double latency = 0, latency_jitter = 0;  ///< [s]
 };
 
 struct Visibility {
@@ -33,6 +34,10 @@ struct Visibility {
   double skin = 0;  ///< A hit this close before the joint is its own surface [m]
   double inferred_visible = 0, inferred_occluded = 0;  ///< Probabilities.
   double state_hold = 0;                               ///< [s]
+  double notice = 0;        ///< Until the SDK believes that a joint is hidden, or seen again [s]
+  double hidden_scale = 0;  ///< Times the table: error of hidden joints.
+  double hidden_depth = 0;  ///< Of it, along the ray against across.
+  double hidden_tau = 0;    ///< [s]
 };
 
 struct YawBehaviour {
@@ -46,20 +51,22 @@ struct JointBias {
   double core = 0, head_forward = 0, hip_radial = 0, vertical = 0;  ///< [m]
   double limb_factor = 0, common_share = 0;
   double neck_factor = 0;                ///< Of core and vertical.
+  double follow_share = 0;               ///< Of a joint that follows its neighbour, see leader().
   double harmonic = 0;                   ///< Root mean square of one coefficient.
   double head_from = 0, head_width = 0;  ///< Turn at which it begins, and its ramp [rad]
   double hip_from = 0, hip_width = 0;    ///< [rad]
 };
 
 struct ColouredError {
-  double core_tau = 0, limb_tau = 0;  ///< While moving [s]
-  double moving_speed = 0;            ///< Joint speed from which on time passes in full [m/s]
-  double rest_share = 0;              ///< Of time that passes at rest.
-  double shared_cell = 0;             ///< [m]
+  double core_tau = 0, limb_tau = 0, foot_tau = 0;  ///< While moving [s]
+  double moving_speed = 0;  ///< Joint speed from which on time passes in full [m/s]
+  double rest_share = 0;    ///< Of time that passes at rest.
+  double shared_cell = 0;   ///< [m]
   double scale = 0, depth_factor = 0, turn_growth = 0, distance_growth = 0;
   double inferred_factor = 0, inferred_least = 0, inferred_pull = 0;
   double core_correlation = 0, sensor_correlation = 0, neck_correlation = 0;
-  double view_twice = 0;  ///< Of the shared part: what comes round twice as the view does once.
+  double follow_share = 0;  ///< Of the variance of a joint that follows its neighbour.
+  double view_twice = 0;    ///< Of the shared part: what comes round twice as the view does once.
   double best_distance = 0, good_depth = 0;  ///< [m]
   double student_nu = 0;                     ///< 0: Gaussian.
   double tail_time = 0, most_tail = 0;       ///< How long a bad spell lasts [s]; its limit.
@@ -70,6 +77,8 @@ struct GrossError {
   double teleport_size = 0;  ///< [m]
   double teleport_time = 0;  ///< [s]
   double ghosts_per_minute = 0, ghost_time = 0;
+  double ghost_aside = 0, ghost_near = 0, ghost_far = 0, ghost_below = 0;  ///< Its place [m]
+  double ghost_limb = 0, ghost_joint = 0;                                  ///< Its size [m]
   double id_swap = 0;      ///< Probability per contact.
   double contact = 0;      ///< People nearer than this touch [m]
   double leg_merge = 0;    ///< Share of the distance closed.
@@ -77,9 +86,11 @@ struct GrossError {
 };
 
 struct ClockError {
-  double offset = 0;  ///< Standard deviation over hosts [s]
-  double drift = 0;   ///< Standard deviation [s/s]
-  double step = 0;    ///< [s]
+  double offset = 0;       ///< Standard deviation over hosts [s]
+  double drift = 0;        ///< Standard deviation [s/s]
+  double step = 0;         ///< Either way [s]
+  double step_chance = 0;  ///< That a host's clock steps, once.
+  double step_within = 0;  ///< After the first frame [s]
 };
 
 /// The floor plane that comes with each frame: standard deviations, for good and per frame.
@@ -97,7 +108,7 @@ struct Profile {
   JointBias bias;
   ColouredError coloured;
   double white_scale = 1.0;
-  double white_inferred = 1.0;  ///< Inferred joints are so much noisier.
+  double white_inferred = 0.0;  ///< What inferred joints jitter more [m]
   GrossError gross;
   ClockError clock;
   FloorError floor;
@@ -116,8 +127,8 @@ struct Parameter {
 };
 [[nodiscard]] std::vector<Parameter> parameters_of(Profile profile);
 
-/// First 12 hex digits of the SHA-256 of profiles.json and the joint table: printed with every
-/// result.
+/// First 12 hex digits of the SHA-256 of profiles.json and all sources of this folder: printed with
+/// every result.
 [[nodiscard]] std::string frozen_hash();
 
 }  // namespace chorus::synthetic::kinect

@@ -130,4 +130,12 @@ std::array<double, kJointCount> visible_share(const Skeleton<SensorSpace>& body,
   return share;
 }
 
+void notice(std::array<double, kJointCount>& hidden, const std::array<double, kJointCount>& visible,
+            double dt, const Visibility& visibility) {
+  const double keep = visibility.notice > 0 ? std::exp(-dt / visibility.notice) : 0.0;
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    hidden[i] = keep * hidden[i] + (1.0 - keep) * (1.0 - visible[i]);
+  }
+}
+
 }  // namespace chorus::synthetic::kinect

@@ -34,4 +34,9 @@ struct Obstacles {
                                                             const Obstacles& obstacles,
                                                             const Visibility& visibility);
 
+/// One frame further: what the SDK has noticed of each joint's being hidden follows what is hidden
+/// now, so that a leg which passes is tracked on.
+void notice(std::array<double, kJointCount>& hidden, const std::array<double, kJointCount>& visible,
+            double dt, const Visibility& visibility);
+
 }  // namespace chorus::synthetic::kinect

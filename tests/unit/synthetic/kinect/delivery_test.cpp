@@ -28,9 +28,34 @@ TEST(Delivery, EachSensorHasItsOwnPhase) {
 }
 
 TEST(Delivery, DropsTheStatedShare) {
+  Delivery steady = kDelivery;
+  steady.slow_share = 0;
   int dropped = 0;
-  for (std::uint64_t i = 0; i < 20'000; ++i) dropped += is_dropped(kDelivery, i, {});
-  EXPECT_NEAR(dropped / 20'000.0, kDelivery.drop_share, 0.3 * kDelivery.drop_share);
+  for (std::uint64_t i = 0; i < 20'000; ++i) dropped += is_dropped(steady, i, {});
+  EXPECT_NEAR(dropped / 20'000.0, steady.drop_share, 0.3 * steady.drop_share);
+}
+
+TEST(Delivery, RunsAtHalfTheRateInEpisodesOfTheStatedShareAndLength) {
+  Delivery slow = kDelivery;
+  slow.drop_share = 0;
+  slow.slow_share = 0.2;
+  slow.slow_time = 3.0;
+  constexpr int kFrames = 400'000;
+  int missing = 0;
+  int run = 0;  // frames of the current episode
+  for (std::uint64_t i = 0; i < kFrames; i += 2) {
+    EXPECT_FALSE(is_dropped(slow, i, {})) << "every other frame stays";
+    const bool gone = is_dropped(slow, i + 1, {});
+    missing += gone;
+    if (!gone && run > 0) {
+      EXPECT_GE(run * slow.period, slow.slow_time - 3 * slow.period);
+    }
+    run = gone ? run + 2 : 0;
+  }
+  EXPECT_NEAR(2.0 * missing / kFrames, slow.slow_share, 0.02);
+  EXPECT_GT(kDelivery.slow_share, 0.0) << "profile A has such episodes";
+  slow.slow_share = 0;
+  for (std::uint64_t i = 0; i < 1000; ++i) EXPECT_FALSE(is_dropped(slow, i, {}));
 }
 
 TEST(Delivery, LosesPeopleForTheStatedTimesAtTheStatedRate) {
@@ -80,7 +105,9 @@ TEST(HostClock, OffsetDriftAndStepAddUp) {
 }
 
 TEST(HostClock, IsDrawnPerSensorWithTheStatedSpread) {
-  const ClockError error{0.005, 20e-6, 0.0};
+  ClockError error;
+  error.offset = 0.005;
+  error.drift = 20e-6;
   double offsets = 0, drifts = 0;
   for (std::uint64_t sensor = 0; sensor < 2000; ++sensor) {
     const HostClock clock = draw_clock(error, kStart, {1, sensor, 0});
@@ -90,6 +117,37 @@ TEST(HostClock, IsDrawnPerSensorWithTheStatedSpread) {
   EXPECT_NEAR(std::sqrt(offsets / 2000), 0.005, 0.0004);
   EXPECT_NEAR(std::sqrt(drifts / 2000), 20e-6, 1.6e-6);
   EXPECT_EQ(draw_clock(ClockError{}, kStart, {}).host_time(kStart), kStart);
+}
+
+TEST(HostClock, StepsOnTheStatedShareOfHostsEitherWayWithinTheStatedTime) {
+  ClockError error;
+  error.step = 0.128;
+  error.step_chance = 0.3;
+  error.step_within = 60;
+  int stepped = 0, forward = 0;
+  for (std::uint64_t sensor = 0; sensor < 2000; ++sensor) {
+    const HostClock clock = draw_clock(error, kStart, {1, sensor, 0});
+    EXPECT_EQ(clock.host_time(kStart - std::chrono::seconds(1)), kStart - std::chrono::seconds(1));
+    const Timestamp end = kStart + std::chrono::seconds(60);
+    const double jump = seconds(clock.host_time(end) - end);
+    if (jump == 0) continue;
+    ++stepped;
+    forward += jump > 0;
+    EXPECT_NEAR(std::abs(jump), 0.128, 1e-8);
+    EXPECT_GE(clock.step_at, kStart);
+    EXPECT_LE(clock.step_at, end);
+  }
+  EXPECT_NEAR(stepped / 2000.0, 0.3, 0.04);
+  EXPECT_NEAR(forward / static_cast<double>(stepped), 0.5, 0.08);
+}
+
+TEST(HostClock, NeverStepsInTheFrozenProfiles) {
+  for (const char* profile : {"A", "B"}) {
+    for (std::uint64_t sensor = 0; sensor < 200; ++sensor) {
+      const HostClock clock = draw_clock(nominal_profile(profile).clock, kStart, {1, sensor, 0});
+      EXPECT_EQ(clock.step_at, Timestamp::max());
+    }
+  }
 }
 
 }  // namespace

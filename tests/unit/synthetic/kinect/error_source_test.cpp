@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <set>
 
 #include "tests/unit/synthetic/kinect/room.h"
@@ -36,9 +37,10 @@ TEST(WithSource, TouchesItsOwnParametersOnly) {
   }
 }
 
-/// Worst distance of a seen joint from the truth of its own label [m]; only `source` is on.
+/// Distances of seen joints from the truth of their own label [m]; only `source` is on.
 struct Effect {
   double worst = 0.0;
+  double mean = 0.0;
   std::size_t inferred = 0;
   std::size_t frames = 0;
   std::size_t bodies = 0;
@@ -50,6 +52,7 @@ Effect effect_of(const Profile& profile) {
   KinectSensor sensor(scene, setting(profile), kStart);
   const Eigen::Isometry3d sensor_from_world = scene.world_from_sensor[0].inverse();
   Effect effect;
+  std::size_t seen = 0;
   while (sensor.next_exposure() < kStart + std::chrono::seconds(60)) {
     const Timestamp exposed = sensor.next_exposure();
     const auto frame = sensor.next();
@@ -62,10 +65,14 @@ Effect effect_of(const Profile& profile) {
     for (std::size_t i = 0; i < kJointCount; ++i) {
       const Joint& joint = frame->bodies[0].skeleton.joints[i];
       if (!joint.seen()) continue;
-      effect.worst = std::max(effect.worst, (joint.position - exact.joints[i].position).norm());
+      const double error = (joint.position - exact.joints[i].position).norm();
+      effect.worst = std::max(effect.worst, error);
+      effect.mean += error;
+      ++seen;
       effect.inferred += joint.state == JointState::Inferred;
     }
   }
+  effect.mean /= static_cast<double>(seen);
   return effect;
 }
 
@@ -89,7 +96,7 @@ Profile only(Source source) {
 TEST(WithSource, EachAloneDoesItsOwnHarm) {
   const Effect none = effect_of(perfect());
   EXPECT_GT(effect_of(only(Source::Visibility)).inferred, 10 * none.inferred + 100);
-  EXPECT_LT(effect_of(only(Source::Visibility)).worst, 1e-9) << "states only";
+  EXPECT_GT(effect_of(only(Source::Visibility)).worst, mm(40)) << "hidden joints are guessed";
   EXPECT_GT(effect_of(only(Source::Yaw)).worst, 0.2) << "exchanged labels";
   const double bias = effect_of(only(Source::Bias)).worst;
   EXPECT_GT(bias, mm(15));
@@ -106,6 +113,47 @@ TEST(WithSource, EachAloneDoesItsOwnHarm) {
   const Effect clock = effect_of(only(Source::Clock));
   EXPECT_GT(clock.clock, 1e-4);
   EXPECT_LT(clock.worst, 1e-9) << "the stamp errs, not the place";
+}
+
+/// What the source is there to spoil, in whatever unit.
+double harm(Source source, const Effect& effect) {
+  if (source == Source::Clock) return effect.clock;
+  if (source == Source::Delivery) return -static_cast<double>(effect.bodies);
+  return effect.mean;
+}
+
+TEST(WithSource, MoreOfItIsMoreErrorOverTheWholeSweep) {
+  for (std::size_t i = 0; i < kAllSources.size(); ++i) {
+    double before = -std::numeric_limits<double>::infinity();
+    for (const double factor : {0.0, 0.5, 1.0, 2.0, 3.0}) {
+      const double now = harm(kAllSources[i],
+                              effect_of(with_source(only(kAllSources[i]), kAllSources[i], factor)));
+      EXPECT_GT(now, before) << "source " << i << " x" << factor;
+      before = now;
+    }
+  }
+}
+
+TEST(WithSource, TheYawShownFallsBackMoreAndMoreButNeverTurnsBackwards) {
+  double before = deg(90);
+  for (const double factor : {0.5, 1.0, 2.0, 3.0}) {
+    const YawBehaviour yaw = with_source(nominal_profile("A"), Source::Yaw, factor).yaw;
+    const double shown = shown_yaw(deg(90), yaw.hip_slope, yaw);
+    EXPECT_LT(shown, before) << factor;
+    EXPECT_GT(shown, yaw.reliable) << factor;
+    before = shown;
+  }
+}
+
+TEST(WithSource, LeftAndRightAreExchangedEarlierTheMoreYawErrs) {
+  double rear = deg(361);
+  for (const double factor : {0.0, 0.5, 1.0, 2.0, 3.0}) {
+    const YawBehaviour yaw = with_source(nominal_profile("A"), Source::Yaw, factor).yaw;
+    EXPECT_LT(yaw.flip_to_rear, rear) << factor;
+    EXPECT_LE(yaw.flip_to_front, yaw.flip_to_rear) << factor;
+    EXPECT_GT(yaw.flip_to_front, yaw.reliable) << factor;
+    rear = yaw.flip_to_rear;
+  }
 }
 
 }  // namespace

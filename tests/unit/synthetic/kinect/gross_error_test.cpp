@@ -71,6 +71,27 @@ TEST(Ghost, ComesAboutAsOftenAsStatedAndStandsStill) {
   EXPECT_EQ(places.size(), 1u) << "the same piece of furniture";
 }
 
+TEST(Ghost, StandsWhereAndIsAsLargeAsStated) {
+  GrossError gross = nominal_profile("A").gross;
+  gross.ghosts_per_minute = 60;
+  gross.ghost_time = 1.0;
+  gross.ghost_aside = 0.5;
+  gross.ghost_near = 3.0;
+  gross.ghost_far = 3.2;
+  gross.ghost_below = 0.4;
+  gross.ghost_joint = 0.1;
+  for (std::uint64_t sensor = 0; sensor < 50; ++sensor) {
+    const auto body = ghost(gross, 0.5, {1, sensor, 0});
+    ASSERT_TRUE(body.has_value());
+    const Eigen::Vector3d& seat = body->skeleton[SpineBase].position;
+    EXPECT_LE(std::abs(seat.x()), 0.5);
+    EXPECT_EQ(seat.y(), -0.4);
+    EXPECT_GE(seat.z(), 3.0);
+    EXPECT_LE(seat.z(), 3.2);
+    EXPECT_NEAR((body->skeleton[Head].position - seat).y(), 0.4, 1e-9);
+  }
+}
+
 TEST(Ghost, NoneWhenSwitchedOff) {
   GrossError gross = nominal_profile("A").gross;
   gross.ghosts_per_minute = 0;

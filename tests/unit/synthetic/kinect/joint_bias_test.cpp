@@ -15,7 +15,7 @@ const JointBias kBias = nominal_profile("A").bias;
 
 Eigen::Vector3d bias_of(JointId id, double facing, const JointBias& bias, const BiasKeys& keys,
                         const Eigen::Vector3d& joint = kJoint) {
-  return joint_bias(id, joint, facing, bias, harmonics_of(bias, keys)[index_of(id)]);
+  return joint_bias(id, joint, facing, bias, harmonics_of(bias, keys));
 }
 
 TEST(JointBias, IsZeroWhenSwitchedOff) {
@@ -41,11 +41,13 @@ TEST(JointBias, ChangesSmoothlyAsTheBodyTurnsAllTheWayRound) {
 }
 
 TEST(JointBias, HasTheStatedSizeOverManyDraws) {
+  JointBias trunk = kBias;
+  trunk.hip_radial = 0;
   double squares = 0;
   int count = 0;
   for (std::uint64_t draw = 1; draw <= 300; ++draw) {
     for (const double facing : {0.0, 0.7, 1.5, 2.5}) {
-      const auto error = bias_of(JointId::SpineShoulder, facing, kBias, {draw, draw});
+      const auto error = bias_of(JointId::SpineMid, facing, trunk, {draw, draw});
       squares += error.x() * error.x() + error.z() * error.z();
       ++count;
     }
@@ -61,6 +63,22 @@ TEST(JointBias, TheNeckErrsLeastOfAll) {
   const auto full = bias_of(JointId::Neck, 0.7, same, {3, 3});
   EXPECT_NEAR(bias_of(JointId::Neck, 0.7, kBias, {3, 3}).norm(), kBias.neck_factor * full.norm(),
               1e-9);
+}
+
+TEST(JointBias, HipsErrWithTheSpineBaseAndTheChestWithTheNeck) {
+  JointBias none = kBias;
+  none.follow_share = 0;
+  double led = 0, free = 0;
+  for (std::uint64_t draw = 1; draw <= 100; ++draw) {
+    const BiasKeys keys{draw, draw};
+    for (const auto& [joint, leads] : {std::pair{JointId::HipLeft, JointId::SpineBase},
+                                       {JointId::SpineShoulder, JointId::Neck}}) {
+      const double facing = deg(80);
+      led += (bias_of(joint, facing, kBias, keys) - bias_of(leads, facing, kBias, keys)).norm();
+      free += (bias_of(joint, facing, none, keys) - bias_of(leads, facing, none, keys)).norm();
+    }
+  }
+  EXPECT_NEAR(led / free, 1.0 - kBias.follow_share, 1e-9);
 }
 
 TEST(JointBias, TheHeadMovesForwardBeyondFortyFiveDegreesAndTheHipAway) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -107,6 +108,7 @@ TEST(ShownState, HiddenJointsAreMostlyInferredAndAVisibleCoreNever) {
   for (int i = 0; i < 3000; ++i) {
     hidden += shown_state(KneeLeft, 0.0, i * 1.0, visibility, {}) == JointState::Inferred;
     EXPECT_EQ(shown_state(Neck, 1.0, i * 1.0, visibility, {}), JointState::Tracked);
+    EXPECT_EQ(shown_state(ShoulderLeft, 1.0, i * 1.0, visibility, {}), JointState::Tracked);
   }
   EXPECT_NEAR(hidden / 3000.0, visibility.inferred_occluded, 0.04);
 }
@@ -130,7 +132,7 @@ Eigen::Vector3d spread(const Profile& profile, JointId id, double speed) {
   for (int i = 0; i < kRuns; ++i) {
     const ErrorKeys keys{static_cast<std::uint64_t>(i), 0, 0};
     ColouredState state;
-    advance(state, setting.stand, {1.0, kFrame}, profile.coloured, keys);
+    advance(state, setting.stand, {1.0, kFrame}, profile, keys);
     auto body = setting.body;
     add_errors(body, state, setting.stand, 1.0, profile, keys);
     squares += (body[id].position - setting.body[id].position).cwiseAbs2();
@@ -151,6 +153,116 @@ TEST(AddErrors, TrackedJointsScatterAsTheTableSays) {
   EXPECT_NEAR(spread(profile, Neck, 1.0).x() / neck.x(), 2.0, 0.01);
 }
 
+/// Profile A without any of its errors of tracked joints.
+Profile quiet() {
+  Profile profile = nominal_profile("A");
+  profile.gross.teleports = 0;
+  profile.white_scale = 0;
+  profile.coloured.scale = 0;
+  profile.coloured.inferred_least = 0;
+  profile.coloured.inferred_pull = 0;
+  return profile;
+}
+
+/// Root mean square distance from the truth, all joints hidden by this share [m].
+double hidden_by(double share, JointId id) {
+  const Profile profile = quiet();
+  Setting setting(0.0);
+  setting.stand.hidden.fill(share);
+  double squares = 0;
+  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+    ColouredState state;
+    advance(state, setting.stand, {1.0, kFrame}, profile, {seed, 0, 0});
+    auto body = setting.body;
+    add_errors(body, state, setting.stand, 1.0, profile, {seed, 0, 0});
+    squares += (body[id].position - setting.body[id].position).squaredNorm();
+  }
+  return std::sqrt(squares / 1000);
+}
+
+TEST(AddErrors, HiddenLimbsErrMoreTheMoreTheyAreHiddenAndWhetherOrNotTheyAreCalledInferred) {
+  EXPECT_EQ(hidden_by(0.0, ElbowLeft), 0.0);
+  EXPECT_GT(hidden_by(1.0, ElbowLeft), mm(30));
+  EXPECT_NEAR(hidden_by(0.5, ElbowLeft), 0.5 * hidden_by(1.0, ElbowLeft), 1e-9);
+  EXPECT_EQ(hidden_by(1.0, Neck), 0.0);
+}
+
+TEST(AddErrors, AGuessWandersAlsoAtRest) {
+  const Profile profile = quiet();
+  Setting setting(0.0);
+  setting.stand.hidden.fill(1.0);
+  ColouredState state;
+  std::vector<double> places;
+  for (int i = 0; i < 60; ++i) {
+    advance(state, setting.stand, {i * kFrame, kFrame}, profile, {});
+    auto body = setting.body;
+    add_errors(body, state, setting.stand, i * kFrame, profile, {});
+    places.push_back(body[ElbowLeft].position.z());
+  }
+  const auto [least, most] = std::minmax_element(places.begin(), places.end());
+  EXPECT_GT(*most - *least, mm(20));
+}
+
+TEST(AddErrors, ABoneToAFollowerKeepsItsLength) {
+  Profile profile = quiet();
+  profile.coloured.scale = 1;
+  const auto length_error = [&](double share) {
+    profile.coloured.follow_share = share;
+    const Setting setting(1.0);
+    double squares = 0;
+    for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+      ColouredState state;
+      advance(state, setting.stand, {1.0, kFrame}, profile, {seed, 0, 0});
+      auto body = setting.body;
+      add_errors(body, state, setting.stand, 1.0, profile, {seed, 0, 0});
+      squares += ((body[HipLeft].position - body[SpineBase].position) -
+                  (setting.body[HipLeft].position - setting.body[SpineBase].position))
+                     .squaredNorm();
+    }
+    return std::sqrt(squares / 1000);
+  };
+  EXPECT_LT(length_error(0.9), 0.6 * length_error(0.0));
+}
+
+TEST(AddErrors, FeetForgetSooner) {
+  const Profile profile = nominal_profile("A");
+  const Setting setting(1.0);
+  const auto kept = [&](JointId id) {
+    double products = 0, squares = 0;
+    for (std::uint64_t seed = 0; seed < 500; ++seed) {
+      ColouredState state;
+      std::vector<double> values;
+      for (int i = 0; i < 11; ++i) {
+        advance(state, setting.stand, {i * kFrame, kFrame}, profile, {seed, 0, 0});
+        values.push_back(state.joint[index_of(id)].value().x());
+      }
+      products += values.front() * values.back();
+      squares += values.front() * values.front();
+    }
+    return products / squares;
+  };
+  EXPECT_LT(kept(AnkleLeft), kept(KneeLeft) - 0.15) << "after a third of a second";
+}
+
+TEST(AddErrors, GuessesJitterMore) {
+  Profile profile = quiet();
+  profile.white_scale = 1;
+  profile.white_inferred = mm(12);
+  const auto jitter = [&](JointState state) {
+    Setting setting(1.0);
+    for (Joint& joint : setting.body.joints) joint.state = state;
+    double squares = 0;
+    for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+      auto body = setting.body;
+      add_errors(body, {}, setting.stand, 1.0, profile, {seed, 0, 0});
+      squares += std::pow(body[KneeLeft].position.x() - setting.body[KneeLeft].position.x(), 2);
+    }
+    return std::sqrt(squares / 1000);
+  };
+  const double tracked = jitter(JointState::Tracked);
+  EXPECT_NEAR(jitter(JointState::Inferred), std::hypot(tracked, mm(12)), mm(0.8));
+}
+
 TEST(AddErrors, AMisjudgedYawMakesThemGrow) {
   Profile profile = nominal_profile("A");
   profile.gross.teleports = 0;
@@ -160,7 +272,7 @@ TEST(AddErrors, AMisjudgedYawMakesThemGrow) {
     Stand stand = setting.stand;
     stand.misjudged = misjudged;
     ColouredState state;
-    advance(state, stand, {1.0, kFrame}, profile.coloured, {});
+    advance(state, stand, {1.0, kFrame}, profile, {});
     auto body = setting.body;
     add_errors(body, state, stand, 1.0, profile, {});
     return (body[Neck].position - setting.body[Neck].position).norm();
@@ -187,7 +299,7 @@ TEST(AddErrors, ProfileBHasHeavierTails) {
     for (int i = 0; i < 3000; ++i) {
       const ErrorKeys keys{static_cast<std::uint64_t>(i), 0, 0};
       ColouredState state;
-      advance(state, setting.stand, {1.0, kFrame}, profile.coloured, keys);
+      advance(state, setting.stand, {1.0, kFrame}, profile, keys);
       auto body = setting.body;
       add_errors(body, state, setting.stand, 1.0, profile, keys);
       beyond += std::abs((body[Neck].position - setting.body[Neck].position).x()) > 3 * sigma;

@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "tests/support/builders.h"
 #include "tests/unit/synthetic/kinect/room.h"
 
 namespace chorus::synthetic::kinect {
@@ -70,6 +71,35 @@ TEST(KinectSensor, ErrorIsThatOfARealSensorAndNotOfAPerfectOne) {
   }
   EXPECT_GT(sum / static_cast<double>(count), mm(5));
   EXPECT_LT(sum / static_cast<double>(count), mm(60));
+}
+
+TEST(KinectSensor, TheSideTurnedAwayErrsMoreThanTheOtherAndIsMostlyGuessed) {
+  Scene scene = room();
+  scene.people = {[](Duration) {
+    return testing::standing_person({0, 0, 2.0}, deg(180) + deg(75));
+  }};
+  Profile profile = nominal_profile("A");
+  for (const Source source : {Source::Bias, Source::Yaw, Source::Gross})
+    profile = with_source(std::move(profile), source, 0.0);
+  KinectSetting how = setting(profile);
+  how.own_clock = false;
+  const auto exact = to_sensor(scene.world_from_sensor[0].inverse(), truth(scene, 0, kStart));
+  using enum JointId;
+  const bool left_far = exact[ShoulderLeft].position.z() > exact[ShoulderRight].position.z();
+  std::array<double, 2> error{};    // near, far
+  std::array<double, 2> guessed{};  // near, far
+  for (const SensorFrame& frame : minute(scene, how)) {
+    if (frame.bodies.empty()) continue;
+    for (const JointId id : {ShoulderLeft, ShoulderRight}) {
+      const std::size_t side = (id == ShoulderLeft) == left_far ? 1 : 0;
+      const Joint& joint = frame.bodies[0].skeleton[id];
+      error[side] += (joint.position - exact[id].position).squaredNorm();
+      guessed[side] += joint.state == JointState::Inferred;
+    }
+  }
+  EXPECT_GT(std::sqrt(error[1]), 1.5 * std::sqrt(error[0]));
+  EXPECT_EQ(guessed[0], 0);
+  EXPECT_GT(guessed[1], 900) << "of 1800";
 }
 
 TEST(KinectSensor, SensorsAndPeopleHaveTheirOwnIds) {

@@ -98,5 +98,25 @@ TEST(Visibility, ABodyAtTheOriginOrUnseenIsSurvived) {
   for (const double share : seen(nobody, only(nobody))) EXPECT_EQ(share, 1.0);
 }
 
+TEST(Notice, ALegThatPassesIsTrackedOnAndAHiddenSideIsLost) {
+  const Visibility visibility = nominal_profile("A").visibility;
+  std::array<double, kJointCount> hidden{};
+  std::array<double, kJointCount> visible{};
+  visible.fill(0.0);
+  const auto after = [&](double time) {
+    for (double t = 0; t < time; t += 0.033) notice(hidden, visible, 0.033, visibility);
+    return hidden[index_of(KneeLeft)];
+  };
+  EXPECT_LT(after(0.07), 0.5);
+  EXPECT_GT(after(1.0), 0.95);
+  visible.fill(1.0);
+  EXPECT_LT(after(1.0), 0.05) << "and found again";
+  Visibility at_once = visibility;
+  at_once.notice = 0;
+  visible.fill(0.25);
+  notice(hidden, visible, 0.033, at_once);
+  EXPECT_EQ(hidden[index_of(KneeLeft)], 0.75);
+}
+
 }  // namespace
 }  // namespace chorus::synthetic::kinect
