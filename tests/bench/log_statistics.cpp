@@ -1,5 +1,6 @@
 #include "tests/bench/log_statistics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -43,20 +44,23 @@ std::vector<std::vector<Sample>> runs_of(const std::vector<Sample>& samples) {
   return runs;
 }
 
-bool tracked(const Sample& sample, std::size_t joint) {
-  return sample.body->joints[joint].state == JointState::Tracked;
-}
+/// Which joint, and in which state all four frames have it.
+struct Wanted {
+  std::size_t joint;
+  JointState state;
+};
 
-double white_noise(const std::vector<std::vector<Sample>>& runs, std::size_t joint, int axis) {
+double white_noise(const std::vector<std::vector<Sample>>& runs, const Wanted& wanted, int axis) {
   std::vector<double> sizes;
   for (const auto& run : runs) {
     for (std::size_t i = 3; i < run.size(); ++i) {
       const auto at = [&](std::size_t back) {
-        return run[i - back].body->joints[joint].position[axis];
+        return run[i - back].body->joints[wanted.joint].position[axis];
       };
-      if (!tracked(run[i], joint) || !tracked(run[i - 1], joint) || !tracked(run[i - 2], joint) ||
-          !tracked(run[i - 3], joint))
-        continue;
+      const auto is_wanted = [&](std::size_t back) {
+        return run[i - back].body->joints[wanted.joint].state == wanted.state;
+      };
+      if (!is_wanted(0) || !is_wanted(1) || !is_wanted(2) || !is_wanted(3)) continue;
       sizes.push_back(std::abs(at(0) - 3 * at(1) + 3 * at(2) - at(3)));
     }
   }
@@ -71,6 +75,23 @@ std::vector<double> lengths(const std::vector<Sample>& run, const Bone& bone) {
     if (a.seen() && b.seen()) values.push_back((a.position - b.position).norm());
   }
   return values;
+}
+
+std::array<double, 3> steps_of(const std::vector<Sample>& samples) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    steps.push_back(samples[i].time - samples[i - 1].time);
+  return {median(steps), percentile(steps, 0.95), worst(steps)};
+}
+
+std::size_t unoriented(const std::vector<Sample>& samples) {
+  std::size_t count = 0;
+  for (std::size_t joint = 0; joint < kJointCount; ++joint) {
+    count += std::ranges::all_of(samples, [joint](const Sample& sample) {
+      return sample.body->joints[joint].orientation.coeffs().isZero(0.0);
+    });
+  }
+  return count;
 }
 
 }  // namespace
@@ -112,14 +133,21 @@ LogStatistics statistics_of(const std::vector<SensorFrame>& frames) {
     }
     result.inferred_share[joint] =
         seen == 0 ? kNone : static_cast<double>(inferred) / static_cast<double>(seen);
-    for (int axis = 0; axis < 3; ++axis) result.white[joint][axis] = white_noise(runs, joint, axis);
+    for (int axis = 0; axis < 3; ++axis) {
+      result.white[joint][axis] = white_noise(runs, {joint, JointState::Tracked}, axis);
+      result.white_inferred[joint][axis] = white_noise(runs, {joint, JointState::Inferred}, axis);
+    }
   }
+  result.steps = steps_of(samples);
+  result.unoriented = unoriented(samples);
   constexpr std::size_t kThirdOfASecond = 10;  // frames
+  constexpr std::size_t kLater = 12;
   for (const Bone& bone : kBones) {
     const std::vector<double> values = lengths(samples, bone);
     result.bone_std[bone.child] = deviation(values);
     result.lag_frame[bone.child] = autocorrelation(values, 1);
     result.lag_third[bone.child] = autocorrelation(values, kThirdOfASecond);
+    result.lag_later[bone.child] = autocorrelation(values, kLater);
   }
   return result;
 }

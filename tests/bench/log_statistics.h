@@ -14,10 +14,14 @@ namespace chorus::bench {
 
 struct LogStatistics {
   std::array<Eigen::Vector3d, kJointCount> white{};  ///< Robust white noise per axis, tracked [m]
-  std::array<double, kJointCount> inferred_share{};  ///< Of the frames that saw the joint.
-  std::map<JointId, double> bone_std;                ///< By child joint [m]
+  std::array<Eigen::Vector3d, kJointCount> white_inferred{};  ///< The same while inferred [m]
+  std::array<double, kJointCount> inferred_share{};           ///< Of the frames that saw the joint.
+  std::map<JointId, double> bone_std;                         ///< By child joint [m]
   std::map<JointId, double> lag_frame;  ///< Autocorrelation of the bone length, next frame.
   std::map<JointId, double> lag_third;  ///< After a third of a second.
+  std::map<JointId, double> lag_later;  ///< After 0.4 s.
+  std::array<double, 3> steps{};        ///< Between frames: median, 95 %, longest [s]
+  std::size_t unoriented = 0;           ///< Joints whose orientation never came.
   std::size_t frames = 0;
 };
 

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/body/facing.h"
+#include "common/geometry/rotation.h"
 #include "common/synthetic/draw.h"
 
 namespace chorus::bench {
@@ -16,7 +18,9 @@ constexpr double kPeriodX = 11.0;  // [s]
 constexpr double kPeriodZ = 17.0;  // [s]
 constexpr double kFullTurn = 2.0 * std::numbers::pi;
 constexpr std::uint64_t kPurpose = 1501;
-constexpr double kLogSpeed = 0.8;  // [m/s]
+constexpr double kLogSpeed = 0.8;        // [m/s]
+constexpr double kTurnedDistance = 2.0;  // [m]
+constexpr double kTurnedBy = deg(75);
 
 Skeleton<WorldSpace> shifted(Skeleton<WorldSpace> body, const Eigen::Vector3d& shift) {
   for (Joint& joint : body.joints) joint.position += shift;
@@ -42,6 +46,27 @@ Scene one_sensor_scene(std::uint64_t seed) {
   Scene scene;
   scene.people = {stroller(seed, {0.0, 2.6}, kLogSpeed)};
   scene.world_from_sensor = {stand_sensor({0, 1.2, 0}, 0.0, deg(5))};
+  return scene;
+}
+
+Scene turned_scene(std::uint64_t seed) {
+  Scene scene;
+  scene.world_from_sensor = {stand_sensor({0, 1.2, 0}, 0.0, deg(5))};
+  const Walker walker({seed, PathKind::Assembly, {0.0, kTurnedDistance}, 0.0, kLogSpeed, 1.0});
+  const auto start = to_sensor(scene.world_from_sensor[0].inverse(), walker.at(Duration::zero()));
+  const Eigen::Vector3d centre(0, 0, kTurnedDistance);
+  const auto turn = Eigen::Translation3d(centre) *
+                    about_y(kTurnedBy - facing_angle(start).value_or(0.0)) *
+                    Eigen::Translation3d(-centre);
+  scene.people = {[walker, turn = Eigen::Isometry3d(turn)](Duration since_epoch) {
+    Skeleton<WorldSpace> body = walker.at(since_epoch);
+    for (Joint& joint : body.joints) {
+      joint.position = turn * joint.position;
+      if (joint.orientation.squaredNorm() > 0)
+        joint.orientation = turn.rotation() * joint.orientation;
+    }
+    return body;
+  }};
   return scene;
 }
 

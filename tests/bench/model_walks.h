@@ -20,6 +20,10 @@ inline constexpr Timestamp kSomeTime = from_unix_ns(1'795'000'000'000'000'000);
 /// One person before one sensor, mostly in its good range, at an everyday pace as in the logs.
 [[nodiscard]] synthetic::Scene one_sensor_scene(std::uint64_t seed);
 
+/// One person 2 m before one sensor, turned away by 75 deg, whose hands reach here and there: as in
+/// the log that tells what a hidden side is worth.  The left side is the far one.
+[[nodiscard]] synthetic::Scene turned_scene(std::uint64_t seed);
+
 /// What profile A shows of it; stamped with true time.
 [[nodiscard]] std::vector<SensorFrame> log_of(const synthetic::Scene& scene, std::uint64_t seed,
                                               Duration length);

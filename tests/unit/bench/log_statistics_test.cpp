@@ -74,6 +74,36 @@ TEST(LogStatistics, CountsInferredOfTheSeenOnly) {
   EXPECT_TRUE(std::isnan(s.inferred_share[index_of(Head)])) << "never seen";
 }
 
+TEST(LogStatistics, TellsTheNoiseOfGuessesFromThatOfTrackedJoints) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  std::vector<SensorFrame> frames;
+  for (int i = 0; i < 6000; ++i) {
+    frames.push_back(still(i));
+    Joint& neck = frames.back().bodies[0].skeleton[Neck];
+    const bool guessed = i / 100 % 2 == 1;
+    if (guessed) neck.state = JointState::Inferred;
+    neck.position.x() += (guessed ? 0.02 : 0.004) * normal(random);
+  }
+  const LogStatistics s = statistics_of(frames);
+  EXPECT_NEAR(s.white[index_of(Neck)].x(), 0.004, 0.0003);
+  EXPECT_NEAR(s.white_inferred[index_of(Neck)].x(), 0.02, 0.0015);
+  EXPECT_TRUE(std::isnan(s.white_inferred[index_of(SpineMid)].x())) << "never guessed";
+}
+
+TEST(LogStatistics, KnowsThePaceTheLongestGapAndWhatHasNoOrientation) {
+  std::vector<SensorFrame> frames;
+  for (int i = 0; i < 100; ++i) {
+    frames.push_back(still(i < 50 ? i : i + 30));
+    frames.back().bodies[0].skeleton[Neck].orientation = Eigen::Quaterniond::Identity();
+  }
+  const LogStatistics s = statistics_of(frames);
+  EXPECT_NEAR(s.steps[0], 0.033, 1e-9);
+  EXPECT_NEAR(s.steps[1], 0.033, 1e-9);
+  EXPECT_NEAR(s.steps[2], 31 * 0.033, 1e-9);
+  EXPECT_EQ(s.unoriented, kJointCount - 1);
+}
+
 TEST(LogStatistics, GapsAndEmptyLogsAreSurvived) {
   std::vector<SensorFrame> frames;
   for (int i = 0; i < 60; ++i) {
