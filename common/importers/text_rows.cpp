@@ -2,10 +2,11 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <system_error>
 
 #include <fmt/format.h>
+
+#include "common/base/file.h"
 
 namespace chorus::importers {
 namespace {
@@ -53,17 +54,10 @@ Result<std::string> read_bounded(const std::filesystem::path& file, std::uintmax
   std::error_code failed;
   if (!std::filesystem::is_regular_file(file, failed))
     return fail(ErrorCode::NotFound, file.string(), "there is no such file.");
-  const auto size = std::filesystem::file_size(file, failed);
-  if (failed) return fail(ErrorCode::Io, file.string(), failed.message());
-  if (size > max_bytes)
-    return fail(ErrorCode::TooLarge, file.string(),
-                fmt::format("has {} bytes; at most {} are read. Cut the recording into parts.",
-                            size, max_bytes));
-  std::ifstream in(file, std::ios::binary);
-  std::string text(size, '\0');
-  if (!in.read(text.data(), static_cast<std::streamsize>(size)))
-    return fail(ErrorCode::Io, file.string(), "cannot be read.");
-  return text;
+  return read_file(file, max_bytes).map_error([](Error error) {
+    if (error.code == ErrorCode::TooLarge) error.message += ". Cut the recording into parts.";
+    return error;
+  });
 }
 
 std::optional<std::string_view> LineReader::next() {

@@ -1,12 +1,11 @@
 #include "fusion-server/server/fusion_config.h"
 
 #include <array>
-#include <fstream>
 #include <set>
-#include <sstream>
 #include <utility>
 
 #include "common/base/config_reader.h"
+#include "common/base/file.h"
 #include "common/resource/contributors.h"
 #include "fusion-server/publish/registration_resources.h"
 
@@ -198,12 +197,13 @@ Result<FusionConfig> read_fusion_config(std::string_view text, std::string_view 
 
 Result<FusionConfig> load_fusion_config(const std::string& path,
                                         const std::vector<std::string>& overrides) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) {
-    return fail(ErrorCode::Io, path, "the configuration file cannot be read");
+  constexpr std::uintmax_t kMostBytes = 16u << 20;
+  const auto text = read_file(path, kMostBytes);
+  if (!text) {
+    return fail(ErrorCode::Io, path,
+                "the configuration file cannot be read: " + text.error().message);
   }
-  return read_fusion_config(text.str(), path, overrides);
+  return read_fusion_config(*text, path, overrides);
 }
 
 std::string needs_restart(const FusionConfig& now, const FusionConfig& next) {

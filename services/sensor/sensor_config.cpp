@@ -1,12 +1,9 @@
 #include "services/sensor/sensor_config.h"
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "common/base/file.h"
 #include "services/sensor/device/replay.h"
 #include "services/sensor/device/simulated.h"
 
@@ -19,9 +16,8 @@ constexpr std::string_view kDefaultId = "s1";
 
 Result<std::string> text_of(const std::string& path) {
   if (path.empty()) return std::string("{}");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return fail(ErrorCode::NotFound, path, std::strerror(errno));
-  return std::string(std::istreambuf_iterator<char>(file), {});
+  constexpr std::uintmax_t kMostBytes = 16u << 20;
+  return read_file(path, kMostBytes);
 }
 
 template <class T>

@@ -45,7 +45,7 @@ TEST_F(Store, KeepsWhatIsSaved) {
   const auto loaded = store.load();
   ASSERT_TRUE(loaded);
   EXPECT_EQ((*loaded)->version, 2u);
-  EXPECT_FALSE(fs::exists(store.path() + ".new"));
+  EXPECT_FALSE(fs::exists(store.path() + ".partial"));
 }
 
 TEST_F(Store, AnEmptyFolderNameKeepsNothingAndFailsNothing) {
@@ -68,7 +68,7 @@ TEST_F(Store, ACorruptFileIsAnErrorThatNamesItAndStays) {
 TEST_F(Store, ACrashBetweenWritingAndRenamingLeavesTheOldOne) {
   const RegistrationStore store(folder_.string());
   ASSERT_TRUE(store.save(registration(1)));
-  std::ofstream(store.path() + ".new") << "{\"half\": ";
+  std::ofstream(store.path() + ".partial") << "{\"half\": ";
   EXPECT_EQ((*store.load())->version, 1u);
   ASSERT_TRUE(store.save(registration(2)));
   EXPECT_EQ((*store.load())->version, 2u);
