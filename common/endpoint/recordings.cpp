@@ -1,15 +1,11 @@
 #include "common/endpoint/recordings.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <system_error>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include "common/base/log.h"
-#include "common/resource/json_guard.h"
 
 namespace chorus::endpoint {
 namespace {
@@ -26,7 +22,6 @@ constexpr std::size_t kMostListed = 10'000;
 constexpr int kOk = 200;
 constexpr int kCreated = 201;
 constexpr int kAccepted = 202;
-constexpr double kLongest = 7 * 24 * 3600.0;  // [s]
 
 bool is_running(const RecordingReport& report) {
   return report.state == RecordingState::Recording || report.state == RecordingState::Stopping;
@@ -51,37 +46,11 @@ std::string version_of(const RecordingReport& report) {
          std::to_string(report.bytes());
 }
 
-tl::unexpected<Error> wrong(std::string message) {
-  return fail(ErrorCode::InvalidArgument, std::string(kWhere), std::move(message));
-}
-
 /// Why a recording did not start, without where this host keeps its files when that is no help.
 tl::unexpected<Error> refused(const Error& error, const std::string& name) {
   if (error.code != ErrorCode::Conflict) return tl::unexpected<Error>(error);
   return fail(ErrorCode::Conflict, std::string(kWhere) + "/" + name,
               "there is a recording of this name already: choose another `name`");
-}
-
-/// One key of the body of a POST.
-Result<void> take(const std::string& key, const nlohmann::json& value, RecordingRequest& out) {
-  if (key == "name" && value.is_string()) {
-    out.name = value.get<std::string>();
-    if (record::is_recording_name(out.name)) return {};
-    return wrong("a \"name\" has 1 to 64 characters of A-Z a-z 0-9 _ -");
-  }
-  if (key == "seconds" && value.is_number()) {
-    const double length = value.get<double>();
-    if (!(length >= 1.0 && length <= kLongest)) return wrong("\"seconds\" is from 1 to 604800");
-    out.duration = from_seconds(length);
-    return {};
-  }
-  if ((key == "raw" || key == "fused") && value.is_boolean()) {
-    (key == "raw" ? out.raw : out.fused) = value.get<bool>();
-    return {};
-  }
-  return wrong("\"" + key +
-               "\" is not one of: \"name\" (text), \"seconds\" (number), \"raw\" and "
-               "\"fused\" (true or false)");
 }
 
 }  // namespace
@@ -99,25 +68,6 @@ void read_recording(ConfigReader config, RecordingConfig& out) {
   config.read_s("max_file_s", out.limits.max_file_duration, std::chrono::seconds(1),
                 std::chrono::hours(24));
   read_mb("min_free_mb", out.limits.min_free_bytes, 0.0);
-}
-
-Result<RecordingRequest> parse_recording_request(std::string_view body, bool has_fused) {
-  RecordingRequest request;
-  request.fused = has_fused;
-  if (body.find_first_not_of(" \t\r\n") == std::string_view::npos) return request;
-  constexpr resource::JsonLimits kLimits{4096, 4};
-  const auto json = resource::parse_json(body, kLimits);
-  if (!json || !json->is_object()) {
-    const std::string reason = json ? "" : "; " + to_string(json.error());
-    return wrong("send a JSON object, such as {\"seconds\": 60}" + reason);
-  }
-  for (const auto& [key, value] : json->items()) {
-    if (auto ok = take(key, value, request); !ok) return pass(ok);
-  }
-  if (request.fused && !has_fused) return wrong("a sensor has no fused frames to record");
-  if (!request.raw && !request.fused)
-    return wrong("neither raw nor fused frames are to be recorded");
-  return request;
 }
 
 resource::Node recording_node(const RecordingReport& report, std::string id) {
@@ -163,6 +113,17 @@ void Recordings::settle() {
   running_ = {};
 }
 
+record::RecorderOptions Recordings::options_for(const RecordingRequest& request) const {
+  record::RecorderOptions options;
+  options.name = request.name.empty() ? record::utc_name(options_.clock->now()) : request.name;
+  options.folder = fs::path(options_.config.folder) / options.name;
+  options.head = options_.head;
+  options.limits = options_.config.limits;
+  options.stop_after = request.duration;
+  options.clock = options_.clock;
+  return options;
+}
+
 Result<RecordingReport> Recordings::start(const RecordingRequest& request) {
   if (options_.config.folder.empty()) {
     return fail(ErrorCode::Forbidden, std::string(kWhere),
@@ -178,15 +139,8 @@ Result<RecordingReport> Recordings::start(const RecordingRequest& request) {
                       " ends it");
     }
   }
-  record::RecorderOptions options;
-  const std::string name =
-      request.name.empty() ? record::utc_name(options_.clock->now()) : request.name;
-  options.name = name;
-  options.folder = fs::path(options_.config.folder) / options.name;
-  options.head = options_.head;
-  options.limits = options_.config.limits;
-  options.stop_after = request.duration;
-  options.clock = options_.clock;
+  record::RecorderOptions options = options_for(request);
+  const std::string name = options.name;
   auto recorder = record::Recorder::start(std::move(options));
   if (!recorder) {
     log::error("recording not started", {{"reason", to_string(recorder.error())}});

@@ -13,6 +13,7 @@
 
 #include "common/base/config_reader.h"
 #include "common/endpoint/metrics.h"
+#include "common/endpoint/recording_request.h"
 #include "common/http/router.h"
 #include "common/record/recorder.h"
 #include "common/resource/node.h"
@@ -28,18 +29,6 @@ struct RecordingConfig {
 
 /// The section "recording" of a service's configuration.
 void read_recording(ConfigReader config, RecordingConfig& out);
-
-/// The body of POST /recordings/.
-struct RecordingRequest {
-  std::string name;      ///< Empty: the UTC time.
-  Duration duration{0};  ///< Zero: until it is stopped.
-  bool raw = true;
-  bool fused = true;
-};
-/// An empty body asks for everything there is.  Unknown keys, wrong types and names that are no
-/// recording names are InvalidArgument.
-[[nodiscard]] Result<RecordingRequest> parse_recording_request(std::string_view body,
-                                                               bool has_fused);
 
 /// `id` is the IRI the document gives it ("" in /recordings/{name}).
 [[nodiscard]] resource::Node recording_node(const record::RecordingReport& report, std::string id);
@@ -81,6 +70,7 @@ class Recordings {
     bool fused = false;
   };
 
+  [[nodiscard]] record::RecorderOptions options_for(const RecordingRequest& request) const;
   void settle();  ///< Takes note of a recording that has ended.  Called with the mutex held.
   [[nodiscard]] std::map<std::string, record::RecordingReport> all() const;
   [[nodiscard]] Result<record::RecordingReport> find(std::string_view name) const;

@@ -3,11 +3,12 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
 
+#include "common/record/floor_message.h"
 #include "common/record/frame_schema.h"
+#include "common/record/session_reader.h"
 #include "common/resource/frame_resource.h"
 
 namespace chorus::record {
@@ -71,10 +72,6 @@ std::optional<FloorPlane> floor_of(const Strings& values) {
   return plane ? std::optional(*plane) : std::nullopt;
 }
 
-bool same(const FloorPlane& a, const FloorPlane& b) {
-  return a.normal == b.normal && a.offset == b.offset;
-}
-
 struct Channels {
   std::uint16_t frame = 0;
   std::uint16_t floor = 0;
@@ -130,14 +127,6 @@ Result<void> write_whole(const std::filesystem::path& path, const FrameRecording
 
 }  // namespace
 
-std::string floor_json(const FloorPlane& floor) {
-  return nlohmann::json{{"normalX", floor.normal.x()},
-                        {"normalY", floor.normal.y()},
-                        {"normalZ", floor.normal.z()},
-                        {"offset", floor.offset}}
-      .dump();
-}
-
 Strings metadata_of(const FrameRecording& recording) {
   Strings values{{"sensor", recording.sensor.str()}, {"device", recording.device}};
   if (const auto& camera = recording.intrinsics) {
@@ -185,6 +174,24 @@ Result<void> write_frame_recording(const std::filesystem::path& path,
   }
   if (!ok) std::filesystem::remove(partial, error);
   return ok;
+}
+
+Result<FrameRecording> read_frame_recording(const std::filesystem::path& path,
+                                            const ReadLimits& limits, const SensorId& which) {
+  auto session = read_session(path, {limits, which, false, true});
+  if (!session) return pass(session);
+  auto& sensors = session->sensors;
+  const bool any = which.str().empty() || session->cell.empty();
+  for (FrameRecording& one : sensors) {
+    // A recording of one sensor may be played under any name.
+    if (one.sensor == which || (any && sensors.size() == 1)) return std::move(one);
+  }
+  std::string there;
+  for (const SensorId& sensor : session->cell) there += (there.empty() ? "" : ", ") + sensor.str();
+  return fail(ErrorCode::NotFound, path.string(),
+              there.empty() ? "it holds no frames of a sensor"
+                            : "it holds the sensors " + there + "; name one of them, not \"" +
+                                  which.str() + "\"");
 }
 
 }  // namespace chorus::record

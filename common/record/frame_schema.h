@@ -1,17 +1,11 @@
-// The JSON Schemas that stand in every recording, so that its messages explain themselves, and the
-// texts that both ways of recording share.
+// The JSON Schemas that stand in every recording, so that its messages explain themselves.
 #pragma once
 
-#include <string>
 #include <string_view>
-
-#include "common/sensor/sensor_frame.h"
 
 namespace chorus::record {
 
 inline constexpr std::string_view kMetadataName = "chorus";
-
-[[nodiscard]] std::string floor_json(const FloorPlane& floor);
 
 inline constexpr std::string_view kFrameSchemaName = "chorus.Frame";
 inline constexpr std::string_view kFrameSchema = R"({

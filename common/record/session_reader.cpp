@@ -1,13 +1,13 @@
 #include "common/record/session_reader.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <optional>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
+#include "common/record/floor_message.h"
 #include "common/record/frame_schema.h"
 #include "common/resource/frame_resource.h"
 
@@ -18,19 +18,6 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kFusedTopic = "/frame";
 constexpr std::string_view kSensorsPrefix = "/sensors/";
-
-Result<FloorPlane> read_floor(const std::string& text) {
-  const auto json = nlohmann::json::parse(text, nullptr, false);
-  std::array<double, 4> v{};
-  constexpr std::array<const char*, 4> kKeys{"normalX", "normalY", "normalZ", "offset"};
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    if (!json.is_object() || !json.contains(kKeys[i]) || !json[kKeys[i]].is_number()) {
-      return fail(ErrorCode::Malformed, "floor-plane", "a floor plane is not four numbers");
-    }
-    v[i] = json[kKeys[i]].get<double>();
-  }
-  return make_plane(v[0], v[1], v[2], v[3]);
-}
 
 Result<Duration> read_shift(const std::string& text) {
   constexpr std::int64_t kMost = 100ll * 365 * 24 * 3600 * 1'000'000'000;  // a hundred years
@@ -246,7 +233,7 @@ Result<void> Sorting::take_state(const Message& message, const Topic& topic) {
     (*stream)->shift = *shift;
     return {};
   }
-  const auto floor = read_floor(message.data);
+  const auto floor = read_floor_json(message.data);
   if (!floor) return fail(ErrorCode::Malformed, where(), floor.error().message);
   (*stream)->floor = *floor;
   return {};
@@ -337,24 +324,6 @@ Result<Session> read_session(const fs::path& path, const SessionQuery& query) {
   const auto files = recording_files(path);
   if (!files) return pass(files);
   return read_session(*files, query);
-}
-
-Result<FrameRecording> read_frame_recording(const fs::path& path, const ReadLimits& limits,
-                                            const SensorId& which) {
-  auto session = read_session(path, {limits, which, false, true});
-  if (!session) return pass(session);
-  auto& sensors = session->sensors;
-  const bool any = which.str().empty() || session->cell.empty();
-  for (FrameRecording& one : sensors) {
-    // A recording of one sensor may be played under any name.
-    if (one.sensor == which || (any && sensors.size() == 1)) return std::move(one);
-  }
-  std::string there;
-  for (const SensorId& sensor : session->cell) there += (there.empty() ? "" : ", ") + sensor.str();
-  return fail(ErrorCode::NotFound, path.string(),
-              there.empty() ? "it holds no frames of a sensor"
-                            : "it holds the sensors " + there + "; name one of them, not \"" +
-                                  which.str() + "\"");
 }
 
 }  // namespace chorus::record

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/record/floor_message.h"
 #include "common/record/frame_schema.h"
 
 namespace chorus::record {
@@ -26,10 +27,6 @@ std::string_view schema_text(std::string_view name) {
     if (row.name == name) return row.text;
   }
   return {};
-}
-
-bool same(const FloorPlane& a, const FloorPlane& b) {
-  return a.normal == b.normal && a.offset == b.offset;
 }
 
 /// The uncertainty grows all the time: that alone is no news.

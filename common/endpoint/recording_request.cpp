@@ -1,0 +1,62 @@
+#include "common/endpoint/recording_request.h"
+
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "common/record/recording_index.h"
+#include "common/resource/json_guard.h"
+
+namespace chorus::endpoint {
+namespace {
+
+constexpr double kLongest = 7 * 24 * 3600.0;  // [s]
+
+tl::unexpected<Error> wrong(std::string message) {
+  return fail(ErrorCode::InvalidArgument, "recordings", std::move(message));
+}
+
+/// One key of the body of a POST.
+Result<void> take(const std::string& key, const nlohmann::json& value, RecordingRequest& out) {
+  if (key == "name" && value.is_string()) {
+    out.name = value.get<std::string>();
+    if (record::is_recording_name(out.name)) return {};
+    return wrong("a \"name\" has 1 to 64 characters of A-Z a-z 0-9 _ -");
+  }
+  if (key == "seconds" && value.is_number()) {
+    const double length = value.get<double>();
+    if (!(length >= 1.0 && length <= kLongest)) return wrong("\"seconds\" is from 1 to 604800");
+    out.duration = from_seconds(length);
+    return {};
+  }
+  if ((key == "raw" || key == "fused") && value.is_boolean()) {
+    (key == "raw" ? out.raw : out.fused) = value.get<bool>();
+    return {};
+  }
+  return wrong("\"" + key +
+               "\" is not one of: \"name\" (text), \"seconds\" (number), \"raw\" and "
+               "\"fused\" (true or false)");
+}
+
+}  // namespace
+
+Result<RecordingRequest> parse_recording_request(std::string_view body, bool has_fused) {
+  RecordingRequest request;
+  request.fused = has_fused;
+  if (body.find_first_not_of(" \t\r\n") == std::string_view::npos) return request;
+  constexpr resource::JsonLimits kLimits{4096, 4};
+  const auto json = resource::parse_json(body, kLimits);
+  if (!json || !json->is_object()) {
+    const std::string reason = json ? "" : "; " + to_string(json.error());
+    return wrong("send a JSON object, such as {\"seconds\": 60}" + reason);
+  }
+  for (const auto& [key, value] : json->items()) {
+    if (auto ok = take(key, value, request); !ok) return pass(ok);
+  }
+  if (request.fused && !has_fused) return wrong("a sensor has no fused frames to record");
+  if (!request.raw && !request.fused)
+    return wrong("neither raw nor fused frames are to be recorded");
+  return request;
+}
+
+}  // namespace chorus::endpoint

@@ -1,0 +1,24 @@
+// What POST /recordings/ asks for.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "common/base/result.h"
+#include "common/time/timestamp.h"
+
+namespace chorus::endpoint {
+
+/// The body of POST /recordings/.
+struct RecordingRequest {
+  std::string name;      ///< Empty: the UTC time.
+  Duration duration{0};  ///< Zero: until it is stopped.
+  bool raw = true;
+  bool fused = true;
+};
+/// An empty body asks for everything there is.  Unknown keys, wrong types and names that are no
+/// recording names are InvalidArgument.
+[[nodiscard]] Result<RecordingRequest> parse_recording_request(std::string_view body,
+                                                               bool has_fused);
+
+}  // namespace chorus::endpoint
