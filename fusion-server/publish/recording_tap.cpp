@@ -9,6 +9,13 @@ namespace chorus::publish {
 
 using endpoint::Recordings;
 
+record::PlacesChanged places_changed(Timestamp at, const Registration& registration) {
+  record::PlacesChanged changed{at, write_registration(registration), {}};
+  for (const auto& [sensor, place] : registration.sensors)
+    changed.places.push_back({sensor.str(), place.world_from_sensor});
+  return changed;
+}
+
 void RecordingTap::publish(std::shared_ptr<const Snapshot> snapshot) {
   const auto recorder = recordings_.recorder(Recordings::Stream::Fused);
   if (!recorder) return;
@@ -27,10 +34,7 @@ void RecordingTap::places(const Registration& registration) {
   if (!recorder) return;
   const bool known = told_.lock() == recorder;
   if (known ? told_version_ == registration.version : registration.sensors.empty()) return;
-  record::PlacesChanged changed{clock_->now(), write_registration(registration), {}};
-  for (const auto& [sensor, place] : registration.sensors)
-    changed.places.push_back({sensor.str(), place.world_from_sensor});
-  recorder->offer(std::move(changed));
+  recorder->offer(places_changed(clock_->now(), registration));
   told_ = recorder;
   told_version_ = registration.version;
 }

@@ -8,9 +8,13 @@
 
 #include "common/endpoint/recordings.h"
 #include "common/time/clock.h"
+#include "fusion-server/flow.h"
 #include "fusion-server/publish/sink.h"
 
 namespace chorus::publish {
+
+/// What a recording keeps of a registration, from `at` on.
+[[nodiscard]] record::PlacesChanged places_changed(Timestamp at, const Registration& registration);
 
 class RecordingTap final : public Sink {
  public:

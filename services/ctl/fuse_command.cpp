@@ -11,10 +11,13 @@
 #include "common/record/session_writer.h"
 #include "common/resource/frame_resource.h"
 #include "fusion-server/pipeline/offline.h"
+#include "fusion-server/publish/recording_tap.h"
 #include "fusion-server/publish/registration_file.h"
 #include "fusion-server/publish/snapshot_resource.h"
+#include "fusion-server/server/registration_store.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
+#include "services/ctl/fused_frames.h"
 #include "services/ctl/offline_options.h"
 #include "services/ctl/recordings.h"
 #include "services/ctl/registration_report.h"
@@ -56,21 +59,14 @@ Result<std::optional<Registration>> read_extrinsics(const FuseArguments& argumen
   if (arguments.from_walk) return std::nullopt;
   const std::string& file = arguments.registration;
   if (file.empty()) return recorded_extrinsics(session.registrations);
-  const auto text = read_text(file);
-  if (!text) return pass(text);
-  auto registration = publish::read_registration(*text);
-  if (!registration) return fail(registration.error().code, file, to_string(registration.error()));
+  auto registration = server::load_registration_file(file);
+  if (!registration) return pass(registration);
   return std::optional(std::move(*registration));
 }
 
-/// One /frame document a line.
 std::string ndjson_of(const std::vector<Snapshot>& snapshots) {
   std::string text;
-  for (const Snapshot& snapshot : snapshots) {
-    std::string line = resource::write(publish::to_resource(snapshot), resource::Format::Json);
-    while (line.ends_with('\n')) line.pop_back();
-    text += line + "\n";
-  }
+  for (const Snapshot& snapshot : snapshots) text += frame_line(publish::to_resource(snapshot));
   return text;
 }
 
@@ -78,11 +74,8 @@ std::string ndjson_of(const std::vector<Snapshot>& snapshots) {
 Result<void> write_fused(const std::string& file, const pipeline::OfflineResult& result) {
   auto writer = record::SessionWriter::create(file, {{{"title", "chorus fuse"}}, false});
   if (!writer) return pass(writer);
-  record::PlacesChanged places{{}, publish::write_registration(result.registration), {}};
-  if (!result.snapshots.empty()) places.at = result.snapshots.front().instant;
-  for (const auto& [sensor, place] : result.registration.sensors)
-    places.places.push_back({sensor.str(), place.world_from_sensor});
-  if (auto ok = writer->write(places); !ok) return ok;
+  const Timestamp begin = result.snapshots.empty() ? Timestamp{} : result.snapshots.front().instant;
+  if (auto ok = writer->write(publish::places_changed(begin, result.registration)); !ok) return ok;
   for (const Snapshot& snapshot : result.snapshots) {
     const auto ok = writer->write(record::FusedFrame{
         snapshot.instant, snapshot.instant, [&] { return publish::to_resource(snapshot); }});

@@ -208,6 +208,12 @@ Result<FusedFrames> listen_to(const std::string& source, std::chrono::millisecon
 
 }  // namespace
 
+std::string frame_line(const resource::FrameResource& frame) {
+  std::string line = resource::write(frame, resource::Format::Json);
+  while (line.ends_with('\n')) line.pop_back();
+  return line + "\n";
+}
+
 Result<FusedSamples> read_fused_lines(std::istream& lines, const std::string& origin) {
   FusedSamples samples;
   Lines reader(lines);

@@ -8,6 +8,7 @@
 
 #include "common/base/result.h"
 #include "common/exporters/take.h"
+#include "common/resource/frame_resource.h"
 
 namespace chorus::ctl {
 
@@ -25,7 +26,10 @@ struct FusedFrames {
 [[nodiscard]] Result<FusedFrames> read_fused_frames(const std::string& source,
                                                     std::chrono::milliseconds listen);
 
-/// One /frame document a line; blank lines are fine.  `origin` names the text in messages.
+/// A frame as NDJSON: its /frame document on one line, with its end.
+[[nodiscard]] std::string frame_line(const resource::FrameResource& frame);
+
+/// Lines as frame_line writes them; blank lines are fine.  `origin` names the text in messages.
 [[nodiscard]] Result<FusedSamples> read_fused_lines(std::istream& lines, const std::string& origin);
 
 }  // namespace chorus::ctl

@@ -13,6 +13,7 @@
 #include "fusion-server/publish/registration_file.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
+#include "services/ctl/fused_frames.h"
 #include "services/ctl/text_file.h"
 
 namespace chorus::ctl {
@@ -74,7 +75,7 @@ resource::BodyResource truth_body(const importers::TruthFrame& truth, Timestamp 
   return body;
 }
 
-/// One /frame document a line, at the capture times of the first recording.
+/// At the capture times of the first recording.
 Result<void> write_truth(const fs::path& file, const importers::ImportedSet& set) {
   const auto& frames = set.recordings.front().frames;
   std::string text;
@@ -87,9 +88,7 @@ Result<void> write_truth(const fs::path& file, const importers::ImportedSet& set
     frame.space = resource::SpaceKind::World;
     for (; truth != set.truth.end() && truth->index + 1 == frame.sequence; ++truth)
       frame.bodies.push_back(truth_body(*truth, frame.captured));
-    std::string line = resource::write(frame, resource::Format::Json);
-    while (line.ends_with('\n')) line.pop_back();
-    text += line + "\n";
+    text += frame_line(frame);
   }
   return write_text(file.string(), text);
 }

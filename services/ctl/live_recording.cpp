@@ -6,6 +6,7 @@
 
 #include "common/record/frame_recording.h"
 #include "common/resource/floor_plane_resource.h"
+#include "fusion-server/publish/recording_tap.h"
 #include "fusion-server/publish/registration_file.h"
 #include "services/ctl/service_client.h"
 
@@ -178,10 +179,7 @@ void LiveRecording::take_registration(const http::ClientResponse& answer) {
   const auto registration = publish::read_registration(answer.body);
   if (!registration) troubles_["/registration"] = to_string(registration.error());
   if (!registration || registration->sensors.empty()) return;
-  record::PlacesChanged changed{received(answer), publish::write_registration(*registration), {}};
-  for (const auto& [sensor, place] : registration->sensors)
-    changed.places.push_back({sensor.str(), place.world_from_sensor});
-  recorder_->offer(std::move(changed));
+  recorder_->offer(publish::places_changed(received(answer), *registration));
 }
 
 std::chrono::steady_clock::duration LiveRecording::silence() const {

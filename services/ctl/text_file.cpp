@@ -7,15 +7,8 @@
 #include "common/base/file.h"
 
 namespace chorus::ctl {
-namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::uintmax_t kMaxTextBytes = 16u << 20;
-
-}  // namespace
-
-Result<std::string> read_text(const std::string& file) { return read_file(file, kMaxTextBytes); }
 
 Result<void> write_text(const std::string& file, std::string_view text) {
   if (file == "-") {

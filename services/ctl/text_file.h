@@ -1,4 +1,4 @@
-// What a command reads and writes as whole files; "-" is standard output.
+// What a command writes as whole files; "-" is standard output.
 #pragma once
 
 #include <filesystem>
@@ -9,9 +9,6 @@
 #include "common/base/result.h"
 
 namespace chorus::ctl {
-
-/// At most 16 MB: configs and registrations.
-[[nodiscard]] Result<std::string> read_text(const std::string& file);
 
 /// Replaces what was there only when all is written.
 [[nodiscard]] Result<void> write_text(const std::string& file, std::string_view text);
