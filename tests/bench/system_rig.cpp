@@ -8,6 +8,7 @@
 
 #include "common/http/asio.h"
 #include "common/http/client.h"
+#include "common/time/clock.h"
 #include "tests/support/free_port.h"
 
 namespace chorus::bench {
@@ -81,14 +82,27 @@ class Watcher {
 
 Result<ChildProcess> start_sensor(const SystemCase& asked, int index, std::uint16_t port) {
   const auto number = [](auto value) { return std::to_string(value); };
-  return ChildProcess::start(
-      "chorus-sensor",
-      {"--config", "deploy/config/sensor.json", "--set", "id=s" + number(index + 1), "--set",
-       "http.port=" + number(port), "--set", "device.kind=simulated", "--set",
-       "device.simulated.profile=" + asked.profile, "--set",
-       "device.simulated.ring.index=" + number(index), "--set",
-       "device.simulated.ring.count=" + number(kSystemSensors), "--set",
-       "clock.offset_ms=" + number(asked.clock_error_ms.at(static_cast<std::size_t>(index)))});
+  const HostError& host = asked.hosts.at(static_cast<std::size_t>(index));
+  std::vector<std::string> words{"--config", "deploy/config/sensor.json"};
+  for (const std::string& setting :
+       {"id=s" + number(index + 1), "http.port=" + number(port),
+        std::string("device.kind=simulated"), "device.simulated.profile=" + asked.profile,
+        "device.simulated.ring.index=" + number(index),
+        "device.simulated.ring.count=" + number(kSystemSensors),
+        "clock.offset_ms=" + number(host.offset_ms), "clock.drift_ppm=" + number(host.drift_ppm),
+        "clock.step_ms=" + number(host.step_ms),
+        "clock.step_after_s=" + number(kStepAfter.count())}) {
+    words.insert(words.end(), {"--set", setting});
+  }
+  return ChildProcess::start("chorus-sensor", words);
+}
+
+/// Right to how long a service takes to start: what drifts in that time is nothing.
+synthetic::HostClock clock_of(const HostError& error, Timestamp start) {
+  constexpr double kMilli = 1e-3;
+  constexpr double kMillionth = 1e-6;
+  return {kMilli * error.offset_ms, kMillionth * error.drift_ppm, kMilli * error.step_ms, start,
+          start + Duration(kStepAfter)};
 }
 
 Cpu cpu_of(const Rig& rig) {
@@ -106,6 +120,8 @@ Result<Rig> start_rig(const SystemCase& asked) {
   for (int i = 0; i < kSystemSensors; ++i) {
     const std::uint16_t port = testing::free_port();
     const std::string id = "s" + std::to_string(i + 1);
+    rig.clocks.push_back(
+        clock_of(asked.hosts.at(static_cast<std::size_t>(i)), SystemClock().now()));
     auto sensor = start_sensor(asked, i, port);
     if (!sensor) return pass(sensor);
     rig.sensors.push_back(std::move(*sensor));

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/synthetic/host_clock.h"
 #include "common/time/timestamp.h"
 #include "tests/bench/child_process.h"
 
@@ -15,17 +17,26 @@ namespace chorus::bench {
 
 inline constexpr int kSystemSensors = 6;
 
+/// What is wrong with a sensor host's clock, from the start of its service; the server's is right.
+struct HostError {
+  int offset_ms = 0;
+  int drift_ppm = 0;
+  int step_ms = 0;  ///< Once, kStepAfter after the start.
+};
+inline constexpr std::chrono::seconds kStepAfter{45};  // in the middle of what is watched
+
 struct SystemCase {
   std::string name;               ///< "six-sensors-A"
   std::string profile = "gauss";  ///< Of the simulated sensors.
-  std::array<int, kSystemSensors>
-      clock_error_ms;  ///< Of the sensors' hosts; the server's is right.
+  std::array<HostError, kSystemSensors> hosts = {};
+  double run_seconds = 60.0;  ///< Watched, after registration.
 };
 
 struct Rig {
   std::vector<ChildProcess> sensors;
   std::vector<ChildProcess> fusion;  ///< One.
   std::vector<std::uint16_t> sensor_ports;
+  std::vector<synthetic::HostClock> clocks;  ///< Of the sensors' hosts, as they were set.
   std::uint16_t port = 0;
 };
 
