@@ -153,29 +153,23 @@ constexpr std::array kParts{
     Part{"occlusion", [](Profile& p, double f) { p.visibility.girth *= f; }},  // of who hides whom
     Part{"yaw", [](Profile& p, double f) { p = with_source(std::move(p), Yaw, f); }}};
 
-void sweep_one(Report& report, PersonsCase each, const std::string& what) {
-  each.length = kSweepLength;
-  const Draws draws = draw_all(report, each, {{kOurs}});
-  const std::string name = fmt::format("sweep-{}-{}", each.name, what);
-  report_no_switch(report, name, draws);
-  report_figure(report, name, draws, kFigures.front());
-}
-
-/// In each scene one source after the other; where none is changed is the same for all.
+/// One source after the other, in the scene that tells methods apart; x1 is the same for all.
 void sweep(Report& report) {
-  for (const char* scene : {"crossing-2-ring3", "crossing-2-hidden"}) {
-    const PersonsCase usual = case_named(scene);
-    sweep_one(report, usual, "all-x1");
-    for (const Part& part : kParts) {
-      for (const double factor : kFactors) {
-        if (factor == 1.0) continue;
-        PersonsCase each = usual;
-        each.adjust = [&](Profile& profile) {
-          if (usual.adjust) usual.adjust(profile);
-          part.scale(profile, factor);
-        };
-        sweep_one(report, each, fmt::format("{}-x{}", part.name, factor));
-      }
+  PersonsCase usual = case_named("crossing-2-hidden");
+  usual.length = kSweepLength;
+  const auto measure_as = [&](const std::string& what, const PersonsCase& each) {
+    report_draws(report, "sweep-" + what, draw_all(report, each, {{kOurs}}));
+  };
+  measure_as("all-x1", usual);
+  for (const Part& part : kParts) {
+    for (const double factor : kFactors) {
+      if (factor == 1.0) continue;
+      PersonsCase each = usual;
+      each.adjust = [&](Profile& profile) {
+        usual.adjust(profile);
+        part.scale(profile, factor);
+      };
+      measure_as(fmt::format("{}-x{}", part.name, factor), each);
     }
   }
 }

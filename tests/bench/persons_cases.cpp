@@ -164,7 +164,10 @@ void call_rolls(const Workshop& workshop, std::vector<Contestant>& contestants) 
 
 std::vector<PersonsCase> persons_cases() {
   constexpr Duration kFiveMinutes = std::chrono::minutes(5);
-  constexpr Duration kRendered = std::chrono::seconds(12);  // profile C renders images
+  // Profile C renders images; what hides whom costs with the square of the people.
+  constexpr Duration kRendered = std::chrono::seconds(12);
+  constexpr Duration kOfFour = std::chrono::seconds(20);
+  constexpr Duration kOfSix = std::chrono::seconds(15);
   return {{kCrossingTwo, "A", ring(6), crossing_two},
           {"crossing-2-B", "B", ring(6), crossing_two},
           {"crossing-2-C", "C", ring(6), crossing_two, {}, kRendered},
@@ -173,12 +176,12 @@ std::vector<PersonsCase> persons_cases() {
           behind_screen(),
           {"crossing-2-hidden-C", "C", places_behind_screen(), crossing_two, {screen()}, kRendered},
           {"crossing-2-pillar", "A", ring(6), crossing_two, {pillar()}},
-          {"crossing-4", "A", ring(6), crossing_four},
-          {"crossing-4-B", "B", ring(6), crossing_four},
-          {"crossing-6", "A", ring(6), crossing_six},
+          {"crossing-4", "A", ring(6), crossing_four, {}, kOfFour},
+          {"crossing-4-B", "B", ring(6), crossing_four, {}, kOfFour},
+          {"crossing-6", "A", ring(6), crossing_six, {}, kOfSix},
           {"relay-3", "A", ring(6), relayed},
           {"circled-2", "A", ring(6), circled_person},
-          {"work-4", "A", ring(6), four_at_work},
+          {"work-4", "A", ring(6), four_at_work, {}, kOfFour},
           {"around-2-car", "A", ring(6, 3.5), around_car, {car_body()}},
           {"around-2-table", "A", ring(6, 3.5), around_car, {table()}},
           {"four-5min", "A", ring(3), crossing_four, {}, kFiveMinutes}};
