@@ -15,7 +15,7 @@ namespace chorus::bench {
 namespace {
 
 constexpr std::size_t kQuickDraws = 2;
-constexpr Duration kQuickLength = std::chrono::seconds(6);
+constexpr Duration kQuickLength = std::chrono::seconds(4);
 constexpr Duration kSweepLength = std::chrono::seconds(12);
 constexpr double kPercent = 100.0;
 
