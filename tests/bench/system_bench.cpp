@@ -24,7 +24,7 @@ namespace chorus::bench {
 namespace {
 
 constexpr double kRate = 30.0;        // [Hz], of sensors and output
-constexpr double kShortRun = 40.0;    // [s]
+constexpr double kShortRun = 25.0;    // [s]
 constexpr double kQuickRun = 6.0;     // [s]
 constexpr double kMaxToWire = 0.050;  // [s], the claim
 constexpr double kMaxCores = 0.5;     // the claim, simulation aside

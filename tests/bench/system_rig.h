@@ -23,7 +23,7 @@ struct HostError {
   int drift_ppm = 0;
   int step_ms = 0;  ///< Once, kStepAfter after the start.
 };
-inline constexpr std::chrono::seconds kStepAfter{45};  // in the middle of what is watched
+inline constexpr std::chrono::seconds kStepAfter{40};  // in the middle of what is watched
 
 struct SystemCase {
   std::string name;               ///< "six-sensors-A"
