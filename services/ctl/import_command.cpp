@@ -9,6 +9,7 @@
 
 #include "common/importers/formats.h"
 #include "common/record/frame_recording.h"
+#include "common/record/frame_schema.h"
 #include "common/resource/frame_resource.h"
 #include "fusion-server/publish/registration_file.h"
 #include "services/ctl/command.h"
@@ -93,10 +94,32 @@ Result<void> write_truth(const fs::path& file, const importers::ImportedSet& set
   return write_text(file.string(), text);
 }
 
+bool made_by_a_recorder(const fs::path& file) {
+  record::ReadLimits limits;
+  limits.wanted = [](std::string_view) { return false; };
+  const auto recording = record::read_recording(file, limits);
+  if (!recording) return false;
+  const auto found = recording->metadata.find(std::string(record::kMetadataName));
+  return found != recording->metadata.end() && found->second.contains("recording");
+}
+
+/// An import can be made again, and may be replaced by a later one; what was recorded cannot.
+Result<void> spare_recordings(const fs::path& folder, const importers::ImportedSet& set) {
+  for (const auto& recording : set.recordings) {
+    const fs::path file = folder / (recording.sensor.str() + ".mcap");
+    if (made_by_a_recorder(file))
+      return fail(ErrorCode::Conflict, file.string(),
+                  "was recorded, not imported, and is never overwritten. Name another --out or "
+                  "--sensor.");
+  }
+  return {};
+}
+
 Result<std::vector<fs::path>> write_set(const fs::path& folder, const importers::ImportedSet& set) {
   std::error_code failed;
   fs::create_directories(folder, failed);
   if (failed) return fail(ErrorCode::Io, folder.string(), failed.message());
+  if (auto ok = spare_recordings(folder, set); !ok) return pass(ok);
   std::vector<fs::path> written;
   for (const auto& recording : set.recordings) {
     written.push_back(folder / (recording.sensor.str() + ".mcap"));

@@ -117,6 +117,20 @@ class Cell(Rig):
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn("not parts of one recording", done.stderr)
 
+    def test_an_import_spares_what_was_recorded(self):
+        sensor, folder = self.sensor(0), pathlib.Path(self.folder.name) / "walks"
+        folder.mkdir()
+        self.assertEqual(chorus("record", sensor.url, "--out", folder / "s1.mcap", "--seconds", 1).returncode, 0)
+        kept = (folder / "s1.mcap").read_bytes()
+        source = "tests/data/kinect2_labanotation/Ges04_comehere.csv"
+        done = chorus("import", "labanotation", source, "--out", folder, "--sensor", "s1")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("was recorded, not imported", done.stderr)
+        self.assertEqual((folder / "s1.mcap").read_bytes(), kept)
+        for _ in range(2):  # an import itself may be made again
+            done = chorus("import", "labanotation", source, "--out", folder, "--sensor", "s2")
+            self.assertEqual(done.returncode, 0, done.stderr)
+
     def test_a_name_that_is_taken_asks_for_another(self):
         folder = pathlib.Path(self.folder.name) / "rec"
         (folder / "walk").mkdir(parents=True)
