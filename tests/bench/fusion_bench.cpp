@@ -19,7 +19,7 @@ namespace {
 using synthetic::PathKind;
 
 constexpr std::size_t kDraws = 20;
-constexpr std::size_t kSweepDraws = 20;
+constexpr Duration kSweepLength = std::chrono::seconds(5);
 constexpr std::size_t kQuickDraws = 2;
 constexpr Duration kLength = std::chrono::seconds(30);
 constexpr Duration kRenderedLength = std::chrono::seconds(10);  // profile C renders images
@@ -144,8 +144,7 @@ void sweep(Report& report) {
                 contest_of("A", 6, PathKind::Random)};
       each.contest.every_method = false;
       each.contest.setting.stress = {{source.source, factor}};
-      each.contest.setting.length = kQuickLength;
-      each.draws = kSweepDraws;
+      each.contest.setting.length = kSweepLength;
       compare(each.name, draw_all(report, each, contenders), 0).report(report);
     }
   }

@@ -119,8 +119,11 @@ std::vector<RegistrationCase> disturbed_rings(const std::string& profile) {
        {std::pair{"circle", PathKind::Circle}, {"line", PathKind::Line}}) {
     Setting walked = ring(profile);
     walked.walk = path;
-    cases.push_back(
-        {fmt::format("ring6-{}-{{}}s-{}", name, profile), walked, {30}, all_baselines()});
+    // The untimed ICP fails on both walks by a metre and takes most of the time: once is enough.
+    cases.push_back({fmt::format("ring6-{}-{{}}s-{}", name, profile),
+                     walked,
+                     {30},
+                     profile == "A" ? all_baselines() : timed_baselines()});
   }
   Setting hidden = ring(profile);
   hidden.occluders = {van()};
@@ -159,7 +162,8 @@ std::vector<RegistrationCase> registration_cases(const std::string& profile) {
   }
   Setting row = row_of_four();
   row.profile = profile;
-  cases.push_back({"line4-" + profile, row, {60}, timed_baselines(), false, true});
+  const int along = rendered ? 30 : 60;  // [s]; the same way, once there and back
+  cases.push_back({"line4-" + profile, row, {along}, timed_baselines(), false, true});
   return cases;
 }
 
