@@ -61,17 +61,24 @@ class TrackerState {
   void keep_slots_for(Duration absence) { keep_slot_ = absence; }
 
   /// Persons beyond the last slot are left out (the oldest stay).  The slot of an absent one is
-  /// nobody's until it has been away for longer than it is kept; the instants tell.  A repeated or
-  /// older instant gives zero velocities.
+  /// nobody's until it has been away for longer than it is kept; the instants tell.  Who came
+  /// meanwhile stands in a higher slot and then moves to that one: fusion may have given the same
+  /// person a new id, and a protocol with one slot would show nobody any more.  A repeated or older
+  /// instant gives zero velocities.
   [[nodiscard]] TrackerFrame advance(const Snapshot& snapshot);
 
  private:
   void release_absent(const Snapshot& snapshot);
+  void seat_those_who_stood_in();
+  [[nodiscard]] std::size_t slot_to_wait_for(std::size_t free) const;
   [[nodiscard]] std::optional<std::size_t> slot_of(PersonId person, Timestamp instant);
 
   struct Seat {
     PersonId person;
     Timestamp seen;
+    bool absent = false;
+    /// Its own slot, or a lower one whose person was absent when this one came.
+    std::size_t waits_for = 0;
   };
 
   std::vector<std::optional<Seat>> seats_;  ///< By slot.

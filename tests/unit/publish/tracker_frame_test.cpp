@@ -66,6 +66,24 @@ TEST(TrackerSlots, OfAHiddenPersonIsNotGivenToOneWhoEnters) {
             (Slots{{0, 1}, {1, 2}, {2, 4}}));
 }
 
+TEST(TrackerSlots, GoToWhoCameMeanwhileWhenTheHiddenPersonStaysAway) {
+  TrackerState state(4);
+  (void)state.advance(snapshot(milliseconds(0), {person(1)}));
+  // The same person under a new id, then a second one.
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(33), {person(5), person(6)}))),
+            (Slots{{1, 5}, {2, 6}}));
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(1034), {person(5), person(6)}))),
+            (Slots{{0, 5}, {2, 6}}));
+}
+
+TEST(TrackerSlots, OfOneWhoCameBackAreNotWaitedForAnyLonger) {
+  TrackerState state(4);
+  (void)state.advance(snapshot(milliseconds(0), {person(1)}));
+  (void)state.advance(snapshot(milliseconds(33), {person(5)}));
+  (void)state.advance(snapshot(milliseconds(66), {person(1), person(5)}));
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(5000), {person(5)}))), (Slots{{1, 5}}));
+}
+
 TEST(TrackerSlots, AreKeptAsLongAsAskedToTheInstant) {
   TrackerState state(1);
   state.keep_slots_for(milliseconds(200));
