@@ -19,6 +19,7 @@
 #include "tests/bench/model_claims.h"
 #include "tests/bench/model_plots.h"
 #include "tests/bench/model_walks.h"
+#include "tests/bench/over_draws.h"
 #include "tests/bench/report.h"
 #include "tests/bench/statistics.h"
 #include "tests/bench/table1.h"
@@ -33,10 +34,10 @@ using enum JointId;
 constexpr auto kTurnedLog = std::chrono::seconds(32);  // 970 frames, as the real one
 constexpr const char* kRealLog = "tests/data/kinect2_labanotation/Ges04_comehere.csv";
 
-std::vector<std::uint64_t> seeds_of(const Report& report) {
-  std::vector<std::uint64_t> seeds;
-  for (std::uint64_t i = 0; i < (report.quick() ? 3u : 7u); ++i) seeds.push_back(report.seed() + i);
-  return seeds;
+/// What each seed gives.
+template <class Each>
+auto over_seeds(const Report& report, const Each& each) {
+  return over_draws(report.quick() ? 3 : 7, [&](std::size_t i) { return each(report.seed() + i); });
 }
 
 /// What one seed gave, farthest from the middle of the range.
@@ -73,10 +74,9 @@ struct LogKind {
 
 /// (a) Several logs of the same length.
 void compare_with_logs(Report& report, std::span<const LogClaim> claims, const LogKind& kind) {
-  std::vector<LogStatistics> logs;
-  for (const std::uint64_t seed : seeds_of(report)) {
-    logs.push_back(statistics_of(log_of(kind.scene(seed), seed, kind.length)));
-  }
+  const std::vector<LogStatistics> logs = over_seeds(report, [&](std::uint64_t seed) {
+    return statistics_of(log_of(kind.scene(seed), seed, kind.length));
+  });
   for (const LogClaim& each : claims) {
     std::vector<double> values;
     for (const LogStatistics& log : logs) values.push_back(each.of(log));
@@ -173,8 +173,7 @@ MannequinFigures mannequin_figures(std::uint64_t seed) {
 
 /// (b) The mannequin (Otto Figs. 5-8).  A jitter passes from a fifth of Otto's bound to 1.3 of it.
 void compare_with_mannequin(Report& report) {
-  std::vector<MannequinFigures> all;
-  for (const std::uint64_t seed : seeds_of(report)) all.push_back(mannequin_figures(seed));
+  const std::vector<MannequinFigures> all = over_seeds(report, mannequin_figures);
   const auto values_of = [&](double MannequinFigures::*figure) {
     std::vector<double> values;
     for (const MannequinFigures& each : all) values.push_back(each.*figure);
@@ -214,11 +213,10 @@ constexpr std::uint64_t kSetUps = 11;                             // one is unce
 std::vector<TableOneBar> compare_with_table1(Report& report) {
   std::vector<TableOneBar> bars;
   for (const Pair& pair : kTable1) {
-    std::vector<double> values;
-    for (std::uint64_t seed = report.seed(); seed < report.seed() + kSetUps; ++seed) {
-      values.push_back(to_mm(
-          repeatability(kinect::nominal_profile("A"), {.angle = deg(pair.angle), .seed = seed})));
-    }
+    const std::vector<double> values = over_draws(kSetUps, [&](std::size_t i) {
+      return to_mm(repeatability(kinect::nominal_profile("A"),
+                                 {.angle = deg(pair.angle), .seed = report.seed() + i}));
+    });
     const double middle = median(values);
     bars.push_back({pair.angle, percentile(values, 0), middle, worst(values), pair.table1_mm});
     const std::string name = fmt::format("table1-{:.0f}", pair.angle);
@@ -257,9 +255,8 @@ double joint_error_mm(std::uint64_t seed) {
 }
 
 void compare_with_single_sensor(Report& report) {
-  std::vector<double> values;
-  for (const std::uint64_t seed : seeds_of(report)) values.push_back(joint_error_mm(seed));
-  check(report, {"single-sensor", "mpjpe_mm", "mm", {50, 100}, 0.0}, values);
+  check(report, {"single-sensor", "mpjpe_mm", "mm", {50, 100}, 0.0},
+        over_seeds(report, joint_error_mm));
 }
 
 }  // namespace
@@ -278,7 +275,7 @@ Result<void> run_model(Report& report) {
   if (!report.quick()) bars = compare_with_table1(report);
   report.note("Profile A of the body-tracking sensor model, hash " + kinect::frozen_hash() +
               ".  Real: statistics of Kinect v2 logs and Otto et al.  Medians over " +
-              std::to_string(seeds_of(report).size()) + " seeds.");
+              (report.quick() ? "3" : "7") + " seeds.");
   return report.plots().empty() ? Result<void>{}
                                 : draw_figures(report.plots(), report.seed(), bars);
 }
