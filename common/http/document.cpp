@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <exception>
 #include <mutex>
 
@@ -71,6 +72,24 @@ void add_type_links(std::string& out, const DocumentOptions& options) {
   if (options.rdf_source) add_line(out, "Link", "</shapes>; rel=\"describedby\"");
 }
 
+/// Runs something once, whichever thread comes first; what throws may be tried again.  Not
+/// std::call_once: the thread sanitizer hangs when that throws.
+class Once {
+ public:
+  template <class Action>
+  void run(const Action& action) {
+    if (done_.load(std::memory_order_acquire)) return;
+    const std::scoped_lock lock(mutex_);
+    if (done_.load(std::memory_order_relaxed)) return;
+    action();
+    done_.store(true, std::memory_order_release);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::atomic<bool> done_ = false;
+};
+
 }  // namespace
 
 struct Document::Impl {
@@ -78,8 +97,8 @@ struct Document::Impl {
   DocumentOptions options;
   std::vector<std::string_view> offers;  ///< Bare media types, by variant.
   std::vector<Rendered> rendered;
-  std::unique_ptr<std::once_flag[]> once;
-  std::once_flag event_once;
+  std::unique_ptr<Once[]> once;
+  Once event_once;
   std::shared_ptr<const std::string> event;
   bool has_json_ld = false;
 
@@ -119,7 +138,7 @@ struct Document::Impl {
 
   Result<const Rendered*> rendered_at(std::size_t index) {
     try {
-      std::call_once(once[index], [&] { render(index); });
+      once[index].run([&] { render(index); });
       return &rendered[index];
     } catch (const std::exception& failure) {
       return fail(ErrorCode::Internal, std::string(offers[index]),
@@ -147,7 +166,7 @@ Document::Document(std::vector<Variant> variants, DocumentOptions options)
   impl_->options = std::move(options);
   const std::size_t count = impl_->variants.size();
   impl_->rendered.resize(count);
-  impl_->once = std::make_unique<std::once_flag[]>(count);
+  impl_->once = std::make_unique<Once[]>(count);
   for (const Variant& variant : impl_->variants) {
     impl_->offers.push_back(without_parameters(variant.media_type));
     impl_->has_json_ld |= impl_->offers.back() == "application/ld+json";
@@ -180,7 +199,7 @@ Result<const Rendered*> Document::choose(std::string_view accept, std::string_vi
 }
 
 std::shared_ptr<const std::string> Document::event() const {
-  std::call_once(impl_->event_once, [&] { impl_->make_event(); });
+  impl_->event_once.run([&] { impl_->make_event(); });
   return impl_->event;
 }
 

@@ -169,12 +169,12 @@ TEST(Recorder, BeginsANewFileWhenTheTimeIsUpAndEachStandsAlone) {
   ASSERT_TRUE(recorder);
   (*recorder)->offer(PlacesChanged{kStart, R"({"sensors":{}})", {}});
   for (int part = 0; part < 3; ++part) {
-    std::promise<void> written;
-    (*recorder)->offer(FusedFrame{clock->now(), clock->now(), [&] {
-                                    written.set_value();
+    const auto written = std::make_shared<std::promise<void>>();
+    (*recorder)->offer(FusedFrame{clock->now(), clock->now(), [written, part] {
+                                    written->set_value();
                                     return *raw(part).frame;
                                   }});
-    written.get_future().wait();
+    written->get_future().wait();
     clock->advance(seconds(10));
   }
   const RecordingReport report = stopped(**recorder);
