@@ -15,6 +15,11 @@ struct Plane {
 
   /// Signed distance of a point; positive on the side the normal points to.
   [[nodiscard]] double distance(const Eigen::Vector3d& x) const { return normal.dot(x) + offset; }
+
+  /// To the bit.
+  bool operator==(const Plane& other) const {
+    return normal == other.normal && offset == other.offset;
+  }
 };
 
 /// Normalises (a, b, c, d); refuses a zero or non-finite normal.

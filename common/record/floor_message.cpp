@@ -30,8 +30,4 @@ Result<FloorPlane> read_floor_json(std::string_view text) {
   return make_plane(v[0], v[1], v[2], v[3]);
 }
 
-bool same(const FloorPlane& a, const FloorPlane& b) {
-  return a.normal == b.normal && a.offset == b.offset;
-}
-
 }  // namespace chorus::record

@@ -12,7 +12,4 @@ namespace chorus::record {
 [[nodiscard]] std::string floor_json(const FloorPlane& floor);
 [[nodiscard]] Result<FloorPlane> read_floor_json(std::string_view text);
 
-/// To the bit: what is the same need not be written again.
-[[nodiscard]] bool same(const FloorPlane& a, const FloorPlane& b);
-
 }  // namespace chorus::record

@@ -86,7 +86,7 @@ Result<void> write_frames(RecordingWriter& writer, const Channels& channels,
                     frame.captured,
                     frame.captured,
                     {}};
-    if (frame.floor && (floor == nullptr || !same(*floor, *frame.floor))) {
+    if (frame.floor && (floor == nullptr || *floor != *frame.floor)) {
       floor = &*frame.floor;
       message.data = floor_json(*floor);
       if (auto ok = writer.write(channels.floor, message); !ok) return ok;

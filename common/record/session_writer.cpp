@@ -77,7 +77,7 @@ Result<void> SessionWriter::put(const std::string& topic, std::string_view schem
 Result<void> SessionWriter::write_state(const RawFrame& raw, const std::string& prefix,
                                         const Stamps& stamps) {
   Stream& stream = streams_[raw.sensor];
-  if (raw.floor && (!stream.floor || !same(*stream.floor, *raw.floor))) {
+  if (raw.floor && stream.floor != raw.floor) {
     if (auto ok = put(prefix + "floor-plane", kFloorSchemaName, stamps, floor_json(*raw.floor));
         !ok)
       return ok;

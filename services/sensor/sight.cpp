@@ -25,11 +25,6 @@ using resource::Ref;
 // about as long as the service itself might, not for ever.
 constexpr std::string_view kImmutable = "public, max-age=60, immutable";
 
-bool differs(const std::optional<FloorPlane>& a, const std::optional<FloorPlane>& b) {
-  if (a.has_value() != b.has_value()) return true;
-  return a && (a->normal != b->normal || a->offset != b->offset);
-}
-
 std::shared_ptr<const LazyImage> lazy(std::function<Result<CameraImage>()> encode) {
   return encode ? std::make_shared<const LazyImage>(std::move(encode)) : nullptr;
 }
@@ -73,7 +68,7 @@ SightPtr see(Capture capture, const Sight* before) {
   sight->floor = capture.frame.floor;
   if (before != nullptr) {
     if (!sight->floor) sight->floor = before->floor;
-    sight->floor_version = before->floor_version + (differs(sight->floor, before->floor) ? 1 : 0);
+    sight->floor_version = before->floor_version + (sight->floor != before->floor ? 1 : 0);
   }
   sight->color = lazy(std::move(capture.color));
   sight->depth = lazy(std::move(capture.depth));

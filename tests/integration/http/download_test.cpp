@@ -7,7 +7,7 @@
 
 #include "common/http/client.h"
 #include "common/http/server.h"
-#include "tests/unit/record/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chorus::http {
 namespace {
@@ -44,7 +44,7 @@ class Download : public ::testing::Test {
                  {method, "/file", std::move(headers), {}});
   }
 
-  record::TemporaryFolder folder_;
+  chorus::testing::TemporaryFolder folder_;
   std::filesystem::path path_ = folder_ / "a.mcap";
   std::string content_;
   std::unique_ptr<Server> server_;
@@ -84,7 +84,7 @@ TEST_F(Download, OfWhatIsNoFileIsNotFound) {
 }
 
 TEST(FileBody, ThatShrinksMeanwhileSaysSo) {
-  const record::TemporaryFolder folder;
+  const chorus::testing::TemporaryFolder folder;
   std::ofstream(folder / "a") << std::string(1000, 'x');
   const auto body = FileBody::open(folder / "a");
   ASSERT_TRUE(body);

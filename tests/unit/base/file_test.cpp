@@ -5,16 +5,16 @@
 #include <sys/stat.h>
 
 #include "tests/support/matchers.h"
-#include "tests/unit/record/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chorus {
 namespace {
 
 namespace fs = std::filesystem;
+using chorus::testing::bytes_of;
 using chorus::testing::FailsWith;
 using chorus::testing::IsOk;
-using record::bytes_of;
-using record::TemporaryFolder;
+using chorus::testing::TemporaryFolder;
 
 TEST(File, IsReadWholeWithinItsBound) {
   const TemporaryFolder folder;

@@ -11,7 +11,7 @@
 #include "services/ctl/command.h"
 #include "tests/support/builders.h"
 #include "tests/support/matchers.h"
-#include "tests/unit/record/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chorus::ctl {
 namespace {
@@ -62,7 +62,7 @@ class BrokenCell : public ::testing::Test {
     return "http://127.0.0.1:" + std::to_string(server_->port()) + "/";
   }
 
-  record::TemporaryFolder folder_;
+  chorus::testing::TemporaryFolder folder_;
   std::atomic<int> asked_ = 0;
   std::atomic<int> nonsense_ = 0;
   std::unique_ptr<http::Server> server_;

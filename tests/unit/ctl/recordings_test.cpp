@@ -9,16 +9,16 @@
 #include "common/record/session_writer.h"
 #include "tests/support/builders.h"
 #include "tests/support/matchers.h"
-#include "tests/unit/record/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chorus::ctl {
 namespace {
 
+using chorus::testing::bytes_of;
 using chorus::testing::IsOk;
 using chorus::testing::kFrameInterval;
 using chorus::testing::kStart;
-using record::bytes_of;
-using record::TemporaryFolder;
+using chorus::testing::TemporaryFolder;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 

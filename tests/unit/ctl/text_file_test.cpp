@@ -4,16 +4,16 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/matchers.h"
-#include "tests/unit/record/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chorus::ctl {
 namespace {
 
 namespace fs = std::filesystem;
+using chorus::testing::bytes_of;
 using chorus::testing::FailsWith;
 using chorus::testing::IsOk;
-using record::bytes_of;
-using record::TemporaryFolder;
+using chorus::testing::TemporaryFolder;
 using ::testing::HasSubstr;
 
 TEST(TextFile, NoInputIsEverWritten) {

@@ -9,7 +9,7 @@
 
 #include "common/http/client.h"
 #include "common/http/server.h"
-#include "tests/unit/record/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chorus::endpoint {
 namespace {
@@ -64,7 +64,7 @@ TEST(RecordingRequest, SaysWhatIsWrong) {
 }
 
 TEST(Recordings, RunsOneAtATimeAndOnlyWhatWasAskedFor) {
-  const record::TemporaryFolder folder;
+  const chorus::testing::TemporaryFolder folder;
   Recordings recordings(options_in((folder / "rec").string()));
   EXPECT_FALSE(recordings.recorder(Stream::Any));
   ASSERT_TRUE(recordings.start({"walk", Duration{0}, true, false}));
@@ -88,7 +88,7 @@ TEST(Recordings, RunsOneAtATimeAndOnlyWhatWasAskedFor) {
 }
 
 TEST(Recordings, ANameThatIsTakenAsksForAnotherAndDoesNotSayWhereFilesAre) {
-  const record::TemporaryFolder folder;
+  const chorus::testing::TemporaryFolder folder;
   std::filesystem::create_directories(folder / "rec/walk");
   Recordings recordings(options_in((folder / "rec").string()));
   const auto refused = recordings.start({"walk", Duration{0}, true, true});
@@ -107,7 +107,7 @@ TEST(Recordings, AreOffWithoutAFolder) {
 }
 
 TEST(Recordings, OfEarlierRunsAreStillThere) {
-  const record::TemporaryFolder folder;
+  const chorus::testing::TemporaryFolder folder;
   const std::string place = (folder / "rec").string();
   {
     Recordings before(options_in(place));
@@ -141,7 +141,7 @@ class RecordingRoutes : public ::testing::Test {
     return answer ? *answer : http::ClientResponse{};
   }
 
-  record::TemporaryFolder folder_;
+  chorus::testing::TemporaryFolder folder_;
   Recordings recordings_;
   std::unique_ptr<http::Server> server_;
 };

@@ -4,9 +4,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+
+#include "tests/support/temporary_folder.h"
 
 namespace chorus::http {
 namespace {
@@ -15,19 +16,15 @@ namespace fs = std::filesystem;
 
 void write(const fs::path& file, std::string_view text) { std::ofstream(file) << text; }
 
-class StaticFilesTest : public testing::Test {
+class StaticFilesTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "chorus-files-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    base_ = name;
     folder_ = base_ / "public";
     fs::create_directories(folder_ / "sub");
     write(folder_ / "index.html", "<p>hello");
     write(folder_ / "sub" / "app.js", "let a;");
     write(base_ / "secret.txt", "secret");
   }
-  void TearDown() override { fs::remove_all(base_); }
 
   std::string body(std::string_view path) {
     const auto document = files_().document(path);
@@ -40,7 +37,7 @@ class StaticFilesTest : public testing::Test {
   }
   StaticFiles files_() { return StaticFiles(folder_.string(), 64); }
 
-  fs::path base_;
+  const chorus::testing::TemporaryFolder base_;
   fs::path folder_;
 };
 
@@ -54,7 +51,7 @@ TEST_F(StaticFilesTest, ServesFilesAndTheIndex) {
 
 TEST_F(StaticFilesTest, NeverLeavesTheFolder) {
   fs::create_symlink(base_ / "secret.txt", folder_ / "link.txt");
-  fs::create_directory_symlink(base_, folder_ / "up");
+  fs::create_directory_symlink(base_.path(), folder_ / "up");
   fs::create_symlink(folder_ / "index.html", folder_ / "inside.html");
   for (const auto path : {"../secret.txt", "link.txt", "up/secret.txt", "/etc/passwd", "..", "."})
     EXPECT_EQ(refusal(path), ErrorCode::NotFound) << path;

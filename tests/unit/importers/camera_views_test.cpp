@@ -169,8 +169,8 @@ TEST(LandmarkJoints, AreMeansAsSureAsTheirLeastSureLandmark) {
 }
 
 TEST(CameraViews, RefuseBadCalibrations) {
-  const ScratchFolder folder;
-  const auto good = nlohmann::json::parse(text_of(kFolder / "cameras.json"));
+  const TemporaryFolder folder;
+  const auto good = nlohmann::json::parse(bytes_of(kFolder / "cameras.json"));
   const auto refused = [&](auto change, const char* says) {
     nlohmann::json cameras = good;
     change(cameras);
@@ -188,9 +188,9 @@ TEST(CameraViews, RefuseBadCalibrations) {
 }
 
 TEST(CameraViews, RefuseBadLandmarksAndMissingFiles) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const auto cameras = read_cameras(kFolder / "cameras.json").value();
-  const auto good = nlohmann::json::parse(text_of(kFolder / "cam01.json"));
+  const auto good = nlohmann::json::parse(bytes_of(kFolder / "cam01.json"));
   const auto refused = [&](auto change, const char* says) {
     nlohmann::json view = good;
     change(view);
@@ -208,8 +208,8 @@ TEST(CameraViews, RefuseBadLandmarksAndMissingFiles) {
 }
 
 TEST(CameraViews, KeepFramesInWhichNobodyWasFound) {
-  const ScratchFolder folder;
-  auto view = nlohmann::json::parse(text_of(kFolder / "cam01.json"));
+  const TemporaryFolder folder;
+  auto view = nlohmann::json::parse(bytes_of(kFolder / "cam01.json"));
   view["frames"][4]["image"] = nullptr;
   const auto read = read_camera_view(folder.write("cam01.json", view.dump()),
                                      read_cameras(kFolder / "cameras.json").value());

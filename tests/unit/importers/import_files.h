@@ -3,11 +3,8 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <string>
-#include <string_view>
 
-#include <gtest/gtest.h>
+#include "tests/support/temporary_folder.h"
 
 namespace chorus::importers {
 
@@ -20,37 +17,7 @@ inline std::filesystem::path shared_recordings() {
   return std::filesystem::path(named != nullptr ? named : "../shared") / "data";
 }
 
-/// A folder that vanishes with the test.
-class ScratchFolder {
- public:
-  ScratchFolder()
-      : path_(std::filesystem::path(::testing::TempDir()) /
-              (std::string("chorus-import-") +
-               ::testing::UnitTest::GetInstance()->current_test_info()->name() + "-" +
-               std::to_string(::testing::UnitTest::GetInstance()->random_seed()) + "-" +
-               std::to_string(reinterpret_cast<std::uintptr_t>(this)))) {
-    std::filesystem::create_directories(path_);
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path write(std::string_view name, std::string_view text) const {
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return path_ / name;
-  }
-
- private:
-  std::filesystem::path path_;
-};
-
-inline std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
+using chorus::testing::bytes_of;
+using chorus::testing::TemporaryFolder;
 
 }  // namespace chorus::importers

@@ -20,7 +20,7 @@ std::string row(const char* joint = "0.3 -0.5 3.0 0.6 0.8 0.0 0.0 ", std::size_t
 }
 
 TEST(KeraalText, ReadsPositionsAndScalarFirstQuaternions) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const auto recording = read_keraal_text(folder.write("a.txt", row() + row() + "\n"));
   ASSERT_THAT(recording, IsOk());
   ASSERT_EQ(recording->frames.size(), 2u);
@@ -32,7 +32,7 @@ TEST(KeraalText, ReadsPositionsAndScalarFirstQuaternions) {
 }
 
 TEST(KeraalText, RefusesBadRowsNamingTheLine) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   struct {
     const char* name;
     std::string text;

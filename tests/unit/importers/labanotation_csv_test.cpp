@@ -44,7 +44,7 @@ TEST(LabanotationCsv, ReadsTheShippedRecordingWithItsDrops) {
 }
 
 TEST(LabanotationCsv, KeepsPlausibleUtcOfEveryTickEpoch) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const Timestamp instant = from_unix_ns(1'600'000'000'123'456'700);
   const std::int64_t unix_ticks = to_unix_ns(instant) / 100;
   for (const std::int64_t epoch : {0L, 116'444'736'000'000'000L, 621'355'968'000'000'000L}) {
@@ -57,7 +57,7 @@ TEST(LabanotationCsv, KeepsPlausibleUtcOfEveryTickEpoch) {
 }
 
 TEST(LabanotationCsv, RebasesToTheGivenStartAndCarriesTheFloor) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   ImportOptions options;
   options.start = from_unix_ns(1'700'000'000'000'000'000);
   options.floor = parse_floor("0,1,0,1.2").value();
@@ -71,7 +71,7 @@ TEST(LabanotationCsv, RebasesToTheGivenStartAndCarriesTheFloor) {
 }
 
 TEST(LabanotationCsv, DropsRowsThatRepeatACaptureTime) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const auto recording = read_labanotation_csv(
       folder.write("a.csv", row(kBoot) + "\n" + row(kBoot, 0.7) + "\n" + row(kBoot + kStep)));
   ASSERT_THAT(recording, IsOk());
@@ -87,7 +87,7 @@ struct BadFile {
 };
 
 TEST(LabanotationCsv, RefusesBadRowsNamingTheLine) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const std::string good = row(kBoot) + "\n";
   std::string not_finite = row(kBoot + kStep);
   not_finite.replace(not_finite.find("0.500000"), 8, "nan");
@@ -111,7 +111,7 @@ TEST(LabanotationCsv, RefusesBadRowsNamingTheLine) {
 }
 
 TEST(LabanotationCsv, BoundsItsMemory) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const auto file = folder.write("a.csv", row(kBoot) + "\n" + row(kBoot + kStep));
   ImportOptions small;
   small.limits.max_text_bytes = 100;

@@ -32,7 +32,7 @@ exporters::Take two_persons() {
 }
 
 TEST(MotionFile, AnExportedC3dComesBackWithBothPersons) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const auto take = two_persons();
   const auto exported = exporters::exported(take, exporters::ExportFormat::C3d);
   ASSERT_THAT(exported, IsOk());
@@ -59,7 +59,7 @@ std::set<std::uint64_t> persons_in(const ImportedSet& set) {
 }
 
 TEST(MotionFile, PersonsOfOurOwnC3dKeepTheirIds) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   auto take = two_persons();
   take.persons[0].person = PersonId{10};
   take.persons[1].person = PersonId{2};
@@ -74,7 +74,7 @@ TEST(MotionFile, PersonsOfOurOwnC3dKeepTheirIds) {
 }
 
 TEST(MotionFile, OtherSubjectsAreNumberedInTheOrderOfTheFile) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   motion::C3dSpec spec;
   for (const char* subject : {"Zoe:", "Adam:"}) {
     for (const char* label : {"LHJC", "RHJC", "LKJC"})
@@ -93,7 +93,7 @@ TEST(MotionFile, OtherSubjectsAreNumberedInTheOrderOfTheFile) {
 }
 
 TEST(MotionFile, AnExportedBvhComesBackInTheUnitItWasWrittenIn) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const auto take = exporters::take_of({exporters::walk()}, 30.0);
   const auto chain = exporters::fit_skeleton(take.persons[0]).value();
   for (const double units : {100.0, 1.0}) {
@@ -112,7 +112,7 @@ TEST(MotionFile, AnExportedBvhComesBackInTheUnitItWasWrittenIn) {
 }
 
 TEST(MotionFile, SaysWhatIsNoJointAndHowManyThereAre) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   motion::C3dSpec spec;
   spec.labels = {"LHJC", "RHJC", "LKJC", "Wand1", "Wand2"};
   const auto read = read_motion_file(folder.write("lab.c3d", motion::C3dBuilder(spec).bytes()),
@@ -124,7 +124,7 @@ TEST(MotionFile, SaysWhatIsNoJointAndHowManyThereAre) {
 }
 
 TEST(MotionFile, WrongFilesAreNamed) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const auto nonsense = folder.write("nonsense.c3d", "not a motion at all");
   for (const auto format : {FileFormat::C3d, FileFormat::Bvh, FileFormat::Mvnx}) {
     const auto read = import_files(format, {nonsense});
@@ -136,7 +136,7 @@ TEST(MotionFile, WrongFilesAreNamed) {
 }
 
 TEST(MotionFile, NumbersThatNoMotionHasAreRefused) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const auto take = exporters::take_of({exporters::walk()}, 30.0);
   const auto sound = exporters::exported(take, exporters::ExportFormat::Bvh)->files[0].bytes;
   const std::size_t time = sound.find("Frame Time:");

@@ -23,7 +23,7 @@ std::string body(const char* id, double x = 0.1) {
 }
 
 TEST(NtuSkeleton, ReadsNoneOneAndTwoBodies) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const auto recording = read_ntu_skeleton(folder.write(
       "S001.skeleton", "3\r\n0\n1\n" + body("72057594037931101") + "2\n" +
                            body("72057594037931102", 0.5) + body("72057594037931101")));
@@ -42,7 +42,7 @@ TEST(NtuSkeleton, ReadsNoneOneAndTwoBodies) {
 }
 
 TEST(NtuSkeleton, TakesZeroAndCrookedQuaternionsAsNotGiven) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   std::string text = "1\n1\n7 0 1 1 1 1 0 0.02 0.05 2\n25\n";
   for (std::size_t j = 0; j < kJointCount; ++j)
     text += joint_row(0.1, j == 3 ? "0 0 0 0" : "0.9 0.9 0 0", 1);
@@ -55,7 +55,7 @@ TEST(NtuSkeleton, TakesZeroAndCrookedQuaternionsAsNotGiven) {
 }
 
 TEST(NtuSkeleton, RefusesBadFilesNamingTheLine) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const std::string one = body("7");
   struct {
     const char* name;

@@ -25,7 +25,7 @@ std::string document(double x, int frames = 2) {
 }
 
 TEST(NwUclaJson, MapsTwentyJointsAndLeavesTheOthersNotTracked) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const auto recording = read_nw_ucla_json(folder.write("a01_s01_e00_v02.json", document(0.5)));
   ASSERT_THAT(recording, IsOk());
   EXPECT_EQ(recording->sensor.str(), "v02");
@@ -42,7 +42,7 @@ TEST(NwUclaJson, MapsTwentyJointsAndLeavesTheOthersNotTracked) {
 }
 
 TEST(NwUclaJson, RefusesBadDocumentsNamingThePlace) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   struct {
     const char* name;
     std::string text;
@@ -69,7 +69,7 @@ TEST(NwUclaJson, RefusesBadDocumentsNamingThePlace) {
 }
 
 TEST(NwUclaJson, RefusesAViewThatIsACopyOfAnother) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const auto v01 = folder.write("a01_s01_e00_v01.json", document(0.1));
   const auto v02 = folder.write("a01_s01_e00_v02.json", document(0.2));
   const auto v03 = folder.write("a01_s01_e00_v03.json", document(0.2));

@@ -6,16 +6,18 @@
 
 #include "common/record/mcap_format.h"
 #include "common/record/recording.h"
-#include "tests/unit/record/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chorus::record {
 namespace {
 
+using chorus::testing::bytes_of;
+using chorus::testing::TemporaryFolder;
 using mcap::ByteWriter;
 using mcap::Op;
-using testing::Contains;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 /// Three chunks of ten messages each.
 std::string sound_file() {

@@ -4,13 +4,14 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/builders.h"
-#include "tests/unit/record/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chorus::record {
 namespace {
 
 using chorus::testing::kFrameInterval;
 using chorus::testing::kStart;
+using chorus::testing::TemporaryFolder;
 using ::testing::HasSubstr;
 
 FrameRecording walk(int frames) {

@@ -16,11 +16,12 @@
 
 #include "common/record/session_reader.h"
 #include "tests/support/builders.h"
-#include "tests/unit/record/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chorus::record {
 namespace {
 
+using chorus::testing::TemporaryFolder;
 /// Which files this process has asked the disk to keep.
 class Disk {
  public:

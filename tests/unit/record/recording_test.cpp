@@ -7,11 +7,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/record/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chorus::record {
 namespace {
 
+using chorus::testing::TemporaryFolder;
 using std::chrono::milliseconds;
 
 constexpr std::int64_t kStart = 1'700'000'000'000'000'000;  // [ns], an arbitrary UTC

@@ -7,13 +7,15 @@
 
 #include "common/record/session_writer.h"
 #include "tests/support/builders.h"
-#include "tests/unit/record/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chorus::record {
 namespace {
 
+using chorus::testing::bytes_of;
 using chorus::testing::kFrameInterval;
 using chorus::testing::kStart;
+using chorus::testing::TemporaryFolder;
 using std::chrono::milliseconds;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/record/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chorus::sensor_service {
 namespace {
@@ -72,7 +72,7 @@ TEST(SensorConfig, AFileThatIsNotThereIsNamed) {
 }
 
 TEST(SensorConfig, ChangesThatNeedARestartAreNamed) {
-  const record::TemporaryFolder folder;
+  const chorus::testing::TemporaryFolder folder;
   const auto path = (folder / "sensor.json").string();
   std::ofstream(path) << R"({"device": {"simulated": {"latency_ms": 5}}})";
   const auto running = setup_with({});

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "common/motion/cmu_walk.h"
-#include "tests/unit/record/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chorus::synthetic {
 namespace {
@@ -69,7 +69,7 @@ TEST(Performance, ReadsATakeWithTheSkeletonBesideIt) {
 }
 
 TEST(Performance, ABvhGetsTheJointsItLacks) {
-  const record::TemporaryFolder folder;
+  const chorus::testing::TemporaryFolder folder;
   std::ofstream(folder / "sit.BVH") << small_bvh();
   const auto performance = read_performance({folder / "sit.BVH"});
   ASSERT_TRUE(performance) << to_string(performance.error());
@@ -112,7 +112,7 @@ TEST(Performance, APoseBeforeTheMotionIsLeftOut) {
 }
 
 TEST(Performance, WhatCannotBePlayedIsRefusedWithTheReason) {
-  const record::TemporaryFolder folder;
+  const chorus::testing::TemporaryFolder folder;
   std::ofstream(folder / "lost.amc") << "1\n";
   std::ofstream(folder / "torn.bvh") << "HIERARCHY\nROOT";
   std::ofstream(folder / "sit.bvh") << small_bvh();

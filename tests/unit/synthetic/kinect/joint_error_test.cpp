@@ -164,6 +164,15 @@ Profile quiet() {
   return profile;
 }
 
+/// The setting's body with one draw of errors, a second after the draw began.
+Skeleton<SensorSpace> with_errors(const Setting& setting, const Profile& profile, std::uint64_t seed) {
+  ColouredState state;
+  advance(state, setting.stand, {1.0, kFrame}, profile, {seed, 0, 0});
+  Skeleton<SensorSpace> body = setting.body;
+  add_errors(body, state, setting.stand, 1.0, profile, {seed, 0, 0});
+  return body;
+}
+
 /// Root mean square distance from the truth, all joints hidden by this share [m].
 double hidden_by(double share, JointId id) {
   const Profile profile = quiet();
@@ -171,10 +180,7 @@ double hidden_by(double share, JointId id) {
   setting.stand.hidden.fill(share);
   double squares = 0;
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
-    ColouredState state;
-    advance(state, setting.stand, {1.0, kFrame}, profile, {seed, 0, 0});
-    auto body = setting.body;
-    add_errors(body, state, setting.stand, 1.0, profile, {seed, 0, 0});
+    const auto body = with_errors(setting, profile, seed);
     squares += (body[id].position - setting.body[id].position).squaredNorm();
   }
   return std::sqrt(squares / 1000);
@@ -211,10 +217,7 @@ TEST(AddErrors, ABoneToAFollowerKeepsItsLength) {
     const Setting setting(1.0);
     double squares = 0;
     for (std::uint64_t seed = 0; seed < 1000; ++seed) {
-      ColouredState state;
-      advance(state, setting.stand, {1.0, kFrame}, profile, {seed, 0, 0});
-      auto body = setting.body;
-      add_errors(body, state, setting.stand, 1.0, profile, {seed, 0, 0});
+      const auto body = with_errors(setting, profile, seed);
       squares += ((body[HipLeft].position - body[SpineBase].position) -
                   (setting.body[HipLeft].position - setting.body[SpineBase].position))
                      .squaredNorm();

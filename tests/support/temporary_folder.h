@@ -7,13 +7,14 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <string_view>
 
-namespace chorus::record {
+namespace chorus::testing {
 
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "chorus-record-XXXXXX").string();
+    std::string name = (std::filesystem::temp_directory_path() / "chorus-test-XXXXXX").string();
     path_ = ::mkdtemp(name.data());
   }
   ~TemporaryFolder() {
@@ -23,7 +24,12 @@ class TemporaryFolder {
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] std::filesystem::path operator/(const std::string& name) const {
+    return path_ / name;
+  }
+  std::filesystem::path write(std::string_view name, std::string_view text) const {
+    std::ofstream(path_ / name, std::ios::binary) << text;
     return path_ / name;
   }
 
@@ -36,4 +42,4 @@ inline std::string bytes_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-}  // namespace chorus::record
+}  // namespace chorus::testing
