@@ -3,40 +3,17 @@
 // Counters end in _total, names carry their unit; never a label per body or client.
 #pragma once
 
-#include <atomic>
-#include <cstdint>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "common/base/histogram.h"
 #include "common/http/server.h"
 
 namespace chorus::endpoint {
 
 using Labels = std::vector<std::pair<std::string, std::string>>;
-
-/// How often values fell below each bound.  Any thread may observe.
-class Histogram {
- public:
-  /// Upper bounds, ascending and finite; one more without bound is added.
-  explicit Histogram(std::vector<double> bounds);
-  /// Not a number is not counted.
-  void observe(double value);
-
-  struct Snapshot {
-    std::vector<double> bounds;
-    std::vector<std::uint64_t> counts;  ///< By bucket, not cumulative; the last has no bound.
-    double sum = 0.0;
-  };
-  [[nodiscard]] Snapshot snapshot() const;
-
- private:
-  std::vector<double> bounds_;
-  std::unique_ptr<std::atomic<std::uint64_t>[]> counts_;
-  std::atomic<double> sum_ = 0.0;
-};
 
 /// Collects samples and writes them as one text; a metric's help appears once, before its first
 /// sample.

@@ -7,7 +7,7 @@
 #include "common/base/config_reader.h"
 #include "common/base/file.h"
 #include "common/resource/contributors.h"
-#include "fusion-server/publish/registration_resources.h"
+#include "fusion-server/rest/registration_resources.h"
 
 namespace chorus::server {
 namespace {
@@ -142,7 +142,7 @@ void read_pairing(ConfigReader& reader, registration::RegistrationConfig& out) {
 void read_registration(ConfigReader reader, FusionConfig& out) {
   reader.read("auto", out.session.automatic);
   double target = chorus::seconds(out.session.target);
-  reader.read("seconds", target, publish::kShortestSession, publish::kLongestSession);
+  reader.read("seconds", target, rest::kShortestSession, rest::kLongestSession);
   out.session.target = from_seconds(target);
   reader.read_s("first_solve_s", out.session.first_solve, seconds(2), seconds(60));
   reader.read_s("solve_every_s", out.session.solve_every, seconds(1), seconds(60));
@@ -187,7 +187,7 @@ Result<FusionConfig> read_fusion_config(std::string_view text, std::string_view 
   read_fusion(root->child("fusion"), config.pipeline.fusion);
   read_sensors(*root, config);
   read_registration(root->child("registration"), config);
-  publish::read_outputs(root->child("outputs"), config.outputs);
+  outputs::read_outputs(root->child("outputs"), config.outputs);
   root->read("state_dir", config.state_dir);
   root->read("viewer_dir", config.viewer_dir);
   endpoint::read_recording(root->child("recording"), config.recording);

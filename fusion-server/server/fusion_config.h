@@ -8,12 +8,12 @@
 #include "common/base/result.h"
 #include "common/endpoint/recordings.h"
 #include "common/http/server.h"
+#include "fusion-server/core/registration_session.h"
+#include "fusion-server/core/tick_schedule.h"
+#include "fusion-server/outputs/outputs.h"
 #include "fusion-server/pipeline/pipeline.h"
 #include "fusion-server/poll/poller.h"
-#include "fusion-server/publish/outputs.h"
 #include "fusion-server/registration/registration.h"
-#include "fusion-server/server/registration_session.h"
-#include "fusion-server/server/tick_schedule.h"
 
 namespace chorus::server {
 
@@ -22,12 +22,12 @@ struct FusionConfig {
   http::ServerConfig http;
   std::vector<poll::PolledSensor> sensors;
   poll::PollTimings poll;
-  TickConfig output;
+  core::TickConfig output;
   Duration history = std::chrono::seconds(10);  ///< How long /frames/{seq} and ?at= reach back.
   pipeline::PipelineConfig pipeline;
   registration::RegistrationConfig registration;
-  SessionConfig session;
-  publish::OutputsConfig outputs;
+  core::SessionConfig session;
+  outputs::OutputsConfig outputs;
   std::string registration_file;  ///< Given extrinsics; empty: registered from a walk.
   std::string state_dir;          ///< Where the registration survives a restart; empty: nowhere.
   endpoint::RecordingConfig recording;

@@ -10,13 +10,13 @@
 
 #include "common/base/log.h"
 #include "common/endpoint/endpoint.h"
-#include "fusion-server/publish/frame_resources.h"
-#include "fusion-server/publish/metrics.h"
-#include "fusion-server/publish/recording_tap.h"
-#include "fusion-server/publish/registration_resources.h"
-#include "fusion-server/publish/self_description.h"
-#include "fusion-server/publish/sensor_resources.h"
+#include "fusion-server/rest/frame_resources.h"
+#include "fusion-server/rest/metrics.h"
+#include "fusion-server/rest/registration_resources.h"
+#include "fusion-server/rest/self_description.h"
+#include "fusion-server/rest/sensor_resources.h"
 #include "fusion-server/server/pipeline_loop.h"
+#include "fusion-server/server/recording_tap.h"
 
 namespace chorus::server {
 namespace {
@@ -27,8 +27,8 @@ std::vector<SensorId> ids_of(const std::vector<poll::PolledSensor>& sensors) {
   return ids;
 }
 
-CoreConfig core_config(const FusionConfig& config) {
-  CoreConfig core;
+core::CoreConfig core_config(const FusionConfig& config) {
+  core::CoreConfig core;
   core.output = config.output;
   core.pipeline = config.pipeline;
   core.registration = config.registration;
@@ -71,9 +71,9 @@ Result<Registration> initial_registration(const FusionConfig& config) {
   return std::move(**stored);
 }
 
-endpoint::Health health_of(const publish::Status& status) {
+endpoint::Health health_of(const Status& status) {
   std::size_t live = 0;
-  for (const publish::SensorStatus& sensor : status.sensors) live += sensor.state == "live" ? 1 : 0;
+  for (const SensorStatus& sensor : status.sensors) live += sensor.state == "live" ? 1 : 0;
   if (live == 0) return {false, "none of the sensors delivers frames; see /sensors/"};
   if (status.registration.sensors.empty()) {
     return {false, "the sensors are not registered yet; walk through the room, see /registration"};
@@ -82,7 +82,7 @@ endpoint::Health health_of(const publish::Status& status) {
 }
 
 endpoint::RecordingsOptions recordings_options(const FusionConfig& config,
-                                               const publish::RestContext& context,
+                                               const rest::RestContext& context,
                                                std::shared_ptr<const Clock> clock) {
   endpoint::RecordingsOptions options;
   options.config = config.recording;
@@ -114,25 +114,25 @@ struct FusionServer::Impl {
   std::shared_ptr<http::Router> make_router();
   LoopOptions loop_options(Registration places);
   void start_polling();
-  void take_status(const publish::Status& next);
+  void take_status(const Status& next);
   Result<void> start_session(Duration target);
-  [[nodiscard]] publish::Status status_now() const {
+  [[nodiscard]] Status status_now() const {
     const std::scoped_lock lock(mutex);
     return status;
   }
 
   FusionConfig config;
   std::shared_ptr<const Clock> clock;
-  publish::RestContext context;
-  std::vector<std::unique_ptr<publish::Sink>> sinks;  ///< Filled before the first request.
+  rest::RestContext context;
+  std::vector<std::unique_ptr<Sink>> sinks;  ///< Filled before the first request.
   mutable std::mutex mutex;
-  publish::Status status;      ///< Guarded by mutex.
+  Status status;               ///< Guarded by mutex.
   bool session_asked = false;  ///< Guarded by mutex: a start is on its way to the pipeline.
-  std::optional<publish::FrameResources> frames;
-  std::optional<publish::SensorResources> sensors;
-  std::optional<publish::RegistrationResources> registration;
+  std::optional<rest::FrameResources> frames;
+  std::optional<rest::SensorResources> sensors;
+  std::optional<rest::RegistrationResources> registration;
   std::optional<endpoint::Recordings> recordings;
-  std::optional<publish::RecordingTap> tap;
+  std::optional<RecordingTap> tap;
   std::unique_ptr<http::Server> http;
   std::unique_ptr<PipelineLoop> loop;
   std::unique_ptr<poll::Poller> poller;
@@ -140,7 +140,7 @@ struct FusionServer::Impl {
 
 std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   auto router = std::make_shared<http::Router>();
-  publish::RegistrationControl control;
+  rest::RegistrationControl control;
   control.default_target = config.session.target;
   control.start = [this](Duration target) { return start_session(target); };
   control.forget = [this]() -> Result<void> {
@@ -156,13 +156,12 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   frames->add_routes(*router);
   sensors->add_routes(*router);
   registration->add_routes(*router);
-  publish::add_description_routes(*router, context, config.title, config.viewer_dir);
+  rest::add_description_routes(*router, context, config.title, config.viewer_dir);
   endpoint::EndpointOptions endpoint;
   endpoint.clock = clock;
   endpoint.health = [this] { return health_of(status_now()); };
   endpoint.metrics = [this] {
-    return publish::metrics_text(status_now(), sinks, http->counters()) +
-           recordings->metrics_text();
+    return rest::metrics_text(status_now(), sinks, http->counters()) + recordings->metrics_text();
   };
   endpoint::add_routes(*router, endpoint);
   return router;
@@ -179,7 +178,7 @@ Result<void> FusionServer::Impl::start_session(Duration target) {
   return {};
 }
 
-void FusionServer::Impl::take_status(const publish::Status& next) {
+void FusionServer::Impl::take_status(const Status& next) {
   sensors->publish(next.sensors);
   registration->publish(next.registration, next.session);
   tap->places(next.registration);
@@ -200,7 +199,7 @@ LoopOptions FusionServer::Impl::loop_options(Registration places) {
   options.sinks.push_back(&*frames);
   options.sinks.push_back(&*tap);
   for (const auto& sink : sinks) options.sinks.push_back(sink.get());
-  options.on_status = [this](const publish::Status& next) { take_status(next); };
+  options.on_status = [this](const Status& next) { take_status(next); };
   options.poll_reports = [this] {
     return poller ? poller->reports() : std::vector<poll::PollReport>{};
   };
@@ -231,7 +230,7 @@ Result<void> FusionServer::start() {
   auto registration = initial_registration(s.config);
   if (!registration) return pass(registration);
   auto sinks =
-      publish::open_outputs(s.config.outputs, s.clock, s.config.pipeline.association.coast);
+      outputs::open_outputs(s.config.outputs, s.clock, s.config.pipeline.association.coast);
   if (!sinks) return pass(sinks);
   s.sinks = std::move(*sinks);
   http::ServerConfig http = s.config.http;

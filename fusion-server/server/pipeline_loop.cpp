@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/base/log.h"
-#include "fusion-server/publish/registration_resource.h"
+#include "fusion-server/wire/registration_resource.h"
 
 namespace chorus::server {
 namespace {
@@ -27,12 +27,12 @@ std::string joined(const std::vector<std::string>& reasons) {
   return text;
 }
 
-std::string_view name_of(SolveKind kind) {
-  return kind == SolveKind::Final ? "final" : "provisional";
+std::string_view name_of(core::SolveKind kind) {
+  return kind == core::SolveKind::Final ? "final" : "provisional";
 }
 
 /// Whatever a library throws over strange clouds, the worker lives and the session learns of it.
-Registration solution_of(const SolveJob& job, Timestamp now) {
+Registration solution_of(const core::SolveJob& job, Timestamp now) {
   try {
     return registration::solve(job.walk, now, job.config);
   } catch (const std::exception& thrown) {
@@ -111,21 +111,21 @@ void PipelineLoop::obey(Command command) {
       }
     });
   } else {
-    core_.reconfigure(std::move(std::get<CoreConfig>(command)));
+    core_.reconfigure(std::move(std::get<core::CoreConfig>(command)));
   }
   publish_status(options_.clock->now());
 }
 
 void PipelineLoop::publish(Snapshot snapshot) {
   const auto shared = std::make_shared<const Snapshot>(std::move(snapshot));
-  for (publish::Sink* sink : options_.sinks) sink->publish(shared);
+  for (Sink* sink : options_.sinks) sink->publish(shared);
   ++counters_.ticks;
   age_.observe(seconds(options_.clock->now() - shared->instant));
 }
 
-void PipelineLoop::solve(SolveJob job) {
+void PipelineLoop::solve(core::SolveJob job) {
   const bool was_collecting = core_.session().collecting;
-  if (job.kind == SolveKind::Provisional && was_collecting) {
+  if (job.kind == core::SolveKind::Provisional && was_collecting) {
     log::debug("registration solving", {{"sensors", job.walk.size()}});
   }
   worker_.post([this, job = std::move(job)] {
@@ -134,28 +134,28 @@ void PipelineLoop::solve(SolveJob job) {
 }
 
 void PipelineLoop::take_solutions() {
-  for (Solution& solution : solutions_.take(Duration{0})) {
-    const SolveKind kind = solution.kind;
+  for (core::Solution& solution : solutions_.take(Duration{0})) {
+    const core::SolveKind kind = solution.kind;
     const bool adopted = core_.solved(std::move(solution));
     const Registration& now = core_.registration();
     if (adopted) {
       log::info("registration adopted", {{"version", now.version},
                                          {"solve", name_of(kind)},
-                                         {"verdict", publish::name_of(now.verdict)},
+                                         {"verdict", wire::name_of(now.verdict)},
                                          {"sensors", now.sensors.size()},
                                          {"reasons", joined(now.reasons)}});
-    } else if (kind == SolveKind::Final) {
+    } else if (kind == core::SolveKind::Final) {
       log::warn("registration not adopted", {{"reasons", joined(core_.session().reasons)}});
     }
-    if (kind == SolveKind::Final && !now.sensors.empty()) {
+    if (kind == core::SolveKind::Final && !now.sensors.empty()) {
       worker_.post([store = options_.store, now] { save(store, now); });
     }
     publish_status(options_.clock->now());
   }
 }
 
-publish::SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp now) const {
-  publish::SensorStatus status;
+SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp now) const {
+  SensorStatus status;
   status.id = report.sensor.id;
   status.url = report.sensor.url;
   if (report.newest) status.age = now - *report.newest;
@@ -185,7 +185,7 @@ publish::SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Ti
 
 void PipelineLoop::publish_status(Timestamp now) {
   status_at_ = now;
-  publish::Status status;
+  Status status;
   for (const poll::PollReport& report : options_.poll_reports()) {
     status.sensors.push_back(status_of(report, now));
   }

@@ -7,15 +7,15 @@
 #include <variant>
 #include <vector>
 
+#include "common/base/handover.h"
 #include "common/base/rate_report.h"
 #include "common/time/clock.h"
+#include "fusion-server/core/fusion_core.h"
 #include "fusion-server/poll/poller.h"
-#include "fusion-server/publish/handover.h"
-#include "fusion-server/publish/sink.h"
-#include "fusion-server/publish/status.h"
-#include "fusion-server/server/fusion_core.h"
 #include "fusion-server/server/registration_store.h"
 #include "fusion-server/server/worker.h"
+#include "fusion-server/sink.h"
+#include "fusion-server/status.h"
 
 namespace chorus::server {
 
@@ -24,17 +24,17 @@ struct StartSession {
   Duration target{0};
 };
 struct Forget {};
-using Command = std::variant<StartSession, Forget, CoreConfig>;
+using Command = std::variant<StartSession, Forget, core::CoreConfig>;
 
 struct LoopOptions {
-  CoreConfig core;
+  core::CoreConfig core;
   Registration registration;
   RegistrationStore store{""};
   std::shared_ptr<const Clock> clock;
-  std::vector<publish::Sink*> sinks;  ///< Outlive the loop.
+  std::vector<Sink*> sinks;  ///< Outlive the loop.
   /// Called a few times a second and whenever the registration has changed, on the pipeline's
   /// thread.
-  std::function<void(const publish::Status&)> on_status;
+  std::function<void(const Status&)> on_status;
   std::function<std::vector<poll::PollReport>()> poll_reports;
 };
 
@@ -55,19 +55,18 @@ class PipelineLoop {
   void turn();
   void obey(Command command);
   void publish(Snapshot snapshot);
-  void solve(SolveJob job);
+  void solve(core::SolveJob job);
   void take_solutions();
   void publish_status(Timestamp now);
-  [[nodiscard]] publish::SensorStatus status_of(const poll::PollReport& report,
-                                                Timestamp now) const;
+  [[nodiscard]] SensorStatus status_of(const poll::PollReport& report, Timestamp now) const;
 
   LoopOptions options_;
-  FusionCore core_;
-  publish::Handover<SensorFrame> frames_;
-  publish::Handover<Command> commands_;
-  publish::Handover<Solution> solutions_;
-  publish::Counters counters_;
-  endpoint::Histogram age_;  ///< Instant to publication [s].
+  core::FusionCore core_;
+  Handover<SensorFrame> frames_;
+  Handover<Command> commands_;
+  Handover<core::Solution> solutions_;
+  Counters counters_;
+  Histogram age_;  ///< Instant to publication [s].
   Timestamp status_at_{};
   RateReport trouble_{"pipeline step failed", log::Level::Error};
   Worker worker_;

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/base/file.h"
-#include "fusion-server/publish/registration_file.h"
+#include "fusion-server/wire/registration_file.h"
 
 namespace chorus::server {
 namespace {
@@ -32,7 +32,7 @@ Result<void> RegistrationStore::save(const Registration& registration) const {
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) return fail(ErrorCode::Io, folder_, "cannot be created: " + error.message());
-  return replace_file(path(), publish::write_registration(registration));
+  return replace_file(path(), wire::write_registration(registration));
 }
 
 Result<void> RegistrationStore::forget() const {
@@ -47,7 +47,7 @@ Result<void> RegistrationStore::forget() const {
 Result<Registration> load_registration_file(const std::string& path) {
   const auto text = read_file(path, kMostBytes);
   if (!text) return fail(ErrorCode::Io, path, "cannot be read: " + text.error().message);
-  auto registration = publish::read_registration(*text);
+  auto registration = wire::read_registration(*text);
   if (!registration) {
     return fail(registration.error().code, path, to_string(registration.error()));
   }

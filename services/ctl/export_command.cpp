@@ -11,8 +11,8 @@
 
 #include "common/base/duration.h"
 #include "common/exporters/export_formats.h"
+#include "fusion-server/client/fused_frames.h"
 #include "services/ctl/command.h"
-#include "services/ctl/fused_frames.h"
 #include "services/ctl/text_file.h"
 
 namespace chorus::ctl {
@@ -91,8 +91,8 @@ void report(const Done& done, bool as_json) {
 
 Result<int> run_export(const ExportArguments& arguments) {
   if (auto ok = may_write(arguments.out, {arguments.source}); !ok) return pass(ok);
-  auto source = read_fused_frames(arguments.source,
-                                  std::chrono::milliseconds(std::llround(arguments.seconds * 1e3)));
+  auto source = client::read_fused_frames(
+      arguments.source, std::chrono::milliseconds(std::llround(arguments.seconds * 1e3)));
   if (!source) return pass(source);
   exporters::TakeOptions options;
   options.rate_hz = arguments.rate_hz;

@@ -10,16 +10,16 @@
 
 #include "common/record/session_writer.h"
 #include "common/resource/frame_resource.h"
+#include "fusion-server/client/fused_frames.h"
+#include "fusion-server/client/recordings.h"
 #include "fusion-server/pipeline/offline.h"
-#include "fusion-server/publish/recording_tap.h"
-#include "fusion-server/publish/registration_file.h"
-#include "fusion-server/publish/snapshot_resource.h"
+#include "fusion-server/server/recording_tap.h"
 #include "fusion-server/server/registration_store.h"
+#include "fusion-server/wire/registration_file.h"
+#include "fusion-server/wire/snapshot_resource.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
-#include "services/ctl/fused_frames.h"
 #include "services/ctl/offline_options.h"
-#include "services/ctl/recordings.h"
 #include "services/ctl/registration_report.h"
 #include "services/ctl/text_file.h"
 
@@ -46,7 +46,7 @@ std::vector<registration::WalkTrack> tracks_of(record::Session session) {
 /// The last one that a recording was made with.
 Result<std::optional<Registration>> recorded_extrinsics(const std::vector<std::string>& recorded) {
   for (auto text = recorded.rbegin(); text != recorded.rend(); ++text) {
-    auto registration = publish::read_registration(*text);
+    auto registration = wire::read_registration(*text);
     if (!registration)
       return fail(registration.error().code, "/registration", to_string(registration.error()));
     if (!registration->sensors.empty()) return std::optional(std::move(*registration));
@@ -66,7 +66,8 @@ Result<std::optional<Registration>> read_extrinsics(const FuseArguments& argumen
 
 std::string ndjson_of(const std::vector<Snapshot>& snapshots) {
   std::string text;
-  for (const Snapshot& snapshot : snapshots) text += frame_line(publish::to_resource(snapshot));
+  for (const Snapshot& snapshot : snapshots)
+    text += client::frame_line(wire::to_resource(snapshot));
   return text;
 }
 
@@ -75,10 +76,10 @@ Result<void> write_fused(const std::string& file, const pipeline::OfflineResult&
   auto writer = record::SessionWriter::create(file, {{{"title", "chorus fuse"}}, false});
   if (!writer) return pass(writer);
   const Timestamp begin = result.snapshots.empty() ? Timestamp{} : result.snapshots.front().instant;
-  if (auto ok = writer->write(publish::places_changed(begin, result.registration)); !ok) return ok;
+  if (auto ok = writer->write(wire::places_changed(begin, result.registration)); !ok) return ok;
   for (const Snapshot& snapshot : result.snapshots) {
-    const auto ok = writer->write(record::FusedFrame{
-        snapshot.instant, snapshot.instant, [&] { return publish::to_resource(snapshot); }});
+    const auto ok = writer->write(record::FusedFrame{snapshot.instant, snapshot.instant,
+                                                     [&] { return wire::to_resource(snapshot); }});
     if (!ok) return ok;
   }
   return writer->close();
@@ -110,12 +111,11 @@ nlohmann::json summary_of(const pipeline::OfflineResult& result, std::size_t sen
                           const std::vector<std::string>& notes) {
   const auto with_bodies = std::count_if(result.snapshots.begin(), result.snapshots.end(),
                                          [](const Snapshot& s) { return !s.bodies.empty(); });
-  return {
-      {"sensors", sensors},
-      {"frames", result.snapshots.size()},
-      {"framesWithBodies", with_bodies},
-      {"notes", notes},
-      {"registration", nlohmann::json::parse(publish::write_registration(result.registration))}};
+  return {{"sensors", sensors},
+          {"frames", result.snapshots.size()},
+          {"framesWithBodies", with_bodies},
+          {"notes", notes},
+          {"registration", nlohmann::json::parse(wire::write_registration(result.registration))}};
 }
 
 void print_summary(const nlohmann::json& summary, const FuseArguments& arguments) {
@@ -133,12 +133,12 @@ void print_summary(const nlohmann::json& summary, const FuseArguments& arguments
 Result<int> run_fuse(const FuseArguments& arguments) {
   const auto config = offline_config(arguments.options);
   if (!config) return pass(config);
-  const auto files = find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
+  const auto files = client::find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
   if (!files) return pass(files);
   if (auto ok = check_outputs(arguments, *files); !ok) return pass(ok);
-  auto session = read_recordings(*files, arguments.json ? nullptr : &std::cerr);
+  auto session = client::read_recordings(*files, arguments.json ? nullptr : &std::cerr);
   if (!session) return pass(session);
-  const auto notes = notes_of(*session);
+  const auto notes = client::notes_of(*session);
   const auto extrinsics = read_extrinsics(arguments, *session);
   if (!extrinsics) return pass(extrinsics);
   const auto tracks = tracks_of(std::move(*session));
@@ -148,7 +148,7 @@ Result<int> run_fuse(const FuseArguments& arguments) {
   if (!written) return pass(written);
   if (!arguments.save_registration.empty()) {
     const auto saved =
-        write_text(arguments.save_registration, publish::write_registration(result->registration));
+        write_text(arguments.save_registration, wire::write_registration(result->registration));
     if (!saved) return pass(saved);
   }
   const nlohmann::json summary = summary_of(*result, tracks.size(), notes);

@@ -11,10 +11,10 @@
 #include "common/record/frame_recording.h"
 #include "common/record/frame_schema.h"
 #include "common/resource/frame_resource.h"
-#include "fusion-server/publish/registration_file.h"
+#include "fusion-server/client/fused_frames.h"
+#include "fusion-server/wire/registration_file.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
-#include "services/ctl/fused_frames.h"
 #include "services/ctl/text_file.h"
 
 namespace chorus::ctl {
@@ -89,7 +89,7 @@ Result<void> write_truth(const fs::path& file, const importers::ImportedSet& set
     frame.space = resource::SpaceKind::World;
     for (; truth != set.truth.end() && truth->index + 1 == frame.sequence; ++truth)
       frame.bodies.push_back(truth_body(*truth, frame.captured));
-    text += frame_line(frame);
+    text += client::frame_line(frame);
   }
   return write_text(file.string(), text);
 }
@@ -129,7 +129,7 @@ Result<std::vector<fs::path>> write_set(const fs::path& folder, const importers:
   if (!set.world_from_sensor.empty()) {
     written.push_back(folder / "registration.json");
     const auto done =
-        write_text(written.back().string(), publish::write_registration(registration_of(set)));
+        write_text(written.back().string(), wire::write_registration(registration_of(set)));
     if (!done) return pass(done);
   }
   if (!set.truth.empty()) {

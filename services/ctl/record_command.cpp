@@ -8,10 +8,10 @@
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
+#include "fusion-server/client/live_recording.h"
+#include "fusion-server/client/service_client.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
-#include "services/ctl/live_recording.h"
-#include "services/ctl/service_client.h"
 
 namespace chorus::ctl {
 namespace {
@@ -23,7 +23,7 @@ constexpr milliseconds kLook{200};
 constexpr auto kGoneAfter = std::chrono::seconds(10);
 
 struct RecordArguments {
-  std::string url = kDefaultServer;
+  std::string url = client::kDefaultServer;
   std::string out;
   double seconds = 0.0;
   bool raw = false;
@@ -37,7 +37,8 @@ enum class End { Asked, TimeIsUp, Gone };
 /// Looks a few times a second whether it is over; runs the polling meanwhile.
 class Watch {
  public:
-  Watch(http::net::io_context& io, const LiveRecording& live, const RecordArguments& arguments)
+  Watch(http::net::io_context& io, const client::LiveRecording& live,
+        const RecordArguments& arguments)
       : io_(io),
         live_(live),
         arguments_(arguments),
@@ -77,7 +78,7 @@ class Watch {
   }
 
   http::net::io_context& io_;
-  const LiveRecording& live_;
+  const client::LiveRecording& live_;
   const RecordArguments& arguments_;
   http::Timer timer_;
   http::net::signal_set signals_;
@@ -86,7 +87,7 @@ class Watch {
   End end_ = End::Asked;
 };
 
-nlohmann::json stream_json(const StreamCount& count) {
+nlohmann::json stream_json(const client::StreamCount& count) {
   nlohmann::json json{{"frames", count.frames},
                       {"missed", count.missed},
                       {"failed", count.failed},
@@ -95,7 +96,7 @@ nlohmann::json stream_json(const StreamCount& count) {
   return json;
 }
 
-nlohmann::json summary_of(const LiveRecording& live, const record::RecordingReport& report,
+nlohmann::json summary_of(const client::LiveRecording& live, const record::RecordingReport& report,
                           const std::string& file) {
   nlohmann::json streams = nlohmann::json::object();
   for (const auto& [topic, count] : live.counts()) streams[topic] = stream_json(count);
@@ -133,7 +134,7 @@ void print_summary(const nlohmann::json& summary, bool json) {
 }
 
 /// Announced by the service, and never a frame of it.
-std::vector<std::string> silent_streams(const LiveRecording& live) {
+std::vector<std::string> silent_streams(const client::LiveRecording& live) {
   std::vector<std::string> silent;
   for (const auto& [topic, count] : live.counts()) {
     if (count.frames == 0) silent.push_back(topic);
@@ -141,7 +142,7 @@ std::vector<std::string> silent_streams(const LiveRecording& live) {
   return silent;
 }
 
-Result<int> judge(const LiveRecording& live, const record::RecordingReport& report, End end,
+Result<int> judge(const client::LiveRecording& live, const record::RecordingReport& report, End end,
                   const RecordArguments& arguments) {
   if (report.state != record::RecordingState::Finished) {
     return fail(ErrorCode::Io, arguments.out,
@@ -164,13 +165,13 @@ Result<int> judge(const LiveRecording& live, const record::RecordingReport& repo
 Result<int> run_record(const RecordArguments& arguments) {
   const auto url = http::parse_url(arguments.url);
   if (!url) return pass(url);
-  LiveRecordingOptions options;
+  client::LiveRecordingOptions options;
   options.service = *url;
   options.file = arguments.out;
   options.raw = arguments.raw || !arguments.fused;  // neither named: both
   options.fused = arguments.fused || !arguments.raw;
   http::net::io_context io{1};
-  const auto live = LiveRecording::start(io, options);
+  const auto live = client::LiveRecording::start(io, options);
   if (!live) return pass(live);
   const End end = Watch(io, **live, arguments).run();
   const auto report = (*live)->stop();

@@ -7,22 +7,22 @@
 
 #include "common/base/units.h"
 #include "common/geometry/rotation.h"
+#include "fusion-server/client/service_client.h"
 #include "services/ctl/console.h"
-#include "services/ctl/service_client.h"
 
 namespace chorus::ctl {
 namespace {
 
 std::string yaw_shown(const nlohmann::json& sensor) {
-  const Eigen::Quaterniond q(number_at(sensor, "qw"), number_at(sensor, "qx"),
-                             number_at(sensor, "qy"), number_at(sensor, "qz"));
+  const Eigen::Quaterniond q(client::number_at(sensor, "qw"), client::number_at(sensor, "qx"),
+                             client::number_at(sensor, "qy"), client::number_at(sensor, "qz"));
   if (!q.coeffs().allFinite()) return "-";
   return shown(to_deg(yaw_of(normalised_or_identity(q).toRotationMatrix())), 1);
 }
 
 std::string chain_shown(const nlohmann::json& sensor) {
   std::string text;
-  for (const auto& link : part_at(sensor, "chain")) {
+  for (const auto& link : client::part_at(sensor, "chain")) {
     if (link.is_string()) text += (text.empty() ? "" : " > ") + link.get<std::string>();
   }
   return text.empty() ? "-" : text;
@@ -31,19 +31,21 @@ std::string chain_shown(const nlohmann::json& sensor) {
 }  // namespace
 
 std::string registration_report(const nlohmann::json& registration) {
-  std::string text = fmt::format("registration: {}", text_at(registration, "verdict", "None"));
-  const std::string master = text_at(registration, "master", "");
+  std::string text =
+      fmt::format("registration: {}", client::text_at(registration, "verdict", "None"));
+  const std::string master = client::text_at(registration, "master", "");
   if (!master.empty()) text += fmt::format(", master {}", master);
   text += "\n";
-  for (const auto& reason : part_at(registration, "reasons")) {
+  for (const auto& reason : client::part_at(registration, "reasons")) {
     if (reason.is_string()) text += "  " + reason.get<std::string>() + "\n";
   }
   std::vector<std::vector<std::string>> rows{
       {"sensor", "x [m]", "y [m]", "z [m]", "yaw [deg]", "error [mm]", "chain"}};
-  for (const auto& [name, sensor] : part_at(registration, "sensors").items()) {
-    rows.push_back({name, shown(number_at(sensor, "x"), 3), shown(number_at(sensor, "y"), 3),
-                    shown(number_at(sensor, "z"), 3), yaw_shown(sensor),
-                    shown(to_mm(number_at(sensor, "error")), 1), chain_shown(sensor)});
+  for (const auto& [name, sensor] : client::part_at(registration, "sensors").items()) {
+    rows.push_back({name, shown(client::number_at(sensor, "x"), 3),
+                    shown(client::number_at(sensor, "y"), 3),
+                    shown(client::number_at(sensor, "z"), 3), yaw_shown(sensor),
+                    shown(to_mm(client::number_at(sensor, "error")), 1), chain_shown(sensor)});
   }
   if (rows.size() > 1) text += table(rows);
   return text;

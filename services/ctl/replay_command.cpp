@@ -11,9 +11,9 @@
 #include <CLI/CLI.hpp>
 
 #include "common/time/clock.h"
+#include "fusion-server/client/recordings.h"
 #include "services/ctl/child_processes.h"
 #include "services/ctl/command.h"
-#include "services/ctl/recordings.h"
 #include "services/ctl/replay_round.h"
 
 namespace chorus::ctl {
@@ -71,10 +71,10 @@ void share(const Round& round, Child& child) {
 }
 
 Result<int> run_replay(const ReplayArguments& arguments) {
-  const auto files = find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
+  const auto files = client::find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
   if (!files) return pass(files);
   // Read now: a broken recording, or two of one sensor, should not start half a cell.
-  const auto session = read_recordings(*files, &std::cerr);
+  const auto session = client::read_recordings(*files, &std::cerr);
   if (!session) return pass(session);
   if (of_different_times(*session))
     std::cerr

@@ -5,52 +5,54 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "fusion-server/client/service_client.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
 #include "services/ctl/registration_report.h"
-#include "services/ctl/service_client.h"
 
 namespace chorus::ctl {
 namespace {
 
 struct StatusArguments {
-  std::string url = kDefaultServer;
+  std::string url = client::kDefaultServer;
   bool json = false;
 };
 
 std::string sensors_report(const nlohmann::json& sensors) {
   std::vector<std::vector<std::string>> rows{
       {"sensor", "state", "age [ms]", "rate [Hz]", "clock offset [ms]", "bodies", "weight", "url"}};
-  for (const auto& [name, sensor] : part_at(sensors, "sensors").items()) {
-    rows.push_back({name, text_at(sensor, "state"), shown(number_at(sensor, "ageMilliseconds"), 1),
-                    shown(number_at(sensor, "rateHz"), 1),
-                    shown(number_at(sensor, "clockOffsetMilliseconds"), 3),
-                    shown(number_at(sensor, "bodies"), 0), shown(number_at(sensor, "weight"), 2),
-                    text_at(sensor, "url")});
+  for (const auto& [name, sensor] : client::part_at(sensors, "sensors").items()) {
+    rows.push_back({name, client::text_at(sensor, "state"),
+                    shown(client::number_at(sensor, "ageMilliseconds"), 1),
+                    shown(client::number_at(sensor, "rateHz"), 1),
+                    shown(client::number_at(sensor, "clockOffsetMilliseconds"), 3),
+                    shown(client::number_at(sensor, "bodies"), 0),
+                    shown(client::number_at(sensor, "weight"), 2), client::text_at(sensor, "url")});
   }
   std::string text = rows.size() > 1 ? table(rows) : "no sensors are configured\n";
-  for (const auto& [name, sensor] : part_at(sensors, "sensors").items()) {
-    const std::string error = text_at(sensor, "lastError", "");
+  for (const auto& [name, sensor] : client::part_at(sensors, "sensors").items()) {
+    const std::string error = client::text_at(sensor, "lastError", "");
     if (!error.empty()) text += fmt::format("{}: {}\n", name, error);
   }
   return text;
 }
 
 std::string bodies_report(const nlohmann::json& frame) {
-  const auto& bodies = part_at(frame, "bodies");
-  std::string text =
-      fmt::format("fused bodies: {}, captured {}\n", bodies.size(), text_at(frame, "captured"));
+  const auto& bodies = client::part_at(frame, "bodies");
+  std::string text = fmt::format("fused bodies: {}, captured {}\n", bodies.size(),
+                                 client::text_at(frame, "captured"));
   for (const auto& body : bodies) {
-    const auto& head = part_at(part_at(body, "joints"), "Head");
-    text += fmt::format("  body {}: head at {} {} {}\n", shown(number_at(body, "bodyId"), 0),
-                        shown(number_at(head, "x"), 3), shown(number_at(head, "y"), 3),
-                        shown(number_at(head, "z"), 3));
+    const auto& head = client::part_at(client::part_at(body, "joints"), "Head");
+    text +=
+        fmt::format("  body {}: head at {} {} {}\n", shown(client::number_at(body, "bodyId"), 0),
+                    shown(client::number_at(head, "x"), 3), shown(client::number_at(head, "y"), 3),
+                    shown(client::number_at(head, "z"), 3));
   }
   return text;
 }
 
 Result<int> run_status(const StatusArguments& arguments) {
-  const auto server = ServiceClient::of(arguments.url);
+  const auto server = client::ServiceClient::of(arguments.url);
   if (!server) return pass(server);
   const auto sensors = server->get("/sensors/");
   if (!sensors) return pass(sensors);
@@ -60,7 +62,7 @@ Result<int> run_status(const StatusArguments& arguments) {
   const auto frame = server->get("/frame");
   const nlohmann::json shown_frame = frame ? *frame : nlohmann::json();
   if (arguments.json) {
-    std::cout << nlohmann::json{{"sensors", part_at(*sensors, "sensors")},
+    std::cout << nlohmann::json{{"sensors", client::part_at(*sensors, "sensors")},
                                 {"registration", *registration},
                                 {"frame", shown_frame}}
                      .dump(2)

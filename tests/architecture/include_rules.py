@@ -16,17 +16,26 @@ ROWS = [
     ["common/record"],
     ["common/synthetic", "common/endpoint", "common/importers", "common/exporters"],
     ["fusion-server/flow.h"],
+    ["fusion-server/status.h", "fusion-server/sink.h"],
     ["fusion-server/align", "fusion-server/facing", "fusion-server/associate", "fusion-server/fusion"],
     ["fusion-server/registration"],
     ["fusion-server/pipeline", "fusion-server/poll"],
-    ["fusion-server/publish", "services/sensor"],
+    ["fusion-server/core", "fusion-server/wire", "fusion-server/outlet", "services/sensor"],
+    ["fusion-server/vrpn", "fusion-server/dtrack", "fusion-server/natnet", "fusion-server/trackd",
+     "fusion-server/osc", "fusion-server/mxtp", "fusion-server/rest", "fusion-server/client"],
+    ["fusion-server/outputs"],
     ["fusion-server/server"],
     ["services/ctl"],
 ]
 ROW_OF = {room: row for row, rooms in enumerate(ROWS) for room in rooms}
 
+# Values that rooms of the fusion server hand to each other; each header is a row of its own.
+VALUE_HEADERS = {"fusion-server/flow.h", "fusion-server/status.h", "fusion-server/sink.h"}
+
 STAGES = {f"fusion-server/{stage}" for stage in ("align", "facing", "associate", "fusion", "registration")}
 FUSION_SERVER = {room for room in ROW_OF if room.startswith("fusion-server/")}
+# Callable without a network: neither included nor linked, not even through others.
+NO_SOCKET = {"fusion-server/core", "fusion-server/pipeline"} | VALUE_HEADERS | STAGES
 
 # (who, what they may not include, why)
 FORBIDDEN_ROOMS = [
@@ -35,6 +44,7 @@ FORBIDDEN_ROOMS = [
      "stages know values, not their wire forms"),
     (STAGES - {"fusion-server/registration"}, STAGES, "stages meet in flow.h only"),
     ({"fusion-server/registration"}, STAGES - {"fusion-server/align"}, "registration may use align only"),
+    (NO_SOCKET, {"common/http", "common/endpoint"}, "no socket here"),
     ({"services/sensor"}, FUSION_SERVER, "running services meet over HTTP"),
     (FUSION_SERVER, {"services/sensor"}, "running services meet over HTTP"),
 ]
@@ -65,7 +75,7 @@ class Violation:
 
 def room_of(path):
     """'common/body/bones.h' -> 'common/body'; None for what is no room of ours."""
-    if path == "fusion-server/flow.h":
+    if path in VALUE_HEADERS:
         return path
     parts = path.split("/")
     if len(parts) < 2 or parts[0] not in ("common", "fusion-server", "services"):
@@ -131,7 +141,7 @@ def linked_rooms(root):
     for file in sorted(root.glob("*/**/CMakeLists.txt")):
         relative = file.parent.relative_to(root).as_posix()
         for name, arguments in LIBRARY.findall(file.read_text(encoding="utf-8")):
-            room = "fusion-server/flow.h" if name == "flow" else room_of(relative + "/CMakeLists.txt")
+            room = f"fusion-server/{name}.h" if f"fusion-server/{name}.h" in VALUE_HEADERS else room_of(relative + "/CMakeLists.txt")
             if room is None:
                 continue
             room_by_name[name] = room
@@ -159,11 +169,18 @@ def link_violations(file, text, reach):
         yield Violation(file, f"includes {included}, but its library does not link {other}")
 
 
+def socket_violations(reach):
+    for room in sorted(NO_SOCKET & reach.keys()):
+        if "common/http" in reach[room]:
+            yield Violation(room, "links common/http: no socket here")
+
+
 def violations(root):
     """Every broken rule below `root`, in order of files."""
     root = Path(root)
     found = []
     reach = linked_rooms(root)
+    found += socket_violations(reach)
     for top in ("common", "fusion-server", "services", "tests", "proto", "deploy"):
         for path in sorted((root / top).rglob("*")):
             relative = path.relative_to(root).as_posix()

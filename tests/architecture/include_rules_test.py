@@ -64,7 +64,7 @@ class BrokenRules(unittest.TestCase):
             messages_for({"fusion-server/registration/a.cpp": '#include "fusion-server/align/aligner.h"\n'}), [])
 
     def test_judge_feeds_the_judged(self):
-        for room in ("fusion", "pipeline", "poll", "publish", "server"):
+        for room in ("fusion", "pipeline", "poll", "rest", "server"):
             self.assert_caught(f"fusion-server/{room}/a.cpp", '#include "common/synthetic/scene.h"\n', "judges")
 
     def test_stage_with_side_effects(self):
@@ -73,6 +73,18 @@ class BrokenRules(unittest.TestCase):
             self.assert_caught("fusion-server/align/a.cpp", f"#include {header}\n", "stages are pure")
         self.assert_caught("fusion-server/align/a.cpp", "auto t = std::chrono::steady_clock::now();\n", "clock")
         self.assert_caught("fusion-server/align/a.cpp", '#include "common/resource/node.h"\n', "wire forms")
+
+    def test_core_knows_no_socket(self):
+        for room in ("core", "pipeline"):
+            self.assert_caught(f"fusion-server/{room}/a.cpp", '#include "common/http/server.h"\n', "no socket")
+        self.assert_caught("fusion-server/status.h", '#include "common/http/server.h"\n', "no socket")
+
+    def test_core_links_no_socket(self):
+        cmake = "chorus_library(NAME {} SRCS a.cpp DEPS {})\n".format
+        tree = {"common/http/CMakeLists.txt": cmake("http", "chorus::base"),
+                "fusion-server/pipeline/CMakeLists.txt": cmake("pipeline", "chorus::http"),
+                "fusion-server/core/CMakeLists.txt": cmake("core", "chorus::pipeline")}
+        self.assertTrue(any("links common/http" in message for message in messages_for(tree)))
 
     def test_services_meet_over_http_only(self):
         self.assert_caught("services/sensor/a.cpp", '#include "fusion-server/fusion/fuse.h"\n', "over HTTP")

@@ -9,21 +9,21 @@
 #include <thread>
 #include <utility>
 
-#include "fusion-server/publish/handover.h"
-#include "fusion-server/publish/outputs.h"
+#include "common/base/handover.h"
+#include "fusion-server/outputs/outputs.h"
 #include "tests/support/free_port.h"
 #include "tests/support/vrpn/vrpn_client.h"
 
 namespace chorus::bench {
 namespace {
 
-using publish::OutputsConfig;
+using outputs::OutputsConfig;
 
 constexpr int kPersons = 6;
 constexpr int kReceiveBuffer = 4 << 20;
 
-Result<std::unique_ptr<publish::Sink>> open_sink(const OutputsConfig& config) {
-  auto sinks = publish::open_outputs(config, std::make_shared<SystemClock>());
+Result<std::unique_ptr<Sink>> open_sink(const OutputsConfig& config) {
+  auto sinks = outputs::open_outputs(config, std::make_shared<SystemClock>());
   if (!sinks) return pass(sinks);
   return std::move(sinks->front());
 }
@@ -145,7 +145,7 @@ Result<OpenedOutput> open_natnet() {
   return OpenedOutput{std::move(receiver), std::move(*sink)};
 }
 
-class BareSink final : public publish::Sink {
+class BareSink final : public Sink {
  public:
   BareSink(std::uint16_t port, std::size_t count, std::size_t bytes)
       : bytes_(bytes), count_(count), socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
@@ -175,7 +175,7 @@ class BareSink final : public publish::Sink {
   std::size_t bytes_;
   std::size_t count_;
   int socket_;
-  publish::Handover<std::shared_ptr<const Snapshot>> waiting_{2};
+  Handover<std::shared_ptr<const Snapshot>> waiting_{2};
   std::jthread thread_;
 };
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/base/result.h"
-#include "fusion-server/publish/sink.h"
+#include "fusion-server/sink.h"
 
 namespace chorus::bench {
 
@@ -49,7 +49,7 @@ class DatagramReceiver final : public Receiver {
 
 struct OpenedOutput {
   std::unique_ptr<Receiver> receiver;
-  std::unique_ptr<publish::Sink> sink;
+  std::unique_ptr<Sink> sink;
 };
 
 struct OutputRow {

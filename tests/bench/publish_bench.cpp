@@ -82,8 +82,7 @@ struct Wire {
 };
 
 /// Publishes at 30 Hz; the times of publication, those of the warm-up left out.
-std::vector<Steady::time_point> publish(publish::Sink& sink, std::size_t frames,
-                                        std::uint64_t first) {
+std::vector<Steady::time_point> publish(Sink& sink, std::size_t frames, std::uint64_t first) {
   std::vector<Steady::time_point> times;
   auto next = Steady::now();
   for (std::size_t i = 0; i < frames; ++i) {

@@ -7,15 +7,15 @@
 #include <gtest/gtest.h>
 
 #include "common/resource/frame_resource.h"
-#include "fusion-server/publish/dtrack/dtrack_encoder.h"
-#include "fusion-server/publish/mxtp/mxtp_encoder.h"
-#include "fusion-server/publish/natnet/natnet_encoder.h"
-#include "fusion-server/publish/natnet/natnet_messages.h"
-#include "fusion-server/publish/trackd/trackd_encoder.h"
-#include "fusion-server/publish/vmc/vmc_encoder.h"
-#include "fusion-server/publish/vrchat/vrchat_encoder.h"
+#include "fusion-server/dtrack/dtrack_encoder.h"
+#include "fusion-server/mxtp/mxtp_encoder.h"
+#include "fusion-server/natnet/natnet_encoder.h"
+#include "fusion-server/natnet/natnet_messages.h"
+#include "fusion-server/osc/vmc_encoder.h"
+#include "fusion-server/osc/vrchat_encoder.h"
+#include "fusion-server/trackd/trackd_encoder.h"
 
-namespace chorus::publish {
+namespace chorus::outputs {
 namespace {
 
 std::string contents(const std::string& path) {
@@ -26,7 +26,7 @@ std::string contents(const std::string& path) {
   return text.str();
 }
 
-TrackerFrame golden_frame() {
+outlet::TrackerFrame golden_frame() {
   const auto frame =
       resource::read_frame(contents("proto/golden/perfect/fused.json"), resource::Format::Json);
   EXPECT_TRUE(frame) << to_string(frame.error());
@@ -41,7 +41,7 @@ TrackerFrame golden_frame() {
       fused.skeleton.joints[i] = {joint.position, joint.orientation, joint.state};
     }
   }
-  TrackerState state(6);
+  outlet::TrackerState state(6);
   return state.advance(snapshot);
 }
 
@@ -73,8 +73,8 @@ TEST(GoldenOutputs, Dtrack) {
 }
 
 TEST(GoldenOutputs, Vmc) {
-  const TrackerFrame frame = golden_frame();
-  expect_golden("fused.vmc", with_sizes(vmc::encode(in_slot(frame, 0), {12.5, true})));
+  const outlet::TrackerFrame frame = golden_frame();
+  expect_golden("fused.vmc", with_sizes(vmc::encode(outlet::in_slot(frame, 0), {12.5, true})));
 }
 
 TEST(GoldenOutputs, VrChat) {
@@ -82,16 +82,17 @@ TEST(GoldenOutputs, VrChat) {
 }
 
 TEST(GoldenOutputs, Mxtp) {
-  const TrackerFrame frame = golden_frame();
+  const outlet::TrackerFrame frame = golden_frame();
   std::vector<std::vector<char>> datagrams;
-  for (const TrackerBody& body : frame.bodies) datagrams.push_back(mxtp::encode(frame, body));
+  for (const outlet::TrackerBody& body : frame.bodies)
+    datagrams.push_back(mxtp::encode(frame, body));
   expect_golden("fused.mxtp", with_sizes(datagrams));
 }
 
 TEST(GoldenOutputs, Trackd) {
   if (std::endian::native != std::endian::little) GTEST_SKIP() << "the block is in native order";
   auto block = trackd::tracker_block(50);
-  const TrackerFrame frame = golden_frame();
+  const outlet::TrackerFrame frame = golden_frame();
   trackd::write_sensors(frame, trackd::LengthUnit::Feet, block);
   trackd::write_stamp(frame.instant, block);
   expect_golden("fused.trackd", {block.begin(), block.end()});
@@ -99,7 +100,7 @@ TEST(GoldenOutputs, Trackd) {
 
 /// Server information, model definitions of two slots, a frame.
 TEST(GoldenOutputs, NatNet) {
-  const TrackerFrame frame = golden_frame();
+  const outlet::TrackerFrame frame = golden_frame();
   const Timestamp start = frame.instant - std::chrono::milliseconds(12500);
   const Timestamp received = frame.instant + std::chrono::microseconds(2345);
   const natnet::Times times{start, received, received + std::chrono::microseconds(67)};
@@ -108,4 +109,4 @@ TEST(GoldenOutputs, NatNet) {
 }
 
 }  // namespace
-}  // namespace chorus::publish
+}  // namespace chorus::outputs

@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include "fusion-server/publish/vrpn/vrpn_session.h"
+#include "fusion-server/vrpn/vrpn_session.h"
 #include "tests/support/matchers.h"
 #include "tests/support/vrpn/vrpn_client.h"
 
-namespace chorus::publish::vrpn {
+namespace chorus::vrpn {
 namespace {
 
 constexpr Timestamp kTime = from_unix_ns(1'795'246'200'123'456'789);
@@ -24,12 +24,12 @@ std::string golden(const std::string& name) {
 std::shared_ptr<const Trackers> one_person() { return std::make_shared<const Trackers>(1, true); }
 
 /// The head of one person, as frame.json says.
-TrackerFrame frame() {
-  TrackerFrame frame;
+outlet::TrackerFrame frame() {
+  outlet::TrackerFrame frame;
   frame.instant = kTime;
   frame.slots = 1;
-  TrackerBody body;
-  TrackerJoint& head = body.joints[index_of(JointId::Head)];
+  outlet::TrackerBody body;
+  outlet::TrackerJoint& head = body.joints[index_of(JointId::Head)];
   head.tracked = true;
   head.position = {1, 2, 3};
   head.orientation = {0.5, 0.5, -0.5, 0.5};
@@ -83,4 +83,4 @@ TEST(VrpnGolden, ReadsBackAsWhatItSays) {
 }
 
 }  // namespace
-}  // namespace chorus::publish::vrpn
+}  // namespace chorus::vrpn

@@ -5,11 +5,11 @@
 #include <string_view>
 #include <vector>
 
-#include "fusion-server/publish/dtrack/dtrack_commands.h"
+#include "fusion-server/dtrack/dtrack_commands.h"
 
 namespace {
 
-using namespace chorus::publish::dtrack;
+using namespace chorus::dtrack;
 
 void require(bool holds) {
   if (!holds) std::abort();

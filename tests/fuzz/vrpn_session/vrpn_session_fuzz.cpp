@@ -4,11 +4,11 @@
 #include <string>
 #include <string_view>
 
-#include "fusion-server/publish/vrpn/vrpn_session.h"
+#include "fusion-server/vrpn/vrpn_session.h"
 
 namespace {
 
-using namespace chorus::publish::vrpn;
+using namespace chorus::vrpn;
 
 void require(bool holds) {
   if (!holds) std::abort();
@@ -49,7 +49,7 @@ void check_messages(std::string_view bytes) {
 }
 
 Reports one_pose() {
-  chorus::publish::TrackerFrame frame;
+  chorus::outlet::TrackerFrame frame;
   frame.slots = 2;
   frame.bodies.resize(1);
   for (auto& joint : frame.bodies[0].joints) joint.tracked = true;

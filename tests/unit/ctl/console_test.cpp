@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include "fusion-server/client/service_client.h"
 #include "services/ctl/registration_report.h"
-#include "services/ctl/service_client.h"
 
 namespace chorus::ctl {
 namespace {
@@ -76,12 +76,12 @@ TEST(RegistrationReport, TakesAnyJson) {
 
 TEST(JsonAccess, FallsBackWhereTheTypeIsAnother) {
   const auto json = nlohmann::json::parse(R"({"a": 1, "b": "x", "c": {"d": 2}})");
-  EXPECT_EQ(text_at(json, "a"), "-");
-  EXPECT_EQ(text_at(json, "b"), "x");
-  EXPECT_TRUE(std::isnan(number_at(json, "b")));
-  EXPECT_EQ(number_at(part_at(json, "c"), "d"), 2.0);
-  EXPECT_TRUE(part_at(json, "a").empty());
-  EXPECT_TRUE(part_at(nlohmann::json(), "a").empty());
+  EXPECT_EQ(client::text_at(json, "a"), "-");
+  EXPECT_EQ(client::text_at(json, "b"), "x");
+  EXPECT_TRUE(std::isnan(client::number_at(json, "b")));
+  EXPECT_EQ(client::number_at(client::part_at(json, "c"), "d"), 2.0);
+  EXPECT_TRUE(client::part_at(json, "a").empty());
+  EXPECT_TRUE(client::part_at(nlohmann::json(), "a").empty());
 }
 
 }  // namespace

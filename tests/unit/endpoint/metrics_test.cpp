@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <limits>
-#include <thread>
 
 namespace chorus::endpoint {
 namespace {
@@ -62,19 +61,6 @@ TEST(Histogram, BucketsAreCumulativeOnTheWire) {
             "age_seconds_bucket{at=\"send\",le=\"+Inf\"} 4\n"
             "age_seconds_sum{at=\"send\"} 2.4375\n"
             "age_seconds_count{at=\"send\"} 4\n");
-}
-
-TEST(Histogram, ThreadsLoseNothing) {
-  Histogram values({1.0});
-  {
-    std::vector<std::jthread> threads;
-    for (int i = 0; i < 4; ++i)
-      threads.emplace_back([&] {
-        for (int n = 0; n < 1000; ++n) values.observe(0.5);
-      });
-  }
-  EXPECT_EQ(values.snapshot().counts, (std::vector<std::uint64_t>{4000, 0}));
-  EXPECT_DOUBLE_EQ(values.snapshot().sum, 2000.0);
 }
 
 TEST(AddServer, NamesEveryCounter) {

@@ -11,7 +11,7 @@ namespace chorus::server {
 namespace {
 
 /// Throws at the first snapshot and takes the others.
-class BrokenSink final : public publish::Sink {
+class BrokenSink final : public Sink {
  public:
   [[nodiscard]] std::string_view name() const override { return "broken"; }
   void publish(std::shared_ptr<const Snapshot> /*snapshot*/) override {
@@ -35,12 +35,12 @@ TEST(PipelineLoop, GoesOnAfterASinkHasThrownAndCountsIt) {
   ::testing::internal::CaptureStderr();
   BrokenSink sink;
   std::mutex mutex;
-  publish::Counters counters;
+  Counters counters;
   LoopOptions options;
   options.clock = std::make_shared<SystemClock>();
   options.sinks.push_back(&sink);
   options.poll_reports = [] { return std::vector<poll::PollReport>{}; };
-  options.on_status = [&](const publish::Status& status) {
+  options.on_status = [&](const Status& status) {
     const std::scoped_lock lock(mutex);
     counters = status.counters;
   };

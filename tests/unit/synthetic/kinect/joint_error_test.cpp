@@ -165,7 +165,8 @@ Profile quiet() {
 }
 
 /// The setting's body with one draw of errors, a second after the draw began.
-Skeleton<SensorSpace> with_errors(const Setting& setting, const Profile& profile, std::uint64_t seed) {
+Skeleton<SensorSpace> with_errors(const Setting& setting, const Profile& profile,
+                                  std::uint64_t seed) {
   ColouredState state;
   advance(state, setting.stand, {1.0, kFrame}, profile, {seed, 0, 0});
   Skeleton<SensorSpace> body = setting.body;

@@ -1,0 +1,32 @@
+// How often a measured value fell below each of some bounds.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace chorus {
+
+/// How often values fell below each bound.  Any thread may observe.
+class Histogram {
+ public:
+  /// Upper bounds, ascending and finite; one more without bound is added.
+  explicit Histogram(std::vector<double> bounds);
+  /// Not a number is not counted.
+  void observe(double value);
+
+  struct Snapshot {
+    std::vector<double> bounds;
+    std::vector<std::uint64_t> counts;  ///< By bucket, not cumulative; the last has no bound.
+    double sum = 0.0;
+  };
+  [[nodiscard]] Snapshot snapshot() const;
+
+ private:
+  std::vector<double> bounds_;
+  std::unique_ptr<std::atomic<std::uint64_t>[]> counts_;
+  std::atomic<double> sum_ = 0.0;
+};
+
+}  // namespace chorus

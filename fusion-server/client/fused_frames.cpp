@@ -1,0 +1,238 @@
+#include "fusion-server/client/fused_frames.h"
+
+#include <array>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "common/record/mcap_format.h"
+#include "common/resource/frame_resource.h"
+#include "fusion-server/client/live_poll.h"
+#include "fusion-server/client/recordings.h"
+
+namespace chorus::client {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kFusedTopic = "/frame";
+constexpr std::size_t kMaxLineBytes = 16u << 20;
+constexpr std::size_t kMaxSamples = exporters::kMaxPoses;
+constexpr int kUnavailable = 503;  // no frame yet
+
+void add_body(FusedSamples& samples, const resource::BodyResource& body, Timestamp instant) {
+  exporters::FusedSample sample{instant, PersonId{body.id}, {}};
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const resource::JointResource& joint = body.joints[j];
+    sample.skeleton.joints[j] = {joint.position, joint.orientation, joint.state};
+    if (joint.variance) sample.variance[j] = *joint.variance;
+  }
+  samples.push_back(sample);
+}
+
+tl::unexpected<Error> not_fused(const std::string& sensor, const std::string& at) {
+  return fail(ErrorCode::Unsupported, at,
+              fmt::format("is of sensor {} in its own space. Fuse first: chorus fuse DIR --out - "
+                          "| chorus export - ...",
+                          sensor));
+}
+
+Result<resource::FrameResource> world_frame(std::string_view json, const std::string& at) {
+  auto frame = resource::read_frame(json, resource::Format::Json);
+  if (!frame) return fail(frame.error().code, at, to_string(frame.error()));
+  if (frame->space != resource::SpaceKind::World) return not_fused(frame->source, at);
+  return frame;
+}
+
+Result<void> add_frame(FusedSamples& samples, const resource::FrameResource& frame,
+                       const std::string& at) {
+  if (samples.size() + frame.bodies.size() > kMaxSamples)
+    return fail(ErrorCode::TooLarge, at, "is beyond the 500000 poses read at most.");
+  for (const auto& body : frame.bodies) add_body(samples, body, frame.captured);
+  return {};
+}
+
+Result<FusedFrames> read_recording_files(const std::string& source) {
+  const auto files = find_recordings({source});
+  if (!files) return pass(files);
+  record::SessionQuery query;
+  query.fused = true;
+  query.raw = false;
+  const auto session = record::read_session(*files, query);
+  if (!session) return pass(session);
+  if (session->fused.empty() && !session->sensors.empty() &&
+      !session->sensors.front().frames.empty())
+    return not_fused(session->sensors.front().sensor.str(), source);
+  if (session->fused.empty())
+    return fail(ErrorCode::NotFound, source,
+                "holds no fused frames (topic /frame). Fuse its sensors: chorus fuse DIR --out - | "
+                "chorus export - ...");
+  FusedFrames out{{}, notes_of(*session)};
+  for (const auto& frame : session->fused) {
+    if (const auto added = add_frame(out.samples, frame, source); !added) return pass(added);
+  }
+  return out;
+}
+
+/// Lines of any stream, none longer than kMaxLineBytes.
+class Lines {
+ public:
+  explicit Lines(std::istream& in) : in_(in) {}
+
+  /// False at the end, or when a line is too long.
+  bool next(std::string& line) {
+    while (true) {
+      const std::size_t end = rest_.find('\n', begin_);
+      if (end != std::string::npos || ended_) {
+        const bool there = begin_ < rest_.size();
+        line = rest_.substr(begin_, end == std::string::npos ? end : end - begin_);
+        begin_ = end == std::string::npos ? rest_.size() : end + 1;
+        return there;
+      }
+      rest_.erase(0, begin_);
+      begin_ = 0;
+      if (rest_.size() > kMaxLineBytes) return too_long_ = true, false;
+      std::array<char, 1u << 16> piece{};
+      in_.read(piece.data(), piece.size());
+      rest_.append(piece.data(), static_cast<std::size_t>(in_.gcount()));
+      ended_ = in_.gcount() == 0;
+    }
+  }
+  [[nodiscard]] bool too_long() const { return too_long_; }
+
+ private:
+  std::istream& in_;
+  std::string rest_;
+  std::size_t begin_ = 0;
+  bool ended_ = false;
+  bool too_long_ = false;
+};
+
+Result<FusedFrames> of_lines(std::istream& in, const std::string& origin) {
+  auto samples = read_fused_lines(in, origin);
+  if (!samples) return pass(samples);
+  return FusedFrames{std::move(*samples), {}};
+}
+
+Result<FusedFrames> read_file(const std::string& source) {
+  std::error_code ignored;
+  if (fs::is_directory(source, ignored)) return read_recording_files(source);
+  std::ifstream file(source, std::ios::binary);
+  if (!file) return fail(ErrorCode::NotFound, source, "there is no such file or folder.");
+  std::string start(record::mcap::kMagic.size(), '\0');
+  file.read(start.data(), static_cast<std::streamsize>(start.size()));
+  if (start == record::mcap::kMagic) return read_recording_files(source);
+  file.clear();
+  file.seekg(0);
+  return of_lines(file, source);
+}
+
+/// What a server says for a while: each frame once, by conditional long poll.
+class Listening {
+ public:
+  Listening(const http::Url& server, std::string source)
+      : source_(std::move(source)),
+        poll_(io_, server, {std::string(kFusedTopic), "application/json"},
+              {[this](const http::ClientResponse& answer) { take(answer); },
+               [this](const Error& error, int status) { failed(error, status); }}) {}
+
+  Result<FusedFrames> run(std::chrono::milliseconds listen) {
+    poll_.start();
+    io_.run_for(listen);
+    poll_.stop();
+    if (fatal_) return tl::unexpected<Error>(*fatal_);
+    if (count_.frames == 0 && !count_.error.empty())
+      return fail(ErrorCode::Unavailable, source_, "delivered no frame; " + count_.error);
+    return FusedFrames{std::move(samples_), notes()};
+  }
+
+ private:
+  void end_with(Error error) {
+    error.context = source_;
+    if (count_.frames == 0) fatal_ = std::move(error);
+    io_.stop();
+  }
+
+  void take(const http::ClientResponse& answer) {
+    const auto frame = world_frame(answer.body, source_);
+    if (!frame && frame.error().code == ErrorCode::Unsupported) return end_with(frame.error());
+    if (!frame) return count_.cannot_read(frame.error());
+    // Where a server gives no ETag, the same frame comes again.
+    if (count_.frames > 0 && frame->sequence == count_.last) return;
+    if (auto added = add_frame(samples_, *frame, source_); !added) {
+      count_.cannot_read(added.error());
+      return end_with(added.error());
+    }
+    count_.take(frame->sequence);
+  }
+
+  /// A server that is not there, or refuses from the start, is not waited for.
+  void failed(const Error& error, int status) {
+    count_.fail(error);
+    if (count_.frames > 0 || status == kUnavailable) return;
+    Error why = error;
+    if (status == 0) why.message += "; is chorus-fusion running there?";
+    end_with(std::move(why));
+  }
+
+  [[nodiscard]] std::vector<std::string> notes() const {
+    std::vector<std::string> notes;
+    if (count_.missed > 0) notes.push_back(fmt::format("{} frames were missed", count_.missed));
+    if (count_.failed > 0) notes.push_back(fmt::format("{} requests failed", count_.failed));
+    if (count_.unreadable > 0)
+      notes.push_back(fmt::format("{} answers could not be used", count_.unreadable));
+    if (!count_.error.empty()) notes.push_back("the last error: " + count_.error);
+    return notes;
+  }
+
+  std::string source_;
+  http::net::io_context io_{1};
+  LivePoll poll_;
+  FusedSamples samples_;
+  StreamCount count_;
+  std::optional<Error> fatal_;
+};
+
+Result<FusedFrames> listen_to(const std::string& source, std::chrono::milliseconds listen) {
+  auto url = http::parse_url(source);
+  if (!url) return pass(url);
+  std::string& path = url->target;
+  while (path.ends_with('/')) path.pop_back();
+  if (path.ends_with(kFusedTopic)) path.resize(path.size() - kFusedTopic.size());
+  return Listening(*url, source).run(listen);
+}
+
+}  // namespace
+
+std::string frame_line(const resource::FrameResource& frame) {
+  std::string line = resource::write(frame, resource::Format::Json);
+  while (line.ends_with('\n')) line.pop_back();
+  return line + "\n";
+}
+
+Result<FusedSamples> read_fused_lines(std::istream& lines, const std::string& origin) {
+  FusedSamples samples;
+  Lines reader(lines);
+  std::string line;
+  for (std::size_t number = 1; reader.next(line); ++number) {
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    const std::string at = fmt::format("{}:{}", origin, number);
+    const auto frame = world_frame(line, at);
+    if (!frame) return pass(frame);
+    if (const auto added = add_frame(samples, *frame, at); !added) return pass(added);
+  }
+  if (reader.too_long()) return fail(ErrorCode::TooLarge, origin, "has a line of more than 16 MB.");
+  return samples;
+}
+
+Result<FusedFrames> read_fused_frames(const std::string& source, std::chrono::milliseconds listen) {
+  if (source == "-") return of_lines(std::cin, "standard input");
+  if (source.starts_with("http://")) return listen_to(source, listen);
+  return read_file(source);
+}
+
+}  // namespace chorus::client

@@ -1,0 +1,35 @@
+// Fused frames from wherever they are: our recordings, NDJSON of `chorus fuse`, a running server.
+#pragma once
+
+#include <chrono>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/exporters/take.h"
+#include "common/resource/frame_resource.h"
+
+namespace chorus::client {
+
+using FusedSamples = std::vector<exporters::FusedSample>;
+
+struct FusedFrames {
+  FusedSamples samples;
+  std::vector<std::string> notes;  ///< What is missing: damage, gaps, failures.
+};
+
+/// By the look of `source`: http://... is a fusion server (or anything with its /frame in world
+/// space), listened to for `listen`; "-" is NDJSON on standard input; a file that begins as MCAP,
+/// or a folder of .mcap, is a recording; any other file is NDJSON.  Frames in a sensor's own space
+/// are refused: they have to be fused first.  What a server has said is kept when it fails later.
+[[nodiscard]] Result<FusedFrames> read_fused_frames(const std::string& source,
+                                                    std::chrono::milliseconds listen);
+
+/// A frame as NDJSON: its /frame document on one line, with its end.
+[[nodiscard]] std::string frame_line(const resource::FrameResource& frame);
+
+/// Lines as frame_line writes them; blank lines are fine.  `origin` names the text in messages.
+[[nodiscard]] Result<FusedSamples> read_fused_lines(std::istream& lines, const std::string& origin);
+
+}  // namespace chorus::client

@@ -1,0 +1,66 @@
+// One resource of a running service, long-polled: each version once, for as long as it is wanted.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "common/http/asio.h"
+#include "common/http/client.h"
+
+namespace chorus::client {
+
+/// What came of a resource whose answers are numbered frames.
+struct StreamCount {
+  std::uint64_t frames = 0;
+  std::uint64_t missed = 0;      ///< Gaps in the sequence.
+  std::uint64_t failed = 0;      ///< Requests without an answer, or refused.
+  std::uint64_t unreadable = 0;  ///< Answers that are no frame.
+  std::uint64_t last = 0;
+  std::string error;  ///< The last one.
+
+  void take(std::uint64_t sequence);
+  void fail(const Error& why);
+  void cannot_read(const Error& why);
+};
+
+class LivePoll {
+ public:
+  struct Options {
+    std::string target;  ///< "/frame"
+    std::string accept = "text/turtle";
+    /// Not a long poll but asked anew so often; zero: long poll.
+    std::chrono::milliseconds every{0};
+  };
+  /// Both are called on the thread of `io`.
+  struct Takers {
+    std::function<void(const http::ClientResponse&)> answer;  ///< With status 200.
+    /// Status 0 is no answer at all; it is asked again all the same, a moment later.
+    std::function<void(const Error&, int status)> failure;
+  };
+
+  LivePoll(http::net::io_context& io, const http::Url& base, Options options, Takers takers);
+
+  void start() { ask(); }
+  void stop();
+
+  /// Since when there has been no answer of any kind.
+  [[nodiscard]] std::chrono::steady_clock::time_point answered() const { return answered_; }
+
+ private:
+  void ask();
+  void take(const Result<http::ClientResponse>& answer);
+  void deliver(const http::ClientResponse& answer);
+  void ask_after(std::chrono::milliseconds pause);
+
+  Options options_;
+  Takers takers_;
+  http::AsyncClient client_;
+  http::Timer timer_;
+  std::string etag_;
+  bool stopped_ = false;
+  std::chrono::steady_clock::time_point answered_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace chorus::client

@@ -1,0 +1,197 @@
+#include "fusion-server/client/live_recording.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/record/frame_recording.h"
+#include "common/resource/floor_plane_resource.h"
+#include "fusion-server/client/service_client.h"
+#include "fusion-server/wire/registration_file.h"
+
+namespace chorus::client {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kClocksEvery{500};
+constexpr milliseconds kFloorEvery{10'000};
+constexpr auto kFileWithin = std::chrono::seconds(30);
+
+bool is_a(const nlohmann::json& self, const std::string& type) {
+  const auto found = self.is_object() ? self.find("@type") : self.end();
+  if (!self.is_object() || found == self.end()) return false;
+  return found->is_array() ? std::find(found->begin(), found->end(), type) != found->end()
+                           : *found == type;
+}
+
+Timestamp received(const http::ClientResponse& answer) { return from_unix_ns(answer.received_ns); }
+
+Duration from_milliseconds(double ms) { return from_seconds(ms / 1e3); }
+
+/// As /sensors/ tells it, to the microsecond.
+record::ClockModel clock_of(const nlohmann::json& sensor) {
+  record::ClockModel clock;
+  const double offset = number_at(sensor, "clockOffsetMilliseconds");
+  const double uncertainty = number_at(sensor, "clockUncertaintyMilliseconds");
+  if (!std::isfinite(offset) || !std::isfinite(uncertainty)) return clock;
+  clock.ours_minus_theirs = from_milliseconds(offset);
+  clock.uncertainty = from_milliseconds(uncertainty);
+  const auto corrected = sensor.find("clockCorrected");
+  if (corrected != sensor.end() && corrected->is_boolean() && corrected->get<bool>())
+    clock.applied = clock.ours_minus_theirs;
+  return clock;
+}
+
+record::SessionHead head_of(const nlohmann::json& self, bool tracker) {
+  record::SessionHead head;
+  head.metadata["title"] = text_at(self, "title", "");
+  head.single_sensor = !tracker;
+  if (tracker) return head;
+  record::FrameRecording about;
+  if (const auto id = SensorId::parse(text_at(self, "sensorId", ""))) about.sensor = *id;
+  about.device = text_at(self, "deviceLabel", "");
+  head.metadata.merge(record::metadata_of(about));
+  return head;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<LiveRecording>> LiveRecording::start(http::net::io_context& io,
+                                                            LiveRecordingOptions options) {
+  const std::string url = "http://" + options.service.host + ":" +
+                          std::to_string(options.service.port) + options.service.target;
+  const auto client = ServiceClient::of(url);
+  if (!client) return pass(client);
+  const auto self = client->get("/");
+  if (!self) return pass(self);
+  const bool tracker = is_a(*self, "Tracker");
+  const auto id = SensorId::parse(text_at(*self, "sensorId", ""));
+  if (!tracker && !(is_a(*self, "Sensor") && id)) {
+    return fail(ErrorCode::Unsupported, url, "is neither a sensor nor a fusion server");
+  }
+  Result<nlohmann::json> sensors = nlohmann::json();
+  if (tracker && !(sensors = client->get("/sensors/"))) return pass(sensors);
+
+  record::RecorderOptions recording;
+  recording.name = "recording";
+  recording.file = options.file;
+  recording.head = head_of(*self, tracker);
+  recording.limits.min_free_bytes = 0;  // it is the user's own file
+  auto recorder = record::Recorder::start(std::move(recording));
+  if (!recorder) return pass(recorder);
+  std::unique_ptr<LiveRecording> live(new LiveRecording(io, std::move(options)));
+  live->recorder_ = std::move(*recorder);
+  if (tracker) {
+    live->poll_tracker(part_at(*sensors, "sensors"));
+  } else {
+    live->poll_raw(*id, "/");
+  }
+  for (LivePoll& one : live->polls_) one.start();
+  return live;
+}
+
+void LiveRecording::poll_frames(const std::string& topic, Take take) {
+  StreamCount& count = counts_[topic];
+  polls_.emplace_back(
+      io_, options_.service, LivePoll::Options{topic},
+      LivePoll::Takers{std::move(take), [&count](const Error& error, int) { count.fail(error); }});
+}
+
+void LiveRecording::poll_state(LivePoll::Options what, Take take) {
+  const std::string path = what.target;
+  polls_.emplace_back(
+      io_, options_.service, std::move(what),
+      LivePoll::Takers{[this, path, take = std::move(take)](const http::ClientResponse& answer) {
+                         troubles_.erase(path);
+                         take(answer);
+                       },
+                       [this, path](const Error& error, int) {
+                         // What a service does not have, such as a floor, is no trouble.
+                         if (error.code != ErrorCode::NotFound) troubles_[path] = to_string(error);
+                       }});
+}
+
+void LiveRecording::poll_raw(const SensorId& sensor, const std::string& prefix) {
+  poll_state({prefix + "floor-plane", "application/json", kFloorEvery},
+             [this, sensor, prefix](const http::ClientResponse& answer) {
+               const auto floor = resource::read_floor_plane(answer.body, resource::Format::Json);
+               if (floor) floors_[sensor] = *floor;
+               if (!floor) troubles_[prefix + "floor-plane"] = to_string(floor.error());
+             });
+  poll_frames(prefix + "frame",
+              [this, sensor, topic = prefix + "frame"](const http::ClientResponse& answer) {
+                take_raw(sensor, topic, answer);
+              });
+}
+
+void LiveRecording::poll_tracker(const nlohmann::json& sensors) {
+  poll_state({"/registration", "application/json"},
+             [this](const http::ClientResponse& answer) { take_registration(answer); });
+  if (options_.raw) {
+    poll_state({"/sensors/", "application/json", kClocksEvery},
+               [this](const http::ClientResponse& answer) { take_clocks(answer); });
+    for (const auto& [name, sensor] : sensors.items()) {
+      if (const auto id = SensorId::parse(name)) {
+        clocks_[*id] = clock_of(sensor);
+        poll_raw(*id, "/sensors/" + name + "/");
+      }
+    }
+  }
+  if (options_.fused) {
+    poll_frames("/frame", [this](const http::ClientResponse& answer) { take_fused(answer); });
+  }
+}
+
+void LiveRecording::take_raw(const SensorId& sensor, const std::string& topic,
+                             const http::ClientResponse& answer) {
+  auto frame = resource::read_frame(answer.body, resource::Format::Turtle);
+  if (!frame) return counts_[topic].cannot_read(frame.error());
+  counts_[topic].take(frame->sequence);
+  record::RawFrame raw{sensor,
+                       std::make_shared<const resource::FrameResource>(std::move(*frame)),
+                       received(answer),
+                       {},
+                       clocks_[sensor]};
+  if (const auto floor = floors_.find(sensor); floor != floors_.end()) raw.floor = floor->second;
+  recorder_->offer(std::move(raw));
+}
+
+void LiveRecording::take_fused(const http::ClientResponse& answer) {
+  auto frame = resource::read_frame(answer.body, resource::Format::Turtle);
+  if (!frame) return counts_["/frame"].cannot_read(frame.error());
+  counts_["/frame"].take(frame->sequence);
+  const Timestamp instant = frame->captured;
+  recorder_->offer(record::FusedFrame{instant, received(answer),
+                                      [frame = std::make_shared<const resource::FrameResource>(
+                                           std::move(*frame))] { return *frame; }});
+}
+
+void LiveRecording::take_clocks(const http::ClientResponse& answer) {
+  const auto list = nlohmann::json::parse(answer.body, nullptr, false);
+  for (const auto& [name, sensor] : part_at(list, "sensors").items()) {
+    if (const auto id = SensorId::parse(name)) clocks_[*id] = clock_of(sensor);
+  }
+}
+
+void LiveRecording::take_registration(const http::ClientResponse& answer) {
+  const auto registration = wire::read_registration(answer.body);
+  if (!registration) troubles_["/registration"] = to_string(registration.error());
+  if (!registration || registration->sensors.empty()) return;
+  recorder_->offer(wire::places_changed(received(answer), *registration));
+}
+
+std::chrono::steady_clock::duration LiveRecording::silence() const {
+  std::chrono::steady_clock::time_point latest{};
+  for (const LivePoll& one : polls_) latest = std::max(latest, one.answered());
+  return std::chrono::steady_clock::now() - latest;
+}
+
+record::RecordingReport LiveRecording::stop() {
+  for (LivePoll& one : polls_) one.stop();
+  recorder_->ask_to_stop();
+  (void)recorder_->wait(kFileWithin);
+  return recorder_->report();
+}
+
+}  // namespace chorus::client

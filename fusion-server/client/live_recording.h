@@ -1,0 +1,67 @@
+// A running service recorded from outside, over HTTP: a sensor, or a fusion server with its
+// sensors.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "common/record/recorder.h"
+#include "fusion-server/client/live_poll.h"
+
+namespace chorus::client {
+
+struct LiveRecordingOptions {
+  http::Url service;
+  std::string file;
+  bool raw = true;
+  bool fused = true;
+};
+
+/// Everything on the thread of one io_context; the file on the recorder's.
+class LiveRecording {
+ public:
+  /// Asks the service what it is and begins.  Errors: it does not answer, is no Chorus service, or
+  /// the file cannot be made.
+  [[nodiscard]] static Result<std::unique_ptr<LiveRecording>> start(http::net::io_context& io,
+                                                                    LiveRecordingOptions options);
+  /// Ends polling and waits for the file.
+  [[nodiscard]] record::RecordingReport stop();
+
+  /// By topic: "/frame", "/sensors/s1/frame"; all that the service announced, from the beginning.
+  [[nodiscard]] const std::map<std::string, StreamCount>& counts() const { return counts_; }
+  /// What went wrong with the states beside the frames (clocks, registration), by path.
+  [[nodiscard]] const std::map<std::string, std::string>& troubles() const { return troubles_; }
+  /// How long nothing at all has answered.
+  [[nodiscard]] std::chrono::steady_clock::duration silence() const;
+
+ private:
+  LiveRecording(http::net::io_context& io, LiveRecordingOptions options)
+      : io_(io), options_(std::move(options)) {}
+
+  using Take = std::function<void(const http::ClientResponse&)>;
+  void poll_frames(const std::string& topic, Take take);
+  void poll_state(LivePoll::Options what, Take take);
+  void poll_raw(const SensorId& sensor, const std::string& prefix);
+  void poll_tracker(const nlohmann::json& sensors);
+  void take_raw(const SensorId& sensor, const std::string& topic,
+                const http::ClientResponse& answer);
+  void take_fused(const http::ClientResponse& answer);
+  void take_clocks(const http::ClientResponse& answer);
+  void take_registration(const http::ClientResponse& answer);
+
+  http::net::io_context& io_;
+  LiveRecordingOptions options_;
+  std::unique_ptr<record::Recorder> recorder_;
+  std::deque<LivePoll> polls_;
+  std::map<std::string, StreamCount> counts_;
+  std::map<std::string, std::string> troubles_;
+  std::map<SensorId, record::ClockModel> clocks_;
+  std::map<SensorId, FloorPlane> floors_;
+};
+
+}  // namespace chorus::client

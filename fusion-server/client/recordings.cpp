@@ -1,0 +1,46 @@
+#include "fusion-server/client/recordings.h"
+
+#include <ostream>
+#include <system_error>
+
+namespace chorus::client {
+
+namespace fs = std::filesystem;
+
+Result<std::vector<fs::path>> find_recordings(const std::vector<fs::path>& inputs) {
+  std::vector<fs::path> all;
+  for (const fs::path& input : inputs) {
+    std::error_code ignored;
+    if (!fs::exists(input, ignored))
+      return fail(ErrorCode::NotFound, input.string(), "there is no such file or folder.");
+    const auto found = record::recording_files(input);
+    if (!found) return pass(found);
+    all.insert(all.end(), found->begin(), found->end());
+  }
+  if (all.empty()) return fail(ErrorCode::InvalidArgument, "recordings", "none were named.");
+  return all;
+}
+
+Result<record::Session> read_recordings(const std::vector<fs::path>& files, std::ostream* notes) {
+  auto session = record::read_session(files);
+  if (!session) return session;
+  if (session->sensors.empty())
+    return fail(ErrorCode::NotFound, files.front().string(),
+                "holds no frames of a sensor; was it recorded with --fused alone?");
+  if (notes != nullptr) {
+    for (const std::string& note : notes_of(*session)) *notes << "note: " << note << '\n';
+  }
+  return session;
+}
+
+std::vector<std::string> notes_of(const record::Session& session) {
+  std::vector<std::string> notes = session.damage;
+  for (const auto& recording : session.sensors) {
+    const auto left_out = recording.notes.find("left_out");
+    if (left_out != recording.notes.end())
+      notes.push_back(recording.sensor.str() + ": left out " + left_out->second);
+  }
+  return notes;
+}
+
+}  // namespace chorus::client

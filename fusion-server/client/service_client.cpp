@@ -1,0 +1,95 @@
+#include "fusion-server/client/service_client.h"
+
+#include <cstdlib>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace chorus::client {
+namespace {
+
+/// Where the server wants a bearer token (writing from another host).
+constexpr const char* kTokenVariable = "CHORUS_TOKEN";
+
+}  // namespace
+
+Error refusal_of(const http::ClientResponse& answer, const std::string& where) {
+  const auto problem = nlohmann::json::parse(answer.body, nullptr, false);
+  std::string message = fmt::format("answers with status {}", answer.status);
+  for (const char* key : {"title", "detail"}) {
+    if (problem.is_object() && problem.contains(key) && problem[key].is_string())
+      message += ": " + problem[key].get<std::string>();
+  }
+  constexpr int kNotFound = 404;
+  constexpr int kConflict = 409;
+  auto code = ErrorCode::Unavailable;
+  if (answer.status == kNotFound) code = ErrorCode::NotFound;
+  if (answer.status == kConflict) code = ErrorCode::Conflict;
+  return {code, where, message};
+}
+
+Result<ServiceClient> ServiceClient::of(std::string_view url) {
+  auto base = http::parse_url(url);
+  if (!base) return pass(base);
+  while (base->target.ends_with('/')) base->target.pop_back();
+  return ServiceClient(std::move(*base));
+}
+
+Result<nlohmann::json> ServiceClient::get(std::string_view path) const {
+  return ask("GET", path, {});
+}
+
+Result<nlohmann::json> ServiceClient::post(std::string_view path,
+                                           const nlohmann::json& body) const {
+  return ask("POST", path, body.dump());
+}
+
+Result<nlohmann::json> ServiceClient::remove(std::string_view path) const {
+  return ask("DELETE", path, {});
+}
+
+Result<nlohmann::json> ServiceClient::ask(std::string_view method, std::string_view path,
+                                          std::string body) const {
+  http::ClientRequest request;
+  request.method = method;
+  request.target = base_.target + std::string(path);
+  request.headers = {{"Accept", "application/json"}};
+  if (!body.empty()) request.headers.push_back({"Content-Type", "application/json"});
+  if (const char* token = std::getenv(kTokenVariable); token != nullptr)
+    request.headers.push_back({"Authorization", std::string("Bearer ") + token});
+  request.body = std::move(body);
+  const std::string where = fmt::format("http://{}:{}{}", base_.host, base_.port, request.target);
+  const auto answer = http::fetch(base_, request);
+  if (!answer)
+    return fail(answer.error().code, where,
+                answer.error().message + "; is chorus-fusion running there?");
+  if (answer->status >= kFirstErrorStatus) return tl::unexpected<Error>(refusal_of(*answer, where));
+  if (answer->body.empty()) return nlohmann::json();
+  auto parsed = nlohmann::json::parse(answer->body, nullptr, false);
+  if (parsed.is_discarded())
+    return fail(ErrorCode::Malformed, where, "does not answer in JSON. Is it a Chorus service?");
+  return parsed;
+}
+
+std::string text_at(const nlohmann::json& object, const char* key, std::string fallback) {
+  if (!object.is_object()) return fallback;
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? found->get<std::string>()
+                                                     : std::move(fallback);
+}
+
+double number_at(const nlohmann::json& object, const char* key) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (!object.is_object()) return kNone;
+  const auto found = object.find(key);
+  return found != object.end() && found->is_number() ? found->get<double>() : kNone;
+}
+
+const nlohmann::json& part_at(const nlohmann::json& object, const char* key) {
+  static const nlohmann::json kEmpty = nlohmann::json::object();
+  if (!object.is_object()) return kEmpty;
+  const auto found = object.find(key);
+  return found != object.end() && found->is_structured() ? *found : kEmpty;
+}
+
+}  // namespace chorus::client

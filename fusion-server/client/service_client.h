@@ -1,0 +1,48 @@
+// Asking a fusion server, as JSON.  Problem documents (RFC 9457) become errors that keep their
+// words.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "common/base/result.h"
+#include "common/http/client.h"
+
+namespace chorus::client {
+
+inline constexpr int kFirstErrorStatus = 400;
+
+/// What a problem document says, or the bare status; `where` was asked.
+[[nodiscard]] Error refusal_of(const http::ClientResponse& answer, const std::string& where);
+
+inline constexpr const char* kDefaultServer = "http://127.0.0.1:8080/";
+
+class ServiceClient {
+ public:
+  /// `url` names the server; a path in it is kept as prefix.
+  [[nodiscard]] static Result<ServiceClient> of(std::string_view url);
+
+  /// An empty answer is null.
+  [[nodiscard]] Result<nlohmann::json> get(std::string_view path) const;
+  [[nodiscard]] Result<nlohmann::json> post(std::string_view path,
+                                            const nlohmann::json& body) const;
+  [[nodiscard]] Result<nlohmann::json> remove(std::string_view path) const;
+
+ private:
+  explicit ServiceClient(http::Url base) : base_(std::move(base)) {}
+  [[nodiscard]] Result<nlohmann::json> ask(std::string_view method, std::string_view path,
+                                           std::string body) const;
+
+  http::Url base_;
+};
+
+/// Members that may be absent or of another type: what people see then is the fallback.
+[[nodiscard]] std::string text_at(const nlohmann::json& object, const char* key,
+                                  std::string fallback = "-");
+[[nodiscard]] double number_at(const nlohmann::json& object, const char* key);  ///< NaN if none.
+/// An object's member that is itself an object or array; else an empty one.
+[[nodiscard]] const nlohmann::json& part_at(const nlohmann::json& object, const char* key);
+
+}  // namespace chorus::client

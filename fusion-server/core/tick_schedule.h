@@ -1,0 +1,67 @@
+// When the fused output ticks: instants on the grid k / rate of UTC, each answered once, in order.
+//
+// Pure: the caller says what time it is and whether the pipeline could already answer completely.
+#pragma once
+
+#include <cstdint>
+
+#include "common/time/timestamp.h"
+
+namespace chorus::core {
+
+struct TickConfig {
+  int rate_hz = 30;
+  Duration alignment_delay =
+      std::chrono::milliseconds(200);  ///< Latest time after the instant to answer it.
+  /// Between two answers, but at most half an interval: after a stall the late ones come one by
+  /// one, so that whoever polls the latest frame sees each of them.
+  Duration min_spacing = std::chrono::milliseconds(13);
+  Duration max_lag =
+      std::chrono::seconds(1);  ///< Further behind (suspended host): skip, and say so.
+
+  bool operator==(const TickConfig&) const = default;
+};
+
+struct Tick {
+  Timestamp instant;
+  std::uint64_t sequence = 0;  ///< Counts grid instants; a gap is a skipped instant.
+};
+
+class TickSchedule {
+ public:
+  explicit TickSchedule(TickConfig config, std::uint64_t first_sequence = 1)
+      : config_(config), sequence_(first_sequence) {}
+
+  /// The instant to answer next.  Starts at the first one after `now`, skips when the clock or the
+  /// load left us further behind than max_lag, and starts anew when the clock was set back.
+  [[nodiscard]] Tick next(Timestamp now);
+
+  /// Zero: answer it now.  Else: wait so long at most, and ask again when a frame has arrived.
+  [[nodiscard]] Duration wait(Timestamp now, bool ready) const;
+
+  /// The tick of next() has been answered.
+  void answered(Timestamp now);
+
+  /// The grid changes, the sequence goes on.
+  void reconfigure(TickConfig config) {
+    config_ = config;
+    index_ = 0;
+  }
+
+  [[nodiscard]] std::uint64_t skipped() const noexcept { return skipped_; }
+
+ private:
+  [[nodiscard]] Duration spacing() const;
+
+  TickConfig config_;
+  std::int64_t index_ = 0;  ///< Of the pending instant; zero: not started.
+  std::uint64_t sequence_;
+  std::uint64_t skipped_ = 0;
+  Timestamp last_answer_{};
+};
+
+/// Index of the last grid instant at or before t, and the instant of an index.
+[[nodiscard]] std::int64_t grid_index(Timestamp t, int rate_hz);
+[[nodiscard]] Timestamp grid_instant(std::int64_t index, int rate_hz);
+
+}  // namespace chorus::core

@@ -1,0 +1,55 @@
+// The TCP end of DTrack's command channel: a thread of its own, few connections, nobody trusted.
+//
+// Turned away, logged and counted as refused: connections beyond the limit, commands over 200
+// bytes, clients that do not read their answers (4 kB wait at most), that say nothing known for ten
+// seconds, that are silent for longer than `idle`, and that send 64 commands nobody knows.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/base/duration.h"
+#include "common/base/result.h"
+#include "fusion-server/sink.h"
+
+namespace chorus::dtrack {
+
+struct CommandServerOptions {
+  std::string address = "127.0.0.1";  ///< Numeric.
+  int port = 50105;                   ///< 0: any.
+  int max_connections = 4;
+  Duration idle = std::chrono::hours(1);           ///< Clients are silent while they receive.
+  Duration first_word = std::chrono::seconds(10);  ///< Until the first known command.
+
+  bool operator==(const CommandServerOptions&) const = default;
+};
+
+/// The connection in control, while it has started tracking.
+struct Controller {
+  std::string host;          ///< Numeric.
+  std::uint64_t serial = 0;  ///< Of the connection: another one is another controller.
+
+  bool operator==(const Controller&) const = default;
+};
+
+class CommandServer {
+ public:
+  [[nodiscard]] static Result<std::unique_ptr<CommandServer>> start(
+      const CommandServerOptions& options);
+  ~CommandServer();  ///< Closes all and joins.
+
+  [[nodiscard]] std::uint16_t port() const;
+  /// Any thread.
+  [[nodiscard]] std::optional<Controller> controller() const;
+  /// Any thread; only refused and clients.
+  [[nodiscard]] SinkCounters counters() const;
+
+ private:
+  CommandServer();
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace chorus::dtrack

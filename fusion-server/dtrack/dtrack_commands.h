@@ -1,0 +1,49 @@
+// DTrack's command channel (TCP 50105) without the network: bytes in, answers out.
+//
+// A command and an answer are one ASCII text each, ended by NUL, of at most 200 bytes.  Known:
+//   dtrack2 get system access          -> dtrack2 set system access full | none
+//   dtrack2 tracking start | stop      -> dtrack2 ok
+//   dtrack2 get status active          -> dtrack2 set status active mea | none
+//   dtrack2 getmsg                     -> dtrack2 ok              (there are never messages)
+//   dtrack2 set ...                    -> dtrack2 ok              (and nothing changes)
+//   anything else                      -> dtrack2 err 1 "..."
+// Only the connection in control may start, stop and set; others get err 2.  No command redirects
+// data: where it goes is said in the configuration.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace chorus::dtrack {
+
+inline constexpr std::size_t kMostCommandBytes = 200;  ///< Without the NUL.
+
+/// Cuts a stream into commands.
+class CommandReader {
+ public:
+  /// Takes bytes; false: a command is too long, and this stream cannot be read any further.
+  [[nodiscard]] bool feed(std::string_view bytes);
+  /// The next whole command into `command`, without its NUL; false: none yet.
+  [[nodiscard]] bool next(std::string& command);
+
+ private:
+  std::string bytes_;
+};
+
+/// What all connections share.
+struct Device {
+  bool measuring = false;  ///< Started and not stopped.
+};
+
+struct Conversation {
+  bool in_control = false;   ///< The oldest connection is.
+  std::size_t answered = 0;  ///< Commands that were known and allowed.
+  std::size_t refused = 0;   ///< Commands that were not.
+};
+
+/// The answer, with its NUL.
+[[nodiscard]] std::string answer(std::string_view command, Conversation& conversation,
+                                 Device& device);
+
+}  // namespace chorus::dtrack

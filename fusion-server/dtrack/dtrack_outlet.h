@@ -1,0 +1,37 @@
+// Sends DTrack's ASCII format over UDP, and answers on the command channel when that is switched
+// on.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/base/config_reader.h"
+#include "common/base/result.h"
+#include "fusion-server/dtrack/command_server.h"
+#include "fusion-server/dtrack/dtrack_encoder.h"
+#include "fusion-server/outlet/datagram_sender.h"
+#include "fusion-server/outlet/outlet.h"
+
+namespace chorus::dtrack {
+
+struct Settings {
+  std::vector<std::string> targets{"127.0.0.1:5000"};
+  int source_port = 50107;  ///< The controller's; clients behind firewalls write to it.  0: any.
+  outlet::Multicast multicast;
+  Room room = Room::Normal;
+  bool human_model = false;
+  bool commands = false;
+  CommandServerOptions command;
+  /// Also to the host that is in control, at the port it wrote to our source port from.
+  bool send_to_client = false;
+
+  bool operator==(const Settings&) const = default;
+};
+
+void read_settings(ConfigReader& reader, Settings& out);
+
+[[nodiscard]] Result<std::unique_ptr<outlet::Outlet>> open_outlet(
+    const Settings& settings, const outlet::OutletContext& context);
+
+}  // namespace chorus::dtrack

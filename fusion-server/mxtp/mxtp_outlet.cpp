@@ -1,0 +1,28 @@
+#include "fusion-server/mxtp/mxtp_outlet.h"
+
+#include <utility>
+
+#include "fusion-server/mxtp/mxtp_encoder.h"
+#include "fusion-server/outlet/datagram_outlet.h"
+#include "fusion-server/outlet/datagram_sender.h"
+
+namespace chorus::mxtp {
+
+void read_settings(ConfigReader& reader, Settings& out) {
+  outlet::read_targets(reader, out.targets);
+}
+
+Result<std::unique_ptr<outlet::Outlet>> open_outlet(const Settings& settings,
+                                                    const outlet::OutletContext& /*context*/) {
+  return outlet::open_datagram_outlet("mxtp", settings.targets,
+                                      [](const outlet::TrackerFrame& frame) {
+                                        std::vector<std::vector<char>> datagrams;
+                                        for (const outlet::TrackerBody& body : frame.bodies) {
+                                          if (auto bytes = encode(frame, body); !bytes.empty())
+                                            datagrams.push_back(std::move(bytes));
+                                        }
+                                        return datagrams;
+                                      });
+}
+
+}  // namespace chorus::mxtp

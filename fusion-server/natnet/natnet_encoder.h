@@ -1,0 +1,47 @@
+// OptiTrack NatNet 3.1: frames and model definitions.
+//
+// Each present body is 25 rigid bodies, one per joint, with the joints' own orientations, and one
+// skeleton of Motive's bones.  Both are described for every slot beforehand, so that a client's
+// list of models never changes.
+//   rigid body  id = 25 * slot + joint + 1, "Body0_Head"; a joint that is not tracked has bit 0 of
+//               its params clear and stands where the next tracked one towards the pelvis does
+//   skeleton    id = slot + 1, "Body0"; its bones are "Body0_Hip" .. with ids 1 .. 21, in frames
+//               skeleton << 16 | bone; left out while nothing says where the body faces
+// Frame: i32 number; marker sets 0; other markers 0; rigid bodies {i32 id, f32 x y z, f32 qx qy qz
+// qw, f32 error, i16 params}; skeletons {i32 id, bones as rigid bodies}; labelled markers 0; force
+// plates 0; devices 0; u32 timecode 0, 0; f64 seconds since the start; u64 ticks of the instant, of
+// receiving and of sending; i16 params; u32 0.  Counts are u32.
+// Model definitions: count, then u32 type 1 (rigid body) or 2 (skeleton); a bone has a count of
+// markers (0) as a rigid body has.  Right-handed, +y up, metres.
+#pragma once
+
+#include <cstdint>
+
+#include "fusion-server/natnet/motive_skeleton.h"
+#include "fusion-server/natnet/wire.h"
+#include "fusion-server/outlet/tracker_frame.h"
+
+namespace chorus::natnet {
+
+struct Models {
+  bool rigid_bodies = true;
+  bool skeletons = true;
+  Coordinates skeleton_coordinates = Coordinates::Local;
+
+  bool operator==(const Models&) const = default;
+};
+
+struct Times {
+  Timestamp start{};     ///< Of the stream.
+  Timestamp received{};  ///< When the frame came out of fusion.
+  Timestamp sent{};
+};
+
+/// A whole message.  `frame.sequence` goes out modulo 2^31: clients read it with a sign.
+[[nodiscard]] Bytes encode_frame(const outlet::TrackerFrame& frame, const Models& models,
+                                 const Times& times);
+
+/// A whole message, for all slots.
+[[nodiscard]] Bytes encode_models(std::size_t slots, const Models& models);
+
+}  // namespace chorus::natnet

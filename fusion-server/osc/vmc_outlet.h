@@ -1,0 +1,27 @@
+// Sends the person of one slot by VMC over UDP: a performer has one body.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/base/config_reader.h"
+#include "common/base/result.h"
+#include "fusion-server/outlet/outlet.h"
+
+namespace chorus::vmc {
+
+struct Settings {
+  std::vector<std::string> targets{"127.0.0.1:39539"};
+  int slot = 0;           ///< Whose person.
+  bool trackers = false;  ///< Also as /VMC/Ext/Tra/Pos.
+
+  bool operator==(const Settings&) const = default;
+};
+
+void read_settings(ConfigReader& reader, Settings& out);
+
+[[nodiscard]] Result<std::unique_ptr<outlet::Outlet>> open_outlet(
+    const Settings& settings, const outlet::OutletContext& context);
+
+}  // namespace chorus::vmc

@@ -1,0 +1,27 @@
+// Sends the person of one slot as VRChat OSC trackers over UDP.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/base/config_reader.h"
+#include "common/base/result.h"
+#include "fusion-server/outlet/outlet.h"
+
+namespace chorus::vrchat {
+
+struct Settings {
+  std::vector<std::string> targets{"127.0.0.1:9000"};
+  int slot = 0;      ///< Whose person.
+  bool head = true;  ///< Also the head, by which VRChat aligns its space with ours.
+
+  bool operator==(const Settings&) const = default;
+};
+
+void read_settings(ConfigReader& reader, Settings& out);
+
+[[nodiscard]] Result<std::unique_ptr<outlet::Outlet>> open_outlet(
+    const Settings& settings, const outlet::OutletContext& context);
+
+}  // namespace chorus::vrchat

@@ -1,0 +1,54 @@
+// Axes and units of every output protocol.  The only file that changes them.
+//
+// Inside: world, right-handed, metres, +y up, +z where the master sensor looks (out of its room's
+// far wall), quaternions Hamilton.  wire-format facts: docs/guide/outputs.md.
+#pragma once
+
+#include <Eigen/Geometry>
+
+namespace chorus::outlet {
+
+/// x_in_target = scale * target_from_world * x_in_world.  `target_from_world` is orthonormal and
+/// may be a reflection (left-handed targets): rotations are conjugated, C R C^T, and stay
+/// rotations.
+struct Axes {
+  Eigen::Matrix3d target_from_world;
+  double units_per_metre = 1.0;
+
+  [[nodiscard]] Eigen::Vector3d position(const Eigen::Vector3d& x_in_world) const {
+    return units_per_metre * (target_from_world * x_in_world);
+  }
+  [[nodiscard]] Eigen::Matrix3d rotation(const Eigen::Quaterniond& world_from_joint) const {
+    return target_from_world * world_from_joint.toRotationMatrix() * target_from_world.transpose();
+  }
+  /// w >= 0.
+  [[nodiscard]] Eigen::Quaterniond quaternion(const Eigen::Quaterniond& world_from_joint) const;
+};
+
+/// VRPN, ARVIDA, JSON: the world itself.  Right-handed, +y up, metres.
+[[nodiscard]] const Axes& vrpn_axes();
+/// DTrack "normal" room calibration: right-handed, +z up, millimetres: (x, -z, y).
+[[nodiscard]] const Axes& dtrack_axes();
+/// DTrack "powerwall" room calibration: right-handed, +y up, millimetres.
+[[nodiscard]] const Axes& dtrack_powerwall_axes();
+/// CAVELib/trackd: right-handed, +y up, feet.
+[[nodiscard]] const Axes& trackd_axes();
+/// Unity, VMC, VRChat: left-handed, +y up, +z forward, metres: (x, y, -z).
+[[nodiscard]] const Axes& unity_axes();
+/// Xsens MXTP: right-handed, +z up, metres: (z, x, y), so a body that faces +z looks along +x.
+[[nodiscard]] const Axes& xsens_axes();
+/// NatNet, as Motive streams it by default: right-handed, +y up, metres.
+[[nodiscard]] const Axes& natnet_axes();
+
+/// Directions of the rig at rest (humanoid.h: it looks along -z) from those of a rest that looks
+/// along our +z, as Xsens' and Motive's do.
+[[nodiscard]] const Eigen::Quaterniond& rig_from_ahead_rest();
+
+/// R = Rx(eta) Ry(theta) Rz(phi), |theta| <= 90 deg (A.R.T. DTrack2 manual, App. B) [rad].
+[[nodiscard]] Eigen::Vector3d dtrack_angles(const Eigen::Matrix3d& rotation);
+/// R = Ry(azimuth) Rx(elevation) Rz(roll), |elevation| <= 90 deg (CAVELib) [rad].
+[[nodiscard]] Eigen::Vector3d trackd_angles(const Eigen::Matrix3d& rotation);
+/// R = Ry(y) Rx(x) Rz(z), returned as (x, y, z): Unity's Euler order, applied Z, X, Y [rad].
+[[nodiscard]] Eigen::Vector3d unity_angles(const Eigen::Matrix3d& rotation);
+
+}  // namespace chorus::outlet

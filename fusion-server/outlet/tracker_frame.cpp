@@ -1,0 +1,153 @@
+#include "fusion-server/outlet/tracker_frame.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "common/base/duration.h"
+#include "common/body/bones.h"
+#include "common/geometry/rotation.h"
+#include "common/resource/frame_resource.h"
+
+namespace chorus::outlet {
+namespace {
+
+constexpr Duration kLongestPrediction = std::chrono::milliseconds(50);
+/// A gap longer than this is a new beginning: no velocity across it.
+constexpr Duration kLongestStep = std::chrono::milliseconds(250);
+/// Share of the newest difference in the velocity; the rest is the velocity before.
+constexpr double kNewest = 0.5;
+
+TrackerBody body_of(const FusedBody& fused, std::size_t slot) {
+  TrackerBody body;
+  body.slot = slot;
+  body.person = fused.id;
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    const Joint& from = fused.skeleton.joints[i];
+    TrackerJoint& to = body.joints[i];
+    to.position = from.position;
+    to.tracked = from.seen() && from.position.cwiseAbs().maxCoeff() <= resource::kMaxCoordinate;
+    if (is_unit(from.orientation)) to.orientation = from.orientation.normalized();
+  }
+  for (const Bone& bone : kBones) {  // parents come first
+    if (is_unit(fused.skeleton[bone.child].orientation)) continue;
+    body.joints[index_of(bone.child)].orientation = body[bone.parent].orientation;
+  }
+  return body;
+}
+
+void set_velocity(TrackerJoint& now, const TrackerJoint& before, double dt) {
+  if (!now.tracked || !before.tracked) return;
+  const Eigen::Vector3d linear = (now.position - before.position) / dt;
+  const Eigen::Vector3d angular = log_map(now.orientation * before.orientation.conjugate()) / dt;
+  now.velocity = kNewest * linear + (1.0 - kNewest) * before.velocity;
+  now.angular_velocity = kNewest * angular + (1.0 - kNewest) * before.angular_velocity;
+}
+
+}  // namespace
+
+JointId nearest_tracked(const TrackerBody& body, JointId joint) {
+  while (!body[joint].tracked && joint != JointId::SpineBase) joint = parent_of(joint);
+  return joint;
+}
+
+const TrackerBody* in_slot(const TrackerFrame& frame, std::size_t slot) {
+  const auto found = std::find_if(frame.bodies.begin(), frame.bodies.end(),
+                                  [&](const TrackerBody& body) { return body.slot == slot; });
+  return found == frame.bodies.end() ? nullptr : &*found;
+}
+
+void TrackerState::release_absent(const Snapshot& snapshot) {
+  std::set<PersonId> here;
+  for (const FusedBody& body : snapshot.bodies) here.insert(body.id);
+  for (auto& seat : seats_) {
+    if (!seat) continue;
+    seat->absent = !here.contains(seat->person);
+    if (seat->absent && std::chrono::abs(snapshot.instant - seat->seen) > keep_slot_) seat.reset();
+  }
+  std::erase_if(before_, [&](const auto& entry) { return !here.contains(entry.first); });
+}
+
+void TrackerState::seat_those_who_stood_in() {
+  for (std::size_t i = 0; i < seats_.size(); ++i) {
+    if (!seats_[i] || seats_[i]->waits_for == i) continue;
+    auto& awaited = seats_[seats_[i]->waits_for];
+    if (awaited && awaited->absent) continue;
+    const bool came_back = awaited.has_value();
+    if (came_back) {
+      seats_[i]->waits_for = i;
+    } else {
+      awaited = std::exchange(seats_[i], std::nullopt);
+    }
+  }
+}
+
+std::size_t TrackerState::slot_to_wait_for(std::size_t free) const {
+  for (std::size_t lower = 0; lower < free; ++lower) {
+    if (!seats_[lower] || !seats_[lower]->absent) continue;
+    const auto waiting = std::count_if(seats_.begin(), seats_.end(), [&](const auto& seat) {
+      return seat && seat->waits_for == lower;
+    });
+    const bool its_own = seats_[lower]->waits_for == lower;
+    if (waiting == (its_own ? 1 : 0)) return lower;
+  }
+  return free;
+}
+
+std::optional<std::size_t> TrackerState::slot_of(PersonId person, Timestamp instant) {
+  const auto found = std::find_if(seats_.begin(), seats_.end(),
+                                  [&](const auto& seat) { return seat && seat->person == person; });
+  if (found != seats_.end()) {
+    (*found)->seen = instant;
+    return static_cast<std::size_t>(found - seats_.begin());
+  }
+  const auto empty = std::find(seats_.begin(), seats_.end(), std::nullopt);
+  if (empty == seats_.end()) return std::nullopt;
+  const auto slot = static_cast<std::size_t>(empty - seats_.begin());
+  *empty = Seat{person, instant, false, slot_to_wait_for(slot)};
+  return slot;
+}
+
+TrackerFrame TrackerState::advance(const Snapshot& snapshot) {
+  release_absent(snapshot);
+  seat_those_who_stood_in();
+  TrackerFrame frame;
+  frame.sequence = snapshot.sequence;
+  frame.instant = snapshot.instant;
+  frame.slots = seats_.size();
+  const Duration step = snapshot.instant - instant_;
+  const bool continues = step > Duration{0} && step <= kLongestStep;
+  for (const FusedBody& fused : snapshot.bodies) {
+    const auto slot = slot_of(fused.id, snapshot.instant);
+    if (!slot) continue;
+    TrackerBody body = body_of(fused, *slot);
+    const auto before = before_.find(fused.id);
+    if (continues && before != before_.end()) {
+      for (std::size_t i = 0; i < kJointCount; ++i) {
+        set_velocity(body.joints[i], before->second.joints[i], seconds(step));
+      }
+    }
+    before_[fused.id] = body;
+    frame.bodies.push_back(std::move(body));
+  }
+  std::sort(frame.bodies.begin(), frame.bodies.end(),
+            [](const TrackerBody& a, const TrackerBody& b) { return a.slot < b.slot; });
+  instant_ = snapshot.instant;
+  return frame;
+}
+
+TrackerFrame predicted(TrackerFrame frame, Timestamp then) {
+  const Duration ahead = std::min<Duration>(then - frame.instant, kLongestPrediction);
+  if (ahead <= Duration{0}) return frame;
+  const double dt = seconds(ahead);
+  for (TrackerBody& body : frame.bodies) {
+    for (TrackerJoint& joint : body.joints) {
+      joint.position += dt * joint.velocity;
+      joint.orientation = (exp_map(dt * joint.angular_velocity) * joint.orientation).normalized();
+    }
+  }
+  frame.instant += ahead;
+  return frame;
+}
+
+}  // namespace chorus::outlet

@@ -1,0 +1,94 @@
+// What an output protocol sends: fused bodies in numbered slots, every joint with a full pose.
+//
+// World space, metres, radians, seconds; encoders go through axes.h.  A value: encoders are pure
+// functions of it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "fusion-server/flow.h"
+
+namespace chorus::outlet {
+
+/// Slots a configuration may ask for.
+inline constexpr int kMostSlots = 20;
+/// How long an absent person's slot stays free for it: as long as association looks out for it
+/// (associate::AssociationConfig::coast).
+inline constexpr Duration kKeepSlot = std::chrono::seconds(1);
+
+struct TrackerJoint {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  /// Always a unit quaternion: a joint without an orientation of its own has that of the next joint
+  /// towards the pelvis that has one, else none is known and it is the identity.
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          ///< [m/s]
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< World axes [rad/s]
+  /// False: nobody knows where it is (or it is absurdly far, as in /frame); do not send a pose.
+  bool tracked = false;
+};
+
+struct TrackerBody {
+  std::size_t slot = 0;  ///< 0 .. slots - 1; a person keeps it while fusion knows it.
+  PersonId person;
+  std::array<TrackerJoint, kJointCount> joints;
+
+  [[nodiscard]] const TrackerJoint& operator[](JointId id) const { return joints[index_of(id)]; }
+};
+
+struct TrackerFrame {
+  std::uint64_t sequence = 0;  ///< Protocols with 32 bits send it modulo 2^32.
+  Timestamp instant;      ///< What the poses stand for: the fused instant, or later if predicted.
+  std::size_t slots = 0;  ///< So many persons at most.
+  std::vector<TrackerBody> bodies;  ///< In order of slot.
+};
+
+/// The joint itself when it is tracked, else the next tracked one towards the pelvis; the pelvis,
+/// tracked or not, when there is none.  Where every joint must have a place, an unseen limb hangs
+/// there.
+[[nodiscard]] JointId nearest_tracked(const TrackerBody& body, JointId joint);
+
+/// The body in a slot, or nullptr.
+[[nodiscard]] const TrackerBody* in_slot(const TrackerFrame& frame, std::size_t slot);
+
+/// Gives persons their slots and joints their velocities, snapshot after snapshot.
+class TrackerState {
+ public:
+  explicit TrackerState(std::size_t slots) : seats_(slots) {}
+
+  void keep_slots_for(Duration absence) { keep_slot_ = absence; }
+
+  /// Persons beyond the last slot are left out (the oldest stay).  The slot of an absent one is
+  /// nobody's until it has been away for longer than it is kept; the instants tell.  Who came
+  /// meanwhile stands in a higher slot and then moves to that one: fusion may have given the same
+  /// person a new id, and a protocol with one slot would show nobody any more.  A repeated or older
+  /// instant gives zero velocities.
+  [[nodiscard]] TrackerFrame advance(const Snapshot& snapshot);
+
+ private:
+  void release_absent(const Snapshot& snapshot);
+  void seat_those_who_stood_in();
+  [[nodiscard]] std::size_t slot_to_wait_for(std::size_t free) const;
+  [[nodiscard]] std::optional<std::size_t> slot_of(PersonId person, Timestamp instant);
+
+  struct Seat {
+    PersonId person;
+    Timestamp seen;
+    bool absent = false;
+    /// Its own slot, or a lower one whose person was absent when this one came.
+    std::size_t waits_for = 0;
+  };
+
+  std::vector<std::optional<Seat>> seats_;  ///< By slot.
+  Duration keep_slot_ = kKeepSlot;
+  std::map<PersonId, TrackerBody> before_;
+  Timestamp instant_{};
+};
+
+/// The same frame as it will be at `then`, at constant velocity.  Limited to 50 ms (limbs gain more
+/// error than they save beyond); an earlier time changes nothing.
+[[nodiscard]] TrackerFrame predicted(TrackerFrame frame, Timestamp then);
+
+}  // namespace chorus::outlet

@@ -1,0 +1,81 @@
+#include "fusion-server/outputs/outputs.h"
+
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace chorus::outputs {
+namespace {
+
+void read_common(ConfigReader& reader, OutputSetting& out) {
+  reader.read("enabled", out.enabled);
+  std::size_t latency = static_cast<std::size_t>(out.latency);
+  reader.read_choice("latency", latency, {"exact", "predicted"});
+  out.latency = static_cast<outlet::Latency>(latency);
+  reader.read("max_persons", out.max_persons, 1, outlet::kMostSlots);
+}
+
+/// The list of all outputs: their key, and where their settings are.
+template <class Config, class Visitor>
+void for_each_output(Config& config, const Visitor& visit) {
+  visit("mxtp", config.mxtp);
+  visit("dtrack", config.dtrack);
+  visit("trackd", config.trackd);
+  visit("vmc", config.vmc);
+  visit("vrchat", config.vrchat);
+  visit("vrpn", config.vrpn);
+  visit("natnet", config.natnet);
+}
+
+struct Opening {
+  std::shared_ptr<const Clock> clock;
+  Duration keep_slot;
+  std::vector<std::unique_ptr<Sink>> sinks;
+  Result<void> outcome;
+};
+
+/// open_outlet() is found in the protocol's namespace.
+template <class Setting>
+void open_one(std::string_view key, const Setting& output, Opening& opening) {
+  if (!output.common.enabled || !opening.outcome) return;
+  const outlet::OutletContext context{static_cast<std::size_t>(output.common.max_persons),
+                                      opening.clock};
+  auto outlet = open_outlet(output.protocol, context);
+  if (!outlet) {
+    Error error = outlet.error();
+    error.context = "outputs." + std::string(key) + ": " + error.context;
+    opening.outcome = tl::unexpected<Error>(std::move(error));
+    return;
+  }
+  opening.sinks.push_back(std::make_unique<outlet::OutletSink>(
+      std::move(*outlet), outlet::OutletTiming{output.common.latency, context.slots, context.clock,
+                                               opening.keep_slot}));
+}
+
+}  // namespace
+
+void read_outputs(ConfigReader reader, OutputsConfig& out) {
+  for_each_output(out, [&reader](std::string_view key, auto& output) {
+    ConfigReader child = reader.child(key);
+    read_common(child, output.common);
+    read_settings(child, output.protocol);
+    if constexpr (requires { output.protocol.slot; }) {
+      if (output.protocol.slot >= output.common.max_persons) {
+        child.complain("slot", "must be below max_persons; nobody has this slot");
+      }
+    }
+  });
+}
+
+Result<std::vector<std::unique_ptr<Sink>>> open_outputs(const OutputsConfig& config,
+                                                        const std::shared_ptr<const Clock>& clock,
+                                                        Duration keep_slot) {
+  Opening opening{clock, keep_slot, {}, {}};
+  for_each_output(config, [&opening](std::string_view key, const auto& output) {
+    open_one(key, output, opening);
+  });
+  if (!opening.outcome) return pass(opening.outcome);
+  return std::move(opening.sinks);
+}
+
+}  // namespace chorus::outputs

@@ -1,0 +1,62 @@
+// All outputs beside REST, as the configuration's section "outputs" switches them on.
+//
+// One folder per protocol: NAME_encoder.h (pure: bytes from a TrackerFrame) and NAME_outlet.h (the
+// thin sender, its settings, its factory).  outputs.cpp is the only list of them.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "common/base/config_reader.h"
+#include "common/base/result.h"
+#include "common/time/clock.h"
+#include "fusion-server/dtrack/dtrack_outlet.h"
+#include "fusion-server/mxtp/mxtp_outlet.h"
+#include "fusion-server/natnet/natnet_outlet.h"
+#include "fusion-server/osc/vmc_outlet.h"
+#include "fusion-server/osc/vrchat_outlet.h"
+#include "fusion-server/outlet/outlet.h"
+#include "fusion-server/trackd/trackd_outlet.h"
+#include "fusion-server/vrpn/vrpn_outlet.h"
+
+namespace chorus::outputs {
+
+/// What every output can say.
+struct OutputSetting {
+  bool enabled = false;
+  outlet::Latency latency = outlet::Latency::Exact;
+  int max_persons = 6;
+
+  bool operator==(const OutputSetting&) const = default;
+};
+
+template <class ProtocolSettings>
+struct Output {
+  OutputSetting common;
+  ProtocolSettings protocol;
+
+  bool operator==(const Output&) const = default;
+};
+
+struct OutputsConfig {
+  Output<mxtp::Settings> mxtp;
+  Output<dtrack::Settings> dtrack;
+  Output<trackd::Settings> trackd;
+  Output<vmc::Settings> vmc;
+  Output<vrchat::Settings> vrchat;
+  Output<vrpn::Settings> vrpn;
+  Output<natnet::Settings> natnet;
+
+  bool operator==(const OutputsConfig&) const = default;
+};
+
+/// Mistakes are reported by the reader's finish().
+void read_outputs(ConfigReader reader, OutputsConfig& out);
+
+/// Opens what is enabled.  The first that cannot be opened is the error; its context begins with
+/// "outputs.NAME".  `keep_slot`: for how long of absence a person finds its slot free.
+[[nodiscard]] Result<std::vector<std::unique_ptr<Sink>>> open_outputs(
+    const OutputsConfig& config, const std::shared_ptr<const Clock>& clock,
+    Duration keep_slot = outlet::kKeepSlot);
+
+}  // namespace chorus::outputs

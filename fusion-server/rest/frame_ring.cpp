@@ -1,0 +1,74 @@
+#include "fusion-server/rest/frame_ring.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "fusion-server/wire/snapshot_resource.h"
+
+namespace chorus::rest {
+namespace {
+
+Result<Timestamp> parse_instant(const std::string& text) {
+  std::int64_t ns = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, ns);
+  if (error == std::errc{} && stop == end) return from_unix_ns(ns);
+  auto parsed = parse_iso8601(text);
+  if (parsed) return parsed;
+  return fail(ErrorCode::InvalidArgument, "at=" + text,
+              "give the instant as UTC, 2026-11-21T07:30:00.25Z, or in nanoseconds since 1970");
+}
+
+}  // namespace
+
+void FrameRing::push(FramePtr frame) {
+  const std::scoped_lock lock(mutex_);
+  if (!frames_.empty() && frame->captured <= frames_.back()->captured) frames_.clear();
+  if (frames_.size() >= capacity_) frames_.pop_front();
+  frames_.push_back(std::move(frame));
+}
+
+Result<FramePtr> FrameRing::find(std::uint64_t sequence) const {
+  const std::scoped_lock lock(mutex_);
+  const auto it = std::lower_bound(
+      frames_.begin(), frames_.end(), sequence,
+      [](const FramePtr& frame, std::uint64_t wanted) { return frame->sequence < wanted; });
+  const std::string where = "frames/" + std::to_string(sequence);
+  if (it == frames_.end()) {
+    return fail(ErrorCode::NotFound, where,
+                "there has not been a frame of this sequence number yet");
+  }
+  if ((*it)->sequence == sequence) return *it;
+  if (it != frames_.begin()) {
+    return fail(ErrorCode::NotFound, where,
+                "no frame has this sequence number; its instant was left out");
+  }
+  return fail(ErrorCode::Gone, where,
+              "the oldest frame still here is " + std::to_string(frames_.front()->sequence));
+}
+
+Result<FramePtr> FrameRing::at(const std::string& time) const {
+  const auto instant = parse_instant(time);
+  if (!instant) return pass(instant);
+  const std::scoped_lock lock(mutex_);
+  const auto after = std::lower_bound(
+      frames_.begin(), frames_.end(), *instant,
+      [](const FramePtr& frame, Timestamp wanted) { return frame->captured < wanted; });
+  if (after == frames_.end()) {
+    return fail(ErrorCode::NotFound, "at=" + time, "this instant has not been fused yet");
+  }
+  if ((*after)->captured == *instant) return *after;
+  if (after == frames_.begin()) {
+    return fail(ErrorCode::Gone, "at=" + time,
+                "the oldest instant still here is " + to_iso8601(frames_.front()->captured));
+  }
+  return std::make_shared<const resource::FrameResource>(
+      wire::between(**std::prev(after), **after, *instant));
+}
+
+FramePtr FrameRing::newest() const {
+  const std::scoped_lock lock(mutex_);
+  return frames_.empty() ? nullptr : frames_.back();
+}
+
+}  // namespace chorus::rest

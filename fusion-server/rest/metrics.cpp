@@ -1,0 +1,81 @@
+#include "fusion-server/rest/metrics.h"
+
+namespace chorus::rest {
+namespace {
+
+using Metric = endpoint::MetricsText::Metric;
+
+double number(std::uint64_t count) { return static_cast<double>(count); }
+
+void add_sensor(endpoint::MetricsText& out, const SensorStatus& s) {
+  const endpoint::Labels labels{{"sensor", s.id.str()}};
+  out.gauge({"chorus_sensor_up", "1 while the sensor delivers frames."},
+            s.state == "live" ? 1.0 : 0.0, labels);
+  if (s.age) {
+    out.gauge({"chorus_frame_age_seconds", "Age of the sensor's newest frame."}, seconds(*s.age),
+              labels);
+  }
+  if (s.clock_offset) {
+    out.gauge({"chorus_clock_offset_seconds", "Our clock minus the sensor's."},
+              seconds(*s.clock_offset), labels);
+  }
+  out.gauge({"chorus_view_weight", "Largest weight of the sensor's views."}, s.weight, labels);
+  out.counter({"chorus_frames_received_total", "Frames received from the sensor."},
+              number(s.frames), labels);
+  out.counter({"chorus_frames_missed_total", "Gaps in the sensor's own sequence."},
+              number(s.missed), labels);
+  out.counter(
+      {"chorus_frames_refused_total", "Frames that went back in time or came from the future."},
+      number(s.refused), labels);
+  out.counter({"chorus_poll_failures_total", "Requests without a usable answer."},
+              number(s.failures), labels);
+}
+
+void add_output(endpoint::MetricsText& out, const Sink& sink) {
+  const endpoint::Labels labels{{"output", std::string(sink.name())}};
+  const SinkCounters counters = sink.counters();
+  out.counter({"chorus_output_frames_total", "Fused frames handed to the protocol."},
+              number(counters.frames), labels);
+  out.counter({"chorus_output_dropped_total",
+               "Fused frames left out because the output did not keep up (the oldest go first)."},
+              number(counters.dropped), labels);
+  out.counter({"chorus_output_failed_total",
+               "Sends the operating system refused, and frames that could not be sent at all."},
+              number(counters.failed), labels);
+  out.counter({"chorus_output_refused_total", "Clients or messages turned away."},
+              number(counters.refused), labels);
+  out.gauge({"chorus_output_clients", "Clients connected."}, number(counters.clients), labels);
+}
+
+}  // namespace
+
+std::string metrics_text(const Status& status, const std::vector<std::unique_ptr<Sink>>& outputs,
+                         const http::ServerCounters& http) {
+  endpoint::MetricsText out;
+  const Counters& counters = status.counters;
+  out.counter({"chorus_fused_frames_total", "Fused frames published."}, number(counters.ticks));
+  out.counter({"chorus_skipped_frames_total", "Instants left out because we were too late."},
+              number(counters.ticks_skipped));
+  out.counter({"chorus_dropped_frames_total",
+               "Sensor frames dropped because the pipeline did not keep up."},
+              number(counters.frames_dropped));
+  out.counter({"chorus_fusion_seconds_total", "Time spent on fusing frames and handing them over."},
+              counters.step_seconds);
+  out.counter({"chorus_pipeline_failures_total", "Turns of the pipeline that broke; see the log."},
+              number(counters.steps_failed));
+  out.counter(
+      {"chorus_worker_failures_total", "Jobs of the registration worker that broke; see the log."},
+      number(counters.jobs_failed));
+  out.histogram({"chorus_fused_frame_age_seconds", "Instant to publication of fused frames."},
+                counters.age);
+  out.gauge({"chorus_registration_version", "Version of the registration in use."},
+            number(status.registration.version));
+  out.gauge({"chorus_registered_sensors", "Sensors with a place."},
+            number(status.registration.sensors.size()));
+  for (const SensorStatus& sensor : status.sensors) add_sensor(out, sensor);
+  for (const auto& sink : outputs) add_output(out, *sink);
+  endpoint::add_server(out, http);
+  return out.text();
+}
+
+}  // namespace chorus::rest

@@ -1,0 +1,19 @@
+// /metrics of a fusion server, Prometheus text.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/endpoint/metrics.h"
+#include "common/http/server.h"
+#include "fusion-server/sink.h"
+#include "fusion-server/status.h"
+
+namespace chorus::rest {
+
+[[nodiscard]] std::string metrics_text(const Status& status,
+                                       const std::vector<std::unique_ptr<Sink>>& outputs,
+                                       const http::ServerCounters& http);
+
+}  // namespace chorus::rest

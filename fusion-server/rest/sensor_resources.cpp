@@ -1,0 +1,149 @@
+#include "fusion-server/rest/sensor_resources.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/base/log.h"
+#include "common/resource/floor_plane_resource.h"
+
+namespace chorus::rest {
+namespace {
+
+double milliseconds_of(Duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
+
+}  // namespace
+
+resource::Node sensor_node(const SensorStatus& sensor, std::string id) {
+  using resource::Decimal;
+  resource::Node node{std::move(id), {"PolledSensor"}, {}};
+  auto& out = node.properties;
+  out.emplace_back("sensorId", sensor.id.str());
+  out.emplace_back("url", resource::Ref{sensor.url});
+  out.emplace_back("state", sensor.state);
+  if (sensor.age) out.emplace_back("ageMilliseconds", Decimal{milliseconds_of(*sensor.age), 1});
+  out.emplace_back("rateHz", Decimal{sensor.rate_hz, 2});
+  out.emplace_back("bodies", static_cast<std::int64_t>(sensor.bodies));
+  out.emplace_back("weight", Decimal{sensor.weight, 3});
+  if (sensor.clock_offset) {
+    out.emplace_back("clockOffsetMilliseconds", Decimal{milliseconds_of(*sensor.clock_offset), 3});
+  }
+  if (sensor.clock_uncertainty) {
+    out.emplace_back("clockUncertaintyMilliseconds",
+                     Decimal{milliseconds_of(*sensor.clock_uncertainty), 3});
+    out.emplace_back("clockCorrected", sensor.clock_corrected);
+  }
+  out.emplace_back("framesReceived", static_cast<std::int64_t>(sensor.frames));
+  out.emplace_back("framesMissed", static_cast<std::int64_t>(sensor.missed));
+  out.emplace_back("framesRefused", static_cast<std::int64_t>(sensor.refused));
+  if (!sensor.last_error.empty()) out.emplace_back("lastError", sensor.last_error);
+  out.emplace_back("frame", resource::Ref{"/sensors/" + sensor.id.str() + "/frame"});
+  return node;
+}
+
+SensorResources::SensorResources(RestContext context, const std::vector<SensorId>& sensors)
+    : context_(std::move(context)), list_(std::make_shared<http::LiveDocument>()) {
+  for (const SensorId& sensor : sensors) frames_[sensor] = std::make_shared<http::LiveDocument>();
+}
+
+void SensorResources::publish(const std::vector<SensorStatus>& sensors) {
+  resource::Node node{"", {"SensorList", "ldp:BasicContainer", "ldp:Container"}, {}};
+  std::vector<resource::Ref> contains;
+  std::vector<resource::Node> members;
+  for (const SensorStatus& sensor : sensors) {
+    contains.push_back({sensor.id.str()});
+    members.push_back(sensor_node(sensor, sensor.id.str()));
+  }
+  node.properties.emplace_back("title", std::string("polled sensors"));
+  node.properties.emplace_back("contains", std::move(contains));
+  node.properties.emplace_back("sensors", std::move(members));
+  http::DocumentOptions options;
+  options.container = true;
+  {
+    const std::scoped_lock lock(mutex_);
+    sensors_ = sensors;
+    options.version = context_.instance + "-" + std::to_string(++version_);
+  }
+  list_->publish(
+      resource::document_of(std::move(node), std::move(options), place_of(context_, "sensors/")));
+}
+
+std::shared_ptr<http::LiveDocument> SensorResources::live_of(const SensorId& sensor) {
+  const std::scoped_lock lock(mutex_);
+  auto& live = frames_[sensor];
+  if (!live) live = std::make_shared<http::LiveDocument>();
+  return live;
+}
+
+void SensorResources::relay(const SensorId& sensor, FramePtr frame) {
+  const auto live = live_of(sensor);
+  const std::string folder = "sensors/" + sensor.str() + "/";
+  auto options = resource::latest_options(*frame, context_.instance);
+  options.content_location.clear();
+  live->publish(resource::frame_document(
+      std::move(frame), place_of(context_, folder + "frame", folder), std::move(options)));
+}
+
+Result<http::DocumentPtr> SensorResources::one(const std::string& id) const {
+  http::DocumentOptions options;
+  const std::scoped_lock lock(mutex_);
+  const auto it = std::find_if(sensors_.begin(), sensors_.end(),
+                               [&](const SensorStatus& s) { return s.id.str() == id; });
+  if (it == sensors_.end()) {
+    return fail(ErrorCode::NotFound, "sensors/" + id, "no sensor of this id is polled");
+  }
+  options.version = context_.instance + "-" + std::to_string(version_);
+  return resource::document_of(sensor_node(*it, ""), std::move(options),
+                               place_of(context_, "sensors/" + id));
+}
+
+Result<http::DocumentPtr> SensorResources::frame_of(const std::string& id) const {
+  const auto sensor = SensorId::parse(id);
+  const std::scoped_lock lock(mutex_);
+  const auto it = sensor ? frames_.find(*sensor) : frames_.end();
+  if (it == frames_.end()) {
+    return fail(ErrorCode::NotFound, "sensors/" + id, "no sensor of this id is polled");
+  }
+  if (auto document = it->second->current()) return document;
+  return fail(ErrorCode::Unavailable, "sensors/" + id + "/frame",
+              "this sensor has not delivered a frame yet");
+}
+
+void SensorResources::floor(const SensorId& sensor, const std::optional<FloorPlane>& floor) {
+  const std::scoped_lock lock(mutex_);
+  if (floor) floors_[sensor] = *floor;
+}
+
+Result<http::DocumentPtr> SensorResources::floor_of(const std::string& id) const {
+  const std::string path = "sensors/" + id + "/floor-plane";
+  const auto sensor = SensorId::parse(id);
+  const std::scoped_lock lock(mutex_);
+  const auto it = sensor ? floors_.find(*sensor) : floors_.end();
+  if (it == floors_.end())
+    return fail(ErrorCode::NotFound, path, "no sensor of this id has told where its floor is");
+  const FloorPlane& floor = it->second;
+  http::DocumentOptions options;
+  options.version = context_.instance;
+  for (const double v : {floor.normal.x(), floor.normal.y(), floor.normal.z(), floor.offset})
+    options.version += "-" + log::number_text(v);
+  return resource::document_of(resource::floor_plane_node(floor, resource::SpaceKind::Sensor),
+                               std::move(options), place_of(context_, path));
+}
+
+void SensorResources::add_routes(http::Router& router) {
+  router.live("/sensors/", list_);
+  router.get("/sensors/{id}", [this](const http::Request&, const http::PathParams& params) {
+    return one(params.at("id"));
+  });
+  router.get("/sensors/{id}/frame", [this](const http::Request&, const http::PathParams& params) {
+    return frame_of(params.at("id"));
+  });
+  router.get("/sensors/{id}/floor-plane",
+             [this](const http::Request&, const http::PathParams& params) {
+               return floor_of(params.at("id"));
+             });
+  for (const auto& [sensor, live] : frames_) {
+    router.live("/sensors/" + sensor.str() + "/frame", live);
+  }
+}
+
+}  // namespace chorus::rest

@@ -1,0 +1,37 @@
+// Hands what goes through the fusion server to the recording under way, if there is one.
+//
+// Nothing here waits, encodes or touches the disk: the recorder does, on its own thread, and counts
+// what it had to drop (common/record/recorder.h).
+#pragma once
+
+#include <memory>
+
+#include "common/endpoint/recordings.h"
+#include "common/time/clock.h"
+#include "fusion-server/flow.h"
+#include "fusion-server/sink.h"
+
+namespace chorus::server {
+
+class RecordingTap final : public Sink {
+ public:
+  RecordingTap(endpoint::Recordings& recordings, std::shared_ptr<const Clock> clock)
+      : recordings_(recordings), clock_(std::move(clock)) {}
+
+  [[nodiscard]] std::string_view name() const override { return "recording"; }
+  void publish(std::shared_ptr<const Snapshot> snapshot) override;
+
+  /// Any thread.
+  void raw(record::RawFrame frame);
+  /// The registration in use, told as often as one likes; recorded when it or the recording is new.
+  /// One thread.
+  void places(const Registration& registration);
+
+ private:
+  endpoint::Recordings& recordings_;
+  std::shared_ptr<const Clock> clock_;
+  std::weak_ptr<record::Recorder> told_;
+  std::uint64_t told_version_ = 0;
+};
+
+}  // namespace chorus::server

@@ -1,0 +1,42 @@
+// trackd / CAVELib shared memory: the tracker's and the controller's block.
+//
+// Native byte order, 4-byte packed.  Layout as VR Juggler's and CalVR's readers have it:
+//   tracker     28 bytes: u32 version 1, count, offset 28, size 40, time s, time us, command
+//   sensor      40 bytes: f32 x y z, azimuth elevation roll [deg]; u32 time s, us;
+//               i32 calibrated, frame
+//   controller  32 bytes: u32 version 1, button offset, valuator offset, counts, time s, us,
+//               command; then i32 buttons, f32 valuators (all zero: bodies have no buttons)
+// Right-handed, +y up, R = Ry(azimuth) Rx(elevation) Rz(roll); feet by CAVELib's habit.
+// Sensor 25 * slot + n: n = 0 the head, 1 the right hand (the wand), 2 the left hand, then all
+// other joints in our order.  A sensor nobody sees keeps its pose, is not calibrated, and stands
+// still.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "fusion-server/outlet/tracker_frame.h"
+
+namespace chorus::trackd {
+
+inline constexpr std::size_t kHeaderBytes = 28;
+inline constexpr std::size_t kSensorBytes = 40;
+inline constexpr std::size_t kButtons = 20;  ///< As many as readers expect to be reserved.
+inline constexpr std::size_t kValuators = 20;
+
+enum class LengthUnit { Feet, Metres };
+
+/// Which sensor of its body a joint is, 0 .. 24.
+[[nodiscard]] std::size_t sensor_of(JointId joint);
+
+/// The whole tracker block before anybody is seen.
+[[nodiscard]] std::vector<char> tracker_block(std::size_t sensors);
+[[nodiscard]] std::vector<char> controller_block();
+
+/// Into a block of tracker_block's form.  Sensors the block has no room for are left out.  The
+/// header's time is not touched: call write_stamp() afterwards, so that whoever sees a new time
+/// sees new sensors.
+void write_sensors(const outlet::TrackerFrame& frame, LengthUnit unit, std::span<char> block);
+void write_stamp(Timestamp instant, std::span<char> block);
+
+}  // namespace chorus::trackd

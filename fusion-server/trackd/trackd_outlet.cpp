@@ -1,0 +1,64 @@
+#include "fusion-server/trackd/trackd_outlet.h"
+
+#include <algorithm>
+#include <atomic>
+#include <utility>
+
+#include "fusion-server/trackd/shared_segment.h"
+
+namespace chorus::trackd {
+namespace {
+
+constexpr int kMostSensors = 25 * outlet::kMostSlots;
+
+class TrackdOutlet final : public outlet::Outlet {
+ public:
+  TrackdOutlet(LengthUnit unit, SharedSegment tracker, SharedSegment controller)
+      : unit_(unit), tracker_(std::move(tracker)), controller_(std::move(controller)) {}
+
+  [[nodiscard]] std::string_view name() const override { return "trackd"; }
+  void send(const outlet::TrackerFrame& frame) override {
+    write_sensors(frame, unit_, tracker_.bytes());
+    std::atomic_thread_fence(std::memory_order_release);  // sensors first, then their time
+    write_stamp(frame.instant, tracker_.bytes());
+  }
+  [[nodiscard]] SinkCounters counters() const override { return {}; }
+
+ private:
+  LengthUnit unit_;
+  SharedSegment tracker_;
+  SharedSegment controller_;
+};
+
+Result<SharedSegment> segment_of(int key, const std::vector<char>& content) {
+  auto segment = SharedSegment::create(key, content.size());
+  if (segment) std::copy(content.begin(), content.end(), segment->bytes().begin());
+  return segment;
+}
+
+}  // namespace
+
+void read_settings(ConfigReader& reader, Settings& out) {
+  constexpr int kLargestKey = 0x7FFF'FFFF;
+  reader.read("tracker_key", out.tracker_key, 1, kLargestKey);
+  reader.read("controller_key", out.controller_key, 1, kLargestKey);
+  if (out.tracker_key == out.controller_key) {
+    reader.complain("controller_key", "must differ from tracker_key");
+  }
+  reader.read("sensors", out.sensors, 1, kMostSensors);
+  auto unit = static_cast<std::size_t>(out.unit);
+  reader.read_choice("unit", unit, {"feet", "metres"});
+  out.unit = static_cast<LengthUnit>(unit);
+}
+
+Result<std::unique_ptr<outlet::Outlet>> open_outlet(const Settings& settings,
+                                                    const outlet::OutletContext& /*context*/) {
+  auto tracker =
+      segment_of(settings.tracker_key, tracker_block(static_cast<std::size_t>(settings.sensors)));
+  if (!tracker) return pass(tracker);
+  auto controller = segment_of(settings.controller_key, controller_block());
+  if (!controller) return pass(controller);
+  return std::make_unique<TrackdOutlet>(settings.unit, std::move(*tracker), std::move(*controller));
+}
+
+}  // namespace chorus::trackd

@@ -1,0 +1,32 @@
+// The trackd segments in System V shared memory: made at start, removed at exit.
+//
+// Readers attach read-write, so everybody on this machine may write to them (0666): what is read
+// back is never believed.  There is no lock; the header's time is written last.
+#pragma once
+
+#include <memory>
+
+#include "common/base/config_reader.h"
+#include "common/base/result.h"
+#include "fusion-server/outlet/outlet.h"
+#include "fusion-server/trackd/trackd_encoder.h"
+
+namespace chorus::trackd {
+
+struct Settings {
+  int tracker_key = 4126;
+  int controller_key = 4127;
+  int sensors = 150;  ///< 25 per slot.
+  LengthUnit unit = LengthUnit::Feet;
+
+  bool operator==(const Settings&) const = default;
+};
+
+void read_settings(ConfigReader& reader, Settings& out);
+
+/// Conflict when a segment of that key is there already, unless it is one of our own size and user
+/// whose maker has died: that one is removed first.
+[[nodiscard]] Result<std::unique_ptr<outlet::Outlet>> open_outlet(
+    const Settings& settings, const outlet::OutletContext& context);
+
+}  // namespace chorus::trackd

@@ -1,0 +1,62 @@
+#include "fusion-server/vrpn/request_gate.h"
+
+#include <utility>
+
+namespace chorus::vrpn {
+namespace {
+
+constexpr std::chrono::seconds kTidyInterval{1};
+
+}  // namespace
+
+RequestGate::Verdict RequestGate::ask(const Asker& asker, outlet::SteadyTime now) {
+  if (known_.contains(asker)) return Verdict::Repeated;
+  if (under_way_.size() >= limits_.most_under_way || !all_.has(1.0, now)) return Verdict::Refused;
+  const std::string& name = name_of_source(asker.address, now);
+  Source& source = sources_.at(name);
+  if (source.under_way >= limits_.most_of_source || !source.allowance.take(1.0, now)) {
+    return Verdict::Refused;
+  }
+  (void)all_.take(1.0, now);
+  ++source.under_way;
+  known_.insert(asker);
+  under_way_.emplace(asker, name);
+  return Verdict::Connect;
+}
+
+/// By which it is found in the table; afterwards it is there.
+const std::string& RequestGate::name_of_source(const std::string& address, outlet::SteadyTime now) {
+  if (const auto known = sources_.find(address); known != sources_.end()) return known->first;
+  if (sources_.size() >= limits_.most_sources) tidy(now);
+  const bool room = sources_.size() < limits_.most_sources;
+  const Source fresh{outlet::TokenBucket(limits_.source)};
+  return sources_.try_emplace(room ? address : std::string(), fresh).first->first;
+}
+
+/// An address that has its whole allowance is like one that never asked.
+void RequestGate::tidy(outlet::SteadyTime now) {
+  if (now - tidied_ < kTidyInterval) return;  // a flood of addresses must not cost us more
+  tidied_ = now;
+  std::erase_if(sources_, [now](const auto& entry) {
+    return entry.second.under_way == 0 && entry.second.allowance.full(now);
+  });
+}
+
+/// Its source, if it was under way.
+RequestGate::Source* RequestGate::finished(const Asker& asker) {
+  const auto found = under_way_.find(asker);
+  if (found == under_way_.end()) return nullptr;
+  Source& source = sources_.at(found->second);
+  --source.under_way;
+  under_way_.erase(found);
+  return &source;
+}
+
+void RequestGate::connected(const Asker& asker) { (void)finished(asker); }
+
+void RequestGate::failed(const Asker& asker) {
+  known_.erase(asker);
+  if (Source* source = finished(asker)) source->allowance.charge(limits_.failure);
+}
+
+}  // namespace chorus::vrpn

@@ -1,0 +1,85 @@
+// The bytes of VRPN 07.xx: cookie, messages, descriptions, connection requests.  Pure.
+//
+// All integers big-endian.  A message is a header of 24 bytes, a payload, and zeros up to a
+// multiple of 8; its length field counts header and payload, not the zeros.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "common/base/result.h"
+#include "common/time/timestamp.h"
+
+namespace chorus::vrpn {
+
+inline constexpr std::size_t kCookieBytes = 24;
+inline constexpr std::size_t kHeaderBytes = 24;
+inline constexpr std::size_t kSequenceOffset = 20;     ///< Of the sequence number in a message.
+inline constexpr std::size_t kLongestMessage = 64000;  ///< Of the length field.
+inline constexpr std::size_t kLongestDatagram = 1472;  ///< A client's buffer.
+inline constexpr std::size_t kLongestName = 95;        ///< Description payloads hold 100 bytes.
+inline constexpr std::int32_t kMostNames = 2000;       ///< Senders, and types, of one side.
+
+/// Types below zero belong to the connection itself.
+enum class SystemType : std::int32_t { Sender = -1, Type = -2, Datagrams = -3, Log = -4 };
+
+/// What either side sends first; it says version 07.38 and that nothing is to be logged.
+[[nodiscard]] std::string cookie();
+/// Malformed unless the first kCookieBytes are a cookie of a version 07.
+[[nodiscard]] Result<void> check_cookie(std::string_view bytes);
+
+/// Big-endian fields, one after the other.
+class Payload {
+ public:
+  Payload& integer(std::uint32_t value);
+  Payload& real(double value);
+  Payload& text(std::string_view value);
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+struct MessageHead {
+  Timestamp time;  ///< Microseconds on the wire.
+  std::int32_t sender = 0;
+  std::int32_t type = 0;
+  std::uint32_t sequence = 0;
+};
+
+/// Appends one whole message, padding included.
+void append_message(std::string& out, const MessageHead& head, std::string_view payload);
+/// Another sequence number in a message that append_message made.
+void set_sequence(char* message, std::uint32_t sequence);
+
+/// Appends "sender (or type) `id` is called `name`".
+void append_description(std::string& out, SystemType kind, std::int32_t id, std::string_view name);
+/// The name in a description's payload; Malformed when it does not fit its own count.
+[[nodiscard]] Result<std::string_view> read_description(std::string_view payload);
+
+struct Message {
+  std::int32_t sender = 0;
+  std::int32_t type = 0;
+  std::string_view payload;
+};
+
+/// Cuts a TCP stream into messages.
+class MessageReader {
+ public:
+  void add(std::string_view bytes);
+  /// The next whole message, valid until the next call; none: more bytes are needed.  Malformed:
+  /// the stream cannot be followed any further.
+  [[nodiscard]] Result<std::optional<Message>> next();
+
+ private:
+  std::string bytes_;
+  std::size_t begin_ = 0;  ///< Of what has not been read yet.
+};
+
+/// The TCP port in a datagram "<host> <port>\0" that asks us to connect; the host is ignored, for
+/// it could be anybody's.
+[[nodiscard]] Result<std::uint16_t> read_request(std::string_view datagram);
+
+}  // namespace chorus::vrpn

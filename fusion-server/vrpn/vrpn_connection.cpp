@@ -1,0 +1,156 @@
+#include "fusion-server/vrpn/vrpn_connection.h"
+
+#include <netinet/tcp.h>
+
+#include <utility>
+
+namespace chorus::vrpn {
+namespace {
+
+namespace net = http::net;
+using http::error_code;
+
+/// Old poses are worth nothing: the kernel holds one or two frames, not seconds of them.
+constexpr int kSendBuffer = 128 * 1024;
+
+/// An int option that Asio has no name for.
+class TcpOption {
+ public:
+  TcpOption(int name, int value) : name_(name), value_(value) {}
+  template <class Protocol>
+  [[nodiscard]] int level(const Protocol& /*unused*/) const {
+    return IPPROTO_TCP;
+  }
+  template <class Protocol>
+  [[nodiscard]] int name(const Protocol& /*unused*/) const {
+    return name_;
+  }
+  template <class Protocol>
+  [[nodiscard]] const int* data(const Protocol& /*unused*/) const {
+    return &value_;
+  }
+  template <class Protocol>
+  [[nodiscard]] std::size_t size(const Protocol& /*unused*/) const {
+    return sizeof value_;
+  }
+
+ private:
+  int name_;
+  int value_;
+};
+
+/// A client that takes datagrams is silent on TCP; a host that is gone is noticed after 25 s.
+void set_options(http::Socket& socket) {
+  error_code ignored;
+  socket.set_option(http::tcp::no_delay(true), ignored);
+  socket.set_option(net::socket_base::send_buffer_size(kSendBuffer), ignored);
+  socket.set_option(net::socket_base::keep_alive(true), ignored);
+  socket.set_option(TcpOption(TCP_KEEPIDLE, 10), ignored);
+  socket.set_option(TcpOption(TCP_KEEPINTVL, 5), ignored);
+  socket.set_option(TcpOption(TCP_KEEPCNT, 3), ignored);
+}
+
+}  // namespace
+
+Connection::Connection(ConnectionContext context, http::Socket socket, Session session,
+                       Closed closed)
+    : context_(context),
+      socket_(std::move(socket)),
+      session_(std::move(session)),
+      closed_(std::move(closed)),
+      deadline_(std::chrono::steady_clock::now() + context.limits.handshake) {}
+
+void Connection::start() {
+  set_options(socket_);
+  answers_ = Session::greeting();
+  write();
+  read();
+}
+
+void Connection::read() {
+  if (reading_ || answers_.size() >= kMostAnswers || !socket_.is_open()) return;
+  reading_ = true;
+  socket_.async_read_some(net::buffer(input_),
+                          [self = shared_from_this()](error_code failed, std::size_t size) {
+                            self->reading_ = false;
+                            self->on_read(failed, size);
+                          });
+}
+
+void Connection::on_read(error_code failed, std::size_t size) {
+  if (!socket_.is_open()) return;
+  if (failed) return close();
+  auto answer = session_.receive({input_.data(), size}, context_.clock->now());
+  if (!answer) return refuse(answer.error().message);
+  if (const auto port = session_.datagram_port()) {
+    error_code gone;
+    datagrams_to_ = {socket_.remote_endpoint(gone).address(), *port};
+    if (gone) return close();
+  }
+  answers_ += *answer;
+  write();
+  read();
+}
+
+void Connection::write() {
+  if (writing_ || !socket_.is_open()) return;
+  output_ = std::exchange(answers_, {});
+  if (const auto reports = std::exchange(waiting_, nullptr)) output_ += session_.stream(*reports);
+  if (output_.empty()) return;
+  writing_ = true;
+  if (session_.established()) {
+    deadline_ = std::chrono::steady_clock::now() + context_.limits.stall;
+  }
+  net::async_write(socket_, net::buffer(output_),
+                   [self = shared_from_this()](error_code failed, std::size_t) {
+                     self->writing_ = false;
+                     self->on_written(failed);
+                   });
+}
+
+void Connection::on_written(error_code failed) {
+  if (!socket_.is_open()) return;
+  if (failed) return close();
+  write();
+  read();  // It may have waited for room among the answers.
+}
+
+void Connection::publish(const std::shared_ptr<const Reports>& reports) {
+  if (!session_.established()) return;
+  if (session_.datagram_port()) return send_datagrams(*reports);
+  if (waiting_) ++context_.counters->dropped;
+  waiting_ = reports;
+  write();
+}
+
+void Connection::send_datagrams(const Reports& reports) {
+  for (const std::string& datagram : session_.datagrams(reports)) {
+    error_code failed;
+    context_.datagrams->send_to(net::buffer(datagram), datagrams_to_, 0, failed);
+    if (failed) ++context_.counters->failed;
+  }
+}
+
+void Connection::sweep(outlet::SteadyTime now) {
+  if (now < deadline_) return;
+  if (!session_.established())
+    refuse("no cookie in time");
+  else if (writing_)
+    refuse("the client does not read");
+}
+
+void Connection::refuse(const std::string& reason) {
+  ++context_.counters->refused;
+  context_.turned_away->hit(reason);
+  close();
+}
+
+void Connection::close() {
+  if (!socket_.is_open()) return;
+  const auto self = shared_from_this();  // closed_ lets go of it
+  error_code ignored;
+  socket_.close(ignored);
+  closed_(this);
+}
+
+}  // namespace chorus::vrpn

@@ -1,0 +1,79 @@
+// One client's sockets.  Lives on the server's thread.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "common/base/rate_report.h"
+#include "common/http/asio.h"
+#include "common/time/clock.h"
+#include "fusion-server/vrpn/request_gate.h"
+#include "fusion-server/vrpn/vrpn_session.h"
+
+namespace chorus::vrpn {
+
+/// Counted on the server's thread, read on any.
+struct ServerCounters {
+  std::atomic<std::uint64_t> dropped = 0;  ///< Frames, for one client each.
+  std::atomic<std::uint64_t> failed = 0;   ///< Datagrams.
+  std::atomic<std::uint64_t> refused = 0;  ///< Clients and requests.
+  std::atomic<std::uint64_t> clients = 0;
+};
+
+struct ClientLimits {
+  std::chrono::milliseconds handshake{5000};  ///< Until the client's cookie is complete.
+  std::chrono::milliseconds stall{5000};      ///< One write may take.
+};
+
+/// What all connections of a server use; outlives them.
+struct ConnectionContext {
+  http::DatagramSocket* datagrams = nullptr;
+  const Clock* clock = nullptr;
+  ServerCounters* counters = nullptr;
+  RateReport* turned_away = nullptr;
+  ClientLimits limits;
+};
+
+/// A client that does not read costs one frame of memory: while a write is under way only the
+/// newest frame waits, older ones are dropped; after ClientLimits::stall it is closed.  Its answers
+/// are bounded too: with kMostAnswers waiting, nothing more is read from it.
+class Connection : public std::enable_shared_from_this<Connection> {
+ public:
+  using Closed = std::function<void(const Connection*)>;
+
+  Connection(ConnectionContext context, http::Socket socket, Session session, Closed closed);
+
+  void start();
+  void publish(const std::shared_ptr<const Reports>& reports);
+  /// Closes it when a deadline has passed.
+  void sweep(outlet::SteadyTime now);
+  void close();
+
+ private:
+  static constexpr std::size_t kMostAnswers = 65536;
+
+  void read();
+  void on_read(http::error_code failed, std::size_t size);
+  void write();
+  void on_written(http::error_code failed);
+  void send_datagrams(const Reports& reports);
+  void refuse(const std::string& reason);
+
+  ConnectionContext context_;
+  http::Socket socket_;
+  http::udp::endpoint datagrams_to_;
+  Session session_;
+  Closed closed_;
+  std::array<char, 4096> input_{};
+  bool reading_ = false;
+  std::string answers_;                     ///< Waiting to be written, before the next frame.
+  std::shared_ptr<const Reports> waiting_;  ///< The newest frame not written.
+  std::string output_;                      ///< Being written.
+  bool writing_ = false;
+  outlet::SteadyTime deadline_;  ///< Of the cookie, then of the write under way.
+};
+
+}  // namespace chorus::vrpn

@@ -1,0 +1,28 @@
+// VRPN 07.xx server: Body0, Body1, ... and a tracker per joint, over UDP and TCP.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "common/base/config_reader.h"
+#include "common/base/result.h"
+#include "fusion-server/outlet/outlet.h"
+
+namespace chorus::vrpn {
+
+struct Settings {
+  std::string address = "127.0.0.1";
+  int port = 3883;  ///< 0: any.
+  bool joint_trackers = true;
+  int max_clients = 64;
+
+  bool operator==(const Settings&) const = default;
+};
+
+void read_settings(ConfigReader& reader, Settings& out);
+
+/// All of the slots are announced.
+[[nodiscard]] Result<std::unique_ptr<outlet::Outlet>> open_outlet(
+    const Settings& settings, const outlet::OutletContext& context);
+
+}  // namespace chorus::vrpn

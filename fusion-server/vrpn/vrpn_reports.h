@@ -1,0 +1,58 @@
+// What a tracked frame is in VRPN: which trackers there are, and their reports.  Pure.
+//
+// Body0 has the joints as sensors 0..24 (numbers of the Kinect v2 SDK); Body0_Head and its like
+// have one sensor, 0, for clients that know no others.  World axes, metres, quaternions x y z w;
+// one time stamp per frame, that of the poses.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fusion-server/outlet/tracker_frame.h"
+
+namespace chorus::vrpn {
+
+/// Our type ids; the names are fixed by VRPN.
+enum class ReportType : std::int32_t { Pong, PosQuat, Velocity };
+
+/// The trackers we announce; a tracker's index is its sender id.
+class Trackers {
+ public:
+  /// `slots` bodies; `each_joint`: one tracker per joint beside that of the body.
+  Trackers(std::size_t slots, bool each_joint);
+
+  [[nodiscard]] std::size_t size() const { return names_.size(); }
+  [[nodiscard]] std::optional<std::size_t> index_of(std::string_view name) const;
+  [[nodiscard]] std::size_t body(std::size_t slot) const { return slot; }
+  /// None when joints have no trackers of their own.
+  [[nodiscard]] std::optional<std::size_t> joint(std::size_t slot, std::size_t joint) const;
+
+  /// The messages that tell a client of all trackers and types.
+  [[nodiscard]] std::string descriptions() const;
+
+ private:
+  std::size_t slots_;
+  bool each_joint_;
+  std::vector<std::string> names_;
+};
+
+/// One message in Reports::bytes.
+struct Report {
+  std::size_t tracker = 0;
+  std::size_t begin = 0;
+  std::size_t size = 0;
+};
+
+/// A frame's messages, made once for all clients; their sequence numbers are still zero.
+struct Reports {
+  std::string bytes;
+  std::vector<Report> messages;
+};
+
+/// Pose and velocity of every joint; a joint that is not tracked is not sent.
+[[nodiscard]] Reports encode(const outlet::TrackerFrame& frame, const Trackers& trackers);
+
+}  // namespace chorus::vrpn

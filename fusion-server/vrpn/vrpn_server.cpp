@@ -1,0 +1,282 @@
+#include "fusion-server/vrpn/vrpn_server.h"
+
+#include <algorithm>
+#include <thread>
+#include <unordered_map>
+#include <utility>
+
+#include "common/http/event_loop.h"
+#include "common/http/every.h"
+#include "common/http/listen.h"
+#include "fusion-server/outlet/newest.h"
+
+namespace chorus::vrpn {
+namespace {
+
+namespace net = http::net;
+using http::error_code;
+using http::tcp;
+using http::udp;
+
+constexpr std::chrono::milliseconds kSweepInterval{250};
+constexpr std::chrono::milliseconds kConnectTime{2000};
+constexpr int kPortAttempts = 16;
+constexpr std::size_t kLongestRequest = 512;
+
+/// A dotted quad for IPv4 whichever socket it came through: clients spell their address so.
+std::string text_of(const net::ip::address& address) {
+  if (address.is_v6() && address.to_v6().is_v4_mapped()) {
+    return net::ip::make_address_v4(net::ip::v4_mapped, address.to_v6()).to_string();
+  }
+  return address.to_string();
+}
+
+}  // namespace
+
+struct Server::Impl {
+  /// A connection that a datagram asked for and that is not made yet.
+  struct Attempt {
+    http::Socket socket;
+    Asker asker;
+    outlet::SteadyTime deadline;
+  };
+
+  Impl(ServerOptions o, std::shared_ptr<const Trackers> t)
+      : options(std::move(o)), trackers(std::move(t)) {}
+
+  Result<void> bind(std::uint16_t port);
+  Result<void> listen();
+  /// Starts what must always be under way, as far as it is not.
+  void ensure();
+  void on_accepted(http::Socket socket);
+  void receive_request();
+  void on_request(error_code failed, std::size_t size);
+  void answer_request(const tcp::endpoint& to);
+  void connect_back(const tcp::endpoint& to, const Asker& asker);
+  void on_connected(error_code failed, const std::shared_ptr<Attempt>& attempt);
+  /// `asker`: it asked to be connected to; none: it came by itself.
+  void welcome(http::Socket socket, const std::optional<Asker>& asker);
+  void forget(const Connection* connection);
+  void sweep();
+  void deliver();
+  void stop();
+  void turn_away(const std::string& reason);
+  [[nodiscard]] bool full() const {
+    return clients.size() + attempts.size() >= options.max_clients;
+  }
+  [[nodiscard]] std::string too_many() const {
+    return "there are " + std::to_string(options.max_clients) +
+           " already, as many as outputs.vrpn.max_clients allows";
+  }
+
+  struct Client {
+    std::shared_ptr<Connection> connection;
+    std::optional<Asker> asker;
+  };
+
+  net::io_context io{1};  // First member: destroyed last, after everything that uses it.
+  ServerOptions options;
+  std::shared_ptr<const Trackers> trackers;
+  http::AcceptLoop accepting{io, "VRPN accept failed",
+                             [this](http::Socket socket) { on_accepted(std::move(socket)); }};
+  http::Every sweeping{io, kSweepInterval, [this] { sweep(); }};
+  http::DatagramSocket datagrams{io.get_executor()};
+  bool receiving = false;
+  RateReport turned_away{"VRPN client turned away"};
+  ServerCounters counters;
+  RequestGate gate;
+  std::array<char, kLongestRequest> request{};
+  udp::endpoint requester;
+  std::vector<std::shared_ptr<Attempt>> attempts;
+  std::unordered_map<const Connection*, Client> clients;
+  bool stopping = false;
+  outlet::Newest<std::shared_ptr<const Reports>> newest;  ///< Not delivered yet.
+  std::thread thread;
+};
+
+Result<void> Server::Impl::bind(std::uint16_t port) {
+  const http::ListenAt where{options.address, port, "outputs.vrpn.port"};
+  const auto address = http::numeric_address(where);
+  if (!address) return pass(address);
+  if (auto bound = accepting.listen(where); !bound) return bound;
+  const udp::endpoint same(*address, accepting.port());
+  error_code failed;
+  datagrams.close(failed);  // an earlier attempt
+  datagrams.open(same.protocol(), failed);
+  if (!failed) datagrams.non_blocking(true, failed);
+  if (!failed) datagrams.bind(same, failed);
+  if (failed) return http::cannot_listen(where, "UDP", failed);
+  return {};
+}
+
+Result<void> Server::Impl::listen() {
+  Result<void> bound = bind(options.port);
+  for (int i = 1; options.port == 0 && !bound && i < kPortAttempts; ++i) bound = bind(0);
+  return bound;
+}
+
+void Server::Impl::turn_away(const std::string& reason) {
+  ++counters.refused;
+  turned_away.hit(reason);
+}
+
+void Server::Impl::ensure() {
+  accepting.ensure();
+  sweeping.ensure();
+  if (!receiving && !stopping) receive_request();
+}
+
+void Server::Impl::on_accepted(http::Socket socket) {
+  if (full()) return turn_away(too_many());
+  welcome(std::move(socket), std::nullopt);
+}
+
+void Server::Impl::receive_request() {
+  datagrams.async_receive_from(net::buffer(request), requester,
+                               [this](error_code failed, std::size_t size) {
+                                 receiving = false;
+                                 on_request(failed, size);
+                               });
+  receiving = true;
+}
+
+void Server::Impl::on_request(error_code failed, std::size_t size) {
+  if (stopping) return;
+  if (!failed) {  // else: an earlier datagram of ours met a closed port
+    const auto port = read_request({request.data(), size});
+    if (!port) {
+      turn_away(port.error().message);
+    } else {
+      answer_request({requester.address(), *port});
+    }
+  }
+  receive_request();
+}
+
+void Server::Impl::answer_request(const tcp::endpoint& to) {
+  if (full()) return turn_away(too_many());
+  const Asker asker{text_of(to.address()), to.port()};
+  const auto verdict = gate.ask(asker, std::chrono::steady_clock::now());
+  if (verdict == RequestGate::Verdict::Refused) turn_away("too many requests");
+  if (verdict == RequestGate::Verdict::Connect) connect_back(to, asker);
+}
+
+void Server::Impl::connect_back(const tcp::endpoint& to, const Asker& asker) {
+  auto attempt = std::make_shared<Attempt>(Attempt{
+      http::Socket(io.get_executor()), asker, std::chrono::steady_clock::now() + kConnectTime});
+  attempts.push_back(attempt);
+  attempt->socket.async_connect(
+      to, [this, attempt](error_code failed) { on_connected(failed, attempt); });
+}
+
+void Server::Impl::on_connected(error_code failed, const std::shared_ptr<Attempt>& attempt) {
+  std::erase(attempts, attempt);
+  if (stopping) return;
+  if (failed) {
+    gate.failed(attempt->asker);
+    return turn_away("it asked to be connected to and did not answer");
+  }
+  gate.connected(attempt->asker);
+  try {
+    welcome(std::move(attempt->socket), attempt->asker);
+  } catch (...) {
+    gate.gone(attempt->asker);  // else it could never ask again
+    throw;
+  }
+}
+
+void Server::Impl::welcome(http::Socket socket, const std::optional<Asker>& asker) {
+  error_code gone;
+  const auto remote = socket.remote_endpoint(gone);
+  if (gone) {
+    if (asker) gate.gone(*asker);
+    return;
+  }
+  Session session(trackers, {text_of(remote.address()), asker.has_value()});
+  const ConnectionContext context{&datagrams, options.clock.get(), &counters, &turned_away,
+                                  options.limits};
+  auto connection =
+      std::make_shared<Connection>(context, std::move(socket), std::move(session),
+                                   [this](const Connection* closed) { forget(closed); });
+  clients.emplace(connection.get(), Client{connection, asker});
+  counters.clients = clients.size();
+  connection->start();
+}
+
+void Server::Impl::forget(const Connection* connection) {
+  const auto found = clients.find(connection);
+  if (found == clients.end()) return;
+  if (found->second.asker) gate.gone(*found->second.asker);
+  clients.erase(found);
+  counters.clients = clients.size();
+}
+
+void Server::Impl::sweep() {
+  const outlet::SteadyTime now = std::chrono::steady_clock::now();
+  for (const auto& attempt : attempts) {
+    error_code ignored;
+    if (attempt->deadline <= now) attempt->socket.close(ignored);  // on_connected() learns of it
+  }
+  std::vector<std::shared_ptr<Connection>> all;
+  for (const auto& [key, client] : clients) all.push_back(client.connection);
+  for (const auto& connection : all) connection->sweep(now);
+}
+
+void Server::Impl::deliver() {
+  const auto reports = newest.take();
+  if (!reports || stopping) return;
+  std::vector<std::shared_ptr<Connection>> all;
+  for (const auto& [key, client] : clients) all.push_back(client.connection);
+  for (const auto& connection : all) connection->publish(*reports);
+}
+
+void Server::Impl::stop() {
+  stopping = true;
+  accepting.stop();
+  sweeping.stop();
+  error_code ignored;
+  datagrams.close(ignored);
+  for (const auto& attempt : attempts) attempt->socket.close(ignored);
+  while (!clients.empty()) {
+    const auto connection = clients.begin()->second.connection;
+    connection->close();
+  }
+}
+
+Server::Server(ServerOptions options, std::shared_ptr<const Trackers> trackers)
+    : impl_(std::make_unique<Impl>(std::move(options), std::move(trackers))) {}
+
+Server::~Server() {
+  if (!impl_->thread.joinable()) return;
+  net::post(impl_->io, [impl = impl_.get()] { impl->stop(); });
+  impl_->thread.join();
+}
+
+Result<void> Server::start() {
+  Impl& s = *impl_;
+  if (auto bound = s.listen(); !bound) return bound;
+  s.thread =
+      std::thread([&s] { http::run_events(s.io, "VRPN handler failed", [&s] { s.ensure(); }); });
+  return {};
+}
+
+std::uint16_t Server::port() const { return impl_->accepting.port(); }
+
+void Server::publish(std::shared_ptr<const Reports> reports) {
+  if (impl_->newest.put(std::move(reports))) {
+    net::post(impl_->io, [impl = impl_.get()] { impl->deliver(); });
+  } else {
+    ++impl_->counters.dropped;
+  }
+}
+
+SinkCounters Server::counters() const {
+  SinkCounters counters;
+  counters.dropped = impl_->counters.dropped;
+  counters.failed = impl_->counters.failed;
+  counters.refused = impl_->counters.refused;
+  counters.clients = impl_->counters.clients;
+  return counters;
+}
+
+}  // namespace chorus::vrpn

@@ -1,0 +1,254 @@
+#include "fusion-server/wire/registration_file.h"
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "common/resource/contributors.h"
+#include "common/resource/json_guard.h"
+#include "fusion-server/wire/registration_resource.h"
+
+namespace chorus::wire {
+namespace {
+
+using nlohmann::json;
+
+using resource::kMaxSensors;
+
+// All sensors with covariance and all edges are below 1 MB.
+constexpr resource::JsonLimits kLimits{4U << 20U, 16};
+constexpr double kMaxPlace = 1000.0;    // [m]
+constexpr double kMaxNormError = 0.01;  // written with 5 digits
+
+Error wrong(std::string where, std::string what) {
+  return {ErrorCode::Malformed, "registration: " + std::move(where), std::move(what)};
+}
+
+json sensor_json(const SensorId& id, const Extrinsics& place) {
+  const Eigen::Vector3d p = place.world_from_sensor.translation();
+  const Eigen::Quaterniond q(place.world_from_sensor.rotation());
+  json covariance = json::array();
+  for (const double value : place.covariance.reshaped()) covariance.push_back(value);
+  return {{"@id", "sensors/" + id.str()},
+          {"x", p.x()},
+          {"y", p.y()},
+          {"z", p.z()},
+          {"qx", q.x()},
+          {"qy", q.y()},
+          {"qz", q.z()},
+          {"qw", q.w()},
+          {"error", place.error},
+          {"chain", names_of(place.chain)},
+          {"covariance", std::move(covariance)}};
+}
+
+/// A finite number below `most` in magnitude; `fallback` when the key may be absent.
+Result<double> number(const json& object, const std::string& where, const char* key, double most,
+                      std::optional<double> fallback = {}) {
+  const auto it = object.find(key);
+  if (it == object.end() && fallback) return *fallback;
+  if (it == object.end() || !it->is_number()) {
+    return tl::unexpected(wrong(where + "." + key, "a number is missing here"));
+  }
+  const double value = it->get<double>();
+  if (!std::isfinite(value) || std::abs(value) > most) {
+    return tl::unexpected(wrong(where + "." + key, "this number is not finite or absurdly large"));
+  }
+  return value;
+}
+
+Result<Eigen::Isometry3d> pose_of(const json& object, const std::string& where) {
+  std::array<double, 7> parts{};
+  constexpr std::array kKeys{"x", "y", "z", "qx", "qy", "qz", "qw"};
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const auto value = number(object, where, kKeys[i], i < 3 ? kMaxPlace : 1.0 + kMaxNormError);
+    if (!value) return pass(value);
+    parts[i] = *value;
+  }
+  const Eigen::Quaterniond q(parts[6], parts[3], parts[4], parts[5]);
+  if (std::abs(q.norm() - 1.0) > kMaxNormError) {
+    return tl::unexpected(wrong(where, "qx qy qz qw is not a unit quaternion"));
+  }
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = q.normalized().toRotationMatrix();
+  pose.translation() = Eigen::Vector3d(parts[0], parts[1], parts[2]);
+  return pose;
+}
+
+Result<std::vector<SensorId>> ids_of(const json& object, const std::string& where) {
+  std::vector<SensorId> ids;
+  const auto it = object.find("chain");
+  if (it == object.end()) return ids;
+  if (!it->is_array() || it->size() > kMaxSensors) {
+    return tl::unexpected(wrong(where + ".chain", "a list of sensor names is wanted"));
+  }
+  for (const json& entry : *it) {
+    auto id = SensorId::parse(entry.is_string() ? entry.get<std::string>() : "");
+    if (!id) return tl::unexpected(wrong(where + ".chain", id.error().message));
+    ids.push_back(std::move(*id));
+  }
+  return ids;
+}
+
+Result<void> read_covariance(const json& object, const std::string& where, Extrinsics& out) {
+  const auto it = object.find("covariance");
+  if (it == object.end()) return {};
+  if (!it->is_array() || it->size() != static_cast<std::size_t>(out.covariance.size())) {
+    return tl::unexpected(wrong(where + ".covariance", "36 numbers are wanted"));
+  }
+  for (std::size_t i = 0; i < it->size(); ++i) {
+    const json& value = (*it)[i];
+    if (!value.is_number() || !std::isfinite(value.get<double>())) {
+      return tl::unexpected(wrong(where + ".covariance", "36 finite numbers are wanted"));
+    }
+    out.covariance.reshaped()(static_cast<Eigen::Index>(i)) = value.get<double>();
+  }
+  return {};
+}
+
+Result<Extrinsics> extrinsics_of(const json& object, const std::string& where) {
+  if (!object.is_object()) return tl::unexpected(wrong(where, "an object is wanted"));
+  Extrinsics out;
+  auto pose = pose_of(object, where);
+  if (!pose) return pass(pose);
+  out.world_from_sensor = *pose;
+  auto chain = ids_of(object, where);
+  if (!chain) return pass(chain);
+  out.chain = std::move(*chain);
+  const auto error = number(object, where, "error", kMaxPlace, 0.0);
+  if (!error) return pass(error);
+  out.error = *error;
+  if (auto ok = read_covariance(object, where, out); !ok) return pass(ok);
+  return out;
+}
+
+Result<PairwiseRegistration> edge_of(const json& object) {
+  if (!object.is_object()) return tl::unexpected(wrong("edges", "objects are wanted"));
+  PairwiseRegistration edge;
+  for (const auto& [key, out] : {std::pair{"target", &edge.target}, {"source", &edge.source}}) {
+    auto id = SensorId::parse(object.value(key, std::string()));
+    if (!id) return tl::unexpected(wrong(std::string("edges.") + key, id.error().message));
+    *out = std::move(*id);
+  }
+  constexpr double kMostPairs = 1e9;
+  const auto rms = number(object, "edges", "rms", kMaxPlace, 0.0);
+  const auto pairs = number(object, "edges", "pairs", kMostPairs, 0.0);
+  const auto inliers = number(object, "edges", "inliers", kMostPairs, 0.0);
+  if (!rms) return pass(rms);
+  if (!pairs) return pass(pairs);
+  if (!inliers) return pass(inliers);
+  edge.rms = *rms;
+  edge.pairs = static_cast<std::size_t>(std::max(0.0, *pairs));
+  edge.inliers = static_cast<std::size_t>(std::max(0.0, *inliers));
+  return edge;
+}
+
+Result<void> read_sensors(const json& root, Registration& out) {
+  const auto it = root.find("sensors");
+  if (it == root.end() || !it->is_object() || it->empty()) {
+    return tl::unexpected(wrong("sensors", "an object of sensor places is missing"));
+  }
+  if (it->size() > kMaxSensors)
+    return tl::unexpected(
+        wrong("sensors", "at most " + std::to_string(kMaxSensors) + " are possible"));
+  for (const auto& [name, object] : it->items()) {
+    auto id = SensorId::parse(name);
+    if (!id) return tl::unexpected(wrong("sensors." + name, id.error().message));
+    auto place = extrinsics_of(object, "sensors." + name);
+    if (!place) return pass(place);
+    if (place->chain.empty()) place->chain = {*id};
+    out.sensors.emplace(std::move(*id), std::move(*place));
+  }
+  return {};
+}
+
+Result<void> read_header(const json& root, Registration& out) {
+  const auto version = number(root, "", "version", 1e15, 1.0);
+  if (!version) return pass(version);
+  out.version = static_cast<std::uint64_t>(std::max(0.0, *version));
+  // Given extrinsics without a verdict are believed.
+  const std::string verdict = root.value("verdict", std::string("Good"));
+  const auto known = verdict_named(verdict);
+  if (!known) return tl::unexpected(wrong("verdict", "\"" + verdict + "\" is not a verdict"));
+  out.verdict = *known;
+  if (const std::string solved = root.value("solved", std::string()); !solved.empty()) {
+    auto time = parse_iso8601(solved);
+    if (!time) return tl::unexpected(wrong("solved", time.error().message));
+    out.solved = *time;
+  }
+  out.master = out.sensors.begin()->first;
+  if (const std::string master = root.value("master", std::string()); !master.empty()) {
+    auto id = SensorId::parse(master);
+    if (!id || !out.sensors.contains(*id)) {
+      return tl::unexpected(wrong("master", "\"" + master + "\" is none of the sensors"));
+    }
+    out.master = std::move(*id);
+  }
+  return {};
+}
+
+Result<Registration> registration_of(const json& root) {
+  if (!root.is_object()) return tl::unexpected(wrong("document", "an object is wanted"));
+  Registration out;
+  if (auto ok = read_sensors(root, out); !ok) return pass(ok);
+  if (auto ok = read_header(root, out); !ok) return pass(ok);
+  if (const auto it = root.find("reasons"); it != root.end() && it->is_array()) {
+    for (const json& reason : *it) {
+      if (reason.is_string()) out.reasons.push_back(reason.get<std::string>());
+    }
+  }
+  if (const auto it = root.find("edges"); it != root.end() && it->is_array()) {
+    for (const json& object : *it) {
+      auto edge = edge_of(object);
+      if (!edge) return pass(edge);
+      out.edges.push_back(std::move(*edge));
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string write_registration(const Registration& registration) {
+  json sensors = json::object();
+  for (const auto& [id, place] : registration.sensors) sensors[id.str()] = sensor_json(id, place);
+  json edges = json::array();
+  for (const PairwiseRegistration& edge : registration.edges) {
+    edges.push_back({{"target", edge.target.str()},
+                     {"source", edge.source.str()},
+                     {"rms", edge.rms},
+                     {"pairs", edge.pairs},
+                     {"inliers", edge.inliers}});
+  }
+  const json root{{"@type", "Registration"},
+                  {"version", registration.version},
+                  {"verdict", name_of(registration.verdict)},
+                  {"reasons", registration.reasons},
+                  {"master", registration.master.str()},
+                  {"solved", to_iso8601(registration.solved)},
+                  {"sensors", std::move(sensors)},
+                  {"edges", std::move(edges)}};
+  return root.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+Result<Registration> read_registration(std::string_view text) {
+  const auto document = resource::parse_json(text, kLimits);
+  if (!document) return tl::unexpected(wrong("document", to_string(document.error())));
+  try {
+    return registration_of(*document);
+  } catch (const json::exception& e) {
+    return tl::unexpected(wrong("document", e.what()));
+  }
+}
+
+record::PlacesChanged places_changed(Timestamp at, const Registration& registration) {
+  record::PlacesChanged changed{at, write_registration(registration), {}};
+  for (const auto& [sensor, place] : registration.sensors)
+    changed.places.push_back({sensor.str(), place.world_from_sensor});
+  return changed;
+}
+
+}  // namespace chorus::wire

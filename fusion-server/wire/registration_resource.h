@@ -1,0 +1,24 @@
+// /registration: the extrinsics, why they are not better, and the session that improves them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/resource/node.h"
+#include "fusion-server/flow.h"
+#include "fusion-server/status.h"
+
+namespace chorus::wire {
+
+[[nodiscard]] resource::Node registration_node(const Registration& registration,
+                                               const SessionStatus& session);
+
+[[nodiscard]] std::vector<std::string> names_of(const std::vector<SensorId>& sensors);
+
+/// The word on the wire: "Good", "Provisional", "Refused", "None".
+[[nodiscard]] std::string_view name_of(Verdict verdict) noexcept;
+[[nodiscard]] std::optional<Verdict> verdict_named(std::string_view name) noexcept;
+
+}  // namespace chorus::wire

@@ -1,0 +1,114 @@
+// `chorus record` against a fusion server of which some things fail.
+#include "fusion-server/client/live_recording.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "common/http/server.h"
+#include "common/resource/frame_resource.h"
+#include "services/ctl/command.h"
+#include "tests/support/builders.h"
+#include "tests/support/matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chorus::client {
+namespace {
+
+using chorus::testing::IsOk;
+using chorus::testing::kFrameInterval;
+using chorus::testing::kStart;
+using ::testing::HasSubstr;
+
+std::string frame_of(const std::string& source, int sequence) {
+  resource::FrameResource frame;
+  frame.sequence = static_cast<std::uint64_t>(sequence);
+  frame.captured = kStart + kFrameInterval * sequence;
+  frame.source = source;
+  return resource::write(frame, resource::Format::Turtle);
+}
+
+/// s1 works and misses a frame, s2 is refused, s3 talks nonsense.
+class BrokenCell : public ::testing::Test {
+ protected:
+  BrokenCell() {
+    auto router = std::make_shared<http::Router>();
+    const auto json = [&](const char* path, const char* text) {
+      router->get(path, [text](const http::Request&, const http::PathParams&) {
+        return Result<http::DocumentPtr>(http::make_document("application/json", text, {}));
+      });
+    };
+    json("/", R"({"@type":["Tracker"],"title":"broken"})");
+    json("/sensors/", R"({"sensors":{"s1":{},"s2":{},"s3":{}}})");
+    router->get("/sensors/{id}/frame", [this](const http::Request&, const http::PathParams& path) {
+      return frame(path.at("id"));
+    });
+    server_ = std::make_unique<http::Server>(http::ServerConfig{}, router);
+    EXPECT_THAT(server_->start(), IsOk());
+  }
+
+  Result<http::DocumentPtr> frame(const std::string& sensor) {
+    if (sensor == "s2") return fail(ErrorCode::Unauthorized, "frame", "who are you?");
+    if (sensor == "s3")
+      return http::make_document("text/turtle", "<a> <b>",
+                                 {std::to_string(std::min(++nonsense_, 5))});
+    const int n = std::min(++asked_, 5);
+    return http::make_document("text/turtle", frame_of("s1", n < 3 ? n : n + 1),
+                               {std::to_string(n)});
+  }
+
+  [[nodiscard]] std::string url() const {
+    return "http://127.0.0.1:" + std::to_string(server_->port()) + "/";
+  }
+
+  chorus::testing::TemporaryFolder folder_;
+  std::atomic<int> asked_ = 0;
+  std::atomic<int> nonsense_ = 0;
+  std::unique_ptr<http::Server> server_;
+};
+
+TEST_F(BrokenCell, CountsWhatFailedAndWhatCouldNotBeReadFromTheBeginning) {
+  http::net::io_context io{1};
+  LiveRecordingOptions options;
+  options.service = http::parse_url(url()).value();
+  options.file = (folder_ / "a.mcap").string();
+  options.fused = false;
+  const auto live = LiveRecording::start(io, options);
+  ASSERT_TRUE(live) << to_string(live.error());
+  const auto& counts = (*live)->counts();
+  ASSERT_EQ(counts.size(), 3u) << "all that was announced, before anything has come";
+  const auto& s1 = counts.at("/sensors/s1/frame");
+  const auto& s2 = counts.at("/sensors/s2/frame");
+  const auto& s3 = counts.at("/sensors/s3/frame");
+  while (s1.frames < 4 || s2.failed < 2 || s3.unreadable < 2) io.run_one();
+  (void)(*live)->stop();
+  EXPECT_EQ(s1.missed, 1u);
+  EXPECT_EQ(s1.failed, 0u);
+  EXPECT_EQ(s2.frames, 0u);
+  EXPECT_THAT(s2.error, HasSubstr("401"));
+  EXPECT_THAT(s2.error, HasSubstr("who are you?"));
+  EXPECT_EQ(s3.frames, 0u);
+  EXPECT_NE(s3.error, "");
+}
+
+TEST_F(BrokenCell, MakesTheCommandFailThoughSomethingCame) {
+  const std::string out = (folder_ / "a.mcap").string();
+  const std::string service = url();
+  const std::array arguments{"chorus", "record",    service.c_str(), "--raw",
+                             "--out",  out.c_str(), "--seconds",     "1"};
+  ::testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStdout();
+  const int code = run_command_line(static_cast<int>(arguments.size()), arguments.data());
+  const std::string table = ::testing::internal::GetCapturedStdout();
+  const std::string errors = ::testing::internal::GetCapturedStderr();
+  EXPECT_EQ(code, kExitFailed);
+  EXPECT_THAT(table, HasSubstr("failed"));
+  EXPECT_THAT(table, HasSubstr("unreadable"));
+  EXPECT_THAT(table, HasSubstr("/sensors/s2/frame"));
+  EXPECT_THAT(errors, HasSubstr("delivered no frame of /sensors/s2/frame, /sensors/s3/frame"));
+  EXPECT_TRUE(std::filesystem::exists(out)) << "what came is kept";
+}
+
+}  // namespace
+}  // namespace chorus::client

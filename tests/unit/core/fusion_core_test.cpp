@@ -1,0 +1,263 @@
+// The pipeline thread's whole world, driven by hand: frames in, snapshots and jobs out.
+#include "fusion-server/core/fusion_core.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/builders.h"
+
+namespace chorus::core {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::kFrameInterval;
+using testing::kStart;
+using testing::sensor_id;
+
+constexpr int kSensors = 3;
+
+std::string name(int sensor) { return "s" + std::to_string(sensor + 1); }
+
+CoreConfig config() {
+  CoreConfig c;
+  for (int i = 0; i < kSensors; ++i) c.sensors.insert(sensor_id(name(i)));
+  return c;
+}
+
+Registration ring(int count = kSensors, Verdict verdict = Verdict::Good) {
+  Registration r;
+  r.verdict = verdict;
+  r.version = 4;
+  r.master = sensor_id("s1");
+  for (int i = 0; i < count; ++i) {
+    r.sensors[sensor_id(name(i))].world_from_sensor = testing::ring_sensor(i, kSensors);
+  }
+  return r;
+}
+
+/// Sensor's view of a person walking a small circle, `t` after the start.
+SensorFrame sight(int sensor, Duration t) {
+  const double angle = 0.6 * chorus::seconds(t);
+  const auto person =
+      testing::standing_person({0.6 * std::cos(angle), 0, 0.6 * std::sin(angle)}, angle);
+  const Timestamp captured = kStart + t;
+  return testing::sensor_frame(
+      name(sensor), captured,
+      {testing::body_seen_from(testing::ring_sensor(sensor, kSensors), person, captured)});
+}
+
+struct Answers : std::vector<Snapshot> {
+  Duration worst{0};  ///< Longest time from an instant to its answer.
+};
+
+/// Runs the core from `from` for `length` as the server would: sensors with a phase each, one
+/// millisecond at a time.  `dead` is a sensor that says nothing.
+Answers run(FusionCore& core, Duration from, Duration length, int dead = -1) {
+  Answers out;
+  for (Duration t = from; t < from + length; t += milliseconds(1)) {
+    for (int i = 0; i < kSensors; ++i) {
+      const Duration phase = milliseconds(7 * i);
+      if (i != dead && t >= phase && (t - phase) % milliseconds(33) < milliseconds(1)) {
+        core.take(sight(i, t));
+      }
+    }
+    while (auto snapshot = core.tick(kStart + t)) {
+      out.worst = std::max(out.worst, kStart + t - snapshot->instant);
+      out.push_back(std::move(*snapshot));
+    }
+  }
+  return out;
+}
+
+void expect_gapless(const std::vector<Snapshot>& snapshots) {
+  for (std::size_t i = 1; i < snapshots.size(); ++i) {
+    EXPECT_EQ(snapshots[i].sequence, snapshots[i - 1].sequence + 1);
+    EXPECT_NEAR(chorus::seconds(snapshots[i].instant - snapshots[i - 1].instant), 1.0 / 30, 1e-8);
+  }
+}
+
+TEST(FusionCore, FusesEveryInstantOnceAndKnowsWhoContributed) {
+  FusionCore core(config(), ring());
+  const auto snapshots = run(core, Duration{0}, seconds(3));
+  ASSERT_GT(snapshots.size(), 80u);
+  expect_gapless(snapshots);
+  const Snapshot& last = snapshots.back();
+  ASSERT_EQ(last.bodies.size(), 1u);
+  EXPECT_EQ(last.bodies[0].contributors[index_of(JointId::Neck)], 0b111u);
+  EXPECT_EQ(core.reports().size(), 3u);
+}
+
+TEST(FusionCore, AnswersWithoutWaitingForTheDelayWhenAllSensorsHavePassed) {
+  FusionCore core(config(), ring());
+  (void)run(core, Duration{0}, seconds(1));
+  // One frame interval and the phases, not the 200 ms.
+  EXPECT_LT(run(core, seconds(1), seconds(1)).worst, milliseconds(50));
+}
+
+TEST(FusionCore, ADeadSensorDelaysOnlyUntilItIsLaterThanItEverWas) {
+  FusionCore core(config(), ring());
+  (void)run(core, Duration{0}, seconds(1));
+  const auto waiting = run(core, seconds(1), milliseconds(200), 1);
+  EXPECT_GT(waiting.worst, milliseconds(35));  // later than it ever was
+  EXPECT_LT(waiting.worst, milliseconds(70));
+  const auto during = run(core, milliseconds(1200), milliseconds(2800), 1);
+  expect_gapless(during);
+  EXPECT_LT(during.worst, milliseconds(50));
+  ASSERT_EQ(during.back().bodies.size(), 1u);
+  EXPECT_EQ(during.back().bodies[0].contributors[index_of(JointId::Neck)], 0b101u);
+  const auto after = run(core, seconds(4), seconds(1));
+  expect_gapless(after);
+  EXPECT_EQ(after.back().bodies[0].contributors[index_of(JointId::Neck)], 0b111u);
+  EXPECT_EQ(after.back().bodies[0].id, during.front().bodies[0].id);
+}
+
+TEST(FusionCore, AllSensorsDeadStillTicksWithoutBodies) {
+  FusionCore core(config(), ring());
+  (void)run(core, Duration{0}, seconds(1));
+  std::size_t ticks = 0;
+  for (Duration t = seconds(1); t < seconds(5); t += milliseconds(1)) {
+    if (core.tick(kStart + t)) ++ticks;
+  }
+  EXPECT_NEAR(static_cast<double>(ticks), 120.0, 4.0);
+}
+
+TEST(FusionCore, StrangersAndFramesThatGoBackAreRefused) {
+  FusionCore core(config(), ring());
+  (void)run(core, Duration{0}, milliseconds(500));
+  SensorFrame back = sight(0, milliseconds(300));
+  core.take(back);
+  EXPECT_EQ(core.refused(sensor_id("s1")), 1u);
+  SensorFrame stranger = sight(0, milliseconds(600));
+  stranger.sensor = sensor_id("s9");
+  core.take(stranger);
+  (void)run(core, milliseconds(600), milliseconds(200));
+  EXPECT_EQ(core.reports().size(), 3u);
+}
+
+TEST(FusionCore, StartsASessionByItselfWhenSensorsHaveNoPlace) {
+  FusionCore core(config(), {});
+  EXPECT_FALSE(core.due_job(kStart));
+  EXPECT_FALSE(core.session().collecting);
+  std::optional<SolveJob> job;
+  Duration t{0};
+  for (; !job && t < seconds(10); t += milliseconds(100)) {
+    (void)run(core, t, milliseconds(100));
+    job = core.due_job(kStart + t);
+  }
+  ASSERT_TRUE(job);
+  EXPECT_EQ(job->kind, SolveKind::Provisional);
+  EXPECT_LT(t, seconds(8));
+  EXPECT_EQ(job->walk.size(), 3u);
+  EXPECT_TRUE(core.session().collecting);
+  // Only one job is out at a time.
+  (void)run(core, t, seconds(4));
+  EXPECT_FALSE(core.due_job(kStart + t + seconds(4)));
+  EXPECT_TRUE(core.solved({job->session, job->kind, ring(3, Verdict::Provisional)}));
+  EXPECT_EQ(core.registration().version, 1u);
+  EXPECT_TRUE(core.due_job(kStart + t + seconds(4)));
+}
+
+TEST(FusionCore, DoesNotStartWhenAllSensorsThatSeeHaveAPlaceOrWhenToldNotTo) {
+  FusionCore placed(config(), ring());
+  (void)run(placed, Duration{0}, seconds(2));
+  EXPECT_FALSE(placed.due_job(kStart + seconds(2)));
+  EXPECT_FALSE(placed.session().collecting);
+
+  CoreConfig manual = config();
+  manual.session.automatic = false;
+  FusionCore waiting(manual, {});
+  (void)run(waiting, Duration{0}, seconds(2));
+  EXPECT_FALSE(waiting.due_job(kStart + seconds(2)));
+  EXPECT_FALSE(waiting.session().collecting);
+}
+
+TEST(FusionCore, ASensorAddedLaterStartsASessionAndKeepsTheOldPlaces) {
+  FusionCore core(config(), ring(2));
+  (void)run(core, Duration{0}, seconds(2));
+  (void)core.due_job(kStart + seconds(2));
+  EXPECT_TRUE(core.session().collecting);
+  EXPECT_EQ(core.registration().sensors.size(), 2u);
+}
+
+TEST(FusionCore, AFailingSessionLeavesTheRegistrationAndSaysWhy) {
+  FusionCore core(config(), ring());
+  ASSERT_TRUE(core.start_session(seconds(8)));
+  EXPECT_EQ(core.start_session(seconds(8)).error().code, ErrorCode::Conflict);
+  Registration refused;
+  refused.verdict = Verdict::Refused;
+  refused.reasons = {"sensors s2 and s3 never saw the person together"};
+  EXPECT_FALSE(core.solved({1, SolveKind::Final, refused}));
+  EXPECT_EQ(core.registration().verdict, Verdict::Good);
+  EXPECT_EQ(core.registration().version, 4u);
+  ASSERT_FALSE(core.session().reasons.empty());
+  EXPECT_EQ(core.session().reasons[0], "sensors s2 and s3 never saw the person together");
+}
+
+TEST(FusionCore, AWalkThatMissesASensorSaysWhatToDo) {
+  FusionCore core(config(), ring());
+  ASSERT_TRUE(core.start_session(seconds(8)));
+  EXPECT_FALSE(core.solved({1, SolveKind::Final, ring(2)}));
+  ASSERT_EQ(core.session().reasons.size(), 1u);
+  EXPECT_EQ(core.session().reasons[0],
+            "the registration in use places sensor s3, this walk does not; DELETE /registration "
+            "first to give it up");
+}
+
+TEST(FusionCore, ASolutionOfACancelledSessionIsIgnored) {
+  FusionCore core(config(), {});
+  ASSERT_TRUE(core.start_session(seconds(8)));
+  core.forget();
+  EXPECT_FALSE(core.solved({1, SolveKind::Final, ring()}));
+  EXPECT_TRUE(core.registration().sensors.empty());
+}
+
+TEST(FusionCore, TheMasterStaysWhileItTakesPartUnlessTheConfigNamesOne) {
+  Registration placed = ring();
+  placed.master = sensor_id("s2");
+  FusionCore core(config(), placed);
+  ASSERT_TRUE(core.start_session(seconds(8)));
+  (void)run(core, Duration{0}, seconds(7));
+  const auto job = core.due_job(kStart + seconds(7));
+  ASSERT_TRUE(job);
+  EXPECT_EQ(job->config.master, sensor_id("s2"));
+
+  CoreConfig chosen = config();
+  chosen.registration.master = sensor_id("s3");
+  FusionCore other(chosen, placed);
+  ASSERT_TRUE(other.start_session(seconds(8)));
+  (void)run(other, Duration{0}, seconds(7));
+  EXPECT_EQ(other.due_job(kStart + seconds(7))->config.master, sensor_id("s3"));
+
+  FusionCore without(config(), placed);
+  ASSERT_TRUE(without.start_session(seconds(8)));
+  (void)run(without, Duration{0}, seconds(7), 1);
+  EXPECT_FALSE(without.due_job(kStart + seconds(7))->config.master);
+}
+
+TEST(FusionCore, ASensorTakenOutOfTheConfigNoLongerBindsTheRegistration) {
+  FusionCore core(config(), ring());
+  CoreConfig fewer = config();
+  fewer.sensors.erase(sensor_id("s3"));
+  core.reconfigure(fewer);
+  ASSERT_TRUE(core.start_session(seconds(8)));
+  EXPECT_TRUE(core.solved({1, SolveKind::Final, ring(2)}));
+  EXPECT_EQ(core.registration().sensors.size(), 2u);
+  EXPECT_EQ(core.registration().version, 5u);
+}
+
+TEST(FusionCore, TheRateMayChangeWhileRunning) {
+  FusionCore core(config(), ring());
+  const auto before = run(core, Duration{0}, seconds(1));
+  CoreConfig faster = config();
+  faster.output.rate_hz = 60;
+  core.reconfigure(faster);
+  const auto after = run(core, seconds(1), seconds(1));
+  EXPECT_NEAR(static_cast<double>(after.size()), 60.0, 5.0);
+  EXPECT_GT(after.front().sequence, before.back().sequence);
+  EXPECT_GT(after.front().instant, before.back().instant);
+}
+
+}  // namespace
+}  // namespace chorus::core

@@ -1,0 +1,115 @@
+// Output instants: on the grid, each once, in order.
+#include "fusion-server/core/tick_schedule.h"
+
+#include <gtest/gtest.h>
+
+namespace chorus::core {
+namespace {
+
+using std::chrono::milliseconds;
+
+const Timestamp kT0 = from_unix_ns(1'790'000'000'000'000'000);
+
+TEST(Grid, IndexAndInstantUndoEachOther) {
+  for (const int rate : {1, 7, 30, 60, 90, 240}) {
+    const std::int64_t start = grid_index(kT0, rate);
+    for (std::int64_t k = start; k < start + 3 * rate; ++k) {
+      EXPECT_EQ(grid_index(grid_instant(k, rate), rate), k) << rate;
+      EXPECT_EQ(grid_index(grid_instant(k + 1, rate) - Duration{1}, rate), k) << rate;
+      EXPECT_LT(grid_instant(k, rate), grid_instant(k + 1, rate));
+    }
+  }
+}
+
+TEST(Grid, WholeSecondsAreOnEveryGrid) {
+  for (const int rate : {1, 7, 30, 60}) {
+    EXPECT_EQ(grid_instant(grid_index(kT0, rate), rate), kT0) << rate;
+  }
+}
+
+TEST(TickSchedule, AnswersWhenReadyAndAtTheDeadlineWhenNot) {
+  TickSchedule schedule({.alignment_delay = milliseconds(80)});
+  const Tick tick = schedule.next(kT0);
+  EXPECT_EQ(tick.sequence, 1u);
+  EXPECT_GT(tick.instant, kT0);
+  EXPECT_EQ(schedule.wait(kT0, true), tick.instant - kT0);  // never before the instant itself
+  EXPECT_EQ(schedule.wait(tick.instant + milliseconds(5), true), Duration{0});
+  EXPECT_EQ(schedule.wait(tick.instant + milliseconds(5), false), milliseconds(75));
+  EXPECT_EQ(schedule.wait(tick.instant + milliseconds(80), false), Duration{0});
+}
+
+TEST(TickSchedule, NoInstantIsLostOrDoubledOverAMinuteOfUnevenWork) {
+  TickSchedule schedule({});
+  Timestamp now = kT0;
+  Timestamp last{};
+  std::uint64_t sequence = 0;
+  int answers = 0;
+  for (int i = 0; now < kT0 + std::chrono::seconds(60); ++i) {
+    const Tick tick = schedule.next(now);
+    // Frames arrive unevenly; now and then nothing is ready for longer than the deadline.
+    const Duration wait = schedule.wait(now, i % 7 != 0);
+    if (wait > Duration{0}) {
+      now += std::min<Duration>(wait, milliseconds(1 + i % 11));
+      continue;
+    }
+    if (last != Timestamp{}) {
+      EXPECT_EQ(grid_index(tick.instant, 30), grid_index(last, 30) + 1);
+    }
+    EXPECT_EQ(tick.sequence, ++sequence);
+    last = tick.instant;
+    now += milliseconds(i % 40 == 0 ? 150 : 1);  // a slow step now and then
+    schedule.answered(now);
+    ++answers;
+  }
+  EXPECT_NEAR(answers, 60 * 30, 6);
+  EXPECT_EQ(schedule.skipped(), 0u);
+}
+
+TEST(TickSchedule, LateAnswersAreSpacedSoThatReadersSeeEachOfThem) {
+  TickSchedule schedule({});
+  const Tick first = schedule.next(kT0);
+  const Timestamp late = first.instant + milliseconds(200);
+  schedule.answered(late);
+  (void)schedule.next(late);
+  EXPECT_EQ(schedule.wait(late, true), TickConfig{}.min_spacing);
+  EXPECT_EQ(schedule.wait(late + TickConfig{}.min_spacing, true), Duration{0});
+}
+
+TEST(TickSchedule, TheSpacingNeverSlowsAFastOutputDown) {
+  TickConfig fast;
+  fast.rate_hz = 240;
+  TickSchedule schedule(fast);
+  Timestamp now = schedule.next(kT0).instant;
+  for (int i = 0; i < 240; ++i) {
+    while (schedule.wait(now, true) > Duration{0}) now += schedule.wait(now, true);
+    schedule.answered(now);
+    (void)schedule.next(now);
+  }
+  EXPECT_LE(now - kT0, std::chrono::milliseconds(1010));
+  EXPECT_EQ(schedule.skipped(), 0u);
+}
+
+TEST(TickSchedule, ASuspendedHostSkipsAndCountsWhatItSkipped) {
+  TickSchedule schedule({});
+  const Tick before = schedule.next(kT0);
+  schedule.answered(before.instant);
+  const Timestamp later = kT0 + std::chrono::seconds(100);
+  const Tick after = schedule.next(later);
+  EXPECT_LE(later - after.instant, milliseconds(34));
+  EXPECT_NEAR(static_cast<double>(after.sequence), 3000.0, 2.0);
+  EXPECT_EQ(schedule.skipped(), after.sequence - 2);
+}
+
+TEST(TickSchedule, AClockSetBackStartsAnewAndTheSequenceStillRises) {
+  TickSchedule schedule({});
+  const Tick before = schedule.next(kT0);
+  schedule.answered(before.instant);
+  const Timestamp earlier = kT0 - std::chrono::hours(1);
+  const Tick after = schedule.next(earlier);
+  EXPECT_GT(after.sequence, before.sequence);
+  EXPECT_LE(after.instant - earlier, milliseconds(34));
+  EXPECT_EQ(schedule.wait(after.instant, true), Duration{0});
+}
+
+}  // namespace
+}  // namespace chorus::core

@@ -1,0 +1,174 @@
+// Slots stay with their persons; every joint gets an orientation; velocities come from what was.
+#include "fusion-server/outlet/tracker_frame.h"
+
+#include <gtest/gtest.h>
+
+#include "common/base/units.h"
+#include "common/geometry/rotation.h"
+#include "tests/support/builders.h"
+#include "tests/support/matchers.h"
+
+namespace chorus::outlet {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::kStart;
+using testing::VectorNear;
+
+FusedBody person(std::uint64_t id, double x = 0.0) {
+  FusedBody body;
+  body.id = {id};
+  body.skeleton = testing::standing_person({x, 0, 0});
+  return body;
+}
+
+Snapshot snapshot(Duration after, std::vector<FusedBody> bodies) {
+  Snapshot s;
+  s.sequence = 9;
+  s.instant = kStart + after;
+  s.bodies = std::move(bodies);
+  return s;
+}
+
+std::vector<std::pair<std::size_t, std::uint64_t>> slots(const TrackerFrame& frame) {
+  std::vector<std::pair<std::size_t, std::uint64_t>> out;
+  for (const TrackerBody& body : frame.bodies) out.emplace_back(body.slot, body.person.value);
+  return out;
+}
+
+using Slots = std::vector<std::pair<std::size_t, std::uint64_t>>;
+
+TEST(TrackerSlots, StayWithTheirPersonWhenAnotherLeaves) {
+  TrackerState state(2);
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(0), {person(4), person(7)}))),
+            (Slots{{0, 4}, {1, 7}}));
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(33), {person(7)}))), (Slots{{1, 7}}));
+  // The newcomer takes the slot that is free by then; the third has none.
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(1033), {person(7), person(8), person(9)}))),
+            (Slots{{0, 8}, {1, 7}}));
+}
+
+TEST(TrackerSlots, AreFoundAgainAfterAnInstantWithoutAnybody) {
+  TrackerState state(4);
+  (void)state.advance(snapshot(milliseconds(0), {person(3)}));
+  (void)state.advance(snapshot(milliseconds(33), {person(2), person(3)}));
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(66), {}))), Slots{});
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(100), {person(2), person(3)}))),
+            (Slots{{0, 3}, {1, 2}}));
+}
+
+TEST(TrackerSlots, OfAHiddenPersonIsNotGivenToOneWhoEnters) {
+  TrackerState state(4);
+  (void)state.advance(snapshot(milliseconds(0), {person(1), person(2)}));
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(33), {person(2), person(4)}))),
+            (Slots{{1, 2}, {2, 4}}));
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(66), {person(1), person(2), person(4)}))),
+            (Slots{{0, 1}, {1, 2}, {2, 4}}));
+}
+
+TEST(TrackerSlots, GoToWhoCameMeanwhileWhenTheHiddenPersonStaysAway) {
+  TrackerState state(4);
+  (void)state.advance(snapshot(milliseconds(0), {person(1)}));
+  // The same person under a new id, then a second one.
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(33), {person(5), person(6)}))),
+            (Slots{{1, 5}, {2, 6}}));
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(1034), {person(5), person(6)}))),
+            (Slots{{0, 5}, {2, 6}}));
+}
+
+TEST(TrackerSlots, OfOneWhoCameBackAreNotWaitedForAnyLonger) {
+  TrackerState state(4);
+  (void)state.advance(snapshot(milliseconds(0), {person(1)}));
+  (void)state.advance(snapshot(milliseconds(33), {person(5)}));
+  (void)state.advance(snapshot(milliseconds(66), {person(1), person(5)}));
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(5000), {person(5)}))), (Slots{{1, 5}}));
+}
+
+TEST(TrackerSlots, AreKeptAsLongAsAskedToTheInstant) {
+  TrackerState state(1);
+  state.keep_slots_for(milliseconds(200));
+  (void)state.advance(snapshot(milliseconds(0), {person(1)}));
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(200), {person(2)}))), Slots{});
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(201), {person(2)}))), (Slots{{0, 2}}));
+  // A clock that is set back by more than that begins anew, as association does.
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(-100), {person(3)}))), (Slots{{0, 3}}));
+}
+
+TEST(TrackerJoints, AnUnseenOneHangsAtTheNextTrackedOneTowardsThePelvis) {
+  FusedBody body = person(1);
+  testing::hide(body.skeleton[JointId::HandLeft]);
+  testing::hide(body.skeleton[JointId::WristLeft]);
+  TrackerState state(1);
+  const TrackerBody sent = state.advance(snapshot(milliseconds(0), {body})).bodies.at(0);
+  EXPECT_EQ(nearest_tracked(sent, JointId::HandLeft), JointId::ElbowLeft);
+  EXPECT_EQ(nearest_tracked(sent, JointId::Head), JointId::Head);
+  EXPECT_EQ(nearest_tracked(TrackerBody{}, JointId::Head), JointId::SpineBase);
+}
+
+TEST(TrackerJoints, WithoutAnOrientationTakeThatOfTheNextOneTowardsThePelvis) {
+  FusedBody body = person(1);
+  for (Joint& joint : body.skeleton.joints) joint.orientation.coeffs().setZero();
+  const Eigen::Quaterniond wrist = about_y(deg(35));
+  body.skeleton[JointId::WristLeft].orientation = wrist;
+  TrackerState state(1);
+  const TrackerFrame frame = state.advance(snapshot(milliseconds(0), {body}));
+  const TrackerBody& sent = frame.bodies.at(0);
+  EXPECT_LT(angular_distance(sent[JointId::HandTipLeft].orientation, wrist), 1e-9);
+  EXPECT_LT(angular_distance(sent[JointId::Head].orientation, Eigen::Quaterniond::Identity()),
+            1e-9);
+}
+
+TEST(TrackerJoints, UntrackedOnesSaySo) {
+  FusedBody body = person(1);
+  testing::hide(body.skeleton[JointId::FootLeft]);
+  body.skeleton[JointId::FootRight].position.x() = std::nan("");
+  TrackerState state(1);
+  const TrackerFrame frame = state.advance(snapshot(milliseconds(0), {body}));
+  EXPECT_FALSE(frame.bodies.at(0)[JointId::FootLeft].tracked);
+  EXPECT_FALSE(frame.bodies.at(0)[JointId::FootRight].tracked);
+  EXPECT_TRUE(frame.bodies.at(0)[JointId::Head].tracked);
+}
+
+TEST(TrackerVelocity, SettlesToThatOfAPersonWhoWalksEvenly) {
+  TrackerState state(1);
+  TrackerFrame frame;
+  for (int i = 0; i < 12; ++i) {
+    frame = state.advance(snapshot(milliseconds(40 * i), {person(1, 0.04 * i)}));
+  }
+  EXPECT_THAT(frame.bodies.at(0)[JointId::Head].velocity,
+              VectorNear(Eigen::Vector3d(1.0, 0, 0), 0.01));
+}
+
+TEST(TrackerVelocity, IsZeroAcrossAGapAndForARepeatedInstant) {
+  TrackerState state(1);
+  (void)state.advance(snapshot(milliseconds(0), {person(1, 0.0)}));
+  const TrackerFrame gap = state.advance(snapshot(milliseconds(2000), {person(1, 1.0)}));
+  EXPECT_EQ(gap.bodies.at(0)[JointId::Head].velocity.norm(), 0.0);
+  const TrackerFrame again = state.advance(snapshot(milliseconds(2000), {person(1, 2.0)}));
+  EXPECT_EQ(again.bodies.at(0)[JointId::Head].velocity.norm(), 0.0);
+}
+
+TrackerFrame moving() {
+  TrackerFrame frame;
+  frame.instant = kStart;
+  frame.bodies.resize(1);
+  frame.bodies[0].joints[0].velocity = {2.0, 0, 0};
+  frame.bodies[0].joints[0].angular_velocity = {0, deg(90), 0};
+  return frame;
+}
+
+TEST(Prediction, MovesAndTurnsAtConstantVelocity) {
+  const TrackerFrame then = predicted(moving(), kStart + milliseconds(20));
+  EXPECT_THAT(then.bodies[0].joints[0].position, VectorNear(Eigen::Vector3d(0.04, 0, 0), 1e-9));
+  EXPECT_LT(angular_distance(then.bodies[0].joints[0].orientation, about_y(deg(1.8))), 1e-9);
+  EXPECT_EQ(then.instant, kStart + milliseconds(20));
+}
+
+TEST(Prediction, GoesNoFurtherThanFiftyMillisecondsAndNeverBack) {
+  EXPECT_EQ(predicted(moving(), kStart + std::chrono::seconds(3)).instant,
+            kStart + milliseconds(50));
+  EXPECT_EQ(predicted(moving(), kStart - milliseconds(5)).instant, kStart);
+}
+
+}  // namespace
+}  // namespace chorus::outlet

@@ -1,0 +1,91 @@
+// Recent frames by number and by instant.
+#include "fusion-server/rest/frame_ring.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/builders.h"
+
+namespace chorus::rest {
+namespace {
+
+using testing::kFrameInterval;
+using testing::kStart;
+
+FramePtr frame(std::uint64_t sequence) {
+  auto f = std::make_shared<resource::FrameResource>();
+  f->sequence = sequence;
+  f->captured = kStart + kFrameInterval * static_cast<int>(sequence);
+  f->source = "fusion";
+  f->bodies.resize(1);
+  f->bodies[0].joints[0].state = JointState::Tracked;
+  f->bodies[0].joints[0].position.x() = static_cast<double>(sequence);
+  return f;
+}
+
+struct Filled : FrameRing {
+  Filled(std::uint64_t from, std::uint64_t to) : FrameRing(10) {
+    for (auto i = from; i <= to; ++i) push(frame(i));
+  }
+};
+
+TEST(FrameRing, IsEmptyAtFirst) {
+  const FrameRing ring(10);
+  EXPECT_EQ(ring.newest(), nullptr);
+  EXPECT_EQ(ring.find(1).error().code, ErrorCode::NotFound);
+  EXPECT_EQ(ring.at(to_iso8601(kStart)).error().code, ErrorCode::NotFound);
+}
+
+TEST(FrameRing, KnowsWhatIsHereWhatIsGoneAndWhatIsNotYet) {
+  const Filled ring(1, 25);
+  EXPECT_EQ((*ring.find(16))->sequence, 16u);
+  EXPECT_EQ((*ring.find(25))->sequence, 25u);
+  EXPECT_EQ(ring.find(15).error().code, ErrorCode::Gone);
+  EXPECT_EQ(ring.find(26).error().code, ErrorCode::NotFound);
+}
+
+TEST(FrameRing, ASkippedSequenceHasNeverBeen) {
+  FrameRing ring(10);
+  ring.push(frame(2));
+  ring.push(frame(5));
+  const auto skipped = ring.find(3);
+  ASSERT_FALSE(skipped);
+  EXPECT_EQ(skipped.error().code, ErrorCode::NotFound);
+  EXPECT_EQ(skipped.error().message.find("oldest"), std::string::npos);
+  const auto evicted = ring.find(1);
+  ASSERT_FALSE(evicted);
+  EXPECT_EQ(evicted.error().code, ErrorCode::Gone);
+  EXPECT_NE(evicted.error().message.find("still here is 2"), std::string::npos);
+}
+
+TEST(FrameRing, AnswersForAnInstantInEitherSpelling) {
+  const Filled ring(1, 10);
+  const Timestamp instant = kStart + kFrameInterval * 4 + kFrameInterval / 2;
+  for (const std::string& text : {to_iso8601(instant), std::to_string(to_unix_ns(instant))}) {
+    const auto found = ring.at(text);
+    ASSERT_TRUE(found) << text;
+    EXPECT_EQ((*found)->captured, instant);
+    EXPECT_NEAR((*found)->bodies.at(0).joints[0].position.x(), 4.5, 1e-6);
+  }
+  EXPECT_EQ((*ring.at(to_iso8601(kStart + kFrameInterval * 4)))->sequence, 4u);
+}
+
+TEST(FrameRing, InstantsOutsideAreRefusedByKind) {
+  const Filled ring(5, 10);
+  EXPECT_EQ(ring.at(to_iso8601(kStart)).error().code, ErrorCode::Gone);
+  EXPECT_EQ(ring.at(to_iso8601(kStart + std::chrono::hours(1))).error().code, ErrorCode::NotFound);
+  for (const char* text : {"", "yesterday", "12:30", "1e9", "99999999999999999999999"}) {
+    EXPECT_EQ(ring.at(text).error().code, ErrorCode::InvalidArgument) << text;
+  }
+}
+
+TEST(FrameRing, AClockSetBackEmptiesIt) {
+  Filled ring(1, 10);
+  auto earlier = std::make_shared<resource::FrameResource>(*frame(11));
+  earlier->captured = kStart - std::chrono::hours(1);
+  ring.push(earlier);
+  EXPECT_EQ(ring.newest()->sequence, 11u);
+  EXPECT_EQ(ring.find(10).error().code, ErrorCode::Gone);
+}
+
+}  // namespace
+}  // namespace chorus::rest

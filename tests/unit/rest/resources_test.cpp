@@ -1,0 +1,197 @@
+// The routes of the fusion server, asked without a socket.
+#include <gtest/gtest.h>
+
+#include "common/http/route_table.h"
+#include "fusion-server/rest/frame_resources.h"
+#include "fusion-server/rest/metrics.h"
+#include "fusion-server/rest/registration_resources.h"
+#include "fusion-server/rest/self_description.h"
+#include "fusion-server/rest/sensor_resources.h"
+#include "tests/support/builders.h"
+
+namespace chorus::rest {
+namespace {
+
+using testing::kStart;
+using testing::sensor_id;
+
+Result<http::DocumentPtr> ask(const http::Router& router, const std::string& path,
+                              std::map<std::string, std::string, std::less<>> query = {}) {
+  const auto match = router.match(path);
+  if (!match) return pass(match);
+  if (match->entry->live && query.empty()) return match->entry->live->current();
+  http::Request request;
+  request.path = path;
+  request.query = std::move(query);
+  const auto& getter = match->entry->live ? match->entry->by_query : match->entry->getter;
+  return getter(request, match->params);
+}
+
+std::string body(const Result<http::DocumentPtr>& document, std::string_view accept) {
+  if (!document || !*document) return "nothing";
+  const auto chosen = (*document)->choose(accept);
+  return chosen ? std::string((*chosen)->body()) : to_string(chosen.error());
+}
+
+std::shared_ptr<const Snapshot> snapshot(std::uint64_t sequence) {
+  auto s = std::make_shared<Snapshot>();
+  s->sequence = sequence;
+  s->instant = kStart + testing::kFrameInterval * static_cast<int>(sequence);
+  s->sensors = {sensor_id("s1")};
+  FusedBody one;
+  one.id = {7};
+  one.skeleton = testing::standing_person();
+  one.contributors.fill(1);
+  s->bodies.push_back(one);
+  return s;
+}
+
+SensorStatus status(const char* name) {
+  SensorStatus s;
+  s.id = sensor_id(name);
+  s.url = "http://127.0.0.1:8081/";
+  s.state = "live";
+  s.last_error = "once it did not answer";
+  s.age = std::chrono::milliseconds(12);
+  s.clock_offset = std::chrono::microseconds(150);
+  s.clock_uncertainty = std::chrono::microseconds(90);
+  s.clock_corrected = true;
+  return s;
+}
+
+TEST(FrameResources, FramesByNumberAndInstantAndBodiesByName) {
+  http::Router router;
+  FrameResources frames({"run1"}, 100);
+  frames.add_routes(router);
+  EXPECT_EQ(ask(router, "/skeletons/").error().code, ErrorCode::Unavailable);
+  for (std::uint64_t i = 1; i <= 3; ++i) frames.publish(snapshot(i));
+
+  EXPECT_NE(body(ask(router, "/frame"), "text/turtle").find("<frame> a ch:Frame"),
+            std::string::npos);
+  EXPECT_NE(body(ask(router, "/frames/2"), "application/json").find("\"sequence\""),
+            std::string::npos);
+  EXPECT_EQ(ask(router, "/frames/9").error().code, ErrorCode::NotFound);
+  EXPECT_EQ(ask(router, "/frames/two").error().code, ErrorCode::NotFound);
+  const auto between =
+      ask(router, "/frame", {{"at", to_iso8601(kStart + testing::kFrameInterval * 3 / 2)}});
+  EXPECT_TRUE(between);
+  EXPECT_EQ(ask(router, "/frame", {{"at", "noon"}}).error().code, ErrorCode::InvalidArgument);
+
+  EXPECT_NE(body(ask(router, "/skeletons/"), "text/turtle").find("ldp:contains <7>"),
+            std::string::npos);
+  EXPECT_NE(body(ask(router, "/skeletons/7"), "text/turtle").find("#Head>"), std::string::npos);
+  EXPECT_EQ(ask(router, "/skeletons/8").error().code, ErrorCode::NotFound);
+}
+
+TEST(FrameResources, EtagsDifferFromRunToRunAndFromFrameToFrame) {
+  const auto tag = [](const char* run, std::uint64_t sequence) {
+    http::Router router;
+    FrameResources frames({run}, 100);
+    frames.add_routes(router);
+    frames.publish(snapshot(sequence));
+    return (*(*ask(router, "/frame"))->choose("text/turtle"))->etag;
+  };
+  EXPECT_EQ(tag("a", 1), tag("a", 1));
+  EXPECT_NE(tag("a", 1), tag("b", 1));
+  EXPECT_NE(tag("a", 1), tag("a", 2));
+}
+
+TEST(SensorResources, ListsEverySensorAndRelaysItsFrame) {
+  http::Router router;
+  SensorResources sensors({"run1"}, {sensor_id("s1")});
+  sensors.add_routes(router);
+  sensors.publish({status("s1"), status("s2")});
+  EXPECT_EQ(resource::undeclared_terms(sensor_node(status("s1"), "s1")),
+            std::vector<std::string>{});
+  const auto list = body(ask(router, "/sensors/"), "application/json");
+  EXPECT_NE(list.find("\"s2\""), std::string::npos);
+  EXPECT_NE(list.find("\"clockOffsetMilliseconds\": 0.15"), std::string::npos);
+  EXPECT_TRUE(ask(router, "/sensors/s2"));
+  EXPECT_EQ(ask(router, "/sensors/s3").error().code, ErrorCode::NotFound);
+
+  const auto raw = std::make_shared<const resource::FrameResource>(
+      resource::to_resource(testing::sensor_frame("s2", kStart, {})));
+  EXPECT_EQ(ask(router, "/sensors/s2/frame").error().code, ErrorCode::NotFound);
+  sensors.relay(sensor_id("s1"), raw);
+  sensors.relay(sensor_id("s2"), raw);  // added after the start: no long poll, but there
+  EXPECT_NE(body(ask(router, "/sensors/s1/frame"), "text/turtle").find("SensorSpace"),
+            std::string::npos);
+  EXPECT_TRUE(ask(router, "/sensors/s2/frame"));
+}
+
+TEST(SelfDescription, LeadsToEverythingAndUsesOnlyDeclaredTerms) {
+  EXPECT_EQ(resource::undeclared_terms(service_node("x", true)), std::vector<std::string>{});
+  const auto page = landing_page("<script>", true);
+  EXPECT_EQ(page.find("<script>"), std::string::npos);
+  EXPECT_NE(page.find("viewer/"), std::string::npos);
+  EXPECT_EQ(landing_page("x", false).find("viewer/"), std::string::npos);
+}
+
+TEST(SelfDescription, BrowsersGetThePageOthersTurtle) {
+  http::Router router;
+  add_description_routes(router, {"run1"}, "Hall 3", "");
+  EXPECT_NE(body(ask(router, "/"), "text/html,application/xhtml+xml,*/*;q=0.8").find("<h1>Hall 3"),
+            std::string::npos);
+  EXPECT_NE(body(ask(router, "/"), "").find("dcterms:title \"Hall 3\""), std::string::npos);
+  EXPECT_NE(body(ask(router, "/floor-plane"), "application/json").find("\"normalY\": 1"),
+            std::string::npos);
+}
+
+TEST(SessionRequest, IsSecondsOrNothing) {
+  const Duration fallback = std::chrono::seconds(30);
+  EXPECT_EQ(*parse_session_request("", fallback), fallback);
+  EXPECT_EQ(*parse_session_request(" {} ", fallback), fallback);
+  EXPECT_EQ(*parse_session_request(R"({"seconds": 12.5})", fallback), from_seconds(12.5));
+  for (const char* wrong : {"nonsense", "[]", "7", R"({"seconds": "30"})", R"({"seconds": 1})",
+                            R"({"seconds": 1e9})", R"({"second": 30})", R"({"seconds": null})",
+                            R"({"seconds": 30, "seconds": 40})", R"({"seconds": [[[[[30]]]]]})"}) {
+    const auto read = parse_session_request(wrong, fallback);
+    ASSERT_FALSE(read) << wrong;
+    EXPECT_EQ(read.error().code, ErrorCode::InvalidArgument);
+  }
+}
+
+TEST(RegistrationResources, PostStartsAndDeleteForgets) {
+  Duration asked{0};
+  int forgotten = 0;
+  RegistrationControl control;
+  control.start = [&](Duration target) -> Result<void> {
+    if (asked > Duration{0}) return fail(ErrorCode::Conflict, "registration", "running");
+    asked = target;
+    return {};
+  };
+  control.forget = [&]() -> Result<void> {
+    ++forgotten;
+    return {};
+  };
+  http::Router router;
+  RegistrationResources resources({"run1"}, control);
+  resources.add_routes(router);
+  resources.publish({}, {});
+  const auto& actions = router.match("/registration")->entry->actions;
+  http::Request request;
+  request.body = R"({"seconds": 20})";
+  const auto started = actions.at(http::Method::Post)(request, {});
+  ASSERT_TRUE(started);
+  EXPECT_EQ(started->status, 202);
+  EXPECT_EQ(asked, std::chrono::seconds(20));
+  EXPECT_EQ(actions.at(http::Method::Post)(request, {}).error().code, ErrorCode::Conflict);
+  EXPECT_EQ(actions.at(http::Method::Delete)(request, {})->status, 204);
+  EXPECT_EQ(forgotten, 1);
+}
+
+TEST(Metrics, NameEverySensorAndEveryCounterOnce) {
+  Status all;
+  all.sensors = {status("s1"), status("s2")};
+  all.counters.ticks = 42;
+  const std::string text = metrics_text(all, {}, {});
+  EXPECT_NE(text.find("chorus_fused_frames_total 42"), std::string::npos);
+  EXPECT_NE(text.find("chorus_sensor_up{sensor=\"s2\"} 1"), std::string::npos);
+  EXPECT_NE(text.find("chorus_frame_age_seconds{sensor=\"s1\"} 0.012"), std::string::npos);
+  const auto first = text.find("# TYPE chorus_sensor_up gauge");
+  EXPECT_NE(first, std::string::npos);
+  EXPECT_EQ(text.find("# TYPE chorus_sensor_up gauge", first + 1), std::string::npos);
+}
+
+}  // namespace
+}  // namespace chorus::rest

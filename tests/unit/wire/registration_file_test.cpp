@@ -1,0 +1,143 @@
+// The registration on disk: what is written is read, and nothing wrong is believed.
+#include "fusion-server/wire/registration_file.h"
+
+#include <gtest/gtest.h>
+
+#include "fusion-server/wire/registration_resource.h"
+#include "tests/support/builders.h"
+
+namespace chorus::wire {
+namespace {
+
+using testing::sensor_id;
+
+Registration example() {
+  Registration r;
+  r.version = 3;
+  r.solved = testing::kStart;
+  r.verdict = Verdict::Provisional;
+  r.reasons = {"the walk lasted only 6 s", "mit Umlaut: ä"};
+  r.master = sensor_id("s2");
+  for (int i = 0; i < 3; ++i) {
+    Extrinsics& place = r.sensors[sensor_id("s" + std::to_string(i + 1))];
+    place.world_from_sensor = testing::ring_sensor(i, 3);
+    place.error = 0.01 * i;
+    place.chain = {sensor_id("s2"), sensor_id("s" + std::to_string(i + 1))};
+    place.covariance = Eigen::Matrix<double, 6, 6>::Identity() * (1e-6 * (i + 1));
+  }
+  PairwiseRegistration edge;
+  edge.target = sensor_id("s2");
+  edge.source = sensor_id("s1");
+  edge.rms = 0.02;
+  edge.pairs = 640;
+  edge.inliers = 601;
+  r.edges.push_back(edge);
+  return r;
+}
+
+std::string why(std::string_view text) {
+  const auto read = read_registration(text);
+  return read ? "" : to_string(read.error());
+}
+
+TEST(RegistrationFile, ReadsWhatItWrites) {
+  const Registration written = example();
+  const auto read = read_registration(write_registration(written));
+  ASSERT_TRUE(read) << to_string(read.error());
+  EXPECT_EQ(read->version, 3u);
+  EXPECT_EQ(read->solved, written.solved);
+  EXPECT_EQ(read->verdict, Verdict::Provisional);
+  EXPECT_EQ(read->reasons, written.reasons);
+  EXPECT_EQ(read->master, written.master);
+  ASSERT_EQ(read->sensors.size(), 3u);
+  for (const auto& [id, place] : written.sensors) {
+    const Extrinsics& again = read->sensors.at(id);
+    EXPECT_TRUE(again.world_from_sensor.isApprox(place.world_from_sensor, 1e-9));
+    EXPECT_TRUE(again.covariance.isApprox(place.covariance, 1e-9));
+    EXPECT_EQ(again.chain, place.chain);
+    EXPECT_EQ(again.error, place.error);
+  }
+  ASSERT_EQ(read->edges.size(), 1u);
+  EXPECT_EQ(read->edges[0].pairs, 640u);
+  EXPECT_EQ(read->edges[0].inliers, 601u);
+}
+
+TEST(RegistrationFile, ReadsASavedAnswerOfTheService) {
+  const auto text = write(registration_node(example(), {}), resource::Format::Json);
+  const auto read = read_registration(text);
+  ASSERT_TRUE(read) << to_string(read.error()) << text;
+  for (const auto& [id, place] : example().sensors) {
+    EXPECT_TRUE(read->sensors.at(id).world_from_sensor.isApprox(place.world_from_sensor, 1e-4));
+  }
+}
+
+TEST(RegistrationFile, GivenPlacesAloneAreAGoodRegistration) {
+  const auto read = read_registration(
+      R"({"sensors": {"cam01": {"x": 1, "y": 2, "z": 3, "qx": 0, "qy": 0, "qz": 0, "qw": 1}}})");
+  ASSERT_TRUE(read) << to_string(read.error());
+  EXPECT_EQ(read->verdict, Verdict::Good);
+  EXPECT_EQ(read->master, sensor_id("cam01"));
+  EXPECT_EQ(read->sensors.begin()->second.chain, std::vector{sensor_id("cam01")});
+}
+
+TEST(RegistrationFile, NamesWhatIsWrong) {
+  EXPECT_NE(why(""), "");
+  EXPECT_NE(why("[]"), "");
+  EXPECT_NE(why("{}"), "");
+  EXPECT_NE(why(R"({"sensors": {}})"), "");
+  EXPECT_NE(why(std::string(20000, '[')), "");
+  EXPECT_NE(why(std::string(5u << 20, ' ')), "");
+  EXPECT_NE(why(R"({"sensors": {"s/1": {}}})").find("s/1"), std::string::npos);
+  const std::string head = R"({"sensors": {"s1": {"x": 1, "y": 2, "z": )";
+  EXPECT_NE(why(head + R"("3", "qx": 0, "qy": 0, "qz": 0, "qw": 1}}})").find("s1.z"),
+            std::string::npos);
+  EXPECT_NE(why(head + R"(1e9, "qx": 0, "qy": 0, "qz": 0, "qw": 1}}})").find("s1.z"),
+            std::string::npos);
+  EXPECT_NE(why(head + R"(3, "qx": 0, "qy": 0, "qz": 0, "qw": 0}}})").find("unit"),
+            std::string::npos);
+  EXPECT_NE(
+      why(head + R"(3, "qx": 0, "qy": 0, "qz": 0, "qw": 1}}, "verdict": "Fine"})").find("Fine"),
+      std::string::npos);
+  EXPECT_NE(why(head + R"(3, "qx": 0, "qy": 0, "qz": 0, "qw": 1}}, "master": "s9"})").find("s9"),
+            std::string::npos);
+  EXPECT_NE(
+      why(head + R"(3, "qx": 0, "qy": 0, "qz": 0, "qw": 1}}, "solved": "soon"})").find("solved"),
+      std::string::npos);
+  EXPECT_NE(why(head + R"(3, "qx": 0, "qy": 0, "qz": 0, "qw": 1, "covariance": [1]}}})")
+                .find("covariance"),
+            std::string::npos);
+}
+
+TEST(RegistrationFile, EveryPrefixOfAFileIsRefusedAndNoneCrashes) {
+  const std::string text = write_registration(example());
+  for (std::size_t n = 0; n + 2 < text.size(); n += 7) {
+    EXPECT_FALSE(read_registration(std::string_view(text).substr(0, n))) << n;
+  }
+}
+
+TEST(RegistrationNode, UsesOnlyDeclaredTermsAndNamesTheVerdict) {
+  SessionStatus session;
+  session.collecting = true;
+  session.elapsed = 3;
+  session.target = 30;
+  session.reasons = {"why not"};
+  const auto node = registration_node(example(), session);
+  EXPECT_EQ(resource::undeclared_terms(node), std::vector<std::string>{});
+  EXPECT_EQ(resource::undeclared_terms(registration_node({}, {})), std::vector<std::string>{});
+  const auto json = write(node, resource::Format::Json);
+  EXPECT_NE(json.find("\"Provisional\""), std::string::npos);
+  EXPECT_NE(json.find("\"collecting\""), std::string::npos);
+  const auto turtle = write(node, resource::Format::Turtle);
+  EXPECT_NE(turtle.find("ch:sessionState \"collecting\""), std::string::npos) << turtle;
+  EXPECT_NE(turtle.find("ch:verdict ch:Provisional"), std::string::npos);
+}
+
+TEST(Verdicts, HaveNamesBothWays) {
+  for (const Verdict v : {Verdict::None, Verdict::Provisional, Verdict::Good, Verdict::Refused}) {
+    EXPECT_EQ(verdict_named(name_of(v)), v);
+  }
+  EXPECT_FALSE(verdict_named("good"));
+}
+
+}  // namespace
+}  // namespace chorus::wire
