@@ -41,7 +41,7 @@ TEST(Recording, ReadsBackWhatWasWritten) {
   const auto read = read_recording(folder / "a.mcap");
   ASSERT_TRUE(read) << to_string(read.error());
   EXPECT_FALSE(read->truncated);
-  EXPECT_THAT(read->notes, testing::IsEmpty());
+  EXPECT_THAT(read->notes, ::testing::IsEmpty());
   ASSERT_EQ(read->messages.size(), 101u);
   EXPECT_EQ(read->messages[7].topic, "/frame");
   EXPECT_EQ(read->messages[7].data, "{\"n\":7}");
@@ -67,7 +67,7 @@ TEST(Recording, UnsortedMessagesAreSortedStably) {
   ASSERT_TRUE(read);
   std::vector<std::uint32_t> order;
   for (const Message& m : read->messages) order.push_back(m.sequence);
-  EXPECT_THAT(order, testing::ElementsAre(1, 1, 1, 3, 5));
+  EXPECT_THAT(order, ::testing::ElementsAre(1, 1, 1, 3, 5));
   EXPECT_EQ(read->messages[2].data, "last");
 }
 

@@ -12,7 +12,7 @@
 namespace chorus::synthetic {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr const char* kTake = "common/motion/assets/02_01.amc";  // CMU: a few steps straight on
 constexpr Duration kStep = std::chrono::milliseconds(1);
