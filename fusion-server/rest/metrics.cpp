@@ -3,12 +3,12 @@
 namespace chorus::rest {
 namespace {
 
-using Metric = endpoint::MetricsText::Metric;
+using Metric = service::MetricsText::Metric;
 
 double number(std::uint64_t count) { return static_cast<double>(count); }
 
-void add_sensor(endpoint::MetricsText& out, const SensorStatus& s) {
-  const endpoint::Labels labels{{"sensor", s.id.str()}};
+void add_sensor(service::MetricsText& out, const SensorStatus& s) {
+  const service::Labels labels{{"sensor", s.id.str()}};
   out.gauge({"chorus_sensor_up", "1 while the sensor delivers frames."},
             s.state == "live" ? 1.0 : 0.0, labels);
   if (s.age) {
@@ -31,8 +31,8 @@ void add_sensor(endpoint::MetricsText& out, const SensorStatus& s) {
               number(s.failures), labels);
 }
 
-void add_output(endpoint::MetricsText& out, const Sink& sink) {
-  const endpoint::Labels labels{{"output", std::string(sink.name())}};
+void add_output(service::MetricsText& out, const Sink& sink) {
+  const service::Labels labels{{"output", std::string(sink.name())}};
   const SinkCounters counters = sink.counters();
   out.counter({"chorus_output_frames_total", "Fused frames handed to the protocol."},
               number(counters.frames), labels);
@@ -51,7 +51,7 @@ void add_output(endpoint::MetricsText& out, const Sink& sink) {
 
 std::string metrics_text(const Status& status, const std::vector<std::unique_ptr<Sink>>& outputs,
                          const http::ServerCounters& http) {
-  endpoint::MetricsText out;
+  service::MetricsText out;
   const Counters& counters = status.counters;
   out.counter({"chorus_fused_frames_total", "Fused frames published."}, number(counters.ticks));
   out.counter({"chorus_skipped_frames_total", "Instants left out because we were too late."},
@@ -74,7 +74,7 @@ std::string metrics_text(const Status& status, const std::vector<std::unique_ptr
             number(status.registration.sensors.size()));
   for (const SensorStatus& sensor : status.sensors) add_sensor(out, sensor);
   for (const auto& sink : outputs) add_output(out, *sink);
-  endpoint::add_server(out, http);
+  service::add_server(out, http);
   return out.text();
 }
 

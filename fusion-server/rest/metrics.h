@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "common/endpoint/metrics.h"
 #include "common/http/server.h"
+#include "common/service/metrics.h"
 #include "fusion-server/sink.h"
 #include "fusion-server/status.h"
 

@@ -190,7 +190,7 @@ Result<FusionConfig> read_fusion_config(std::string_view text, std::string_view 
   outputs::read_outputs(root->child("outputs"), config.outputs);
   root->read("state_dir", config.state_dir);
   root->read("viewer_dir", config.viewer_dir);
-  endpoint::read_recording(root->child("recording"), config.recording);
+  service::read_recording(root->child("recording"), config.recording);
   if (auto ok = root->finish(); !ok) return pass(ok);
   return config;
 }

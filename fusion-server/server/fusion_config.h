@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/base/result.h"
-#include "common/endpoint/recordings.h"
 #include "common/http/server.h"
+#include "common/service/recordings.h"
 #include "fusion-server/core/registration_session.h"
 #include "fusion-server/core/tick_schedule.h"
 #include "fusion-server/outputs/outputs.h"
@@ -30,7 +30,7 @@ struct FusionConfig {
   outputs::OutputsConfig outputs;
   std::string registration_file;  ///< Given extrinsics; empty: registered from a walk.
   std::string state_dir;          ///< Where the registration survives a restart; empty: nowhere.
-  endpoint::RecordingConfig recording;
+  service::RecordingConfig recording;
   std::string viewer_dir;  ///< Static files of /viewer/; empty: no viewer.
 };
 

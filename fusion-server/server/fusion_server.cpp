@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/base/log.h"
-#include "common/endpoint/endpoint.h"
+#include "common/service/common_resources.h"
 #include "fusion-server/rest/frame_resources.h"
 #include "fusion-server/rest/metrics.h"
 #include "fusion-server/rest/registration_resources.h"
@@ -71,7 +71,7 @@ Result<Registration> initial_registration(const FusionConfig& config) {
   return std::move(**stored);
 }
 
-endpoint::Health health_of(const Status& status) {
+service::Health health_of(const Status& status) {
   std::size_t live = 0;
   for (const SensorStatus& sensor : status.sensors) live += sensor.state == "live" ? 1 : 0;
   if (live == 0) return {false, "none of the sensors delivers frames; see /sensors/"};
@@ -81,10 +81,10 @@ endpoint::Health health_of(const Status& status) {
   return {true, {}};
 }
 
-endpoint::RecordingsOptions recordings_options(const FusionConfig& config,
-                                               const rest::RestContext& context,
-                                               std::shared_ptr<const Clock> clock) {
-  endpoint::RecordingsOptions options;
+service::RecordingsOptions recordings_options(const FusionConfig& config,
+                                              const rest::RestContext& context,
+                                              std::shared_ptr<const Clock> clock) {
+  service::RecordingsOptions options;
   options.config = config.recording;
   options.head.metadata["title"] = config.title;
   options.has_fused = true;
@@ -131,7 +131,7 @@ struct FusionServer::Impl {
   std::optional<rest::FrameResources> frames;
   std::optional<rest::SensorResources> sensors;
   std::optional<rest::RegistrationResources> registration;
-  std::optional<endpoint::Recordings> recordings;
+  std::optional<service::Recordings> recordings;
   std::optional<RecordingTap> tap;
   std::unique_ptr<http::Server> http;
   std::unique_ptr<PipelineLoop> loop;
@@ -157,13 +157,13 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   sensors->add_routes(*router);
   registration->add_routes(*router);
   rest::add_description_routes(*router, context, config.title, config.viewer_dir);
-  endpoint::EndpointOptions endpoint;
-  endpoint.clock = clock;
-  endpoint.health = [this] { return health_of(status_now()); };
-  endpoint.metrics = [this] {
+  service::CommonResources common;
+  common.clock = clock;
+  common.health = [this] { return health_of(status_now()); };
+  common.metrics = [this] {
     return rest::metrics_text(status_now(), sinks, http->counters()) + recordings->metrics_text();
   };
-  endpoint::add_routes(*router, endpoint);
+  service::add_routes(*router, common);
   return router;
 }
 

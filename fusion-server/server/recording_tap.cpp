@@ -7,7 +7,7 @@
 
 namespace chorus::server {
 
-using endpoint::Recordings;
+using service::Recordings;
 
 void RecordingTap::publish(std::shared_ptr<const Snapshot> snapshot) {
   const auto recorder = recordings_.recorder(Recordings::Stream::Fused);

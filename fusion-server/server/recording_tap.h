@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "common/endpoint/recordings.h"
+#include "common/service/recordings.h"
 #include "common/time/clock.h"
 #include "fusion-server/flow.h"
 #include "fusion-server/sink.h"
@@ -15,7 +15,7 @@ namespace chorus::server {
 
 class RecordingTap final : public Sink {
  public:
-  RecordingTap(endpoint::Recordings& recordings, std::shared_ptr<const Clock> clock)
+  RecordingTap(service::Recordings& recordings, std::shared_ptr<const Clock> clock)
       : recordings_(recordings), clock_(std::move(clock)) {}
 
   [[nodiscard]] std::string_view name() const override { return "recording"; }
@@ -28,7 +28,7 @@ class RecordingTap final : public Sink {
   void places(const Registration& registration);
 
  private:
-  endpoint::Recordings& recordings_;
+  service::Recordings& recordings_;
   std::shared_ptr<const Clock> clock_;
   std::weak_ptr<record::Recorder> told_;
   std::uint64_t told_version_ = 0;

@@ -1,12 +1,12 @@
 #include "services/sensor/metrics_text.h"
 
-#include "common/endpoint/metrics.h"
+#include "common/service/metrics.h"
 
 namespace chorus::sensor_service {
 
 std::string metrics_text(const ServiceCounters& service, const http::ServerCounters& server) {
   const auto number = [](std::uint64_t n) { return static_cast<double>(n); };
-  endpoint::MetricsText text;
+  service::MetricsText text;
   text.counter({"chorus_frames_captured_total", "Frames published."}, number(service.captured));
   text.counter({"chorus_frames_lost_total", "Gaps in the device's numbering."},
                number(service.lost));
@@ -16,7 +16,7 @@ std::string metrics_text(const ServiceCounters& service, const http::ServerCount
                number(service.failures));
   text.gauge({"chorus_bodies", "Bodies in the latest frame."}, number(service.bodies));
   text.gauge({"chorus_frame_age_seconds", "Since the latest frame arrived."}, service.age_s);
-  endpoint::add_server(text, server);
+  service::add_server(text, server);
   return text.text();
 }
 

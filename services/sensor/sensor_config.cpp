@@ -59,7 +59,7 @@ SensorConfig read_config(ConfigReader& root) {
   config.frames_kept = static_cast<std::size_t>(frames_kept);
   read_clock_errors(root.child("clock"), config.clock);
   read_log(root.child("log"), config.log);
-  endpoint::read_recording(root.child("recording"), config.recording);
+  service::read_recording(root.child("recording"), config.recording);
   return config;
 }
 

@@ -9,8 +9,8 @@
 #include "common/base/config_reader.h"
 #include "common/base/log.h"
 #include "common/base/strong_id.h"
-#include "common/endpoint/recordings.h"
 #include "common/sensor/frame_source.h"
+#include "common/service/recordings.h"
 #include "common/time/clock.h"
 #include "services/sensor/host_clock.h"
 
@@ -39,7 +39,7 @@ struct SensorConfig {
   std::size_t frames_kept = 90;
   ClockErrors clock;  ///< Of a simulated host; a real one's is as NTP keeps it.
   LogConfig log;
-  endpoint::RecordingConfig recording;
+  service::RecordingConfig recording;
 
   bool operator==(const SensorConfig&) const = default;
 };

@@ -35,12 +35,12 @@ ServiceOptions service_options(const Setup& setup) {
   return options;
 }
 
-endpoint::RecordingsOptions recordings_options(const Setup& setup, const ServiceOptions& service) {
+service::RecordingsOptions recordings_options(const Setup& setup, const ServiceOptions& service) {
   record::FrameRecording about;
   about.sensor = service.id;
   about.device = service.device.label;
   about.intrinsics = service.device.depth_camera;
-  endpoint::RecordingsOptions options;
+  service::RecordingsOptions options;
   options.config = setup.config.recording;
   options.head = {record::metadata_of(about), true};
   options.run = service.serving.run;
@@ -112,13 +112,13 @@ std::shared_ptr<http::Router> SensorHost::routes() {
   auto router = std::make_shared<http::Router>();
   service_.add_routes(*router);
   recordings_.add_routes(*router);
-  endpoint::EndpointOptions options;
+  service::CommonResources options;
   options.clock = setup_.clock;
   options.health = [this] { return service_.health(); };
   options.metrics = [this] {
     return metrics_text(service_.counters(), server_.counters()) + recordings_.metrics_text();
   };
-  endpoint::add_routes(*router, options);
+  service::add_routes(*router, options);
   return router;
 }
 
@@ -139,7 +139,7 @@ Result<void> SensorHost::start() {
 }
 
 void SensorHost::record(const Sight& sight) {
-  const auto recorder = recordings_.recorder(endpoint::Recordings::Stream::Raw);
+  const auto recorder = recordings_.recorder(service::Recordings::Stream::Raw);
   if (!recorder) return;
   recorder->offer(
       record::RawFrame{setup_.config.id, sight.frame, setup_.clock->now(), sight.floor, {}});

@@ -6,8 +6,8 @@
 #include <string>
 #include <thread>
 
-#include "common/endpoint/recordings.h"
 #include "common/http/server.h"
+#include "common/service/recordings.h"
 #include "services/sensor/command_line.h"
 #include "services/sensor/sensor_config.h"
 #include "services/sensor/sensor_service.h"
@@ -39,7 +39,7 @@ class SensorHost {
   std::optional<Result<void>> run_once(const std::stop_token& stop, const FrameSource::Sink& sink);
 
   Setup setup_;
-  endpoint::Recordings recordings_;
+  service::Recordings recordings_;
   SensorService service_;
   http::Server server_;
   std::jthread device_;

@@ -102,7 +102,7 @@ void SensorService::on_device_end(const Result<void>& how) {
   ended_ = how ? "the device has come to its end" : "the device failed: " + to_string(how.error());
 }
 
-endpoint::Health SensorService::health() const {
+service::Health SensorService::health() const {
   const std::lock_guard lock(mutex_);
   if (!ended_.empty()) return {false, ended_};
   if (!sight_) return {false, "no frame has been captured yet"};

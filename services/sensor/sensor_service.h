@@ -11,10 +11,10 @@
 #include <string>
 
 #include "common/base/rate_report.h"
-#include "common/endpoint/endpoint.h"
 #include "common/http/live_document.h"
 #include "common/http/router.h"
 #include "common/sensor/frame_source.h"
+#include "common/service/common_resources.h"
 #include "services/sensor/image_desk.h"
 #include "services/sensor/recent_frames.h"
 #include "services/sensor/sight.h"
@@ -60,10 +60,10 @@ class SensorService {
   /// Work for a thread of its own: blocks until images are due, encodes them; false when stopped.
   bool encode_next(const std::stop_token& stop) noexcept;
 
-  [[nodiscard]] endpoint::Health health() const;
+  [[nodiscard]] service::Health health() const;
   [[nodiscard]] ServiceCounters counters() const;
 
-  /// All resources but those of common/endpoint.  The service must outlive the router.
+  /// All resources but those of common/service.  The service must outlive the router.
   void add_routes(http::Router& router);
 
  private:

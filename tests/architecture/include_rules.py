@@ -14,7 +14,7 @@ ROWS = [
     ["common/sensor"],
     ["common/motion", "common/resource"],
     ["common/record"],
-    ["common/synthetic", "common/endpoint", "common/importers", "common/exporters"],
+    ["common/synthetic", "common/service", "common/importers", "common/exporters"],
     ["fusion-server/flow.h"],
     ["fusion-server/status.h", "fusion-server/sink.h"],
     ["fusion-server/align", "fusion-server/facing", "fusion-server/associate", "fusion-server/fusion"],
@@ -40,11 +40,11 @@ NO_SOCKET = {"fusion-server/core", "fusion-server/pipeline"} | VALUE_HEADERS | S
 # (who, what they may not include, why)
 FORBIDDEN_ROOMS = [
     (FUSION_SERVER, {"common/synthetic"}, "what judges an algorithm must not feed it"),
-    (STAGES, {"common/http", "common/resource", "common/record", "common/endpoint", "common/rdf"},
+    (STAGES, {"common/http", "common/resource", "common/record", "common/service", "common/rdf"},
      "stages know values, not their wire forms"),
     (STAGES - {"fusion-server/registration"}, STAGES, "stages meet in flow.h only"),
     ({"fusion-server/registration"}, STAGES - {"fusion-server/align"}, "registration may use align only"),
-    (NO_SOCKET, {"common/http", "common/endpoint"}, "no socket here"),
+    (NO_SOCKET, {"common/http", "common/service"}, "no socket here"),
     ({"services/sensor"}, FUSION_SERVER, "running services meet over HTTP"),
     (FUSION_SERVER, {"services/sensor"}, "running services meet over HTTP"),
 ]

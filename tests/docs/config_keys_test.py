@@ -9,8 +9,8 @@ ROOT = Path(__file__).resolve().parents[2]
 # Which code reads which file.
 READERS = {
     "fusion.json": ["fusion-server/server", "fusion-server/outputs", "fusion-server/outlet", "fusion-server/vrpn", "fusion-server/dtrack",
-                    "fusion-server/natnet", "fusion-server/trackd", "fusion-server/osc", "fusion-server/mxtp", "common/endpoint"],
-    "sensor.json": ["services/sensor", "common/endpoint"],
+                    "fusion-server/natnet", "fusion-server/trackd", "fusion-server/osc", "fusion-server/mxtp", "common/service"],
+    "sensor.json": ["services/sensor", "common/service"],
 }
 READ = re.compile(r"""(?:(?:\.|->)(?:read(?:_ms|_s|_deg|_choice)?|child|items)\(|\bread_\w+\(\w+,|\bvisit\(|\bread_mb\()\s*"([A-Za-z0-9_]+)\"""")
 KEY_LINE = re.compile(r'^\s*"([A-Za-z0-9_]+)"\s*:')

@@ -1,4 +1,4 @@
-#include "common/endpoint/recording_request.h"
+#include "common/service/recording_request.h"
 
 #include <utility>
 
@@ -7,7 +7,7 @@
 #include "common/record/recording_index.h"
 #include "common/resource/json_guard.h"
 
-namespace chorus::endpoint {
+namespace chorus::service {
 namespace {
 
 constexpr double kLongest = 7 * 24 * 3600.0;  // [s]
@@ -59,4 +59,4 @@ Result<RecordingRequest> parse_recording_request(std::string_view body, bool has
   return request;
 }
 
-}  // namespace chorus::endpoint
+}  // namespace chorus::service

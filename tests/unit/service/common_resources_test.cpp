@@ -1,4 +1,4 @@
-#include "common/endpoint/endpoint.h"
+#include "common/service/common_resources.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include "common/http/route_table.h"
 #include "proto/embedded.h"
 
-namespace chorus::endpoint {
+namespace chorus::service {
 namespace {
 
 using testing::HasSubstr;
@@ -103,4 +103,4 @@ TEST(Endpoint, ClockHealthAndMetricsAreOptional) {
 }
 
 }  // namespace
-}  // namespace chorus::endpoint
+}  // namespace chorus::service

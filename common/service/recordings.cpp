@@ -1,4 +1,4 @@
-#include "common/endpoint/recordings.h"
+#include "common/service/recordings.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 #include "common/base/log.h"
 
-namespace chorus::endpoint {
+namespace chorus::service {
 namespace {
 
 namespace fs = std::filesystem;
@@ -304,4 +304,4 @@ std::string Recordings::metrics_text() const {
   return text.text();
 }
 
-}  // namespace chorus::endpoint
+}  // namespace chorus::service

@@ -9,7 +9,7 @@
 #include "common/http/router.h"
 #include "common/time/clock.h"
 
-namespace chorus::endpoint {
+namespace chorus::service {
 
 /// Health for a load balancer: 200 when ready, 503 with the reason when not.
 struct Health {
@@ -17,13 +17,13 @@ struct Health {
   std::string reason;
 };
 
-struct EndpointOptions {
+struct CommonResources {
   std::shared_ptr<const Clock> clock;  ///< Null: the host's.
   std::function<Health()> health;      ///< Empty: always ready.
   std::function<std::string()>
       metrics;  ///< Prometheus text (metrics.h), complete; empty: no /metrics.
 };
 
-void add_routes(http::Router& router, const EndpointOptions& options);
+void add_routes(http::Router& router, const CommonResources& options);
 
-}  // namespace chorus::endpoint
+}  // namespace chorus::service

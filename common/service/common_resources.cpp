@@ -1,4 +1,4 @@
-#include "common/endpoint/endpoint.h"
+#include "common/service/common_resources.h"
 
 #include <string_view>
 #include <utility>
@@ -9,7 +9,7 @@
 #include "common/time/ntp_status.h"
 #include "proto/embedded.h"
 
-namespace chorus::endpoint {
+namespace chorus::service {
 namespace {
 
 using http::DocumentOptions;
@@ -102,7 +102,7 @@ void add_fixed(http::Router& router) {
 
 }  // namespace
 
-void add_routes(http::Router& router, const EndpointOptions& options) {
+void add_routes(http::Router& router, const CommonResources& options) {
   std::shared_ptr<const Clock> clock = options.clock;
   if (!clock) clock = std::make_shared<SystemClock>();
   router.get("/clock", [clock](const Request&, const PathParams&) -> Result<DocumentPtr> {
@@ -120,4 +120,4 @@ void add_routes(http::Router& router, const EndpointOptions& options) {
   add_fixed(router);
 }
 
-}  // namespace chorus::endpoint
+}  // namespace chorus::service

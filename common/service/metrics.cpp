@@ -1,4 +1,4 @@
-#include "common/endpoint/metrics.h"
+#include "common/service/metrics.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace chorus::endpoint {
+namespace chorus::service {
 namespace {
 
 std::string number(double value) {
@@ -128,4 +128,4 @@ void add_server(MetricsText& text, const http::ServerCounters& counters) {
   for (const Row& row : now) text.gauge({row.name, row.help}, static_cast<double>(row.value));
 }
 
-}  // namespace chorus::endpoint
+}  // namespace chorus::service

@@ -12,13 +12,13 @@
 #include <string_view>
 
 #include "common/base/config_reader.h"
-#include "common/endpoint/metrics.h"
-#include "common/endpoint/recording_request.h"
 #include "common/http/router.h"
 #include "common/record/recorder.h"
 #include "common/resource/node.h"
+#include "common/service/metrics.h"
+#include "common/service/recording_request.h"
 
-namespace chorus::endpoint {
+namespace chorus::service {
 
 struct RecordingConfig {
   std::string folder;  ///< Empty: nothing is recorded.
@@ -91,4 +91,4 @@ class Recordings {
   std::uint64_t failed_ = 0;
 };
 
-}  // namespace chorus::endpoint
+}  // namespace chorus::service

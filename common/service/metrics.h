@@ -11,7 +11,7 @@
 #include "common/base/histogram.h"
 #include "common/http/server.h"
 
-namespace chorus::endpoint {
+namespace chorus::service {
 
 using Labels = std::vector<std::pair<std::string, std::string>>;
 
@@ -46,4 +46,4 @@ class MetricsText {
 /// chorus_http_*: what every server counts.
 void add_server(MetricsText& text, const http::ServerCounters& counters);
 
-}  // namespace chorus::endpoint
+}  // namespace chorus::service

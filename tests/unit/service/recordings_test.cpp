@@ -1,4 +1,4 @@
-#include "common/endpoint/recordings.h"
+#include "common/service/recordings.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include "common/http/server.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chorus::endpoint {
+namespace chorus::service {
 namespace {
 
 using record::RecordingState;
@@ -239,4 +239,4 @@ TEST(RecordingNode, SpeaksOnlyDeclaredTerms) {
 }
 
 }  // namespace
-}  // namespace chorus::endpoint
+}  // namespace chorus::service

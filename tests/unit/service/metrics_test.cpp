@@ -1,11 +1,11 @@
-#include "common/endpoint/metrics.h"
+#include "common/service/metrics.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-namespace chorus::endpoint {
+namespace chorus::service {
 namespace {
 
 TEST(MetricsText, WritesHelpTypeAndSamples) {
@@ -74,4 +74,4 @@ TEST(AddServer, NamesEveryCounter) {
 }
 
 }  // namespace
-}  // namespace chorus::endpoint
+}  // namespace chorus::service

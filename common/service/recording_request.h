@@ -7,7 +7,7 @@
 #include "common/base/result.h"
 #include "common/time/timestamp.h"
 
-namespace chorus::endpoint {
+namespace chorus::service {
 
 /// The body of POST /recordings/.
 struct RecordingRequest {
@@ -21,4 +21,4 @@ struct RecordingRequest {
 [[nodiscard]] Result<RecordingRequest> parse_recording_request(std::string_view body,
                                                                bool has_fused);
 
-}  // namespace chorus::endpoint
+}  // namespace chorus::service
