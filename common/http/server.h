@@ -23,6 +23,8 @@ struct ServerLimits {
   std::chrono::seconds body_timeout{10};
   std::chrono::seconds write_timeout{10};
   std::chrono::seconds max_wait{30};  ///< Cap on Prefer: wait=N.
+
+  bool operator==(const ServerLimits&) const = default;
 };
 
 struct ServerConfig {
@@ -32,6 +34,8 @@ struct ServerConfig {
   std::string allowed_origin = "*";
   std::shared_ptr<const Clock> clock = {};  ///< Stamps Chorus-Clock and Date; null: the host's.
   ServerLimits limits = {};
+
+  bool operator==(const ServerConfig&) const = default;
 };
 
 /// What /metrics tells; each counter only grows.

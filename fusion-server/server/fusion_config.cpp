@@ -7,6 +7,7 @@
 #include "common/base/config_reader.h"
 #include "common/base/file.h"
 #include "common/resource/contributors.h"
+#include "common/service/http_config.h"
 #include "fusion-server/rest/registration_resources.h"
 
 namespace chorus::server {
@@ -14,15 +15,6 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
-
-void read_http(ConfigReader reader, http::ServerConfig& out) {
-  reader.read("address", out.address);
-  int port = out.port;
-  reader.read("port", port, 0, 65535);
-  out.port = static_cast<std::uint16_t>(port);
-  reader.read("bearer_token", out.bearer_token);
-  reader.read("allowed_origin", out.allowed_origin);
-}
 
 void read_noise(ConfigReader& reader, fusion::NoiseModel& out) {
   reader.read("along_m", out.along, 1e-4, 1.0);
@@ -160,11 +152,6 @@ void read_registration(ConfigReader reader, FusionConfig& out) {
   read_pairing(reader, out.registration);
 }
 
-bool same_address(const http::ServerConfig& a, const http::ServerConfig& b) {
-  return a.address == b.address && a.port == b.port && a.bearer_token == b.bearer_token &&
-         a.allowed_origin == b.allowed_origin;
-}
-
 }  // namespace
 
 Result<FusionConfig> read_fusion_config(std::string_view text, std::string_view origin,
@@ -177,7 +164,7 @@ Result<FusionConfig> read_fusion_config(std::string_view text, std::string_view 
   FusionConfig config;
   config.http.port = 8080;
   root->read("title", config.title);
-  read_http(root->child("http"), config.http);
+  service::read_http(root->child("http"), config.http);
   read_poll(root->child("poll"), config.poll);
   read_output(root->child("output"), config);
   read_align(root->child("align"), config.pipeline.align);
@@ -213,7 +200,7 @@ std::string needs_restart(const FusionConfig& now, const FusionConfig& next) {
     if (!keys.empty()) keys += ", ";
     keys += key;
   };
-  add(!same_address(now.http, next.http), "http");
+  add(now.http != next.http, "http");
   add(now.title != next.title, "title");
   add(now.poll != next.poll, "poll");
   add(now.history != next.history, "output.history_s");

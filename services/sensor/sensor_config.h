@@ -9,6 +9,7 @@
 #include "common/base/config_reader.h"
 #include "common/base/log.h"
 #include "common/base/strong_id.h"
+#include "common/http/server.h"
 #include "common/sensor/frame_source.h"
 #include "common/service/recordings.h"
 #include "common/time/clock.h"
@@ -23,18 +24,9 @@ struct LogConfig {
   bool operator==(const LogConfig&) const = default;
 };
 
-struct HttpConfig {
-  std::string address = "127.0.0.1";
-  std::uint16_t port = 8081;
-  std::string bearer_token;  ///< For writing methods; empty: only from loopback.
-  std::string allowed_origin = "*";
-
-  bool operator==(const HttpConfig&) const = default;
-};
-
 struct SensorConfig {
   SensorId id;
-  HttpConfig http;
+  http::ServerConfig http = {.port = 8081};
   bool images = false;
   std::size_t frames_kept = 90;
   ClockErrors clock;  ///< Of a simulated host; a real one's is as NTP keeps it.

@@ -50,11 +50,7 @@ service::RecordingsOptions recordings_options(const Setup& setup, const ServiceO
 }
 
 http::ServerConfig server_config(const Setup& setup) {
-  http::ServerConfig config;
-  config.address = setup.config.http.address;
-  config.port = setup.config.http.port;
-  config.bearer_token = setup.config.http.bearer_token;
-  config.allowed_origin = setup.config.http.allowed_origin;
+  http::ServerConfig config = setup.config.http;
   config.clock = setup.clock;
   return config;
 }

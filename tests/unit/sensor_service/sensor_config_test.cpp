@@ -39,7 +39,7 @@ TEST(SensorConfig, EveryKeyIsRead) {
                   "clock.step_after_s=30", "log.level=warn", "log.format=json"});
   const SensorConfig& config = setup.config;
   EXPECT_EQ(config.id.str(), "cam-2");
-  EXPECT_EQ(config.http, (HttpConfig{"0.0.0.0", 9000, "secret", "http://a"}));
+  EXPECT_EQ(config.http, (http::ServerConfig{"0.0.0.0", 9000, "secret", "http://a"}));
   EXPECT_TRUE(config.images);
   EXPECT_EQ(config.frames_kept, 7u);
   EXPECT_EQ(config.clock, (ClockErrors{std::chrono::milliseconds(-250), 50e-6,
