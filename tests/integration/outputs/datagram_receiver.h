@@ -14,7 +14,7 @@
 
 #include "tests/support/free_port.h"
 
-namespace chorus::testing {
+namespace chorus::outlet::testing {
 
 class DatagramReceiver {
  public:
@@ -72,4 +72,4 @@ class DatagramReceiver {
 
 using chorus::testing::free_port;
 
-}  // namespace chorus::testing
+}  // namespace chorus::outlet::testing

@@ -16,7 +16,7 @@ namespace {
 
 using chorus::testing::IsOk;
 using http::test::RawClient;
-using testing::DatagramReceiver;
+using outlet::testing::DatagramReceiver;
 using namespace std::string_literals;
 
 std::shared_ptr<const Snapshot> somebody(std::uint64_t sequence) {
@@ -42,7 +42,7 @@ OutputsConfig dtrack_to(const std::vector<std::string>& targets) {
   OutputsConfig config;
   config.dtrack.common.enabled = true;
   config.dtrack.protocol.targets = targets;
-  config.dtrack.protocol.source_port = testing::free_port();
+  config.dtrack.protocol.source_port = outlet::testing::free_port();
   return config;
 }
 
@@ -124,7 +124,7 @@ TEST(DtrackOutput, SendsToTheClientInControlAtThePortItOpened) {
     settings.commands = true;
     settings.send_to_client = allowed;
     // Port 0 would hide which one it is.
-    settings.command.port = testing::free_port();
+    settings.command.port = outlet::testing::free_port();
     const auto sink = sink_of(config);
     ASSERT_TRUE(sink);
     RawClient commands(static_cast<std::uint16_t>(settings.command.port));
@@ -153,7 +153,7 @@ TEST(VmcOutput, SendsBundlesOfThePersonInItsSlot) {
   std::size_t bones = 0;
   for (int datagrams = 0; datagrams < 2; ++datagrams) {
     const std::string bytes = receiver.next();
-    for (const auto& message : testing::OscReader(bytes).packet()) {
+    for (const auto& message : outlet::testing::OscReader(bytes).packet()) {
       bones += message.address == "/VMC/Ext/Bone/Pos" ? 1 : 0;
     }
   }
@@ -169,7 +169,7 @@ TEST(VmcOutput, SaysThatNobodyIsInAnEmptySlot) {
   const auto sink = sink_of(config);
   ASSERT_TRUE(sink);
   sink->publish(somebody(1));
-  const auto messages = testing::OscReader(receiver.next()).packet();
+  const auto messages = outlet::testing::OscReader(receiver.next()).packet();
   ASSERT_EQ(messages.size(), 2u);
   EXPECT_EQ(messages.at(0).numbers.back(), 0.0);
 }
@@ -182,7 +182,7 @@ TEST(VrChatOutput, SendsOneMessageADatagram) {
   const auto sink = sink_of(config);
   ASSERT_TRUE(sink);
   sink->publish(somebody(1));
-  const auto first = testing::OscReader(receiver.next()).packet();
+  const auto first = outlet::testing::OscReader(receiver.next()).packet();
   EXPECT_EQ(first.at(0).address, "/tracking/trackers/1/position");
   EXPECT_EQ(first.at(0).numbers.at(2), -2.0);
   for (int i = 1; i < 18; ++i) EXPECT_FALSE(receiver.next().empty()) << i;

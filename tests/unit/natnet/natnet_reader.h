@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-namespace chorus::testing {
+namespace chorus::outlet::testing {
 
 class NatNetReader {
  public:
@@ -59,4 +59,4 @@ class NatNetReader {
   std::size_t at_ = 0;
 };
 
-}  // namespace chorus::testing
+}  // namespace chorus::outlet::testing

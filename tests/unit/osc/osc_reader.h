@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace chorus::testing {
+namespace chorus::outlet::testing {
 
 struct OscMessage {
   std::string address;
@@ -98,4 +98,4 @@ inline std::vector<OscMessage> read_osc(const std::vector<std::vector<char>>& da
   return all;
 }
 
-}  // namespace chorus::testing
+}  // namespace chorus::outlet::testing

@@ -7,7 +7,7 @@
 #include "common/base/units.h"
 #include "fusion-server/outlet/tracker_frame.h"
 
-namespace chorus::testing {
+namespace chorus::outlet::testing {
 
 /// Exactly at rest: looks along -z, its left hand at -x, pelvis 0.95 m above the floor at x, z = 0.
 /// No joint has an orientation of its own.
@@ -105,4 +105,4 @@ inline outlet::TrackerBody asymmetric_pose() {
   return body;
 }
 
-}  // namespace chorus::testing
+}  // namespace chorus::outlet::testing

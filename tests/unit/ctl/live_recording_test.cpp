@@ -13,7 +13,7 @@
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
-namespace chorus::client {
+namespace chorus::ctl {
 namespace {
 
 using chorus::testing::IsOk;
@@ -111,4 +111,4 @@ TEST_F(BrokenCell, MakesTheCommandFailThoughSomethingCame) {
 }
 
 }  // namespace
-}  // namespace chorus::client
+}  // namespace chorus::ctl
