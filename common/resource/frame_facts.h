@@ -66,6 +66,9 @@ template <class T>
 /// write it.
 [[nodiscard]] std::optional<FrameResource> read_template(std::string_view turtle);
 
+/// The same of our own JSON (not JSON-LD); whatever it accepts, read_json_frame() reads alike.
+[[nodiscard]] std::optional<FrameResource> read_json_template(std::string_view json);
+
 [[nodiscard]] Result<FrameResource> read_rdf_frame(std::string_view text, Format format);
 [[nodiscard]] Result<FrameResource> read_json_frame(std::string_view text);
 

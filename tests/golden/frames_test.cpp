@@ -101,6 +101,11 @@ TEST(Golden, PerfectIsTheSameFrameInEveryFormat) {
       ASSERT_TRUE(other) << file << extension << ": " << to_string(other.error());
       EXPECT_EQ(difference(*turtle, *other), "") << file << extension;
     }
+    const std::string json = contents(with_extension(file, ".json"));
+    const auto parsed = read_json_frame(json);
+    const auto fast = read_json_template(json);
+    ASSERT_TRUE(parsed && fast) << file << ": both JSON readers know what we write";
+    EXPECT_EQ(difference(*parsed, *fast), "") << file;
     rdf::ReadOptions options;
     options.base = "http://localhost/";
     const auto triples =

@@ -1,5 +1,5 @@
 // Any bytes as a frame in every format: an answer or an Error, never a crash; what is accepted can
-// be written and read again, and the template reader never accepts what the parser refuses.
+// be written and read again, and the template readers never accept what the parsers refuse.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -35,6 +35,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   round_trip(text, Format::Json);
   if (chorus::resource::read_template(text)) {
     require(chorus::resource::read_rdf_frame(text, Format::Turtle).has_value());
+  }
+  if (chorus::resource::read_json_template(text)) {
+    require(chorus::resource::read_json_frame(text).has_value());
   }
   (void)chorus::rdf::read_graph(text, {chorus::rdf::Syntax::NTriples, {}, {}});
   (void)chorus::rdf::read_graph(text, {chorus::rdf::Syntax::Turtle, "http://h/frame", {}});

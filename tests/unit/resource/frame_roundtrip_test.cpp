@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "common/rdf/turtle_reader.h"
 #include "common/rdf/turtle_writer.h"
@@ -43,6 +44,67 @@ TEST(FrameRoundTrip, TheParserAndTheTemplateReaderAgree) {
     ASSERT_TRUE(parsed) << to_string(parsed.error());
     EXPECT_EQ(difference(*fast, *parsed), "");
     EXPECT_EQ(difference(*fast, frame), "");
+  }
+}
+
+/// A frame whose ids all survive plain JSON; larger ones are written as strings, which the template
+/// leaves to the parser.
+FrameResource json_frame(std::uint64_t seed) {
+  FrameResource frame = random_frame(seed, kind_of(seed));
+  for (std::size_t i = 0; i < frame.bodies.size(); ++i) frame.bodies[i].id = seed + i;
+  return frame;
+}
+
+/// The template reader answers only where the parser answers the same.
+void expect_the_parser_agrees(const std::string& text) {
+  const auto fast = read_json_template(text);
+  if (!fast) return;
+  const auto parsed = read_json_frame(text);
+  ASSERT_TRUE(parsed) << "only the template reader takes " << text;
+  EXPECT_EQ(difference(*fast, *parsed), "") << text;
+}
+
+TEST(FrameRoundTrip, TheJsonParserAndTheJsonTemplateReaderAgree) {
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const FrameResource frame = json_frame(seed);
+    for (const Place& place : {Place{}, Place{"sensors/s1/frame", "sensors/s1/"}}) {
+      const std::string text = write(frame, Format::Json, place);
+      const auto fast = read_json_template(text);
+      ASSERT_TRUE(fast) << "the template reader must know our own bytes: " << text;
+      EXPECT_EQ(difference(*fast, frame), "");
+      expect_the_parser_agrees(text);
+    }
+  }
+}
+
+TEST(FrameRoundTrip, TheJsonTemplateReaderTakesNothingTheParserRefuses) {
+  constexpr std::string_view kBytes = "0123456789.-+eE\"\\{}[],: aTs\n\x80";
+  std::mt19937_64 dice(7);
+  const auto pick = [&dice](std::size_t below) { return dice() % below; };
+  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
+    std::string text = write(json_frame(seed % kSeeds), Format::Json);
+    const std::size_t at = pick(text.size());
+    const char byte = kBytes[pick(kBytes.size())];
+    if (seed % 3 == 0) text[at] = byte;
+    if (seed % 3 == 1) text.insert(at, 1, byte);
+    if (seed % 3 == 2) text.erase(at, 1 + pick(3));
+    expect_the_parser_agrees(text);
+  }
+}
+
+TEST(FrameRoundTrip, WhatOnlyLooksLikeJsonIsLeftToTheParser) {
+  const std::string text = write(json_frame(8), Format::Json);
+  const auto with = [&text](std::string_view from, std::string_view to) {
+    std::string changed = text;
+    changed.replace(changed.find(from), from.size(), to);
+    return changed;
+  };
+  for (const std::string& wrong :
+       {with("\"sequence\":", "\"sequence\":0"), with("\"sequence\":", "\"sequence\":-"),
+        with("\"x\":", "\"x\":0"), with("\"x\":", "\"x\":."), text + " ", text + "{}",
+        with("T", " "), with("\"bodies\":[", "\"bodies\":[,")}) {
+    EXPECT_FALSE(read_json_template(wrong)) << wrong.substr(0, 300);
+    expect_the_parser_agrees(wrong);
   }
 }
 

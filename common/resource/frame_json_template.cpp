@@ -1,0 +1,119 @@
+// Reads back the JSON that frame_json.cpp writes, following its template, as frame_fast_reader.cpp
+// does with Turtle: at the first surprise the answer is nullopt, and the parser decides.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/body/bones.h"
+#include "common/resource/frame_facts.h"
+#include "common/resource/template_text.h"
+
+namespace chorus::resource {
+namespace {
+
+class JsonTemplate : TemplateText {
+ public:
+  using TemplateText::TemplateText;
+
+  std::optional<FrameResource> run() {
+    if (!head() || !bodies() || !text("}")) return std::nullopt;
+    text("\n");
+    if (!at_end()) return std::nullopt;
+    return std::move(frame_);
+  }
+
+ private:
+  bool captured(Timestamp& out) {
+    return text(",\"captured\":\"") && times("\",\"capturedNanoseconds\":\"", out) && text("\"");
+  }
+
+  bool head() {
+    if (!text("{\"@id\":\"") || !folder("frame\",\"@type\":\"Frame\",\"sequence\":", names_))
+      return false;
+    std::string_view source;
+    if (!integer(frame_.sequence) || !captured(frame_.captured)) return false;
+    if (!text(",\"source\":") || !name(source) || !text(",\"space\":\"")) return false;
+    frame_.source = source;
+    if (text("WorldSpace")) {
+      frame_.space = SpaceKind::World;
+    } else if (!text("SensorSpace")) {
+      return false;
+    }
+    if (!text("\"")) return false;
+    return !text(",\"sensors\":[") || (names(",", frame_.sensors) && text("]"));
+  }
+
+  bool bodies() {
+    if (!text(",\"bodies\":[")) return false;
+    if (text("]")) return true;
+    do {
+      if (frame_.bodies.size() == kMaxBodies || !body(frame_.bodies.emplace_back())) return false;
+    } while (text(","));
+    return text("]");
+  }
+
+  bool body(BodyResource& body) {
+    const char* const begin = here() + std::string_view("{\"@id\":\"").size();
+    std::uint64_t id = 0;
+    if (!text("{\"@id\":\"") || !text(names_) || !text("skeletons/") || !integer(body.id))
+      return false;
+    const std::string_view iri(begin, static_cast<std::size_t>(here() - begin));
+    if (!text("\",\"@type\":\"Skeleton\",\"bodyId\":") || !integer(id) || id != body.id)
+      return false;
+    const auto twin = std::ranges::find(frame_.bodies, id, &BodyResource::id);
+    if (&*twin != &body || !captured(body.captured)) return false;
+    for (std::size_t i = 0; i < kJointCount; ++i) {
+      if (!text(i == 0 ? ",\"joints\":{\"" : ",\"") || !text(kJointNames[i]) ||
+          !text("\":{\"@id\":\"") || !text(iri) || !text("#") || !text(kJointNames[i]) ||
+          !text("\",\"") || !joint(body.joints[i])) {
+        return false;
+      }
+    }
+    return text("}}");
+  }
+
+  /// From behind the quote of the first property to behind the brace.
+  bool joint(JointResource& joint) {
+    if (text("state\":\"NotTracked\"}")) return true;
+    auto& p = joint.position;
+    if (!text("x\":") || !decimal(p.x()) || !text(",\"y\":") || !decimal(p.y()) ||
+        !text(",\"z\":") || !decimal(p.z()) || !text(",\"")) {
+      return false;
+    }
+    if (text("qx\":") && !orientation(joint.orientation)) return false;
+    if (text("variance\":")) {
+      double variance = 0.0;
+      if (!decimal(variance) || variance < 0.0 || !text(",\"")) return false;
+      joint.variance = variance;
+    }
+    if (!text("state\":\"")) return false;
+    joint.state = text("Tracked") ? JointState::Tracked : JointState::Inferred;
+    if (joint.state == JointState::Inferred && !text("Inferred")) return false;
+    if (!text("\"")) return false;
+    if (text(",\"contributors\":[") && !contributors(joint.contributors)) return false;
+    return text("}");
+  }
+
+  bool contributors(std::uint64_t& bits) {
+    return text("]") || (subset(frame_.sensors, ",", bits) && text("]"));
+  }
+
+  bool orientation(Eigen::Quaterniond& q) {
+    if (!decimal(q.x()) || !text(",\"qy\":") || !decimal(q.y()) || !text(",\"qz\":") ||
+        !decimal(q.z()) || !text(",\"qw\":") || !decimal(q.w()) || !text(",\"")) {
+      return false;
+    }
+    return std::abs(q.norm() - 1.0) <= kUnitTolerance;
+  }
+
+  std::string_view names_;
+  FrameResource frame_;
+};
+
+}  // namespace
+
+std::optional<FrameResource> read_json_template(std::string_view json) {
+  return JsonTemplate(json).run();
+}
+
+}  // namespace chorus::resource

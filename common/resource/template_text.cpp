@@ -1,0 +1,106 @@
+#include "common/resource/template_text.h"
+
+#include <algorithm>
+
+#include "common/resource/contributors.h"
+
+namespace chorus::resource {
+namespace {
+
+constexpr std::size_t kIsoLength = 30;   // 2026-11-21T07:30:00.250000000Z
+constexpr std::size_t kMaxFolder = 160;  // longest folder of the names in a document
+constexpr int kMaxDigits = 15;           // exact in a double
+constexpr std::array kPowersOfTen{1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                  1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+bool plain(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || is_digit(c) || c == '_' || c == '-';
+}
+
+}  // namespace
+
+bool TemplateText::decimal(double& out) {
+  const bool negative = at_ < end_ && *at_ == '-';
+  if (negative) ++at_;
+  const char* const begin = at_;
+  std::int64_t digits = 0;
+  while (at_ < end_ && is_digit(*at_) && at_ - begin <= kMaxDigits) {
+    digits = digits * 10 + (*at_++ - '0');
+  }
+  const auto whole = at_ - begin;
+  if (whole == 0 || (*begin == '0' && whole > 1) || at_ == end_ || *at_ != '.') return false;
+  const char* const point = at_++;
+  while (at_ < end_ && is_digit(*at_) && at_ - point <= kMaxDigits) {
+    digits = digits * 10 + (*at_++ - '0');
+  }
+  const auto decimals = at_ - point - 1;
+  if (decimals == 0 || whole + decimals > kMaxDigits) return false;
+  const double value =
+      static_cast<double>(digits) / kPowersOfTen[static_cast<std::size_t>(decimals)];
+  out = negative ? -value : value;
+  return value <= kMaxCoordinate;
+}
+
+bool TemplateText::name(std::string_view& out) {
+  if (!text("\"")) return false;
+  const char* const begin = at_;
+  while (at_ < end_ && plain(*at_)) ++at_;
+  out = {begin, static_cast<std::size_t>(at_ - begin)};
+  return text("\"") && SensorId::parse(out).has_value();
+}
+
+bool TemplateText::folder(std::string_view close, std::string_view& out) {
+  const std::size_t length = rest().substr(0, kMaxFolder).find(close);
+  if (length == std::string_view::npos) return false;
+  out = rest().substr(0, length);
+  for (const char c : out) {
+    if (!plain(c) && c != '.' && c != '/') return false;
+  }
+  at_ += length + close.size();
+  return true;
+}
+
+bool TemplateText::times(std::string_view between, Timestamp& out) {
+  if (static_cast<std::size_t>(end_ - at_) < kIsoLength) return false;
+  const std::string_view iso(at_, kIsoLength);
+  at_ += kIsoLength;
+  std::int64_t ns = 0;
+  if (!text(between) || !integer(ns)) return false;
+  out = from_unix_ns(ns);
+  if (iso == iso_ && out == iso_time_) return true;
+  const auto parsed = parse_iso8601(iso);
+  if (!parsed || *parsed != out) return false;
+  iso_ = iso;
+  iso_time_ = out;
+  return true;
+}
+
+bool TemplateText::names(std::string_view comma, std::vector<std::string>& out) {
+  do {
+    std::string_view one;
+    if (!name(one) || out.size() == kMaxSensors) return false;
+    if (std::ranges::find(out, one) != out.end()) return false;
+    out.emplace_back(one);
+  } while (text(comma));
+  return true;
+}
+
+bool TemplateText::subset(const std::vector<std::string>& names, std::string_view comma,
+                          std::uint64_t& bits) {
+  const auto closes = [this](const std::string& name) {
+    return rest().starts_with(name) && rest().substr(name.size()).starts_with('"');
+  };
+  do {
+    std::size_t i = 0;
+    if (!text("\"")) return false;
+    while (i < names.size() && !closes(names[i])) ++i;
+    if (i == names.size()) return false;
+    at_ += names[i].size() + 1;
+    bits |= std::uint64_t{1} << i;
+  } while (text(comma));
+  return true;
+}
+
+}  // namespace chorus::resource

@@ -1,0 +1,73 @@
+// Internal to the room: steps over text that is expected byte for byte.
+//
+// What the template readers share.  Each step returns false at a surprise, and nobody goes on from
+// there: the parser reads such a document from the start.
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/resource/frame_resource.h"
+#include "common/time/timestamp.h"
+
+namespace chorus::resource {
+
+class TemplateText {
+ public:
+  explicit TemplateText(std::string_view text) : at_(text.data()), end_(at_ + text.size()) {}
+
+  [[nodiscard]] bool at_end() const { return at_ == end_; }
+  [[nodiscard]] const char* here() const { return at_; }
+  [[nodiscard]] std::string_view rest() const {
+    return {at_, static_cast<std::size_t>(end_ - at_)};
+  }
+  void skip(std::size_t bytes) { at_ += bytes; }
+
+  bool text(std::string_view expected) {
+    if (static_cast<std::size_t>(end_ - at_) < expected.size()) return false;
+    if (std::memcmp(at_, expected.data(), expected.size()) != 0) return false;
+    at_ += expected.size();
+    return true;
+  }
+
+  /// Not negative, without leading zeros.
+  template <class Integer>
+  bool integer(Integer& out) {
+    const char* const begin = at_;
+    const auto [next, code] = std::from_chars(at_, end_, out);
+    if (code != std::errc{} || out < 0 || (*begin == '0' && next - begin > 1)) return false;
+    at_ = next;
+    return true;
+  }
+
+  /// "-1.2345", at most kMaxCoordinate in size: the double nearest to it.
+  bool decimal(double& out);
+
+  /// [A-Za-z0-9_-] in quotes, as ids are.
+  bool name(std::string_view& out);
+
+  /// What precedes `close` in the name of a document's frame: "", "../", "sensors/s1/".
+  bool folder(std::string_view close, std::string_view& out);
+
+  /// An instant in both its forms: ISO 8601, `between`, nanoseconds; both exactly the same.
+  bool times(std::string_view between, Timestamp& out);
+
+  /// Distinct names in quotes with `comma` between them, at most kMaxSensors.
+  bool names(std::string_view comma, std::vector<std::string>& out);
+
+  /// Bits of those of `names` that follow in quotes, with `comma` between them.
+  bool subset(const std::vector<std::string>& names, std::string_view comma, std::uint64_t& bits);
+
+ private:
+  const char* at_;
+  const char* const end_;
+  std::string_view iso_;  ///< The last time read; bodies mostly have the frame's.
+  Timestamp iso_time_;
+};
+
+}  // namespace chorus::resource
