@@ -76,9 +76,11 @@ std::string shown(std::string_view text) {
   return std::string(text.substr(0, end)) + "...";
 }
 
-std::string shown_json(const json& value) {
-  return shown(value.dump(-1, ' ', false, json::error_handler_t::replace));
+std::string dumped(const json& value) {
+  return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
+
+std::string shown_json(const json& value) { return shown(dumped(value)); }
 
 std::string joined(const std::string& path, std::string_view key) {
   return path.empty() ? std::string(key) : path + "." + std::string(key);
@@ -347,6 +349,13 @@ std::vector<ConfigReader> ConfigReader::items(std::string_view key) {
 bool ConfigReader::has(std::string_view key) const {
   return node_->value.contains(std::string(key));
 }
+
+std::string ConfigReader::text(std::string_view key) const {
+  const auto found = node_->value.find(std::string(key));
+  return found == node_->value.end() ? "" : dumped(*found);
+}
+
+std::string ConfigReader::text() const { return dumped(node_->value); }
 
 void ConfigReader::complain(std::string_view key, std::string message) {
   node_->complain(key, message);

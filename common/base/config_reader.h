@@ -51,6 +51,10 @@ class ConfigReader {
   /// The objects of an array; absent gives none.
   [[nodiscard]] std::vector<ConfigReader> items(std::string_view key);
   [[nodiscard]] bool has(std::string_view key) const;
+  /// What stands at the key, set() included, as JSON without comments; "" when it is absent.
+  [[nodiscard]] std::string text(std::string_view key) const;
+  /// All of it.
+  [[nodiscard]] std::string text() const;
 
   /// Adds a problem found by the caller at this key ("must be below ...").
   void complain(std::string_view key, std::string message);

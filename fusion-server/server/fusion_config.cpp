@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "common/base/config_reader.h"
-#include "common/base/file.h"
 #include "common/resource/contributors.h"
+#include "common/service/config_source.h"
 #include "common/service/http_config.h"
 #include "fusion-server/rest/registration_resources.h"
 
@@ -154,6 +154,29 @@ void read_registration(ConfigReader reader, FusionConfig& out) {
 
 }  // namespace
 
+Result<FusionConfig> read_fusion_config(ConfigReader root) {
+  FusionConfig config;
+  config.http.port = 8080;
+  root.read("title", config.title);
+  service::read_http(root.child("http"), config.http);
+  service::read_log(root.child("log"), config.log);
+  read_poll(root.child("poll"), config.poll);
+  read_output(root.child("output"), config);
+  read_align(root.child("align"), config.pipeline.align);
+  read_quality(root.child("quality"), config.pipeline.quality);
+  read_association(root.child("association"), config.pipeline.association);
+  read_facing(root.child("facing"), config.pipeline.sides);
+  read_fusion(root.child("fusion"), config.pipeline.fusion);
+  read_sensors(root, config);
+  read_registration(root.child("registration"), config);
+  outputs::read_outputs(root.child("outputs"), config.outputs);
+  root.read("state_dir", config.state_dir);
+  root.read("viewer_dir", config.viewer_dir);
+  service::read_recording(root.child("recording"), config.recording);
+  if (auto ok = root.finish(); !ok) return pass(ok);
+  return config;
+}
+
 Result<FusionConfig> read_fusion_config(std::string_view text, std::string_view origin,
                                         const std::vector<std::string>& overrides) {
   auto root = ConfigReader::parse(text, origin);
@@ -161,36 +184,14 @@ Result<FusionConfig> read_fusion_config(std::string_view text, std::string_view 
   for (const std::string& assignment : overrides) {
     if (auto ok = root->set(assignment); !ok) return pass(ok);
   }
-  FusionConfig config;
-  config.http.port = 8080;
-  root->read("title", config.title);
-  service::read_http(root->child("http"), config.http);
-  read_poll(root->child("poll"), config.poll);
-  read_output(root->child("output"), config);
-  read_align(root->child("align"), config.pipeline.align);
-  read_quality(root->child("quality"), config.pipeline.quality);
-  read_association(root->child("association"), config.pipeline.association);
-  read_facing(root->child("facing"), config.pipeline.sides);
-  read_fusion(root->child("fusion"), config.pipeline.fusion);
-  read_sensors(*root, config);
-  read_registration(root->child("registration"), config);
-  outputs::read_outputs(root->child("outputs"), config.outputs);
-  root->read("state_dir", config.state_dir);
-  root->read("viewer_dir", config.viewer_dir);
-  service::read_recording(root->child("recording"), config.recording);
-  if (auto ok = root->finish(); !ok) return pass(ok);
-  return config;
+  return read_fusion_config(std::move(*root));
 }
 
 Result<FusionConfig> load_fusion_config(const std::string& path,
                                         const std::vector<std::string>& overrides) {
-  constexpr std::uintmax_t kMostBytes = 16u << 20;
-  const auto text = read_file(path, kMostBytes);
-  if (!text) {
-    return fail(ErrorCode::Io, path,
-                "the configuration file cannot be read: " + text.error().message);
-  }
-  return read_fusion_config(*text, path, overrides);
+  return service::read_config({path, overrides}).and_then([](ConfigReader root) {
+    return read_fusion_config(std::move(root));
+  });
 }
 
 std::string needs_restart(const FusionConfig& now, const FusionConfig& next) {
@@ -200,7 +201,7 @@ std::string needs_restart(const FusionConfig& now, const FusionConfig& next) {
     if (!keys.empty()) keys += ", ";
     keys += key;
   };
-  add(now.http != next.http, "http");
+  add(!service::differ_in_token_at_most(now.http, next.http), "http");
   add(now.title != next.title, "title");
   add(now.poll != next.poll, "poll");
   add(now.history != next.history, "output.history_s");

@@ -7,6 +7,7 @@
 
 #include "common/base/result.h"
 #include "common/http/server.h"
+#include "common/service/log_config.h"
 #include "common/service/recordings.h"
 #include "fusion-server/core/registration_session.h"
 #include "fusion-server/core/tick_schedule.h"
@@ -20,6 +21,7 @@ namespace chorus::server {
 struct FusionConfig {
   std::string title = "Chorus fusion server";
   http::ServerConfig http;
+  service::LogConfig log;
   std::vector<poll::PolledSensor> sensors;
   poll::PollTimings poll;
   core::TickConfig output;
@@ -34,7 +36,10 @@ struct FusionConfig {
   std::string viewer_dir;  ///< Static files of /viewer/; empty: no viewer.
 };
 
-/// `overrides` are "path=value" of the command line.  Every mistake is named, all at once.
+/// Every mistake is named, all at once.
+[[nodiscard]] Result<FusionConfig> read_fusion_config(ConfigReader root);
+
+/// `overrides` are "path=value" of the command line.
 [[nodiscard]] Result<FusionConfig> read_fusion_config(std::string_view text,
                                                       std::string_view origin,
                                                       const std::vector<std::string>& overrides);

@@ -256,11 +256,12 @@ void FusionServer::reload(const FusionConfig& next) {
   taken.pipeline = next.pipeline;
   taken.registration = next.registration;
   taken.session = next.session;
+  taken.http.bearer_token = next.http.bearer_token;
+  s.http->set_bearer_token(taken.http.bearer_token);
   s.loop->ask(core_config(taken));
   s.poller->poll(taken.sensors);
   for (const auto& sink : s.sinks) sink->keep_slots_for(taken.pipeline.association.coast);
   s.config = std::move(taken);
-  log::info("configuration reloaded", {{"sensors", s.config.sensors.size()}});
 }
 
 void FusionServer::stop() {

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/base/nearest.h"
+#include "common/base/version.h"
 #include "services/ctl/command.h"
 
 namespace chorus::ctl {
@@ -105,7 +106,7 @@ int run_added(const std::vector<Added>& all) {
 int parse_and_run(int argc, const char* const* argv) {
   CLI::App app{"Chorus: many body-tracking sensors, one tracker."};
   app.name("chorus");
-  app.set_version_flag("--version", std::string("chorus " CHORUS_VERSION));
+  app.set_version_flag("--version", "chorus " + std::string(version()));
   app.require_subcommand(1);
   app.footer(
       "chorus COMMAND --help explains each with examples.\n"

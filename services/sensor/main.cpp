@@ -1,8 +1,8 @@
-// chorus-sensor: one device as REST resources.  The wiring is in sensor_host.h.
-#include "services/sensor/sensor_host.h"
+// chorus-sensor: one device as REST resources.
+#include "services/sensor/sensor_program.h"
 
 int main(int argc, char** argv) {
-  using namespace chorus::sensor_service;
-  const CommandLine command = read_command_line(argc, argv);
-  return command.exit ? *command.exit : run_sensor(command);
+  using chorus::sensor_service::SensorProgram;
+  SensorProgram program;
+  return chorus::service::run_program(SensorProgram::about(), program, argc, argv);
 }

@@ -1,9 +1,8 @@
 #include "services/sensor/sensor_config.h"
 
-#include <nlohmann/json.hpp>
 #include <utility>
 
-#include "common/base/file.h"
+#include "common/base/log.h"
 #include "common/service/http_config.h"
 #include "services/sensor/device/replay.h"
 #include "services/sensor/device/simulated.h"
@@ -15,12 +14,6 @@ namespace {
 constexpr int kMostFrames = 10'000;  // five minutes, 100 MB
 constexpr std::string_view kDefaultId = "s1";
 
-Result<std::string> text_of(const std::string& path) {
-  if (path.empty()) return std::string("{}");
-  constexpr std::uintmax_t kMostBytes = 16u << 20;
-  return read_file(path, kMostBytes);
-}
-
 template <class T>
 void take(ConfigReader& config, std::string_view key, const Result<T>& value, T& out) {
   if (value) {
@@ -28,15 +21,6 @@ void take(ConfigReader& config, std::string_view key, const Result<T>& value, T&
   } else {
     config.complain(key, value.error().message);
   }
-}
-
-void read_log(ConfigReader config, LogConfig& out) {
-  std::string level = "info";
-  std::string format = "text";
-  config.read("level", level);
-  config.read("format", format);
-  take(config, "level", log::parse_level(level), out.level);
-  take(config, "format", log::parse_format(format), out.format);
 }
 
 SensorConfig read_config(ConfigReader& root) {
@@ -50,7 +34,7 @@ SensorConfig read_config(ConfigReader& root) {
   root.read("frames_kept", frames_kept, 1, kMostFrames);
   config.frames_kept = static_cast<std::size_t>(frames_kept);
   read_clock_errors(root.child("clock"), config.clock);
-  read_log(root.child("log"), config.log);
+  service::read_log(root.child("log"), config.log);
   service::read_recording(root.child("recording"), config.recording);
   return config;
 }
@@ -90,30 +74,17 @@ Device read_device(ConfigReader device, const Setup& setup, const HostTime& time
   return kind == 0 ? std::move(simulated) : open_replay(replay, {options, time}, setup.config.id);
 }
 
-std::string device_part(const std::string& text) {
-  const auto json = nlohmann::json::parse(text, nullptr, false, true);
-  return json.is_object() && json.contains("device") ? json["device"].dump() : std::string{};
-}
-
 }  // namespace
 
-Result<Setup> read_setup(const SetupSource& source) {
-  const auto text = text_of(source.config_path);
-  if (!text) return pass(text);
-  auto root =
-      ConfigReader::parse(*text, source.config_path.empty() ? "defaults" : source.config_path);
-  if (!root) return pass(root);
-  for (const std::string& assignment : source.assignments) {
-    if (auto ok = root->set(assignment); !ok) return pass(ok);
-  }
+Result<Setup> read_setup(ConfigReader root) {
   Setup setup;
-  setup.config = read_config(*root);
+  setup.config = read_config(root);
   const auto world = std::make_shared<SystemClock>();
   const HostTime time{world, host_clock(setup.config.clock, world->now())};
   setup.clock = std::make_shared<ErringClock>(time.world, time.host);
-  setup.device_text = device_part(*text);
-  auto device = read_device(root->child("device"), setup, time);
-  if (auto ok = root->finish(); !ok) return pass(ok);
+  setup.device_text = root.text("device");
+  auto device = read_device(root.child("device"), setup, time);
+  if (auto ok = root.finish(); !ok) return pass(ok);
   if (!device) return pass(device);
   setup.device = std::move(*device);
   return setup;

@@ -7,22 +7,15 @@
 #include <vector>
 
 #include "common/base/config_reader.h"
-#include "common/base/log.h"
 #include "common/base/strong_id.h"
 #include "common/http/server.h"
 #include "common/sensor/frame_source.h"
+#include "common/service/log_config.h"
 #include "common/service/recordings.h"
 #include "common/time/clock.h"
 #include "services/sensor/host_clock.h"
 
 namespace chorus::sensor_service {
-
-struct LogConfig {
-  log::Level level = log::Level::Info;
-  log::Format format = log::Format::Text;
-
-  bool operator==(const LogConfig&) const = default;
-};
 
 struct SensorConfig {
   SensorId id;
@@ -30,7 +23,7 @@ struct SensorConfig {
   bool images = false;
   std::size_t frames_kept = 90;
   ClockErrors clock;  ///< Of a simulated host; a real one's is as NTP keeps it.
-  LogConfig log;
+  service::LogConfig log;
   service::RecordingConfig recording;
 
   bool operator==(const SensorConfig&) const = default;
@@ -39,19 +32,13 @@ struct SensorConfig {
 /// What a start needs: the settings, and the device ready to run.
 struct Setup {
   SensorConfig config;
-  std::string device_text;  ///< The `device` object as written, to tell whether it changed.
+  std::string device_text;             ///< The `device` object as read, to tell whether it changed.
   std::shared_ptr<const Clock> clock;  ///< The host's, errors included.
   std::unique_ptr<FrameSource> device;
 };
 
-/// The file (empty: all defaults) and what the command line puts over it.
-struct SetupSource {
-  std::string config_path;
-  std::vector<std::string> assignments;  ///< "path=value", in order.
-};
-
 /// Reads everything and makes the device; all mistakes come in one Error.
-[[nodiscard]] Result<Setup> read_setup(const SetupSource& source);
+[[nodiscard]] Result<Setup> read_setup(ConfigReader root);
 
 /// The keys whose change takes effect only with a new start.
 [[nodiscard]] std::vector<std::string> restart_keys(const Setup& running, const Setup& wanted);

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <condition_variable>
-#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <mutex>
@@ -63,33 +62,6 @@ bool rest(const std::stop_token& stop) {
   std::unique_lock lock(mutex);
   never.wait_for(lock, stop, kRest, [] { return false; });
   return !stop.stop_requested();
-}
-
-sigset_t watched_signals() {
-  sigset_t set;
-  sigemptyset(&set);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&set, signal);
-  return set;
-}
-
-void complain(const Error& error) {
-  std::fprintf(stderr, "chorus-sensor: %s\n", to_string(error).c_str());
-}
-
-void reload(SensorHost& host, const SetupSource& source) {
-  auto wanted = read_setup(source);
-  if (wanted) return host.reload(std::move(*wanted));
-  log::error("reload refused, the old configuration stays",
-             {{"problems", to_string(wanted.error())}});
-}
-
-/// Waits for signals until one asks to stop.  They are blocked in all threads, so none is lost.
-void serve_until_stopped(SensorHost& host, const SetupSource& source) {
-  const sigset_t watched = watched_signals();
-  for (int signal = 0; sigwait(&watched, &signal) == 0;) {
-    if (signal != SIGHUP) return log::info("stopping", {{"signal", signal}});
-    reload(host, source);
-  }
 }
 
 }  // namespace
@@ -179,40 +151,15 @@ void SensorHost::stop() {
 }
 
 void SensorHost::reload(Setup wanted) {
+  std::string waiting;
   for (const std::string& key : restart_keys(setup_, wanted)) {
-    log::warn("changed, but needs a restart", {{"key", key}});
+    waiting += (waiting.empty() ? "" : ", ") + key;
   }
+  if (!waiting.empty()) log::warn("changes wait for a restart", {{"keys", waiting}});
   setup_.config.images = wanted.config.images;
-  setup_.config.log = wanted.config.log;
   setup_.config.http.bearer_token = wanted.config.http.bearer_token;
   service_.show_images(setup_.config.images);
   server_.set_bearer_token(setup_.config.http.bearer_token);
-  log::configure(setup_.config.log.level, setup_.config.log.format);
-  log::info("configuration reloaded");
-}
-
-int run_sensor(const CommandLine& command) {
-  auto setup = read_setup(command.source);
-  if (!setup) {
-    complain(setup.error());
-    return kExitMistaken;
-  }
-  if (command.check_only) {
-    std::puts("The configuration is good.");
-    return kExitStopped;
-  }
-  log::configure(setup->config.log.level, setup->config.log.format);
-  const sigset_t watched = watched_signals();
-  pthread_sigmask(SIG_BLOCK, &watched, nullptr);  // before any thread starts
-  std::signal(SIGPIPE, SIG_IGN);
-  SensorHost host(std::move(*setup));
-  if (auto ok = host.start(); !ok) {
-    complain(ok.error());
-    return kExitMistaken;
-  }
-  serve_until_stopped(host, command.source);
-  host.stop();
-  return kExitStopped;
 }
 
 }  // namespace chorus::sensor_service

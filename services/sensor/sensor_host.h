@@ -8,7 +8,6 @@
 
 #include "common/http/server.h"
 #include "common/service/recordings.h"
-#include "services/sensor/command_line.h"
 #include "services/sensor/sensor_config.h"
 #include "services/sensor/sensor_service.h"
 
@@ -45,8 +44,5 @@ class SensorHost {
   std::jthread device_;
   std::jthread encoder_;  ///< Idle unless images are switched on.
 };
-
-/// From command line to exit code; SIGINT and SIGTERM stop, SIGHUP reloads.
-[[nodiscard]] int run_sensor(const CommandLine& command);
 
 }  // namespace chorus::sensor_service

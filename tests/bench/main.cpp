@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "common/base/version.h"
 #include "tests/bench/report.h"
 
 namespace chorus::bench {
@@ -57,6 +58,7 @@ int main(int argc, char** argv) {
   CLI::App app{
       "Measures what Chorus claims and prints one table.  Exit code 0: measured, 1: a stated "
       "condition does not hold, 2: could not measure."};
+  app.set_version_flag("--version", "chorus-bench " + std::string(chorus::version()));
   chorus::bench::Options options;
   std::string json_path;
   app.add_option("--json", json_path, "Also write the rows to this file as JSON");

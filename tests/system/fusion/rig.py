@@ -27,8 +27,8 @@ def get(url, accept="application/json", headers=None, timeout=10.0):
     return _open(request, timeout)
 
 
-def send(method, url, body=b"", timeout=10.0):
-    return _open(urllib.request.Request(url, data=body or None, method=method), timeout)
+def send(method, url, body=b"", headers=None, timeout=10.0):
+    return _open(urllib.request.Request(url, data=body or None, headers=headers or {}, method=method), timeout)
 
 
 def _open(request, timeout):

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/service/config_source.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chorus::sensor_service {
@@ -14,14 +15,19 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
+Result<Setup> read(const service::ConfigSource& source) {
+  return service::read_config(source).and_then(
+      [](const ConfigReader& root) { return read_setup(root); });
+}
+
 Setup setup_with(std::vector<std::string> assignments, const std::string& path = "") {
-  auto setup = read_setup({path, std::move(assignments)});
+  auto setup = read({path, std::move(assignments)});
   EXPECT_TRUE(setup) << to_string(setup.error());
   return setup ? std::move(*setup) : Setup{};
 }
 
 std::string refusal(std::vector<std::string> assignments) {
-  const auto setup = read_setup({"", std::move(assignments)});
+  const auto setup = read({"", std::move(assignments)});
   return setup ? "" : to_string(setup.error());
 }
 
@@ -44,7 +50,7 @@ TEST(SensorConfig, EveryKeyIsRead) {
   EXPECT_EQ(config.frames_kept, 7u);
   EXPECT_EQ(config.clock, (ClockErrors{std::chrono::milliseconds(-250), 50e-6,
                                        std::chrono::seconds(-2), std::chrono::seconds(30)}));
-  EXPECT_EQ(config.log, (LogConfig{log::Level::Warn, log::Format::Json}));
+  EXPECT_EQ(config.log, (service::LogConfig{log::Level::Warn, log::Format::Json}));
   const Duration error = setup.clock->now() - SystemClock().now();
   EXPECT_NEAR(seconds(error), -0.25, 0.1);
 }
@@ -66,7 +72,7 @@ TEST(SensorConfig, AReplayNeedsARecording) {
 }
 
 TEST(SensorConfig, AFileThatIsNotThereIsNamed) {
-  const auto setup = read_setup({"/no/such.json", {}});
+  const auto setup = read({"/no/such.json", {}});
   ASSERT_FALSE(setup);
   EXPECT_THAT(to_string(setup.error()), HasSubstr("/no/such.json"));
 }

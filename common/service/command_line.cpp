@@ -1,0 +1,68 @@
+#include "common/service/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "common/base/version.h"
+
+namespace chorus::service {
+namespace {
+
+std::string footer(const About& about) {
+  return "Examples:\n" + about.examples +
+         "SIGHUP reads the file again; SIGTERM or Ctrl-C stops.\n"
+         "Exit codes: 0 stopped when asked to, 1 broke down, 2 wrong options, configuration or "
+         "port in use.";
+}
+
+/// Texts are quoted so that `--id 7` stays a text.
+std::string quoted(const std::string& text) {
+  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::vector<Shortcut> shortcuts_of(const About& about) {
+  std::vector<Shortcut> all{
+      {"--port", "http.port", "Port; 0 takes any free one (http.port)", false},
+      {"--log-level", "log.level", "debug, info, warn or error (log.level)"},
+      {"--log-format", "log.format", "text or json (log.format)"}};
+  all.insert(all.end(), about.shortcuts.begin(), about.shortcuts.end());
+  return all;
+}
+
+void assign(const Shortcut& shortcut, const std::string& value, std::vector<std::string>& out) {
+  if (!shortcut.implied.empty()) out.push_back(shortcut.implied);
+  out.push_back(shortcut.key + "=" + (shortcut.quoted ? quoted(value) : value));
+}
+
+}  // namespace
+
+CommandLine read_command_line(const About& about, int argc, const char* const* argv) {
+  CLI::App app{about.description, about.name};
+  app.footer(footer(about));
+  app.set_version_flag("--version", about.name + " " + std::string(version()));
+  CommandLine out;
+  std::vector<std::string> sets;
+  app.add_option("--config", out.source.path, "JSON file with comments; absent: all defaults");
+  app.add_option("--set", sets, "Overrides one key: PATH=VALUE; may be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
+  app.add_flag("--check", out.check_only, "Only says whether the configuration is good");
+  const std::vector<Shortcut> shortcuts = shortcuts_of(about);
+  std::vector<std::optional<std::string>> given(shortcuts.size());
+  for (std::size_t i = 0; i < shortcuts.size(); ++i) {
+    app.add_option(shortcuts[i].option, given[i], shortcuts[i].help);
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    out.exit = app.exit(error) == 0 ? kExitStopped : kExitMistaken;
+    return out;
+  }
+  for (std::size_t i = 0; i < shortcuts.size(); ++i) {
+    if (given[i]) assign(shortcuts[i], *given[i], out.source.assignments);
+  }
+  out.source.assignments.insert(out.source.assignments.end(), sets.begin(), sets.end());
+  return out;
+}
+
+}  // namespace chorus::service

@@ -1,0 +1,19 @@
+// Where a program's configuration comes from: a file, and what the command line puts over it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/base/config_reader.h"
+
+namespace chorus::service {
+
+struct ConfigSource {
+  std::string path;                      ///< Empty: all defaults.
+  std::vector<std::string> assignments;  ///< "path=value", in order.
+};
+
+/// Reads the file anew; what stands in it is judged by whoever reads the keys.
+[[nodiscard]] Result<ConfigReader> read_config(const ConfigSource& source);
+
+}  // namespace chorus::service

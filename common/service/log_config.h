@@ -1,0 +1,22 @@
+// The section "log" of every service's configuration.
+#pragma once
+
+#include "common/base/config_reader.h"
+#include "common/base/log.h"
+
+namespace chorus::service {
+
+struct LogConfig {
+  log::Level level = log::Level::Info;
+  log::Format format = log::Format::Text;
+
+  bool operator==(const LogConfig&) const = default;
+};
+
+/// Mistakes are reported by the reader's finish().
+void read_log(ConfigReader config, LogConfig& out);
+
+/// From now on the log is written so.
+void apply(const LogConfig& config);
+
+}  // namespace chorus::service

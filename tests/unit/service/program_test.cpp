@@ -1,0 +1,124 @@
+#include "common/service/program.h"
+
+#include <csignal>
+#include <fstream>
+#include <functional>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "tests/support/temporary_folder.h"
+
+namespace chorus::service {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+/// Notes what its shell asks of it.  Sends itself the signals that the shell is to find.
+class NotingProgram final : public Program {
+ public:
+  std::vector<std::string> asked;
+  std::vector<int> signals{SIGTERM};  ///< One after each start and reload.
+  bool starts = true;
+  bool throws = false;
+  std::function<void()> on_reload = [] {};
+
+  Result<LogConfig> prepare(ConfigReader config) override { return read("prepare", config); }
+  Result<void> start() override {
+    asked.emplace_back("start");
+    if (throws) throw std::runtime_error("out of luck");
+    if (!starts) return fail(ErrorCode::Io, "127.0.0.1:1", "address in use");
+    next_signal();
+    return {};
+  }
+  Result<LogConfig> reload(ConfigReader config) override {
+    next_signal();
+    on_reload();
+    return read("reload", config);
+  }
+  void stop() override { asked.emplace_back("stop"); }
+
+ private:
+  Result<LogConfig> read(const std::string& what, ConfigReader& config) {
+    std::string word = "none";
+    config.read("word", word);
+    LogConfig log;
+    read_log(config.child("log"), log);
+    asked.push_back(what + " " + word);
+    if (auto ok = config.finish(); !ok) return pass(ok);
+    return log;
+  }
+  void next_signal() {
+    kill(getpid(), signals.front());
+    signals.erase(signals.begin());
+  }
+};
+
+int run(NotingProgram& program, std::vector<const char*> words) {
+  words.insert(words.begin(), "chorus-noting");
+  return run_program({"chorus-noting", "Notes.", ""}, program, static_cast<int>(words.size()),
+                     words.data());
+}
+
+/// Of what a run writes to standard error.
+std::string complaint_of(NotingProgram& program, const std::vector<const char*>& words) {
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(run(program, words), kExitMistaken);
+  return ::testing::internal::GetCapturedStderr();
+}
+
+TEST(ProgramShell, RunsUntilASignalAsksToStop) {
+  for (const int signal : {SIGTERM, SIGINT}) {
+    NotingProgram program;
+    program.signals = {signal};
+    EXPECT_EQ(run(program, {"--set", "word=a"}), kExitStopped);
+    EXPECT_THAT(program.asked, ElementsAre("prepare a", "start", "stop"));
+  }
+}
+
+TEST(ProgramShell, ReadsTheFileAgainOnHangUpAndGoesOnWhenItIsWrong) {
+  const chorus::testing::TemporaryFolder folder;
+  const std::string path = (folder / "a.json").string();
+  const auto write = [&](const char* text) { std::ofstream(path) << text; };
+  write(R"({"word": "a"})");
+  NotingProgram program;
+  program.signals = {SIGHUP, SIGHUP, SIGTERM};
+  program.on_reload = [&] { write(R"({"wrod": "b"})"); };
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(run(program, {"--config", path.c_str(), "--log-format", "json"}), kExitStopped);
+  const std::string log = ::testing::internal::GetCapturedStderr();
+  EXPECT_THAT(log, HasSubstr(R"("configuration reloaded")"));
+  EXPECT_THAT(log, HasSubstr("configuration not reloaded, the old one stays"));
+  EXPECT_THAT(log, HasSubstr("did you mean 'word'"));
+  EXPECT_THAT(program.asked, ElementsAre("prepare a", "start", "reload a", "reload none", "stop"));
+}
+
+TEST(ProgramShell, CheckStartsNothing) {
+  NotingProgram program;
+  EXPECT_EQ(run(program, {"--check"}), kExitStopped);
+  EXPECT_THAT(program.asked, ElementsAre("prepare none"));
+  EXPECT_THAT(complaint_of(program, {"--check", "--set", "log.level=loud"}),
+              HasSubstr("log.level"));
+}
+
+TEST(ProgramShell, NamesItselfAndTheMistake) {
+  NotingProgram program;
+  EXPECT_THAT(complaint_of(program, {"--config", "/no/such.json"}),
+              HasSubstr("chorus-noting: /no/such.json: the configuration file cannot be read"));
+  program.starts = false;
+  EXPECT_THAT(complaint_of(program, {}), HasSubstr("chorus-noting: 127.0.0.1:1: address in use"));
+}
+
+TEST(ProgramShell, WhatIsThrownEndsItWithAReason) {
+  NotingProgram program;
+  program.throws = true;
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(run(program, {}), kExitFailed);
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("out of luck"));
+}
+
+}  // namespace
+}  // namespace chorus::service
