@@ -3,7 +3,7 @@
 
 #include "common/http/beast.h"
 #include "common/http/client.h"
-#include "common/http/text.h"
+#include "common/http/client_wire.h"
 #include "common/time/clock.h"
 
 namespace chorus::http {
@@ -13,42 +13,6 @@ namespace beast = boost::beast;
 using Parser = beast::http::response_parser<beast::http::string_body>;
 
 constexpr std::uint32_t kMaxHeadBytes = 16384;
-
-std::string request_text(const ClientRequest& request, const std::string& authority) {
-  const std::string target = request.target.empty() ? "/" : request.target;
-  std::string text = request.method + " " + target + " HTTP/1.1\r\nHost: " + authority;
-  for (const auto& [name, value] : request.headers) text.append("\r\n" + name + ": " + value);
-  if (!request.body.empty() || request.method == "POST" || request.method == "PUT")
-    text.append("\r\nContent-Length: " + std::to_string(request.body.size()));
-  return text.append("\r\n\r\n").append(request.body);
-}
-
-/// Nobody may smuggle a second header or request in through a value.
-bool is_one_line(std::string_view text) {
-  return std::none_of(text.begin(), text.end(),
-                      [](char c) { return c == '\r' || c == '\n' || c == '\0'; });
-}
-
-bool is_writable(const ClientRequest& request) {
-  const bool lines = std::all_of(request.headers.begin(), request.headers.end(), [](const auto& h) {
-    return is_one_line(h.first) && is_one_line(h.second);
-  });
-  const std::string line = request.method + request.target;
-  return lines && is_one_line(line) && line.find(' ') == std::string::npos;
-}
-
-ClientResponse response_of(const Parser::value_type& message) {
-  ClientResponse response;
-  response.status = static_cast<int>(message.result_int());
-  for (const auto& field : message) {
-    const std::string name =
-        to_lower(std::string_view(field.name_string().data(), field.name_string().size()));
-    const std::string_view value(field.value().data(), field.value().size());
-    auto [known, added] = response.headers.try_emplace(name, value);
-    if (!added) known->second.append(", ").append(value);
-  }
-  return response;
-}
 
 }  // namespace
 
@@ -61,13 +25,11 @@ struct AsyncClient::Impl : std::enable_shared_from_this<AsyncClient::Impl> {
         resolver(executor),
         socket(executor),
         timer(executor) {
-    const bool v6 = host.find(':') != std::string::npos;
-    authority = (v6 ? "[" + host + "]" : host) + ":" + std::to_string(port);
+    authority = authority_of(host, port);
   }
 
   void begin(ClientRequest request, std::chrono::milliseconds answer_timeout, Callback on_done);
   void connect();
-  void connect_to(std::vector<tcp::endpoint> endpoints);
   void write();
   void read();
   void on_head(error_code failed);
@@ -131,36 +93,14 @@ void AsyncClient::Impl::connect() {
   drop();
   reused = false;
   arm(limits.connect_timeout, "connect");
-  error_code no_literal;
-  const auto address = net::ip::make_address(host, no_literal);
-  if (!no_literal) return connect_to({tcp::endpoint(address, port)});
-  resolver.async_resolve(
-      host, std::to_string(port),
-      [self = shared_from_this(), mine = attempt](error_code failed, const auto& results) {
-        if (self->attempt != mine) return;
-        if (failed) return self->retry_or_fail(failed, "find the host");
-        std::vector<tcp::endpoint> endpoints;
-        for (const auto& entry : results) endpoints.push_back(entry.endpoint());
-        self->connect_to(std::move(endpoints));
-      });
-}
-
-void AsyncClient::Impl::connect_to(std::vector<tcp::endpoint> endpoints) {
-  if (endpoints.empty()) return retry_or_fail(net::error::host_not_found, "find the host");
-  const tcp::endpoint endpoint = endpoints.front();
-  endpoints.erase(endpoints.begin());
-  error_code ignored;
-  socket.close(ignored);
-  socket.async_connect(endpoint, [self = shared_from_this(), mine = attempt,
-                                  others = std::move(endpoints)](error_code failed) {
-    if (self->attempt != mine) return;
-    if (failed && !others.empty()) return self->connect_to(others);
-    if (failed) return self->retry_or_fail(failed, "connect");
-    error_code unimportant;
-    self->socket.set_option(tcp::no_delay(true), unimportant);
-    self->connected = true;
-    self->write();
-  });
+  Connecting to{host, port,
+                [self = shared_from_this(), mine = attempt] { return self->attempt == mine; }};
+  connect_to(std::move(to), resolver, socket,
+             [self = shared_from_this()](error_code failed, std::string_view doing) {
+               if (failed) return self->retry_or_fail(failed, doing);
+               self->connected = true;
+               self->write();
+             });
 }
 
 void AsyncClient::Impl::write() {
@@ -218,7 +158,7 @@ void AsyncClient::Impl::on_failed_read(error_code failed) {
 }
 
 void AsyncClient::Impl::on_answer() {
-  ClientResponse response = response_of(parser->get());
+  ClientResponse response = response_of(parser->get().base());
   response.body = std::move(parser->get().body());
   response.sent_ns = sent_ns;
   response.received_ns = to_unix_ns(SystemClock().now());
