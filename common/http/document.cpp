@@ -29,6 +29,26 @@ constexpr std::array kTypes{
     TypeRow{"text/javascript", "js", "; charset=utf-8"},
 };
 
+constexpr std::string_view kJson = "application/json";
+constexpr std::array<std::string_view, 2> kEventTypes{kJson, "text/turtle"};
+
+/// A line break in JSON is only white space; in an event it would end the field.
+void append_as_one_line(std::string& out, std::string_view text) {
+  out += "data: ";
+  for (const char c : text) out += c == '\n' || c == '\r' ? ' ' : c;
+  out += '\n';
+}
+
+/// One data line for each line of the text: the reader joins them again with line feeds.
+void append_line_by_line(std::string& out, std::string_view text) {
+  for (std::size_t begin = 0;;) {
+    const std::size_t end = text.find_first_of("\r\n", begin);
+    out.append("data: ").append(text.substr(begin, end - begin)).append("\n");
+    if (end == std::string_view::npos) return;
+    begin = end + (text.substr(end, 2) == "\r\n" ? 2 : 1);
+  }
+}
+
 const TypeRow* row_of(std::string_view media_type) {
   const auto row = std::find_if(kTypes.begin(), kTypes.end(), [&](const TypeRow& candidate) {
     return candidate.media_type == without_parameters(media_type);
@@ -98,8 +118,11 @@ struct Document::Impl {
   std::vector<std::string_view> offers;  ///< Bare media types, by variant.
   std::vector<Rendered> rendered;
   std::unique_ptr<Once[]> once;
-  Once event_once;
-  std::shared_ptr<const std::string> event;
+  struct Event {
+    Once once;
+    std::shared_ptr<const std::string> text;
+  };
+  std::array<Event, kEventTypes.size()> events;  ///< In the order of kEventTypes.
   bool has_json_ld = false;
 
   /// The lines that a 200 and a 304 share.
@@ -111,7 +134,7 @@ struct Document::Impl {
       add_line(lines, "Content-Location", options.content_location);
     add_type_links(lines, options);
     // JSON-LD 1.1 6.1: plain JSON is JSON-LD when this link says with which context.
-    if (has_json_ld && out.media_type == "application/json")
+    if (has_json_ld && out.media_type == kJson)
       add_line(lines, "Link",
                "</context.jsonld>; rel=\"http://www.w3.org/ns/json-ld#context\"; "
                "type=\"application/ld+json\"");
@@ -146,17 +169,17 @@ struct Document::Impl {
     }
   }
 
-  void make_event() {
-    const auto json = std::find_if(variants.begin(), variants.end(), [](const Variant& variant) {
-      return variant.profile.empty() && variant.media_type == "application/json";
+  void make_event(std::size_t type) {
+    const auto variant = std::find_if(variants.begin(), variants.end(), [&](const Variant& one) {
+      return one.profile.empty() && without_parameters(one.media_type) == kEventTypes[type];
     });
-    if (json == variants.end()) return;
-    const auto chosen = rendered_at(static_cast<std::size_t>(json - variants.begin()));
+    if (variant == variants.end()) return;
+    const auto chosen = rendered_at(static_cast<std::size_t>(variant - variants.begin()));
     if (!chosen) return;
-    std::string text = "id: " + options.version + "\ndata: ";
-    // A line break in JSON is only white space; in an event it would end the field.
-    for (const char c : (*chosen)->body()) text += c == '\n' || c == '\r' ? ' ' : c;
-    event = std::make_shared<const std::string>(text + "\n\n");
+    std::string text = "id: " + options.version + "\n";
+    const std::string_view body = (*chosen)->body();
+    kEventTypes[type] == kJson ? append_as_one_line(text, body) : append_line_by_line(text, body);
+    events[type].text = std::make_shared<const std::string>(text + "\n");
   }
 };
 
@@ -198,9 +221,13 @@ Result<const Rendered*> Document::choose(std::string_view accept, std::string_vi
               "none of the accepted media types is available; ask for one of: " + list);
 }
 
-std::shared_ptr<const std::string> Document::event() const {
-  impl_->event_once.run([&] { impl_->make_event(); });
-  return impl_->event;
+std::shared_ptr<const std::string> Document::event(std::string_view media_type) const {
+  const auto* const type = std::find(kEventTypes.begin(), kEventTypes.end(), media_type);
+  if (type == kEventTypes.end()) return nullptr;
+  const auto index = static_cast<std::size_t>(type - kEventTypes.begin());
+  Impl::Event& event = impl_->events[index];
+  event.once.run([&] { impl_->make_event(index); });
+  return event.text;
 }
 
 std::vector<std::string_view> Document::media_types(std::string_view profile) const {

@@ -67,9 +67,9 @@ class Document {
   [[nodiscard]] Result<const Rendered*> choose(std::string_view accept,
                                                std::string_view profile = {}) const;
 
-  /// The default representation in JSON as one server-sent event (id = version, one data line);
-  /// null when there is none.
-  [[nodiscard]] std::shared_ptr<const std::string> event() const;
+  /// The default representation in JSON or Turtle as one server-sent event (id = version); null
+  /// when there is none in that type.  Written at most once for each type.
+  [[nodiscard]] std::shared_ptr<const std::string> event(std::string_view media_type) const;
 
   /// Media types of a profile, best first, without parameters.
   [[nodiscard]] std::vector<std::string_view> media_types(std::string_view profile = {}) const;

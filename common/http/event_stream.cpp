@@ -39,7 +39,7 @@ void Connection::push_event() {
     return;
   }
   const DocumentPtr newest = reaction_.entry->live->current();
-  event_ = newest && newest != streamed_ ? newest->event() : nullptr;
+  event_ = newest && newest != streamed_ ? newest->event(reaction_.event_type) : nullptr;
   if (newest) streamed_ = newest;
   if (!event_ && core_.now < deadline_) return;
   if (!event_) event_ = heartbeat();

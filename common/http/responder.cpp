@@ -53,6 +53,14 @@ bool wants_events(const RequestHead& head, const Document& document) {
   return true;
 }
 
+/// What an event carries: JSON, unless the Accept likes Turtle better and says so.
+std::string_view event_type_of(std::string_view accept) {
+  constexpr std::string_view kJson = "application/json";
+  constexpr std::string_view kTurtle = "text/turtle";
+  const int turtle = explicit_quality_of(kTurtle, accept).value_or(0);
+  return turtle > explicit_quality_of(kJson, accept).value_or(0) ? kTurtle : kJson;
+}
+
 Result<std::string> profile_of(const RequestHead& head) {
   if (head.query.empty()) return std::string();
   auto query = decode_query(head.query);
@@ -203,6 +211,7 @@ Reaction Responder::read_live(const RequestHead& head, const Router::Entry& entr
   Reaction reaction;
   reaction.kind = is_head(head) ? Reaction::Kind::Answer : Reaction::Kind::Stream;
   reaction.entry = &entry;
+  reaction.event_type = event_type_of(head.accept);
   reaction.answer.route = route_lines(entry);
   reaction.answer.own = "Content-Type: text/event-stream\r\nCache-Control: no-store\r\n\r\n";
   if (!is_head(head)) reaction.answer.body = "retry: 1000\n\n";  // Browsers come back after 1 s.

@@ -33,6 +33,7 @@ struct Reaction {
   const Action* action = nullptr;
   PathParams params = {};
   std::chrono::seconds wait{0};
+  std::string_view event_type = {};  ///< Stream: what the events carry.
 };
 
 class Responder {

@@ -43,6 +43,21 @@ TEST(Events, EachPublishIsOneEvent) {
   }
 }
 
+TEST(Events, CarryTurtleForWhoLikesItBetterThanJson) {
+  TestServer service;
+  service.frame->publish(frame_document(1));
+  const auto asked = [&](const std::string& accept, std::string_view end) {
+    RawClient client(service.server.port());
+    client.say("GET /frame HTTP/1.1\r\nHost: x\r\nAccept: " + accept + "\r\n\r\n");
+    return client.hear_until(end);
+  };
+  EXPECT_THAT(asked("text/event-stream, text/turtle;q=0.9, application/json;q=0.8", "data: \n\n"),
+              HasSubstr("\n\nid: 1\ndata: <frame> <n> 1 .\ndata: \n\n"));
+  for (const char* json : {"text/event-stream, application/json;q=0.9, text/turtle;q=0.8",
+                           "text/event-stream, */*;q=0.1"})
+    EXPECT_THAT(asked(json, "}\n\n"), HasSubstr("\n\nid: 1\ndata: {\"n\":1}\n\n")) << json;
+}
+
 TEST(Events, AReturningReaderGetsTheNextOne) {
   TestServer service;
   service.frame->publish(frame_document(3));

@@ -119,8 +119,17 @@ TEST(Document, ThrowingWriterIsAnInternalErrorAndMayRecover) {
 }
 
 TEST(Document, EventIsJsonInOneLine) {
-  EXPECT_EQ(*frame().event(), "id: 42\ndata: { \"a\": 1  } \n\n");
-  EXPECT_EQ(make_document("text/plain", "x", {})->event(), nullptr);
+  EXPECT_EQ(*frame().event("application/json"), "id: 42\ndata: { \"a\": 1  } \n\n");
+  EXPECT_EQ(make_document("text/plain", "x", {})->event("application/json"), nullptr);
+  EXPECT_EQ(make_document("text/plain", "x", {})->event("text/plain"), nullptr);
+}
+
+TEST(Document, EventInTurtleKeepsItsLines) {
+  DocumentOptions options;
+  options.version = "7";
+  const auto turtle = make_document("text/turtle", "<a>\r\n  <b> 1 .\n", options);
+  EXPECT_EQ(*turtle->event("text/turtle"), "id: 7\ndata: <a>\ndata:   <b> 1 .\ndata: \n\n");
+  EXPECT_EQ(turtle->event("application/json"), nullptr);
 }
 
 TEST(Document, TagNeverHoldsQuotesOrSpaces) {

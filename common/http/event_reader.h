@@ -1,0 +1,41 @@
+// Server-sent events, read from bytes as they come (WHATWG HTML 9.2.6).  No socket.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/result.h"
+
+namespace chorus::http {
+
+struct ServerEvent {
+  std::string id;    ///< The last one named, by this event or an earlier one.
+  std::string data;  ///< Lines joined with line feeds; never of an event without data.
+
+  bool operator==(const ServerEvent&) const = default;
+};
+
+class EventReader {
+ public:
+  explicit EventReader(std::size_t max_event_bytes) : most_(max_event_bytes) {}
+
+  /// The events that these bytes complete.  TooLarge when an event or a line grows beyond the
+  /// bound: the stream is not to be read any further.
+  [[nodiscard]] Result<std::vector<ServerEvent>> take(std::string_view bytes);
+
+ private:
+  void end_line(std::vector<ServerEvent>& out);
+  void end_event(std::vector<ServerEvent>& out);
+
+  std::size_t most_;
+  std::string line_;
+  std::string data_;
+  std::string id_;
+  bool any_data_ = false;
+  bool after_return_ = false;  ///< The last byte was a carriage return; a line feed belongs to it.
+  bool at_begin_ = true;       ///< Only here a byte order mark is none of the text.
+};
+
+}  // namespace chorus::http

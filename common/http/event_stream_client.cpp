@@ -1,0 +1,211 @@
+#include "common/http/event_stream_client.h"
+
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "common/http/beast.h"
+#include "common/http/client_wire.h"
+#include "common/http/media_range.h"
+#include "common/time/clock.h"
+
+namespace chorus::http {
+namespace {
+
+namespace beast = boost::beast;
+using Parser = beast::http::response_parser<beast::http::string_body>;
+
+constexpr std::uint32_t kMaxHeadBytes = 16384;
+constexpr std::size_t kReadBytes = 65536;
+
+bool is_event_stream(const ClientResponse& head) {
+  constexpr int kOk = 200;
+  const auto type = head.headers.find("content-type");
+  return head.status == kOk && type != head.headers.end() &&
+         without_parameters(type->second) == "text/event-stream";
+}
+
+}  // namespace
+
+struct AsyncEventStream::Impl : std::enable_shared_from_this<AsyncEventStream::Impl> {
+  Impl(net::io_context& io, std::string to_host, std::uint16_t to_port, ClientLimits with)
+      : host(std::move(to_host)),
+        port(to_port),
+        limits(with),
+        authority(authority_of(host, port)),
+        resolver(io.get_executor()),
+        socket(io.get_executor()),
+        timer(io.get_executor()),
+        rest(io.get_executor()) {}
+
+  void begin(const ClientRequest& request, Handlers with);
+  void write();
+  void read_head();
+  void on_head(error_code failed);
+  void read();
+  void read_now();
+  void on_read(error_code failed);
+  void arm(std::chrono::milliseconds time, std::string_view doing);
+  void end(Error error);
+  void drop();
+  [[nodiscard]] bool has_head() const { return parser && parser->is_header_done(); }
+  /// False for handlers of a stream that is over.
+  [[nodiscard]] bool is(std::uint64_t mine) const { return attempt == mine; }
+
+  const std::string host;
+  const std::uint16_t port;
+  const ClientLimits limits;
+  const std::string authority;
+  Resolver resolver;
+  Socket socket;
+  Timer timer;
+  Timer rest;
+  std::shared_ptr<const Handlers> handlers;  ///< Shared: one may close() while it runs.
+  std::uint64_t attempt = 0;
+  std::string out;
+  beast::flat_buffer in;
+  std::optional<Parser> parser;
+  std::optional<EventReader> reader;
+  std::int64_t sent_ns = 0;
+  std::chrono::milliseconds paused{0};
+};
+
+void AsyncEventStream::Impl::begin(const ClientRequest& request, Handlers with) {
+  drop();
+  handlers = std::make_shared<const Handlers>(std::move(with));
+  out = request_text(request, authority);
+  reader.emplace(limits.max_body_bytes);
+  arm(limits.connect_timeout, "connect");
+  const auto self = shared_from_this();
+  Connecting to{host, port, [self, mine = attempt] { return self->is(mine); }};
+  connect_to(std::move(to), resolver, socket, [self](error_code failed, std::string_view doing) {
+    if (!failed) return self->write();
+    self->end({ErrorCode::Unavailable, self->authority,
+               "cannot " + std::string(doing) + ": " + failed.message()});
+  });
+}
+
+void AsyncEventStream::Impl::write() {
+  arm(limits.answer_timeout, "answer");
+  sent_ns = to_unix_ns(SystemClock().now());
+  net::async_write(socket, net::buffer(out),
+                   [self = shared_from_this(), mine = attempt](error_code failed, std::size_t) {
+                     if (!self->is(mine)) return;
+                     failed ? self->end({ErrorCode::Unavailable, self->authority,
+                                         "cannot send: " + failed.message()})
+                            : self->read_head();
+                   });
+}
+
+void AsyncEventStream::Impl::read_head() {
+  parser.emplace();
+  parser->header_limit(kMaxHeadBytes);
+  parser->body_limit(
+      std::numeric_limits<std::uint64_t>::max());  // a stream ends when somebody hangs up
+  in.reserve(kMaxHeadBytes);
+  beast::http::async_read_header(
+      socket, in, *parser,
+      [self = shared_from_this(), mine = attempt](error_code failed, std::size_t) {
+        if (self->is(mine)) self->on_head(failed);
+      });
+}
+
+void AsyncEventStream::Impl::on_head(error_code failed) {
+  if (failed)
+    return end({ErrorCode::Unavailable, authority,
+                "the answer is broken or cut off: " + failed.message()});
+  constexpr unsigned kFirstFinalStatus = 200;
+  if (parser->get().result_int() < kFirstFinalStatus) return read_head();  // 100 Continue
+  timer.cancel();
+  ClientResponse head = response_of(parser->get().base());
+  head.sent_ns = sent_ns;
+  head.received_ns = to_unix_ns(SystemClock().now());
+  const bool streams = is_event_stream(head);
+  const auto mine = attempt;
+  const auto told = handlers;
+  told->on_head(head);
+  if (!is(mine)) return;
+  if (streams) return read();
+  end({ErrorCode::Unsupported, authority, "answers no event stream"});
+}
+
+void AsyncEventStream::Impl::read() {
+  if (paused.count() == 0) return read_now();
+  rest.expires_after(std::exchange(paused, std::chrono::milliseconds{0}));
+  rest.async_wait([self = shared_from_this(), mine = attempt](error_code cancelled) {
+    if (!cancelled && self->is(mine)) self->read_now();
+  });
+}
+
+void AsyncEventStream::Impl::read_now() {
+  parser->eager(true);
+  in.reserve(kReadBytes);
+  beast::http::async_read_some(
+      socket, in, *parser,
+      [self = shared_from_this(), mine = attempt](error_code failed, std::size_t) {
+        if (self->is(mine)) self->on_read(failed);
+      });
+}
+
+void AsyncEventStream::Impl::on_read(error_code failed) {
+  const std::string bytes = std::exchange(parser->get().body(), {});
+  auto events = reader->take(bytes);
+  const auto mine = attempt;
+  const auto told = handlers;
+  if (events && !events->empty()) told->on_events(std::move(*events));
+  if (!is(mine)) return;
+  if (!events) return end(events.error());
+  if (failed) {
+    return end({ErrorCode::Unavailable, authority, "the stream broke off: " + failed.message()});
+  }
+  if (parser->is_done()) return end({ErrorCode::Unavailable, authority, "the stream ended"});
+  read();
+}
+
+void AsyncEventStream::Impl::arm(std::chrono::milliseconds time, std::string_view doing) {
+  timer.expires_after(time);
+  timer.async_wait([self = shared_from_this(), mine = attempt, doing, time](error_code cancelled) {
+    // Expired and re-armed or cancelled in the same instant: a later one is under way, or none.
+    if (cancelled || !self->is(mine) || self->has_head()) return;
+    if (self->timer.expiry() > std::chrono::steady_clock::now()) return;
+    self->end({ErrorCode::Timeout, self->authority,
+               "no " + std::string(doing) + " within " + std::to_string(time.count()) + " ms"});
+  });
+}
+
+void AsyncEventStream::Impl::end(Error error) {
+  drop();
+  // The handler may open again, close, or destroy this.
+  if (const auto over = std::exchange(handlers, nullptr)) over->on_end(std::move(error));
+}
+
+void AsyncEventStream::Impl::drop() {
+  ++attempt;
+  error_code ignored;
+  resolver.cancel();
+  socket.close(ignored);
+  timer.cancel();
+  rest.cancel();
+  in.clear();
+  parser.reset();
+  paused = std::chrono::milliseconds{0};
+}
+
+AsyncEventStream::AsyncEventStream(boost::asio::io_context& io, std::string host,
+                                   std::uint16_t port, ClientLimits limits)
+    : impl_(std::make_shared<Impl>(io, std::move(host), port, limits)) {}
+
+AsyncEventStream::~AsyncEventStream() { close(); }
+
+void AsyncEventStream::open(const ClientRequest& request, Handlers handlers) {
+  impl_->begin(request, std::move(handlers));
+}
+
+void AsyncEventStream::close() {
+  impl_->drop();
+  impl_->handlers = nullptr;
+}
+
+void AsyncEventStream::pause(std::chrono::milliseconds time) { impl_->paused = time; }
+
+}  // namespace chorus::http
