@@ -9,7 +9,10 @@ Skeleton<To> moved(const Eigen::Isometry3d& to_from_from, const Skeleton<From>& 
   Skeleton<To> result;
   for (std::size_t i = 0; i < kJointCount; ++i) {
     const Joint& joint = body.joints[i];
-    result.joints[i] = {to_from_from * joint.position, turn * joint.orientation, joint.state};
+    const bool ray = joint.measurement == Measurement::Ray;
+    result.joints[i] = {ray ? turn * joint.position : to_from_from * joint.position,
+                        turn * joint.orientation, joint.state, joint.measurement,
+                        joint.covariance.turned(to_from_from.linear())};
   }
   return result;
 }

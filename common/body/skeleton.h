@@ -12,6 +12,8 @@
 
 #include <Eigen/Geometry>
 
+#include "common/body/covariance.h"
+
 namespace chorus {
 
 struct SensorSpace;  ///< Origin at the depth camera's focal point, +z into the scene.
@@ -37,13 +39,23 @@ inline constexpr std::size_t kJointCount = 25;
 /// What the sensor claims about a joint.  Inferred joints are guesses behind an occlusion.
 enum class JointState : std::uint8_t { NotTracked, Inferred, Tracked };
 
+/// What a sensor measures of a joint.  A camera without depth knows only in which direction it is.
+enum class Measurement : std::uint8_t { Point, Ray };
+
 struct Joint {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();               ///< [m]
+  /// Of a Point [m]; of a Ray the unit vector from the sensor's origin towards the joint.
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Quaterniond orientation = Eigen::Quaterniond(0, 0, 0, 0);  ///< All zero: not given.
   JointState state = JointState::NotTracked;
+  Measurement measurement = Measurement::Point;
+  Covariance covariance = {};  ///< Of `position`, where the sensor knows one.
 
-  /// Usable: tracked or inferred, with a finite position.
-  [[nodiscard]] bool seen() const {
+  /// Has a place: a tracked or inferred point.  Whoever cannot use rays asks this and is safe.
+  [[nodiscard]] bool seen() const { return measurement == Measurement::Point && given(); }
+  /// Has a direction: a tracked or inferred ray.
+  [[nodiscard]] bool bears() const { return measurement == Measurement::Ray && given(); }
+  /// Either of them.
+  [[nodiscard]] bool given() const {
     return state != JointState::NotTracked && position.allFinite();
   }
 };
@@ -56,7 +68,8 @@ struct Skeleton {
   [[nodiscard]] Joint& operator[](JointId id) { return joints[index_of(id)]; }
 };
 
-/// The same body seen from the world.  The only door from sensor space to world space.
+/// The same body seen from the world.  The only door from sensor space to world space.  Rays are
+/// turned, not moved: they begin at the sensor, wherever that stands.
 [[nodiscard]] Skeleton<WorldSpace> to_world(const Eigen::Isometry3d& world_from_sensor,
                                             const Skeleton<SensorSpace>& body);
 

@@ -93,7 +93,7 @@ class ArvidaFrame {
     put_joint_name(body, name);
     pen_.put(">");
     put_timestamp(body.captured);
-    if (joint.state != JointState::NotTracked) put_translation(joint.position);
+    if (joint.state != JointState::NotTracked && !joint.ray) put_translation(joint.position);
     if (joint.has_orientation) put_rotation(joint.orientation);
     pen_.put(" .\n\n<");
     put_joint_name(body, name);

@@ -1,3 +1,4 @@
+#include <array>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -64,7 +65,21 @@ Result<bool> has_all(const SubjectFacts& joint, Number first, std::size_t count)
   return true;
 }
 
+Result<void> read_ray(const SubjectFacts& facts, JointResource& joint) {
+  if (number(facts, Number::X)) return refuse(facts, "rayX", "a joint has a position or a ray");
+  joint.measurement = Measurement::Ray;
+  joint.position = {*number(facts, Number::RayX), *number(facts, Number::RayY),
+                    *number(facts, Number::RayZ)};
+  if (!(std::abs(joint.position.norm() - 1.0) <= kRayTolerance)) {
+    return refuse(facts, "rayX", "the ray does not have length 1");
+  }
+  return {};
+}
+
 Result<void> read_position(const SubjectFacts& facts, JointResource& joint) {
+  const auto ray = has_all(facts, Number::RayX, 3);
+  if (!ray) return pass(ray);
+  if (*ray) return read_ray(facts, joint);
   const auto given = has_all(facts, Number::X, 3);
   if (!given) return pass(given);
   if (!*given) return refuse(facts, "x", "a joint that is tracked or inferred has a position");
@@ -91,6 +106,19 @@ Result<void> read_orientation(const SubjectFacts& facts, JointResource& joint) {
   return {};
 }
 
+Result<void> read_covariance(const SubjectFacts& facts, JointResource& joint) {
+  const auto given = has_all(facts, Number::Cxx, Covariance::kTerms);
+  if (!given) return pass(given);
+  if (!*given) return {};
+  std::array<double, Covariance::kTerms> upper{};
+  for (std::size_t i = 0; i < upper.size(); ++i)
+    upper[i] = *facts.numbers[static_cast<std::size_t>(Number::Cxx) + i];
+  joint.covariance = Covariance(upper);
+  const bool bounded = joint.covariance.matrix().cwiseAbs().maxCoeff() <= kMaxCoordinate;
+  if (bounded && joint.covariance.plausible()) return {};
+  return refuse(facts, "cxx", "the covariance has a negative variance, or one beyond 10000");
+}
+
 Result<void> read_contributors(const SubjectFacts& facts, const std::vector<std::string>& sensors,
                                JointResource& joint) {
   for (const std::string& name : facts.contributors) {
@@ -115,6 +143,7 @@ Result<JointResource> read_joint(const SubjectFacts& facts,
   if (joint.variance && !(*joint.variance >= 0.0 && *joint.variance <= kMaxCoordinate)) {
     return refuse(facts, "variance", "is not between 0 and 10000 m^2");
   }
+  if (auto ok = read_covariance(facts, joint); !ok) return pass(ok);
   if (auto ok = read_contributors(facts, sensors, joint); !ok) return pass(ok);
   return joint;
 }

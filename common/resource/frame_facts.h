@@ -16,9 +16,28 @@
 namespace chorus::resource {
 
 /// The decimals of a joint, in this order; names in kNumberNames.
-enum class Number : std::uint8_t { X, Y, Z, Qx, Qy, Qz, Qw, Variance };
-inline constexpr std::array<std::string_view, 8> kNumberNames{"x",  "y",  "z",  "qx",
-                                                              "qy", "qz", "qw", "variance"};
+enum class Number : std::uint8_t {
+  X,
+  Y,
+  Z,
+  Qx,
+  Qy,
+  Qz,
+  Qw,
+  Variance,
+  RayX,
+  RayY,
+  RayZ,
+  Cxx,
+  Cxy,
+  Cxz,
+  Cyy,
+  Cyz,
+  Czz
+};
+inline constexpr std::array<std::string_view, 17> kNumberNames{
+    "x",    "y",    "z",   "qx",  "qy",  "qz",  "qw",  "variance", "rayX",
+    "rayY", "rayZ", "cxx", "cxy", "cxz", "cyy", "cyz", "czz"};
 
 /// How far from length 1 a quaternion may be; all zero means "not given".
 inline constexpr double kUnitTolerance = 0.1;

@@ -9,6 +9,7 @@
 
 #include "common/body/bones.h"
 #include "common/resource/frame_facts.h"
+#include "common/resource/frame_parts.h"
 #include "common/resource/template_text.h"
 
 namespace chorus::resource {
@@ -39,9 +40,13 @@ class Template : TemplateText {
   }
 
   bool head() {
-    if (!text(kHead) || !folder("frame> a ch:Frame ;\n  ch:sequence ", names_)) return false;
+    std::uint64_t named = 0;
+    if (!text(kHead) || !folder("frames/", names_) || !integer(named)) return false;
+    scoped_ = {names_.data(), static_cast<std::size_t>(here() - names_.data())};
+    if (!text("> a ch:Frame ;\n  ch:sequence ") || !same(named)) return false;
+    frame_.sequence = named;
     std::string_view source;
-    if (!integer(frame_.sequence) || !captured(frame_.captured)) return false;
+    if (!captured(frame_.captured)) return false;
     if (!text(" ;\n  ch:source ") || !name(source) || !text(" ;\n  ch:space ch:")) return false;
     frame_.source = source;
     if (text("WorldSpace")) {
@@ -52,20 +57,19 @@ class Template : TemplateText {
     return !text(" ;\n  ch:sensor ") || names(", ", frame_.sensors);
   }
 
-  bool body_name(std::uint64_t id) {
-    std::array<char, 20> digits{};
-    const char* const end = std::to_chars(digits.data(), digits.data() + digits.size(), id).ptr;
-    return text(names_) && text("skeletons/") &&
-           text({digits.data(), static_cast<std::size_t>(end - digits.data())});
+  bool same(std::uint64_t id) {
+    std::uint64_t read = 0;
+    return integer(read) && read == id;
   }
+
+  bool body_name(std::uint64_t id) { return text(scoped_) && text("#") && same(id); }
 
   bool body_links() {
     if (text(" .\n")) return true;
     if (!text(" ;\n  ch:body ")) return false;
     do {
       std::uint64_t id = 0;
-      if (!text("<") || !text(names_) || !text("skeletons/") || !integer(id) || !text(">"))
-        return false;
+      if (!text("<") || !text(scoped_) || !text("#") || !integer(id) || !text(">")) return false;
       for (const BodyResource& other : frame_.bodies) {
         if (other.id == id) return false;
       }
@@ -77,20 +81,22 @@ class Template : TemplateText {
 
   bool body(BodyResource& body) {
     const char* const begin = here() + 2;
-    std::uint64_t id = 0;
     if (!text("\n<") || !body_name(body.id)) return false;
     const std::string_view iri(begin, static_cast<std::size_t>(here() - begin));
-    if (!text("> a ch:Skeleton ;\n  ch:bodyId ") || !integer(id) || id != body.id) return false;
+    if (!text("> a ch:Skeleton ;\n  ch:of <") || !text(names_) || !text("skeletons/") ||
+        !same(body.id) || !text("> ;\n  ch:bodyId ") || !same(body.id)) {
+      return false;
+    }
     if (!captured(body.captured) || !text(" ;\n  ch:joint ")) return false;
     for (std::size_t i = 0; i < kJointCount; ++i) {
-      if (!text(i == 0 ? "<" : ", <") || !text(iri) || !text("#") || !text(kJointNames[i]) ||
+      if (!text(i == 0 ? "<" : ", <") || !text(iri) || !text("-") || !text(kJointNames[i]) ||
           !text(">")) {
         return false;
       }
     }
     if (!text(" .\n")) return false;
     for (std::size_t i = 0; i < kJointCount; ++i) {
-      if (!text("\n<") || !text(iri) || !text("#") || !text(kJointNames[i])) return false;
+      if (!text("\n<") || !text(iri) || !text("-") || !text(kJointNames[i])) return false;
       if (!text("> a ch:Joint ;\n  ch:jointName \"") || !text(kJointNames[i]) ||
           !text("\" ;\n  ch:"))
         return false;
@@ -102,11 +108,7 @@ class Template : TemplateText {
   /// From behind "ch:" of the first property to before the final " .".
   bool joint(JointResource& joint) {
     if (text("state ch:NotTracked")) return true;
-    auto& p = joint.position;
-    if (!text("x ") || !decimal(p.x()) || !text(" ; ch:y ") || !decimal(p.y()) ||
-        !text(" ; ch:z ") || !decimal(p.z()) || !text(" ;\n  ch:")) {
-      return false;
-    }
+    if (!(text("ray") ? ray(joint) : point(joint)) || !text(" ;\n  ch:")) return false;
     if (text("qx ") && !orientation(joint.orientation)) return false;
     if (!text("state ch:")) return false;
     joint.state = text("Tracked") ? JointState::Tracked : JointState::Inferred;
@@ -116,7 +118,33 @@ class Template : TemplateText {
       if (!decimal(variance) || variance < 0.0) return false;
       joint.variance = variance;
     }
+    if (text(" ;\n  ch:cxx ") && !covariance(joint.covariance)) return false;
     return !text(" ;\n  ch:contributor ") || subset(frame_.sensors, ", ", joint.contributors);
+  }
+
+  bool point(JointResource& joint) {
+    auto& p = joint.position;
+    return text("x ") && decimal(p.x()) && text(" ; ch:y ") && decimal(p.y()) && text(" ; ch:z ") &&
+           decimal(p.z());
+  }
+
+  /// From behind "ray".
+  bool ray(JointResource& joint) {
+    auto& p = joint.position;
+    joint.measurement = Measurement::Ray;
+    return text("X ") && decimal(p.x()) && text(" ; ch:rayY ") && decimal(p.y()) &&
+           text(" ; ch:rayZ ") && decimal(p.z()) && std::abs(p.norm() - 1.0) <= kRayTolerance;
+  }
+
+  /// From behind the name of the first term.
+  bool covariance(Covariance& out) {
+    std::array<double, Covariance::kTerms> upper{};
+    for (std::size_t i = 0; i < upper.size(); ++i) {
+      if (i > 0 && (!text(" ; ch:") || !text(kCovarianceNames[i]) || !text(" "))) return false;
+      if (!decimal(upper[i])) return false;
+    }
+    out = Covariance(upper);
+    return out.plausible();
   }
 
   bool orientation(Eigen::Quaterniond& q) {
@@ -128,6 +156,7 @@ class Template : TemplateText {
   }
 
   std::string_view names_;
+  std::string_view scoped_;  ///< The frame's own name: names_, "frames/" and the sequence.
   FrameResource frame_;
 };
 

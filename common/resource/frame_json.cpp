@@ -31,8 +31,8 @@ class JsonFrame {
     pen_.put("{");
     pen_.put(context_);
     pen_.put("\"@id\":\"");
-    pen_.put(names_);
-    pen_.put("frame\",\"@type\":\"Frame\"");
+    put_frame_name();
+    pen_.put("\",\"@type\":\"Frame\"");
     put_sequence();
     put_times(frame_.captured);
     put_origin();
@@ -46,7 +46,7 @@ class JsonFrame {
       pen_.need(kJointBytes + names_.size());
       pen_.put(comma);
       pen_.put("{");
-      put_body_head(body);
+      put_body_head(body, false);
       put_joints(body);
       pen_.put("}");
       comma = ",";
@@ -60,12 +60,12 @@ class JsonFrame {
     pen_.need(2 * kJointBytes + 2 * names_.size() + context_.size() + frame_.source.size() * 6);
     pen_.put("{");
     pen_.put(context_);
-    put_body_head(body);
+    put_body_head(body, true);
     put_sequence();
     put_origin();
     pen_.put(",\"frame\":\"");
-    pen_.put(names_);
-    pen_.put("frame\"");
+    put_frame_name();
+    pen_.put("\"");
     put_joints(body);
     pen_.need(kJointBytes);
     pen_.put("}\n");
@@ -73,10 +73,17 @@ class JsonFrame {
   }
 
  private:
-  void put_body_head(const BodyResource& body) {
+  /// `living`: the document is about the body that lives on, and says what that is.
+  void put_body_head(const BodyResource& body, bool living) {
     pen_.put("\"@id\":\"");
     put_body_name(body);
-    pen_.put("\",\"@type\":\"Skeleton\",\"bodyId\":");
+    pen_.put("\",\"@type\":\"Skeleton\"");
+    if (linked_) {
+      pen_.put(living ? ",\"of\":{\"@id\":\"" : ",\"of\":\"");
+      put_living_name(body);
+      pen_.put(living ? "\",\"@type\":\"TrackedBody\"}" : "\"");
+    }
+    pen_.put(",\"bodyId\":");
     put_unsigned(body.id);
     put_times(body.captured);
   }
@@ -121,9 +128,24 @@ class JsonFrame {
     pen_.put("]");
   }
 
-  void put_body_name(const BodyResource& body) {
+  /// Linked, bodies and joints are named by their frame, so that documents can be put together.
+  void put_frame_name() {
+    pen_.put(names_);
+    if (!linked_) return pen_.put("frame");
+    pen_.put("frames/");
+    pen_.put_integer(frame_.sequence);
+  }
+
+  void put_living_name(const BodyResource& body) {
     pen_.put(names_);
     pen_.put("skeletons/");
+    pen_.put_integer(body.id);
+  }
+
+  void put_body_name(const BodyResource& body) {
+    if (!linked_) return put_living_name(body);
+    put_frame_name();
+    pen_.put("#");
     pen_.put_integer(body.id);
   }
 
@@ -135,7 +157,7 @@ class JsonFrame {
       pen_.put(kJointNames[i]);
       pen_.put("\":{\"@id\":\"");
       put_body_name(body);
-      pen_.put("#");
+      pen_.put(linked_ ? "-" : "#");
       pen_.put(kJointNames[i]);
       pen_.put(linked_ ? "\",\"@type\":\"Joint\"," : "\",");
       put_joint(writable(body.joints[i]), body.joints[i].contributors);
@@ -146,11 +168,7 @@ class JsonFrame {
   }
 
   void put_joint(const WritableJoint& joint, std::uint64_t contributors) {
-    if (joint.state != JointState::NotTracked) {
-      put_number("\"x\":", joint.position.x(), kPositionDecimals);
-      put_number("\"y\":", joint.position.y(), kPositionDecimals);
-      put_number("\"z\":", joint.position.z(), kPositionDecimals);
-    }
+    if (joint.state != JointState::NotTracked) put_measured(joint);
     if (joint.has_orientation) {
       put_number("\"qx\":", joint.orientation.x(), kQuaternionDecimals);
       put_number("\"qy\":", joint.orientation.y(), kQuaternionDecimals);
@@ -158,12 +176,28 @@ class JsonFrame {
       put_number("\"qw\":", joint.orientation.w(), kQuaternionDecimals);
     }
     if (joint.variance) put_number("\"variance\":", *joint.variance, kVarianceDecimals);
+    if (joint.covariance.known()) put_covariance(joint.covariance);
     pen_.put("\"state\":\"");
     pen_.put(name_of(joint.state));
     pen_.put("\"");
     if (joint.state != JointState::NotTracked && !sensors_.empty()) {
       pen_.put(",\"contributors\":");
       put_names(contributors);
+    }
+  }
+
+  void put_measured(const WritableJoint& joint) {
+    const int decimals = joint.ray ? kRayDecimals : kPositionDecimals;
+    put_number(joint.ray ? "\"rayX\":" : "\"x\":", joint.position.x(), decimals);
+    put_number(joint.ray ? "\"rayY\":" : "\"y\":", joint.position.y(), decimals);
+    put_number(joint.ray ? "\"rayZ\":" : "\"z\":", joint.position.z(), decimals);
+  }
+
+  void put_covariance(const Covariance& covariance) {
+    for (std::size_t i = 0; i < kCovarianceNames.size(); ++i) {
+      pen_.put("\"");
+      pen_.put(kCovarianceNames[i]);
+      put_number("\":", covariance.term(i), kVarianceDecimals);
     }
   }
 

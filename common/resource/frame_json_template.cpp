@@ -6,6 +6,7 @@
 
 #include "common/body/bones.h"
 #include "common/resource/frame_facts.h"
+#include "common/resource/frame_parts.h"
 #include "common/resource/template_text.h"
 
 namespace chorus::resource {
@@ -75,23 +76,45 @@ class JsonTemplate : TemplateText {
   /// From behind the quote of the first property to behind the brace.
   bool joint(JointResource& joint) {
     if (text("state\":\"NotTracked\"}")) return true;
-    auto& p = joint.position;
-    if (!text("x\":") || !decimal(p.x()) || !text(",\"y\":") || !decimal(p.y()) ||
-        !text(",\"z\":") || !decimal(p.z()) || !text(",\"")) {
-      return false;
-    }
+    if (!(text("ray") ? ray(joint) : point(joint)) || !text(",\"")) return false;
     if (text("qx\":") && !orientation(joint.orientation)) return false;
     if (text("variance\":")) {
       double variance = 0.0;
       if (!decimal(variance) || variance < 0.0 || !text(",\"")) return false;
       joint.variance = variance;
     }
+    if (text("cxx\":") && !covariance(joint.covariance)) return false;
     if (!text("state\":\"")) return false;
     joint.state = text("Tracked") ? JointState::Tracked : JointState::Inferred;
     if (joint.state == JointState::Inferred && !text("Inferred")) return false;
     if (!text("\"")) return false;
     if (text(",\"contributors\":[") && !contributors(joint.contributors)) return false;
     return text("}");
+  }
+
+  bool point(JointResource& joint) {
+    auto& p = joint.position;
+    return text("x\":") && decimal(p.x()) && text(",\"y\":") && decimal(p.y()) && text(",\"z\":") &&
+           decimal(p.z());
+  }
+
+  /// From behind "ray".
+  bool ray(JointResource& joint) {
+    auto& p = joint.position;
+    joint.measurement = Measurement::Ray;
+    return text("X\":") && decimal(p.x()) && text(",\"rayY\":") && decimal(p.y()) &&
+           text(",\"rayZ\":") && decimal(p.z()) && std::abs(p.norm() - 1.0) <= kRayTolerance;
+  }
+
+  /// From behind the name of the first term to behind the quote of what follows.
+  bool covariance(Covariance& out) {
+    std::array<double, Covariance::kTerms> upper{};
+    for (std::size_t i = 0; i < upper.size(); ++i) {
+      if (i > 0 && (!text(kCovarianceNames[i]) || !text("\":"))) return false;
+      if (!decimal(upper[i]) || !text(",\"")) return false;
+    }
+    out = Covariance(upper);
+    return out.plausible();
   }
 
   bool contributors(std::uint64_t& bits) {

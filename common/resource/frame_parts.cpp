@@ -13,17 +13,28 @@ constexpr double kWrittenTolerance = 0.05;
 constexpr double kLeastNorm = 1e-6;  // below, a quaternion is "not given"
 constexpr double kMaxVariance = 1e4;
 
-bool plausible(const Eigen::Vector3d& p) {
-  return p.allFinite() && p.cwiseAbs().maxCoeff() <= kMaxCoordinate;
+bool plausible(const JointResource& joint) {
+  const Eigen::Vector3d& p = joint.position;
+  if (!p.allFinite()) return false;
+  if (joint.measurement == Measurement::Ray) return std::abs(p.norm() - 1.0) <= kRayTolerance;
+  return p.cwiseAbs().maxCoeff() <= kMaxCoordinate;
+}
+
+/// Terms whose wire form stays a covariance after rounding.
+bool writable(const Covariance& covariance) {
+  return covariance.known() && covariance.plausible() &&
+         covariance.matrix().cwiseAbs().maxCoeff() <= kMaxVariance;
 }
 
 }  // namespace
 
 WritableJoint writable(const JointResource& joint) {
   WritableJoint out;
-  if (joint.state == JointState::NotTracked || !plausible(joint.position)) return out;
+  if (joint.state == JointState::NotTracked || !plausible(joint)) return out;
   out.state = joint.state;
+  out.ray = joint.measurement == Measurement::Ray;
   out.position = joint.position;
+  if (writable(joint.covariance)) out.covariance = joint.covariance;
   const double norm = joint.orientation.norm();
   if (std::isfinite(norm) && norm > kLeastNorm) {
     out.has_orientation = true;
@@ -120,7 +131,8 @@ FrameResource to_resource(const SensorFrame& frame) {
     written.captured = body.captured;
     for (std::size_t i = 0; i < kJointCount; ++i) {
       const Joint& joint = body.skeleton.joints[i];
-      written.joints[i] = {joint.position, joint.orientation, joint.state, std::nullopt, 0};
+      written.joints[i] = {joint.position,    joint.orientation, joint.state, std::nullopt, 0,
+                           joint.measurement, joint.covariance};
     }
   }
   return out;
@@ -139,7 +151,9 @@ SensorFrame to_sensor_frame(const FrameResource& frame, SensorId sensor, Timesta
     seen.captured = body.captured;
     for (std::size_t i = 0; i < kJointCount; ++i) {
       const JointResource& joint = body.joints[i];
-      seen.skeleton.joints[i] = {joint.position, joint.orientation, joint.state};
+      Joint& read = seen.skeleton.joints[i];
+      read = {joint.position, joint.orientation, joint.state, joint.measurement, joint.covariance};
+      if (read.bears()) read.position.normalize();
     }
   }
   return out;

@@ -1,6 +1,7 @@
 // Internal to the room: what the frame writers share.
 #pragma once
 
+#include <array>
 #include <charconv>
 #include <cstring>
 #include <string>
@@ -16,6 +17,11 @@ namespace chorus::resource {
 inline constexpr int kPositionDecimals = 4;
 inline constexpr int kQuaternionDecimals = 5;
 inline constexpr int kVarianceDecimals = 8;
+inline constexpr int kRayDecimals = 6;
+
+/// The terms of a covariance on the wire, in the order of Covariance::term().
+inline constexpr std::array<std::string_view, Covariance::kTerms> kCovarianceNames{
+    "cxx", "cxy", "cxz", "cyy", "cyz", "czz"};
 
 /// A joint as it may be written: finite, plausible, or not tracked.
 struct WritableJoint {
@@ -24,6 +30,8 @@ struct WritableJoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   std::optional<double> variance;
+  bool ray = false;  ///< `position` is a direction.
+  Covariance covariance;
 };
 [[nodiscard]] WritableJoint writable(const JointResource& joint);
 
@@ -85,8 +93,8 @@ class TimeText {
 [[nodiscard]] std::string_view name_of(SpaceKind space);
 
 /// Bytes that one body takes, generously; and what a joint takes beyond its names.
-inline constexpr std::size_t kBodyBytes = 8192;
-inline constexpr std::size_t kJointBytes = 512;
+inline constexpr std::size_t kBodyBytes = 16384;
+inline constexpr std::size_t kJointBytes = 1024;
 
 [[nodiscard]] std::string write_turtle(const FrameResource& frame, const Place& place);
 [[nodiscard]] std::string write_json(const FrameResource& frame, bool linked, const Place& place);

@@ -22,11 +22,14 @@ namespace chorus::resource {
 enum class SpaceKind { Sensor, World };
 
 struct JointResource {
+  /// Of a point [m]; of a ray the unit vector from the sensor's origin towards the joint.
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Quaterniond orientation = Eigen::Quaterniond(0, 0, 0, 0);  ///< All zero: not given.
   JointState state = JointState::NotTracked;
   std::optional<double> variance;  ///< Fused: mean variance per axis [m^2].
   std::uint64_t contributors = 0;  ///< Fused: bit i = FrameResource::sensors[i] contributed.
+  Measurement measurement = Measurement::Point;
+  Covariance covariance = {};  ///< Of `position`, in the axes of the space, where one is known.
 };
 
 struct BodyResource {
@@ -47,6 +50,9 @@ struct FrameResource {
 /// Beyond this no coordinate is believed [m]; a writer treats the joint as not tracked, a reader
 /// refuses.
 inline constexpr double kMaxCoordinate = 1e4;
+
+/// How far from length 1 the direction of a ray may be.
+inline constexpr double kRayTolerance = 0.01;
 
 /// Writes the default (compact) profile.  Numbers that are not finite or absurd are never written:
 /// the joint is written as not tracked, without position.  Turtle and JSON come from templates,

@@ -25,7 +25,7 @@ class TurtleFrame {
   }
 
   std::string whole() {
-    begin("frame", "ch:Frame");
+    begin_frame();
     put_sequence();
     put_times(frame_.captured);
     put_origin();
@@ -44,26 +44,35 @@ class TurtleFrame {
   }
 
   std::string one(const BodyResource& body) {
+    begin_living(body);
     begin_body(body);
     put_sequence();
     put_origin();
     pen_.put(" ;\n  ch:frame <");
-    pen_.put(names_);
-    pen_.put("frame>");
+    put_frame_name();
+    pen_.put(">");
     put_joint_links(body);
     put_joints(body);
     return pen_.take();
   }
 
  private:
-  void begin(std::string_view name, std::string_view type) {
+  void begin_frame() {
     pen_.need(kJointBytes + names_.size() + sensor_bytes_ + frame_.source.size() * 6);
     pen_.put(kPrefixes);
     pen_.put("\n<");
-    pen_.put(names_);
-    pen_.put(name);
-    pen_.put("> a ");
-    pen_.put(type);
+    put_frame_name();
+    pen_.put("> a ch:Frame");
+    begun_ = true;
+  }
+
+  /// What lives on has no place of its own: two documents about it would contradict each other.
+  void begin_living(const BodyResource& body) {
+    pen_.need(kJointBytes + names_.size());
+    pen_.put(kPrefixes);
+    pen_.put("\n<");
+    put_living_name(body);
+    pen_.put("> a ch:TrackedBody .\n");
     begun_ = true;
   }
 
@@ -73,7 +82,9 @@ class TurtleFrame {
     begun_ = true;
     pen_.put("\n<");
     put_body_name(body);
-    pen_.put("> a ch:Skeleton ;\n  ch:bodyId ");
+    pen_.put("> a ch:Skeleton ;\n  ch:of <");
+    put_living_name(body);
+    pen_.put("> ;\n  ch:bodyId ");
     pen_.put_integer(body.id);
     put_times(body.captured);
   }
@@ -107,9 +118,22 @@ class TurtleFrame {
     }
   }
 
-  void put_body_name(const BodyResource& body) {
+  void put_frame_name() {
+    pen_.put(names_);
+    pen_.put("frames/");
+    pen_.put_integer(frame_.sequence);
+  }
+
+  void put_living_name(const BodyResource& body) {
     pen_.put(names_);
     pen_.put("skeletons/");
+    pen_.put_integer(body.id);
+  }
+
+  /// A body at this instant; `ch:of` leads to the one that lives on.
+  void put_body_name(const BodyResource& body) {
+    put_frame_name();
+    pen_.put("#");
     pen_.put_integer(body.id);
   }
 
@@ -126,12 +150,12 @@ class TurtleFrame {
 
   void put_joint_name(const BodyResource& body, std::string_view joint) {
     put_body_name(body);
-    pen_.put("#");
+    pen_.put("-");
     pen_.put(joint);
   }
 
   void put_joint_links(const BodyResource& body) {
-    pen_.need(kJointCount * (64 + names_.size()));
+    pen_.need(kJointCount * (96 + names_.size()));
     std::string_view before = " ;\n  ch:joint <";
     for (const std::string_view joint : kJointNames) {
       pen_.put(before);
@@ -156,12 +180,7 @@ class TurtleFrame {
   }
 
   void put_joint(const WritableJoint& joint, std::uint64_t contributors) {
-    if (joint.state != JointState::NotTracked) {
-      put_number("  ch:x ", joint.position.x(), kPositionDecimals);
-      put_number(" ; ch:y ", joint.position.y(), kPositionDecimals);
-      put_number(" ; ch:z ", joint.position.z(), kPositionDecimals);
-      pen_.put(" ;\n");
-    }
+    if (joint.state != JointState::NotTracked) put_measured(joint);
     if (joint.has_orientation) {
       put_number("  ch:qx ", joint.orientation.x(), kQuaternionDecimals);
       put_number(" ; ch:qy ", joint.orientation.y(), kQuaternionDecimals);
@@ -172,12 +191,31 @@ class TurtleFrame {
     pen_.put("  ch:state ch:");
     pen_.put(name_of(joint.state));
     if (joint.variance) put_number(" ;\n  ch:variance ", *joint.variance, kVarianceDecimals);
+    if (joint.covariance.known()) put_covariance(joint.covariance);
     const std::uint64_t known = sensors_.size() >= kMaxSensors
                                     ? ~std::uint64_t{0}
                                     : (std::uint64_t{1} << sensors_.size()) - 1;
     if (joint.state != JointState::NotTracked && (contributors & known) != 0) {
       pen_.put(" ;\n  ch:contributor ");
       put_names(contributors);
+    }
+  }
+
+  void put_measured(const WritableJoint& joint) {
+    const int decimals = joint.ray ? kRayDecimals : kPositionDecimals;
+    put_number(joint.ray ? "  ch:rayX " : "  ch:x ", joint.position.x(), decimals);
+    put_number(joint.ray ? " ; ch:rayY " : " ; ch:y ", joint.position.y(), decimals);
+    put_number(joint.ray ? " ; ch:rayZ " : " ; ch:z ", joint.position.z(), decimals);
+    pen_.put(" ;\n");
+  }
+
+  void put_covariance(const Covariance& covariance) {
+    std::string_view before = " ;\n  ch:";
+    for (std::size_t i = 0; i < kCovarianceNames.size(); ++i) {
+      pen_.put(before);
+      pen_.put(kCovarianceNames[i]);
+      put_number(" ", covariance.term(i), kVarianceDecimals);
+      before = " ; ch:";
     }
   }
 

@@ -57,20 +57,46 @@ test('JSON-LD is the graph of the Turtle', async () => {
   }
 });
 
+test('a hundred frames and living resources in one store keep one place per person and instant', async () => {
+  const store = new Store();
+  for (let i = 0; i < 50; ++i) {
+    for (const path of ['/frame', '/skeletons/']) {
+      const loaded = await graph(`${fusion}${path}`);
+      store.addQuads(loaded.getQuads());
+      if (path === '/frame') continue;
+      for (const { object } of loaded.getQuads(null, DataFactory.namedNode('http://www.w3.org/ns/ldp#contains'))) {
+        try { store.addQuads((await graph(object.value)).getQuads()); } catch { /* gone since */ }
+      }
+    }
+    await new Promise((resolve) => { setTimeout(resolve, 20); });
+  }
+  const own = (name) => DataFactory.namedNode(`${CH}${name}`);
+  const heads = store.getSubjects(own('jointName'), DataFactory.literal('Head'));
+  assert.ok(heads.length > 10, `${heads.length} instants were read`);
+  for (const head of heads) for (const axis of ['x', 'y', 'z']) {
+    assert.ok(store.getObjects(head, own(axis)).length <= 1, `${head.value} has several ${axis}`);
+  }
+  for (const skeleton of store.getSubjects(own('bodyId'))) {
+    assert.equal(store.getObjects(skeleton, own('capturedNanoseconds')).length, 1, skeleton.value);
+  }
+});
+
 test('a SPARQL query from / finds the head of every fused body', async () => {
   const frame = JSON.parse(await read(await cited(fusion), 'application/json'));
   assert.ok(frame.bodies.length > 0, 'somebody is tracked');
   const rows = await new QueryEngine().queryBindings(`
     PREFIX ch: <${CH}> PREFIX ldp: <http://www.w3.org/ns/ldp#>
-    SELECT DISTINCT ?body ?head ?y WHERE {
+    SELECT DISTINCT ?body ?skeleton ?head ?x ?y ?z WHERE {
       <${fusion}/> ch:skeletons ?list .
       ?list ldp:contains ?body .
-      ?body ch:joint ?head .
-      ?head ch:jointName "Head" ; ch:y ?y .
+      ?skeleton ch:of ?body ; ch:joint ?head .
+      ?head ch:jointName "Head" ; ch:x ?x ; ch:y ?y ; ch:z ?z .
     }`, { sources: [`${fusion}/`], lenient: true });
   const found = await rows.toArray();
   const bodies = new Set(found.map((row) => row.get('body').value));
   for (const body of frame.bodies) assert.ok(bodies.has(`${fusion}/skeletons/${body.bodyId}`), `body ${body.bodyId} is found`);
+  const heads = found.map((row) => row.get('head').value);
+  assert.equal(new Set(heads).size, heads.length, 'a head has one place at one instant, however many documents were read');
   for (const row of found) {
     const height = Number(row.get('y').value);
     assert.ok(height > 0.3 && height < 2.3, `a head at ${height} m`);

@@ -161,6 +161,30 @@ TEST(Interpolate, AMissingOrientationStaysMissing) {
   EXPECT_EQ(interpolate(a, b, 0.5)[JointId::Neck].orientation.coeffs().norm(), 0.0);
 }
 
+TEST(Interpolate, RaysStayUnitVectorsAndCovariancesAreMixed) {
+  Skeleton<SensorSpace> a;
+  a[JointId::Neck] = {Eigen::Vector3d::UnitX(), Eigen::Quaterniond(0, 0, 0, 0), JointState::Tracked,
+                      Measurement::Ray};
+  a[JointId::Neck].covariance = Covariance(Eigen::Matrix3d(1e-4 * Eigen::Matrix3d::Identity()));
+  Skeleton<SensorSpace> b = a;
+  b[JointId::Neck].position = Eigen::Vector3d::UnitY();
+  b[JointId::Neck].covariance = Covariance(Eigen::Matrix3d(3e-4 * Eigen::Matrix3d::Identity()));
+  const Joint neck = interpolate(a, b, 0.5)[JointId::Neck];
+  EXPECT_TRUE(neck.bears());
+  EXPECT_NEAR(neck.position.norm(), 1.0, 1e-12);
+  EXPECT_NEAR(neck.position.x(), neck.position.y(), 1e-12);
+  EXPECT_NEAR(neck.covariance.matrix()(1, 1), 2e-4, 1e-9);
+}
+
+TEST(Interpolate, APointAndARayHaveNothingBetweenThem) {
+  Skeleton<SensorSpace> a;
+  a[JointId::Neck] = {Eigen::Vector3d::UnitX(), Eigen::Quaterniond(0, 0, 0, 0), JointState::Tracked,
+                      Measurement::Ray};
+  Skeleton<SensorSpace> b = a;
+  b[JointId::Neck].measurement = Measurement::Point;
+  EXPECT_EQ(interpolate(a, b, 0.5)[JointId::Neck].state, JointState::NotTracked);
+}
+
 TEST(Interpolate, NeverExtrapolates) {
   const Skeleton<SensorSpace> a = body_at(kStart, 0).skeleton;
   const Skeleton<SensorSpace> b = body_at(kStart, 1).skeleton;

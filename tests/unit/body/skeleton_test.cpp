@@ -71,5 +71,26 @@ TEST(ToWorld, TurnsOrientationsWithTheSensor) {
   EXPECT_THAT(body_forward_in_sensor, VectorNear(Eigen::Vector3d(0, 0, -1), 1e-9));
 }
 
+TEST(Joint, ARayHasADirectionAndNoPlace) {
+  Joint joint{Eigen::Vector3d::UnitZ(), Eigen::Quaterniond(0, 0, 0, 0), JointState::Tracked,
+              Measurement::Ray};
+  EXPECT_FALSE(joint.seen());
+  EXPECT_TRUE(joint.bears());
+  joint.state = JointState::NotTracked;
+  EXPECT_FALSE(joint.bears());
+}
+
+TEST(ToWorld, TurnsRaysAndCovariancesButDoesNotMoveRays) {
+  Skeleton<SensorSpace> seen;
+  Joint& head = seen[JointId::Head];
+  head = {Eigen::Vector3d::UnitZ(), Eigen::Quaterniond(0, 0, 0, 0), JointState::Tracked,
+          Measurement::Ray};
+  head.covariance = Covariance(Eigen::Vector3d(1e-4, 2e-4, 9e-4).asDiagonal().toDenseMatrix());
+  const auto body = to_world(sensor_pose({5, 1, 3}, deg(90)), seen);
+  EXPECT_EQ(body[JointId::Head].measurement, Measurement::Ray);
+  EXPECT_THAT(body[JointId::Head].position, VectorNear(Eigen::Vector3d::UnitX(), 1e-9));
+  EXPECT_NEAR(body[JointId::Head].covariance.matrix()(0, 0), 9e-4, 1e-8);
+}
+
 }  // namespace
 }  // namespace chorus

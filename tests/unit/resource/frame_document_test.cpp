@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "common/rdf/turtle_reader.h"
 #include "tests/support/graph/isomorphism.h"
@@ -81,6 +82,45 @@ TEST(SkeletonDocument, IsOneBodyInEveryFormat) {
   EXPECT_EQ(json.at("joints").size(), kJointCount);
   EXPECT_EQ(nlohmann::json::parse(body_of(document, "application/ld+json")).at("@context"),
             "../context.jsonld");
+}
+
+/// Every place that the documents together state for one joint of one body.
+std::size_t places_of(const rdf::Graph& all, const std::string& joint) {
+  const rdf::Term x = rdf::iri("https://w3id.org/chorus-tracking/ns#x");
+  std::set<std::string> places;
+  for (const rdf::Triple& triple : all) {
+    if (triple.subject.value == joint && triple.predicate == x) places.insert(triple.object.value);
+  }
+  return places.size();
+}
+
+TEST(FrameDocument, AnyNumberOfThemStayTrueTogether) {
+  rdf::Graph all;
+  std::set<std::string> heads;
+  for (std::uint64_t i = 0; i < 100; ++i) {
+    auto frame = std::make_shared<FrameResource>(random_frame(7, {1, true}));
+    frame->sequence = i;
+    JointResource& head = frame->bodies[0].joints[index_of(JointId::Head)];
+    head.position = {static_cast<double>(i), 0, 0};
+    head.state = JointState::Tracked;
+    head.measurement = Measurement::Point;
+    const std::string id = std::to_string(frame->bodies[0].id);
+    for (const auto& [text, base] :
+         {std::pair{write(*frame, Format::Turtle, {"frame"}), std::string("http://h/frame")},
+          {write_skeleton(*frame, frame->bodies[0], Format::Turtle, {"skeletons/" + id}),
+           "http://h/skeletons/" + id}}) {
+      for (rdf::Triple& triple : graph_at(text, base)) all.push_back(std::move(triple));
+    }
+    heads.insert("http://h/frames/" + std::to_string(i) + "#" + id + "-Head");
+  }
+  EXPECT_EQ(heads.size(), 100U);
+  for (const std::string& head : heads) EXPECT_EQ(places_of(all, head), 1U) << head;
+  const rdf::Term x = rdf::iri("https://w3id.org/chorus-tracking/ns#x");
+  for (const rdf::Triple& triple : all) {
+    if (triple.predicate != x) continue;
+    EXPECT_NE(triple.subject.value.find("/frames/"), std::string::npos)
+        << triple.subject.value << " lives on and has no place of its own";
+  }
 }
 
 TEST(SkeletonDocument, ThereIsNoneForABodyThatIsNotThere) {

@@ -133,7 +133,8 @@ TEST(FrameRoundTrip, NTriplesIsTheTurtleMadeAbsolute) {
   options.base = "http://host:8080/frames/42";
   const auto turtle = rdf::read_graph(write(frame, Format::Turtle, place), options);
   EXPECT_EQ(testing::difference(*triples, *turtle), "");
-  EXPECT_EQ(turtle->front().subject.value, "http://host:8080/frame");
+  EXPECT_EQ(turtle->front().subject.value,
+            "http://host:8080/frames/" + std::to_string(frame.sequence));
 }
 
 TEST(FrameRoundTrip, PlacesChangeNamesAndNothingElse) {
@@ -147,7 +148,7 @@ TEST(FrameRoundTrip, PlacesChangeNamesAndNothingElse) {
     EXPECT_TRUE(read_template(write(frame, Format::Turtle, place))) << place.path;
   }
   EXPECT_NE(write(frame, Format::Turtle, {"sensors/s1/frame", "sensors/s1/"})
-                .find("<../../sensors/s1/frame>"),
+                .find("<../../sensors/s1/frames/" + std::to_string(frame.sequence) + ">"),
             std::string::npos);
 }
 
@@ -159,6 +160,21 @@ TEST(FrameWriter, NeverWritesWhatIsNotANumber) {
     JointResource& joint = frame.bodies[0].joints[3];
     joint = {Eigen::Vector3d(0, bad, 0), Eigen::Quaterniond(1, 0, 0, 0), JointState::Tracked, 0.1,
              1};
+    Eigen::Matrix3d odd = Eigen::Matrix3d::Identity();
+    odd(0, 1) = bad;
+    frame.bodies[0].joints[5] = {Eigen::Vector3d(1, 2, 3),
+                                 Eigen::Quaterniond(1, 0, 0, 0),
+                                 JointState::Tracked,
+                                 0.1,
+                                 1,
+                                 Measurement::Point,
+                                 Covariance(odd)};
+    frame.bodies[0].joints[6] = {Eigen::Vector3d(bad, 0, 1),
+                                 Eigen::Quaterniond(1, 0, 0, 0),
+                                 JointState::Tracked,
+                                 0.1,
+                                 1,
+                                 Measurement::Ray};
     frame.bodies[0].joints[4] = {Eigen::Vector3d(1, 2, 3), Eigen::Quaterniond(bad, 0, 0, 0),
                                  JointState::Tracked, bad, 1};
     for (const Format format : kFormats) {
@@ -166,6 +182,8 @@ TEST(FrameWriter, NeverWritesWhatIsNotANumber) {
       ASSERT_TRUE(back) << bad << ": " << to_string(back.error());
       EXPECT_EQ(back->bodies[0].joints[3].state, JointState::NotTracked);
       EXPECT_EQ(back->bodies[0].joints[4].state, JointState::Tracked);
+      EXPECT_FALSE(back->bodies[0].joints[5].covariance.known());
+      EXPECT_EQ(back->bodies[0].joints[6].state, JointState::NotTracked);
     }
     EXPECT_TRUE(rdf::read_graph(write_arvida(frame)));
   }

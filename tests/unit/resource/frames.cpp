@@ -1,5 +1,6 @@
 #include "tests/unit/resource/frames.h"
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <random>
@@ -29,17 +30,37 @@ class Dice {
   std::mt19937_64 random_;
 };
 
+/// A place; in a sensor's frame now and then only a direction.
+Eigen::Vector3d random_position(Dice& dice, JointResource& joint, const FrameResource& frame) {
+  Eigen::Vector3d p;
+  for (int i = 0; i < 3; ++i) p[i] = rounded(dice.between(-5, 5), 1e-4);
+  if (!frame.sensors.empty() || dice.chance(0.8)) return p;
+  joint.measurement = Measurement::Ray;
+  p.normalize();
+  for (int i = 0; i < 3; ++i) p[i] = rounded(p[i], 1e-6);
+  return p;
+}
+
+Covariance random_covariance(Dice& dice) {
+  Eigen::Matrix3d root;
+  for (int i = 0; i < 9; ++i) root(i) = dice.between(-0.05, 0.05);
+  Eigen::Matrix3d full = root * root.transpose() + 1e-5 * Eigen::Matrix3d::Identity();
+  for (int i = 0; i < 9; ++i) full(i) = rounded(full(i), 1e-8);
+  return Covariance(full);
+}
+
 JointResource random_joint(Dice& dice, const FrameResource& frame) {
   JointResource joint;
   if (dice.chance(0.2)) return joint;
   joint.state = dice.chance(0.3) ? JointState::Inferred : JointState::Tracked;
-  for (int i = 0; i < 3; ++i) joint.position[i] = rounded(dice.between(-5, 5), 1e-4);
+  joint.position = random_position(dice, joint, frame);
   if (dice.chance(0.9)) {
     Eigen::Quaterniond q(dice.between(-1, 1), dice.between(-1, 1), dice.between(-1, 1),
                          dice.between(0.1, 1));
     q.normalize();
     for (int i = 0; i < 4; ++i) joint.orientation.coeffs()[i] = rounded(q.coeffs()[i], 1e-5);
   }
+  if (dice.chance(0.4)) joint.covariance = random_covariance(dice);
   if (frame.sensors.empty()) return joint;
   joint.variance = rounded(dice.between(0, 0.01), 1e-8);
   joint.contributors = dice.number((std::uint64_t{1} << frame.sensors.size()) - 1);
@@ -85,9 +106,10 @@ void add_joint(Graph& graph, const FrameResource& frame, const std::string& iri,
   about.say("jointName", rdf::literal(std::string(kJointNames[index])));
   if (joint.state == JointState::NotTracked) return about.say("state", About::own("NotTracked"));
   about.say("state", About::own(joint.state == JointState::Tracked ? "Tracked" : "Inferred"));
-  about.decimal("x", joint.position.x(), 4);
-  about.decimal("y", joint.position.y(), 4);
-  about.decimal("z", joint.position.z(), 4);
+  const bool ray = joint.measurement == Measurement::Ray;
+  about.decimal(ray ? "rayX" : "x", joint.position.x(), ray ? 6 : 4);
+  about.decimal(ray ? "rayY" : "y", joint.position.y(), ray ? 6 : 4);
+  about.decimal(ray ? "rayZ" : "z", joint.position.z(), ray ? 6 : 4);
   if (joint.orientation.norm() > 0) {
     about.decimal("qx", joint.orientation.x(), 5);
     about.decimal("qy", joint.orientation.y(), 5);
@@ -95,6 +117,9 @@ void add_joint(Graph& graph, const FrameResource& frame, const std::string& iri,
     about.decimal("qw", joint.orientation.w(), 5);
   }
   if (joint.variance) about.decimal("variance", *joint.variance, 8);
+  constexpr std::array kTerms{"cxx", "cxy", "cxz", "cyy", "cyz", "czz"};
+  for (std::size_t i = 0; joint.covariance.known() && i < kTerms.size(); ++i)
+    about.decimal(kTerms[i], joint.covariance.term(i), 8);
   for (std::size_t i = 0; i < frame.sensors.size(); ++i) {
     if ((joint.contributors >> i & 1U) != 0)
       about.say("contributor", rdf::literal(frame.sensors[i]));
@@ -105,6 +130,9 @@ std::string text_of(const JointResource& joint) {
   std::string text = std::to_string(static_cast<int>(joint.state));
   for (int i = 0; i < 3; ++i) text += " " + decimals(joint.position[i], 6);
   for (int i = 0; i < 4; ++i) text += " " + decimals(joint.orientation.coeffs()[i], 7);
+  text += joint.measurement == Measurement::Ray ? " ray" : " point";
+  for (std::size_t i = 0; joint.covariance.known() && i < Covariance::kTerms; ++i)
+    text += " " + decimals(joint.covariance.term(i), 8);
   return text + " v" + decimals(joint.variance.value_or(-1), 10) + " c" +
          std::to_string(joint.contributors);
 }
@@ -134,7 +162,8 @@ FrameResource random_frame(std::uint64_t seed, const FrameKind& kind) {
 
 rdf::Graph expected_graph(const FrameResource& frame) {
   Graph graph;
-  About about{graph, rdf::iri("frame")};
+  const std::string own = "frames/" + std::to_string(frame.sequence);
+  About about{graph, rdf::iri(own)};
   about.type("Frame");
   about.integer("sequence", std::to_string(frame.sequence));
   about.times(frame.captured);
@@ -142,14 +171,15 @@ rdf::Graph expected_graph(const FrameResource& frame) {
   about.say("space", About::own(frame.space == SpaceKind::World ? "WorldSpace" : "SensorSpace"));
   for (const std::string& sensor : frame.sensors) about.say("sensor", rdf::literal(sensor));
   for (const BodyResource& body : frame.bodies) {
-    const std::string iri = "skeletons/" + std::to_string(body.id);
+    const std::string iri = own + "#" + std::to_string(body.id);
     about.say("body", rdf::iri(iri));
     About skeleton{graph, rdf::iri(iri)};
     skeleton.type("Skeleton");
+    skeleton.say("of", rdf::iri("skeletons/" + std::to_string(body.id)));
     skeleton.integer("bodyId", std::to_string(body.id));
     skeleton.times(body.captured);
     for (std::size_t i = 0; i < kJointCount; ++i) {
-      const std::string joint = iri + "#" + std::string(kJointNames[i]);
+      const std::string joint = iri + "-" + std::string(kJointNames[i]);
       skeleton.say("joint", rdf::iri(joint));
       add_joint(graph, frame, joint, i, body.joints[i]);
     }

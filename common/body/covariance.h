@@ -1,0 +1,46 @@
+// How uncertain a joint's measured place or direction is: a symmetric 3x3 covariance, or none
+// known.
+//
+// Axes are those of the space the joint is in.  Of a point [m^2]; of a ray's unit direction
+// [rad^2].
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include <Eigen/Core>
+
+namespace chorus {
+
+class Covariance {
+ public:
+  /// xx xy xz yy yz zz.
+  static constexpr std::size_t kTerms = 6;
+
+  Covariance() = default;  ///< Not known.
+  /// Takes the upper triangle.
+  explicit Covariance(const Eigen::Matrix3d& matrix);
+  explicit Covariance(const std::array<double, kTerms>& upper);
+
+  [[nodiscard]] bool known() const noexcept { return known_; }
+  /// Zero while it is not known.
+  [[nodiscard]] Eigen::Matrix3d matrix() const;
+  [[nodiscard]] double term(std::size_t i) const { return static_cast<double>(upper_[i]); }
+
+  /// R C R^T, in the axes that `rotation` leads to.
+  [[nodiscard]] Covariance turned(const Eigen::Matrix3d& rotation) const;
+
+  /// Finite, and no direction has a negative variance beyond what rounding on the wire makes.
+  [[nodiscard]] bool plausible() const;
+
+  bool operator==(const Covariance&) const = default;
+
+ private:
+  std::array<float, kTerms> upper_{};
+  bool known_ = false;
+};
+
+/// Between a and b; what only one of them knows is not known.
+[[nodiscard]] Covariance between(const Covariance& a, const Covariance& b, double share);
+
+}  // namespace chorus
