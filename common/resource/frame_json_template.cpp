@@ -59,7 +59,7 @@ class JsonTemplate : TemplateText {
     if (!text("{\"@id\":\"") || !text(names_) || !text("skeletons/") || !integer(body.id))
       return false;
     const std::string_view iri(begin, static_cast<std::size_t>(here() - begin));
-    if (!text("\",\"@type\":\"Skeleton\",\"bodyId\":") || !integer(id) || id != body.id)
+    if (!text("\",\"@type\":\"Skeleton\",\"bodyId\":") || !id_number(id) || id != body.id)
       return false;
     const auto twin = std::ranges::find(frame_.bodies, id, &BodyResource::id);
     if (&*twin != &body || !captured(body.captured)) return false;
@@ -71,6 +71,12 @@ class JsonTemplate : TemplateText {
       }
     }
     return text("}}");
+  }
+
+  /// Ids beyond a double's exact integers stand in quotes.
+  bool id_number(std::uint64_t& id) {
+    const bool quoted = text("\"");
+    return integer(id) && (!quoted || text("\""));
   }
 
   /// From behind the quote of the first property to behind the brace.
