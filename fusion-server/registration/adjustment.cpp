@@ -8,6 +8,7 @@
 #include "common/geometry/rotation.h"
 #include "fusion-server/registration/floor_prior.h"
 #include "fusion-server/registration/pairs.h"
+#include "fusion-server/registration/point_elimination.h"
 
 namespace chorus::registration {
 namespace {
@@ -20,16 +21,6 @@ constexpr double kTukey = 4.685;          // 95 % efficiency for a Gaussian
 constexpr double kMedianToSigma = 1.538;  // median of the norm of a 3-D standard Gaussian
 constexpr double kLeastScale = 0.02;      // in sigmas
 constexpr double kRidge = 1e-6;           // keeps an unobserved direction where it is
-
-/// One sensor's sight of one point, in its levelled frame.
-struct Sight {
-  std::size_t sensor = 0;
-  Eigen::Vector3d x;
-  Eigen::Vector3d ray;
-  double sigma = 0.0;
-};
-
-using Point = std::vector<Sight>;  ///< Of at least two sensors.
 
 /// A sensor while it is being moved.
 struct Station {
@@ -69,9 +60,9 @@ std::vector<Station> stations_of(const Places& places, const Walkers& walkers, b
 /// Who saw which slot at one instant.
 void add_instant(const std::vector<std::optional<TrailMoment>>& moments,
                  const std::vector<Station>& stations, std::span<const Slot> slots,
-                 std::vector<Point>& points) {
+                 std::vector<PointSights>& points) {
   for (std::size_t slot = 0; slot < slots.size(); ++slot) {
-    Point point;
+    PointSights point;
     for (std::size_t i = 0; i < stations.size(); ++i) {
       if (!moments[i] || !moments[i]->frame.has(slot)) continue;
       const Eigen::Vector3d& x = moments[i]->frame.points[slot];
@@ -96,14 +87,14 @@ std::vector<Timestamp> instants_of(const std::vector<Station>& stations, std::si
   return instants;
 }
 
-std::vector<Point> points_of(const std::vector<Station>& stations,
-                             const RegistrationConfig& config) {
+std::vector<PointSights> points_of(const std::vector<Station>& stations,
+                                   const RegistrationConfig& config) {
   const auto slots = slots_of(config.joints);
   std::vector<TrailReader> readers;
   for (const Station& station : stations) {
     readers.emplace_back(station.walker->trail, config.max_gap);
   }
-  std::vector<Point> points;
+  std::vector<PointSights> points;
   for (const Timestamp instant : instants_of(stations, slots.size())) {
     std::vector<std::optional<TrailMoment>> moments;
     for (TrailReader& reader : readers) {
@@ -115,77 +106,40 @@ std::vector<Point> points_of(const std::vector<Station>& stations,
   return points;
 }
 
-void hold_strangers(std::vector<Station>& stations, const std::vector<Point>& points) {
+void hold_strangers(std::vector<Station>& stations, const std::vector<PointSights>& points) {
   std::vector<std::size_t> sights(stations.size(), 0);
-  for (const Point& point : points) {
-    for (const Sight& sight : point) ++sights[sight.sensor];
+  for (const PointSights& point : points) {
+    for (const PointSight& sight : point) ++sights[sight.sensor];
   }
   for (std::size_t i = 0; i < stations.size(); ++i) {
     if (sights[i] < kLeastSights) stations[i].fixed = true;
   }
 }
 
-/// A point at the present places.
-struct Fused {
-  std::vector<Eigen::Vector3d> seen;            ///< Each sight in the world.
-  std::vector<Eigen::Matrix3d> information;     ///< S^-1 of each sight.
-  Eigen::Vector3d x = Eigen::Vector3d::Zero();  ///< Inverse-variance mean.
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-};
-
-Fused fuse(const Point& point, const std::vector<Station>& stations, double along_ratio) {
-  // (I + e r r^T)^-1 = I - e / (1 + e) r r^T
-  const double extra = std::max(0.0, along_ratio * along_ratio - 1.0);
-  const double blunt = extra / (1.0 + extra);
-  Fused fused;
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  for (const Sight& sight : point) {
-    const Eigen::Isometry3d& place = stations[sight.sensor].world_from_level;
-    const Eigen::Vector3d ray = place.linear() * sight.ray;
-    fused.seen.push_back(place * sight.x);
-    fused.information.push_back((Eigen::Matrix3d::Identity() - blunt * ray * ray.transpose()) /
-                                (sight.sigma * sight.sigma));
-    sum += fused.information.back();
-    right += fused.information.back() * fused.seen.back();
-  }
-  fused.covariance = sum.inverse();
-  fused.x = fused.covariance * right;
-  return fused;
-}
-
-/// Whole points are believed or not: in units of sigma, the worst sight counts.
-double worst_norm(const Fused& fused) {
-  double worst = 0.0;
-  for (std::size_t i = 0; i < fused.seen.size(); ++i) {
-    const Eigen::Vector3d off = fused.x - fused.seen[i];
-    worst = std::max(worst, off.dot(fused.information[i] * off));
-  }
-  return std::sqrt(worst);
-}
-
 /// The adjustment's state between iterations.
 struct Adjustment {
   std::vector<Station> stations;
-  std::vector<Point> points;
+  std::vector<PointSights> points;
   double along_ratio = 1.0;
   double inflation = 1.0;
   double scale = 0.0;  ///< Fixed after the first look, so that costs can be compared.
 
-  [[nodiscard]] std::vector<Fused> fuse_all() const {
-    std::vector<Fused> all;
-    for (const Point& point : points) all.push_back(fuse(point, stations, along_ratio));
+  [[nodiscard]] std::vector<FusedPoint> fuse_all() const {
+    std::vector<Eigen::Isometry3d> places;
+    for (const Station& station : stations) places.push_back(station.world_from_level);
+    std::vector<FusedPoint> all;
+    for (const PointSights& sights : points) all.push_back(fuse_point(sights, places, along_ratio));
     return all;
   }
-  [[nodiscard]] double weight(const Fused& fused) const {
+  [[nodiscard]] double weight(const FusedPoint& fused) const {
     const double off = worst_norm(fused) / (kTukey * scale);
     return off < 1.0 ? (1.0 - off * off) * (1.0 - off * off) : 0.0;
   }
 };
 
-double median_norm(const std::vector<Fused>& all) {
+double median_norm(const std::vector<FusedPoint>& all) {
   std::vector<double> norms;
-  for (const Fused& fused : all) norms.push_back(worst_norm(fused));
+  for (const FusedPoint& fused : all) norms.push_back(worst_norm(fused));
   const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
   std::nth_element(norms.begin(), middle, norms.end());
   return *middle;
@@ -194,7 +148,7 @@ double median_norm(const std::vector<Fused>& all) {
 /// Tukey's loss, which the weights above belong to.
 double cost_of(const Adjustment& adjustment) {
   double cost = 0.0;
-  for (const Fused& fused : adjustment.fuse_all()) {
+  for (const FusedPoint& fused : adjustment.fuse_all()) {
     const double off = worst_norm(fused) / (kTukey * adjustment.scale);
     const double rest = off < 1.0 ? 1.0 - off * off : 0.0;
     cost += 1.0 - rest * rest * rest;
@@ -202,31 +156,7 @@ double cost_of(const Adjustment& adjustment) {
   return cost;
 }
 
-struct Equations {
-  Eigen::MatrixXd information;
-  Eigen::VectorXd right;
-};
-
-void add_point(Equations& equations, const Point& point, const Fused& fused, double weight) {
-  std::vector<Eigen::Matrix<double, 3, 6>> rows;
-  for (std::size_t i = 0; i < point.size(); ++i) {
-    const Eigen::Matrix<double, 3, 6> motion = at_point(fused.seen[i]).bottomRows<3>();
-    rows.push_back(fused.information[i] * motion);
-    const auto at = static_cast<Eigen::Index>(6 * point[i].sensor);
-    equations.information.block<6, 6>(at, at) += weight * motion.transpose() * rows[i];
-    equations.right.segment<6>(at) += weight * rows[i].transpose() * (fused.x - fused.seen[i]);
-  }
-  for (std::size_t i = 0; i < point.size(); ++i) {
-    const Eigen::Matrix<double, 6, 3> left = weight * rows[i].transpose() * fused.covariance;
-    for (std::size_t j = 0; j < point.size(); ++j) {
-      equations.information.block<6, 6>(static_cast<Eigen::Index>(6 * point[i].sensor),
-                                        static_cast<Eigen::Index>(6 * point[j].sensor)) -=
-          left * rows[j];
-    }
-  }
-}
-
-void add_floors(Equations& equations, const std::vector<Station>& stations,
+void add_floors(PlaceEquations& equations, const std::vector<Station>& stations,
                 const Eigen::Vector3d& centre_in_world) {
   for (std::size_t i = 0; i < stations.size(); ++i) {
     if (!stations[i].levelled || stations[i].fixed) continue;
@@ -240,7 +170,7 @@ void add_floors(Equations& equations, const std::vector<Station>& stations,
 }
 
 /// The master must not move: its rows become identity.
-void hold_fixed(Equations& equations, const std::vector<Station>& stations) {
+void hold_fixed(PlaceEquations& equations, const std::vector<Station>& stations) {
   for (std::size_t i = 0; i < stations.size(); ++i) {
     if (!stations[i].fixed) continue;
     const auto at = static_cast<Eigen::Index>(6 * i);
@@ -251,11 +181,12 @@ void hold_fixed(Equations& equations, const std::vector<Station>& stations) {
   }
 }
 
-Equations equations_of(const Adjustment& adjustment) {
+PlaceEquations equations_of(const Adjustment& adjustment) {
   const auto size = static_cast<Eigen::Index>(6 * adjustment.stations.size());
-  Equations equations{kRidge * Eigen::MatrixXd::Identity(size, size), Eigen::VectorXd::Zero(size)};
+  PlaceEquations equations{kRidge * Eigen::MatrixXd::Identity(size, size),
+                           Eigen::VectorXd::Zero(size)};
   const double variance = adjustment.scale * adjustment.scale * adjustment.inflation;
-  const std::vector<Fused> all = adjustment.fuse_all();
+  const std::vector<FusedPoint> all = adjustment.fuse_all();
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < all.size(); ++k) {
     const double weight = adjustment.weight(all[k]);
@@ -269,7 +200,7 @@ Equations equations_of(const Adjustment& adjustment) {
 
 /// False when nothing moves any more.
 bool iterate(Adjustment& adjustment) {
-  const Equations equations = equations_of(adjustment);
+  const PlaceEquations equations = equations_of(adjustment);
   const Eigen::VectorXd motion = equations.information.ldlt().solve(equations.right);
   if (!motion.allFinite()) return false;
   for (std::size_t i = 0; i < adjustment.stations.size(); ++i) {

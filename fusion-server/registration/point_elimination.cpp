@@ -1,0 +1,61 @@
+#include "fusion-server/registration/point_elimination.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fusion-server/registration/adjoint.h"
+
+namespace chorus::registration {
+
+FusedPoint fuse_point(const PointSights& sights,
+                      std::span<const Eigen::Isometry3d> world_from_level, double along_ratio) {
+  // (I + e r r^T)^-1 = I - e / (1 + e) r r^T
+  const double extra = std::max(0.0, along_ratio * along_ratio - 1.0);
+  const double blunt = extra / (1.0 + extra);
+  FusedPoint fused;
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (const PointSight& sight : sights) {
+    const Eigen::Isometry3d& place = world_from_level[sight.sensor];
+    const Eigen::Vector3d ray = place.linear() * sight.ray;
+    fused.seen.push_back(place * sight.x);
+    fused.information.push_back((Eigen::Matrix3d::Identity() - blunt * ray * ray.transpose()) /
+                                (sight.sigma * sight.sigma));
+    sum += fused.information.back();
+    right += fused.information.back() * fused.seen.back();
+  }
+  fused.covariance = sum.inverse();
+  fused.x = fused.covariance * right;
+  return fused;
+}
+
+double worst_norm(const FusedPoint& fused) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < fused.seen.size(); ++i) {
+    const Eigen::Vector3d off = fused.x - fused.seen[i];
+    worst = std::max(worst, off.dot(fused.information[i] * off));
+  }
+  return std::sqrt(worst);
+}
+
+void add_point(PlaceEquations& equations, const PointSights& sights, const FusedPoint& fused,
+               double weight) {
+  std::vector<Eigen::Matrix<double, 3, 6>> rows;
+  for (std::size_t i = 0; i < sights.size(); ++i) {
+    const Eigen::Matrix<double, 3, 6> motion = at_point(fused.seen[i]).bottomRows<3>();
+    rows.push_back(fused.information[i] * motion);
+    const auto at = static_cast<Eigen::Index>(6 * sights[i].sensor);
+    equations.information.block<6, 6>(at, at) += weight * motion.transpose() * rows[i];
+    equations.right.segment<6>(at) += weight * rows[i].transpose() * (fused.x - fused.seen[i]);
+  }
+  for (std::size_t i = 0; i < sights.size(); ++i) {
+    const Eigen::Matrix<double, 6, 3> left = weight * rows[i].transpose() * fused.covariance;
+    for (std::size_t j = 0; j < sights.size(); ++j) {
+      equations.information.block<6, 6>(static_cast<Eigen::Index>(6 * sights[i].sensor),
+                                        static_cast<Eigen::Index>(6 * sights[j].sensor)) -=
+          left * rows[j];
+    }
+  }
+}
+
+}  // namespace chorus::registration

@@ -1,0 +1,56 @@
+// One point of the walk seen by several sensors, eliminated from the adjustment's equations.
+//
+// Sensor i sees the point at m_i; T_i is the sensor's place, S_i^-1 the information of its sight:
+//   E(T) = min_x sum_i (T_i m_i - x)^T S_i^-1 (T_i m_i - x)
+//   x = C sum_i S_i^-1 T_i m_i,   C = (sum_i S_i^-1)^-1,   S_i = sigma_i^2 (I + e r_i r_i^T)
+// With a small motion (omega, tau) of T_i on the world's side and J_i = [-[T_i m_i]x  I], the Schur
+// complement of x is (docs/papers/registration.md):
+//   H_ij = delta_ij J_i^T S_i^-1 J_i - J_i^T S_i^-1 C S_j^-1 J_j,   g_i = J_i^T S_i^-1 (x - T_i
+//   m_i)
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+namespace chorus::registration {
+
+/// One sensor's sight of one point, in its levelled frame.
+struct PointSight {
+  std::size_t sensor = 0;  ///< Index into the places.
+  Eigen::Vector3d x;       ///< [m]
+  Eigen::Vector3d ray;     ///< Unit line of sight.
+  double sigma = 0.0;      ///< Across the line of sight [m].
+};
+
+using PointSights = std::vector<PointSight>;  ///< Of at least two sensors.
+
+/// A point at the present places.
+struct FusedPoint {
+  std::vector<Eigen::Vector3d> seen;            ///< Each sight in the world.
+  std::vector<Eigen::Matrix3d> information;     ///< S^-1 of each sight.
+  Eigen::Vector3d x = Eigen::Vector3d::Zero();  ///< Inverse-variance mean.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+
+/// `along_ratio`: error along the line of sight over the error across it.
+[[nodiscard]] FusedPoint fuse_point(const PointSights& sights,
+                                    std::span<const Eigen::Isometry3d> world_from_level,
+                                    double along_ratio);
+
+/// Whole points are believed or not: in units of sigma, the worst sight counts.
+[[nodiscard]] double worst_norm(const FusedPoint& fused);
+
+/// information * (omega, tau of every sensor) = right.
+struct PlaceEquations {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd right;
+};
+
+/// Adds H and g of one point, times `weight`.
+void add_point(PlaceEquations& equations, const PointSights& sights, const FusedPoint& fused,
+               double weight);
+
+}  // namespace chorus::registration
