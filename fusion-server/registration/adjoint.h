@@ -1,4 +1,5 @@
-// Moves the covariance of a small motion (omega, tau) from one frame to another.
+// Carries covariances of a motion (omega, tau) to other frames (docs/papers/registration.md,
+// Section 1).
 #pragma once
 
 #include <Eigen/Geometry>

@@ -5,7 +5,7 @@
 // with S_ik sharp across and blunt along each line of sight, Tukey weights, and the floor as prior.
 // Given the places, each x_k is the inverse-variance mean, so only the places stay unknown.  Pairs
 // of depth sensors gain little from it; single cameras, which hardly know depth, gain much: three
-// lines of sight fix what two leave open.
+// lines of sight fix what two leave open.  Derived in docs/papers/registration.md, Section 8.
 #pragma once
 
 #include <map>

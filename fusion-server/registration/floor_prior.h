@@ -1,4 +1,5 @@
-// Normal equations of small motions, and what two levelled floors add to them.
+// Normal equations of small motions, and what two floors add (docs/papers/registration.md, Section
+// 6).
 #pragma once
 
 #include <numbers>

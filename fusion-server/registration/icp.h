@@ -1,4 +1,4 @@
-// Iterative closest point on neck clouds, by PCL (Otto 5.2, 5.2.1).
+// Iterative closest point on neck clouds, by PCL (Otto 5.2, 5.2.1; docs/papers/registration.md, 5).
 #pragma once
 
 #include <optional>

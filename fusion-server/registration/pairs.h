@@ -1,7 +1,7 @@
 // Time-paired correspondences: where was the same joint for the other sensor at that very instant?
 //
 // The target's trail is interpolated at the source's capture times (Otto 5.2.4), so unsynchronised
-// sensors give simultaneous points.
+// sensors give simultaneous points.  docs/papers/registration.md, Section 2.
 #pragma once
 
 #include <optional>

@@ -6,7 +6,7 @@
 //   S = sigma^2 / 2 (A_target + R A_source R^T),   A = I + (ratio^2 - 1) ray ray^T
 // with Tukey weights w.  kappa = (1 + rho) / (1 - rho) because successive residuals are not
 // independent; without it the walk would overrule the floor, and the covariance would be too small
-// by the same factor.
+// by the same factor.  Derived in docs/papers/registration.md, Section 4.
 #pragma once
 
 #include "fusion-server/registration/floor_prior.h"

@@ -1,7 +1,7 @@
 // Edges between sensors -> the best chain from the master to each client (Otto 5.2.3, Fig. 11).
 //
 // Best = least summed edge error (Dijkstra).  An edge may be walked both ways; the reversal is
-// explicit here and nowhere else.
+// explicit here and nowhere else.  Derived in docs/papers/registration.md, Section 7.
 #pragma once
 
 #include <map>

@@ -75,6 +75,20 @@ TEST(ClockFilter, AStepOfTheOtherClockIsBelievedAtTheThirdContradiction) {
   EXPECT_EQ(filter.at(now)->ours_minus_theirs, -milliseconds(500));
 }
 
+/// Quartzes drift less than the limit, but for ever: what was learnt long ago must go.
+TEST(ClockFilter, ForgetsTheBestExchangeOnceItIsOlderThanTheWindow) {
+  ClockFilter filter;
+  filter.add(exchange(kT0, Duration{0}, microseconds(10), Duration{0}, microseconds(10)));
+  const auto later = [&](int seconds_on) {
+    const Timestamp sent = kT0 + std::chrono::seconds(seconds_on);
+    filter.add(exchange(sent, milliseconds(1), milliseconds(5), Duration{0}, milliseconds(5)));
+    return filter.at(sent).value();
+  };
+  EXPECT_EQ(later(29).ours_minus_theirs, Duration{0});  // ten microseconds beat five milliseconds
+  EXPECT_EQ(later(31).ours_minus_theirs, -milliseconds(1));
+  EXPECT_GE(later(32).uncertainty, milliseconds(5));
+}
+
 TEST(ClockFilter, OneOutlierChangesNothing) {
   ClockFilter filter;
   for (int i = 0; i < 10; ++i) {

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <Eigen/Cholesky>
 
+#include "tests/unit/registration/pair_cloud.h"
 #include "tests/unit/registration/walk_builder.h"
 
 namespace chorus::registration {
@@ -104,6 +106,31 @@ TEST(RegisterPair, TheStatedCovarianceIsOfTheRightSize) {
   }
   EXPECT_LT(squares, 3.0 * stated);
   EXPECT_GT(squares, 0.05 * stated);
+}
+
+/// Normalised error squared over many walks, for the covariance as a whole.
+TEST(RegisterPair, TheStatedCovarianceNeitherFlattersNorFrightens) {
+  const Eigen::Isometry3d source = ring_place(deg(5));  // hardly any bias floor
+  double nees = 0.0;
+  constexpr int kRuns = 40;
+  for (unsigned seed = 1; seed <= kRuns; ++seed) {
+    const WalkSpec spec{.length = 6, .noise = 0.02, .seed = seed};
+    const auto edge = register_pair(watch(1, kTarget, spec), watch(2, source, spec), {});
+    ASSERT_TRUE(edge);
+    const Eigen::Isometry3d off = edge->target_from_source * truth(source).inverse();
+    const Vector6 xi = motion_of(off);
+    nees += xi.dot(edge->covariance.ldlt().solve(xi)) / kRuns;
+  }
+  EXPECT_GT(nees, 1.5);  // 6 when all is right; exact floors here know more than the prior says
+  EXPECT_LT(nees, 9.0);
+}
+
+TEST(RegisterPair, IcpLooksAtTheCloudsAndReportsItsOwnResidual) {
+  const WalkSpec spec{.noise = 0.02};
+  const auto edge = register_pair(watch(1, kTarget, spec), watch(2, ring_place(deg(90)), spec), {});
+  ASSERT_TRUE(edge);
+  EXPECT_NE(edge->icp_rms, edge->rms);
+  EXPECT_NEAR(edge->icp_rms, edge->rms, 0.25 * edge->rms);
 }
 
 TEST(RegisterPair, SaysThatTheTwoNeverSawThePersonTogether) {

@@ -170,6 +170,99 @@ TEST(Solve, AnUnknownMasterIsReplacedAndNamed) {
   EXPECT_EQ(registration.sensors.size(), 2u);
 }
 
+TEST(Solve, TheOrderOfTheTracksDoesNotMatterAndASecondTrackOfASensorIsIgnored) {
+  const auto walk = ring(3, {.length = 6});
+  const Registration first = solve(walk, kWalkStart, {});
+  std::vector<WalkTrack> mixed{walk[2], walk[0], walk[1], walk[0]};
+  mixed.back().frames.clear();
+  const Registration second = solve(mixed, kWalkStart, {});
+  EXPECT_EQ(first.master, second.master);
+  ASSERT_EQ(second.sensors.size(), 3u);
+  for (const auto& [id, place] : first.sensors) {
+    EXPECT_EQ(place.world_from_sensor.matrix(), second.sensors.at(id).world_from_sensor.matrix());
+  }
+}
+
+/// Single cameras, which hardly know depth: all together know what no chain of pairs does.
+TEST(Solve, FromThreeSensorsOnAllAreAdjustedTogether) {
+  RegistrationConfig config;
+  config.along_ratio = 8.0;
+  config.max_edge_rms = 0.6;
+  double chained = 0.0;
+  double adjusted = 0.0;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    std::vector<WalkTrack> walk = ring(3, {.length = 8, .noise = 0.004, .seed = seed});
+    for (WalkTrack& track : walk) track = with_depth_error(std::move(track), 0.15, 10 * seed);
+    config.adjust_together = false;
+    const Registration alone = solve(walk, kWalkStart, config);
+    config.adjust_together = true;
+    const Registration together = solve(walk, kWalkStart, config);
+    ASSERT_EQ(together.sensors.size(), 3u);
+    for (int i = 0; i < 3; ++i) {
+      chained += error_of(alone, i, 3).position;
+      adjusted += error_of(together, i, 3).position;
+    }
+  }
+  EXPECT_LT(adjusted, 0.9 * chained);
+}
+
+TEST(Solve, TwoSensorsAreNotAdjusted) {
+  RegistrationConfig chains_only;
+  chains_only.adjust_together = false;
+  const auto walk = ring(2, {.length = 5});
+  const Registration alone = solve(walk, kWalkStart, chains_only);
+  const Registration together = solve(walk, kWalkStart, {});
+  for (const auto& [id, place] : alone.sensors) {
+    EXPECT_EQ(place.world_from_sensor.matrix(), together.sensors.at(id).world_from_sensor.matrix());
+  }
+}
+
+/// Edges of a star: sensor 2 is linked to everybody, the others only through it.
+TEST(Solve, TheMasterIsWhoReachesMostWithTheLeastError) {
+  const PairEstimator star = [](const Walker& target, const Walker& source) {
+    PairwiseRegistration edge{target.trail.sensor, source.trail.sensor};
+    edge.pairs = edge.inliers = 100;
+    edge.spread = 1.0;
+    edge.rms = 0.02;
+    if (edge.target != sensor(2) && edge.source != sensor(2)) edge.rms = 0.30;
+    return Result<PairwiseRegistration>(edge);
+  };
+  RegistrationConfig config;
+  config.adjust_together = false;
+  const auto walk = ring(4, {.length = 1});
+  EXPECT_EQ(solve_with(star, walk, kWalkStart, config).master, sensor(2));
+}
+
+TEST(Solve, AHeadDownOrBuriedSensorIsRefusedAndNamed) {
+  Eigen::Isometry3d wrong = Eigen::Isometry3d::Identity();
+  const PairEstimator estimate = [&](const Walker& target, const Walker& source) {
+    PairwiseRegistration edge{target.trail.sensor, source.trail.sensor};
+    edge.pairs = edge.inliers = 100;
+    edge.spread = 1.0;
+    edge.target_from_source = wrong;
+    return Result<PairwiseRegistration>(edge);
+  };
+  RegistrationConfig config;
+  config.master = sensor(0);
+  wrong.linear() = Eigen::AngleAxisd(deg(170), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  auto walk = ring(2, {.length = 1});  // its own floor would say where it is
+  for (SensorFrame& frame : walk[1].frames) frame.floor.reset();
+  const Registration head_down = solve_with(estimate, walk, kWalkStart, config);
+  EXPECT_THAT(head_down.reasons, Contains(HasSubstr("sensor s1 would hang head down")));
+  EXPECT_FALSE(head_down.sensors.contains(sensor(1)));
+  wrong.linear().setIdentity();
+  wrong.translation().y() = -2.5;
+  const Registration buried = solve_with(estimate, walk, kWalkStart, config);
+  EXPECT_THAT(buried.reasons, Contains(HasSubstr("m below the floor")));
+}
+
+TEST(Solve, EdgesThatFitBadlyMakeTheVerdictProvisional) {
+  const auto walk = ring(2, {.length = 25, .noise = 0.06});
+  const Registration registration = solve(walk, kWalkStart, {});
+  EXPECT_EQ(registration.verdict, Verdict::Provisional);
+  EXPECT_THAT(registration.reasons, Contains(HasSubstr("m rms along the walk; 0.080 m")));
+}
+
 TEST(Solve, SameWalkSameAnswer) {
   const auto walk = ring(3, {.length = 5});
   const Registration first = solve(walk, kWalkStart, {});

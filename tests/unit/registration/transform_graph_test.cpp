@@ -84,20 +84,22 @@ TEST(EdgeError, IsFiniteForAnyEdgeAndFallsWithInliersAndSpread) {
   EXPECT_GT(edge_error(one), many);
 }
 
-/// Ad is right when Exp(Ad xi) b_from_a = b_from_a Exp(xi), to first order.
-TEST(Adjoint, MovesSmallMotionsAcross) {
-  const Eigen::Isometry3d b_from_a = kPlaces[3];
-  Eigen::Matrix<double, 6, 1> xi;
-  xi << 1e-4, -2e-4, 3e-4, 4e-4, 5e-4, -6e-4;
-  const auto motion = [](const Eigen::Matrix<double, 6, 1>& small) {
-    Eigen::Isometry3d step = Eigen::Isometry3d::Identity();
-    step.linear() = exp_map(small.head<3>()).toRotationMatrix();
-    step.translation() = small.tail<3>();
-    return step;
-  };
-  const Eigen::Isometry3d left = motion(adjoint(b_from_a) * xi) * b_from_a;
-  const Eigen::Isometry3d right = b_from_a * motion(xi);
-  EXPECT_LT((left.matrix() - right.matrix()).norm(), 1e-6);
+TEST(EdgeError, IsTheStandardErrorAtTheSensorPlusAFloor) {
+  PairwiseRegistration one = edge(0, 1, kPlaces, 0.02);
+  one.inliers = 400;
+  one.spread = 2.5;  // as wide as the lever is long
+  EXPECT_NEAR(edge_error(one), 0.002 + 0.02 / 20.0 * std::sqrt(2.0), 1e-12);
+}
+
+TEST(BestChains, ALaterBetterWayReplacesAnEarlierOne) {
+  // 0-3 is known first and poor; 0-1-2-3 is longer and better, and what hangs on 3 profits.
+  const std::vector edges{edge(0, 3, kPlaces, 0.9), edge(0, 1, kPlaces, 0.01),
+                          edge(1, 2, kPlaces, 0.01), edge(2, 3, kPlaces, 0.01)};
+  const auto chains = best_chains(sensor(0), edges);
+  EXPECT_EQ(chains.at(sensor(3)).sensors.size(), 4u);
+  EXPECT_NEAR(chains.at(sensor(3)).error, 3 * edge_error(edges[1]), 1e-12);
+  std::vector reversed(edges.rbegin(), edges.rend());
+  EXPECT_EQ(best_chains(sensor(0), reversed).at(sensor(3)).sensors, chains.at(sensor(3)).sensors);
 }
 
 }  // namespace

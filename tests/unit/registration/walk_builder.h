@@ -113,6 +113,18 @@ inline WalkTrack watch(int number, const Eigen::Isometry3d& world_from_sensor,
   return track;
 }
 
+/// Moves every joint along its line of sight by a depth error that all joints of a frame share.
+inline WalkTrack with_depth_error(WalkTrack track, double sigma, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0.0, sigma);
+  for (SensorFrame& frame : track.frames) {
+    for (Joint& joint : frame.bodies[0].skeleton.joints) {
+      joint.position *= 1.0 + noise(random) / joint.position.norm();
+    }
+  }
+  return track;
+}
+
 struct PlaceError {
   double position = 0.0;  ///< [m]
   double angle = 0.0;     ///< [rad]

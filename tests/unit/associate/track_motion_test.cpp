@@ -1,0 +1,95 @@
+// Where a track is looked for: ahead of where it was, and on the floor only.
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "fusion-server/associate/person_association.h"
+
+namespace chorus::associate {
+namespace {
+
+constexpr Duration kFrame = std::chrono::milliseconds(33);
+constexpr double kFrameSeconds = 0.033;
+
+SensorView view_at(const Eigen::Vector3d& place, int sensor = 1) {
+  SensorView sight;
+  sight.sensor = SensorId::parse("s" + std::to_string(sensor)).value();
+  sight.body = BodyId{1};
+  for (const JointId id : {JointId::SpineBase, JointId::Neck, JointId::Head}) {
+    sight.skeleton[id].position = place + Eigen::Vector3d(0, 0.2 * static_cast<double>(id), 0);
+    sight.skeleton[id].state = JointState::Tracked;
+  }
+  return sight;
+}
+
+/// One instant after another; remembers the tracks.
+struct Floor {
+  Tracks tracks;
+  Timestamp instant = from_unix_ns(1'790'000'000'000'000'000);
+
+  std::vector<Person> see(std::vector<SensorView> views) {
+    instant += kFrame;
+    Grouping grouping = group(std::move(views), instant, tracks, {});
+    tracks = grouping.tracks;
+    return grouping.people;
+  }
+  /// Somebody walks along x at `speed` [m/s] for so many instants; where the next one would be.
+  double walk(double speed, int instants) {
+    for (int i = 0; i < instants; ++i) see({view_at({speed * kFrameSeconds * i, 1, 0})});
+    return speed * kFrameSeconds * instants;
+  }
+};
+
+TEST(TrackMotion, SomebodyWhoWalksOnUnseenIsFoundAhead) {
+  Floor floor;
+  double x = floor.walk(2.5, 40);
+  for (int i = 0; i < 10; ++i, x += 2.5 * kFrameSeconds) floor.see({});  // 0.33 s, 0.83 m
+  const auto people = floor.see({view_at({x, 1, 0})});
+  ASSERT_EQ(people.size(), 1u);
+  EXPECT_EQ(people[0].id, PersonId{1});
+  EXPECT_EQ(floor.tracks.people.size(), 1u);
+}
+
+TEST(TrackMotion, SomebodyWhoWalkedIsNotLookedForWhereTheWalkBegan) {
+  Floor floor;
+  const double x = floor.walk(2.5, 40);
+  for (int i = 0; i < 10; ++i) floor.see({});
+  floor.see({view_at({x - 0.3, 1, 0})});  // 1.1 m behind where the walk leads
+  EXPECT_EQ(floor.tracks.people.size(), 2u);
+}
+
+TEST(TrackMotion, VelocityFollowsTheWalkAndIsNeverAbsurd) {
+  Floor floor;
+  floor.walk(1.2, 40);
+  EXPECT_NEAR(floor.tracks.people.at(0).velocity.x(), 1.2, 0.05);
+  Floor wild;
+  wild.see({view_at({0, 1, 0})});
+  wild.see({view_at({0.5, 1, 0})});  // 15 m/s
+  wild.see({view_at({1.0, 1, 0})});
+  EXPECT_LE(wild.tracks.people.at(0).velocity.norm(), 4.0 + 1e-9);
+}
+
+TEST(TrackMotion, HeightDoesNotSeparateAPersonFromItsTrack) {
+  Floor floor;
+  floor.walk(0.0, 5);
+  SensorView head_only = view_at({0.1, 1, 0}, 2);  // hip and neck hidden: 0.9 m higher
+  head_only.skeleton[JointId::SpineBase].state = JointState::NotTracked;
+  head_only.skeleton[JointId::Neck].state = JointState::NotTracked;
+  head_only.skeleton[JointId::Head].position.y() = 1.9;
+  const auto people = floor.see({view_at({0, 1, 0}), head_only});
+  ASSERT_EQ(people.size(), 1u);
+  EXPECT_EQ(people[0].views.size(), 2u);
+  EXPECT_EQ(floor.tracks.people.size(), 1u);
+}
+
+TEST(TrackMotion, NewcomersSeenInPartsAreOnePerson) {
+  Floor floor;
+  SensorView legs = view_at({0.1, 1, 0}, 2);
+  legs.skeleton[JointId::Neck].state = legs.skeleton[JointId::Head].state = JointState::NotTracked;
+  legs.skeleton[JointId::SpineBase].position.y() = 0.6;
+  floor.see({view_at({0, 1.2, 0}), legs});
+  EXPECT_EQ(floor.tracks.people.size(), 1u);
+}
+
+}  // namespace
+}  // namespace chorus::associate
