@@ -40,7 +40,7 @@ int run(const Subcommand& chosen, chorus::bench::Options options, const std::str
     std::cerr << "chorus-bench " << chosen.name << ": " << to_string(done.error()) << '\n';
     return kFailed;
   }
-  report.print(std::cout);
+  if (!report.list()) report.print(std::cout);
   if (!json_path.empty()) {
     std::ofstream file(json_path);
     file << report.json();
@@ -71,7 +71,11 @@ int main(int argc, char** argv) {
   const Subcommand* chosen = nullptr;
   for (const Subcommand& each : kSubcommands) {
     if (each.name == nullptr) continue;
-    app.add_subcommand(each.name, each.summary)->callback([&chosen, &each] { chosen = &each; });
+    auto* command = app.add_subcommand(each.name, each.summary);
+    command->callback([&chosen, &each] { chosen = &each; });
+    if (std::string_view(each.name) != "faults") continue;
+    command->add_option("--only", options.only, "Run this case alone");
+    command->add_flag("--list", options.list, "Name the cases and run none");
   }
   try {
     app.parse(argc, argv);

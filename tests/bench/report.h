@@ -45,6 +45,8 @@ struct Options {
   std::uint64_t seed = 1;  ///< The first seed; runs use seed, seed + 1, ...
   bool quick = false;      ///< Fewer runs, for a smoke test; the numbers are then only indicative.
   std::string plots = {};  ///< Folder for charts, where a subcommand draws any; empty: none.
+  std::string only = {};   ///< One case of it, where a subcommand can run one alone; empty: all.
+  bool list = false;       ///< Only name the cases, where a subcommand can.
 };
 
 class Report {
@@ -54,6 +56,8 @@ class Report {
   [[nodiscard]] std::uint64_t seed() const noexcept { return options_.seed; }
   [[nodiscard]] bool quick() const noexcept { return options_.quick; }
   [[nodiscard]] const std::string& plots() const noexcept { return options_.plots; }
+  [[nodiscard]] const std::string& only() const noexcept { return options_.only; }
+  [[nodiscard]] bool list() const noexcept { return options_.list; }
 
   void row(std::string case_name, std::string metric, double value, std::string unit,
            std::string baseline = "", double ratio = kNoRatio);

@@ -1,0 +1,103 @@
+// A small tracker of real processes: chorus-sensor before one chorus-fusion, all on loopback.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "common/base/result.h"
+#include "common/http/client.h"
+#include "common/time/timestamp.h"
+#include "tests/bench/child_process.h"
+#include "tests/bench/faults/link.h"
+#include "tests/bench/scratch_folder.h"
+
+namespace chorus::bench {
+
+using Settings = std::vector<std::string>;  ///< "key=value"
+
+/// Somebody else who is polled as a sensor.
+struct Neighbour {
+  std::string id;
+  std::uint16_t port = 0;
+  int place = -1;      ///< Of the ring, counted with the sensors; -1: none is known.
+  bool honest = true;  ///< Expected to contribute.
+};
+
+struct CellPlan {
+  int sensors = 3;
+  std::vector<Neighbour> neighbours = {};
+  int ring = 0;  ///< Places on the ring; 0: as many as sensors and neighbours.
+  std::map<int, Settings> of_sensor = {};
+  std::map<int, LinkModel> links = {};  ///< Before these sensors.
+  Settings fusion = {};
+  ChildSurroundings surroundings = {};  ///< Of chorus-fusion.
+  bool placed = true;     ///< Extrinsics are given; else nobody knows where the sensors stand.
+  bool start_all = true;  ///< False: nothing is started yet.
+  std::string address = "127.0.0.1";  ///< Where chorus-fusion listens.
+};
+
+class Cell {
+ public:
+  /// Started; unless told otherwise every placed sensor contributes to the fused person already.
+  [[nodiscard]] static Result<Cell> start(CellPlan plan);
+
+  [[nodiscard]] Result<void> start_sensor(int index);
+  [[nodiscard]] Result<void> start_fusion();
+  /// Until every one of these contributes to one body.
+  [[nodiscard]] Result<void> settle() const;
+
+  [[nodiscard]] ChildProcess& fusion() { return *fusion_; }
+  [[nodiscard]] ChildProcess& sensor(int index) {
+    return *sensors_.at(static_cast<std::size_t>(index));
+  }
+  [[nodiscard]] Link& link(int index) { return *links_.at(index); }
+  [[nodiscard]] std::uint16_t port() const { return port_; }
+  [[nodiscard]] std::uint16_t sensor_port(int index) const {
+    return sensor_ports_.at(static_cast<std::size_t>(index));
+  }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_.path(); }
+  /// s1, s2, ... and the honest neighbours that have a place.
+  [[nodiscard]] std::vector<std::string> placed() const;
+
+  /// One request to chorus-fusion; status 0: no answer.
+  [[nodiscard]] http::ClientResponse ask(http::ClientRequest request) const;
+  /// A GET as JSON; discarded when there is no such answer.
+  [[nodiscard]] nlohmann::json json(const std::string& path) const;
+  /// What /sensors/ says of one.
+  [[nodiscard]] nlohmann::json told_of(const std::string& sensor) const;
+
+ private:
+  Cell(CellPlan plan, ScratchFolder folder) : plan_(std::move(plan)), folder_(std::move(folder)) {}
+  void take_ports();
+  [[nodiscard]] std::string write_places() const;
+  [[nodiscard]] std::string polled() const;
+
+  CellPlan plan_;
+  ScratchFolder folder_;  // goes last
+  std::uint16_t port_ = 0;
+  std::vector<std::uint16_t> sensor_ports_;
+  std::map<int, std::unique_ptr<Link>> links_;
+  std::vector<std::optional<ChildProcess>> sensors_;
+  std::optional<ChildProcess> fusion_;
+};
+
+/// A GET or another request to any port of this host.
+[[nodiscard]] http::ClientResponse ask_port(std::uint16_t port, http::ClientRequest request);
+
+/// Until a condition holds; false: not within so long [s].
+[[nodiscard]] bool wait_until(double patience, const std::function<bool()>& holds);
+
+void wait_for(double duration);  ///< [s]
+
+[[nodiscard]] Timestamp now();
+
+}  // namespace chorus::bench

@@ -1,0 +1,75 @@
+// Sensors that lie, err or misbehave, played by this process.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "common/http/live_document.h"
+#include "common/http/server.h"
+#include "common/sensor/sensor_frame.h"
+
+namespace chorus::bench {
+
+/// What everybody in a cell looks at: one person who walks within half a metre of the middle.
+[[nodiscard]] Skeleton<WorldSpace> person_at(Timestamp instant);
+
+/// Place `index` of `count` of the ring of simulated sensors.
+[[nodiscard]] Eigen::Isometry3d place_of(int index, int count);
+
+/// A sensor that says at 30 Hz whatever its script says.
+class Guest {
+ public:
+  struct Said {
+    Timestamp captured;
+    std::vector<BodyFrame> bodies = {};
+    std::string behind = {};  ///< More Turtle behind the frame; there is then no other form.
+  };
+  using Script = std::function<Said(Timestamp now)>;
+
+  Guest(std::string id, Script script);
+  ~Guest();
+  Guest(const Guest&) = delete;
+  Guest& operator=(const Guest&) = delete;
+
+  [[nodiscard]] const std::string& id() const { return id_; }
+  [[nodiscard]] std::uint16_t port() const { return server_->port(); }
+
+ private:
+  void run(const std::stop_token& stop);
+  void say(const Said& said);
+
+  std::string id_;
+  Script script_;
+  std::uint64_t sequence_ = 0;
+  std::shared_ptr<http::LiveDocument> document_ = std::make_shared<http::LiveDocument>();
+  std::unique_ptr<http::Server> server_;
+  std::jthread thread_;
+};
+
+/// What an honest sensor at this place says of the person.
+[[nodiscard]] Guest::Said honest(const Eigen::Isometry3d& world_from_sensor, Timestamp now);
+
+/// Accepts connections on a free port and lets a function loose on each, on a thread of its own.
+/// The socket is
+/// shut down and closed when the server goes.
+class RawServer {
+ public:
+  using Conversation = std::function<void(int socket)>;
+  explicit RawServer(Conversation conversation);
+  ~RawServer();
+  RawServer(const RawServer&) = delete;
+  RawServer& operator=(const RawServer&) = delete;
+  [[nodiscard]] std::uint16_t port() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace chorus::bench

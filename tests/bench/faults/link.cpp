@@ -1,0 +1,285 @@
+#include "tests/bench/faults/link.h"
+
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <list>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/base/duration.h"
+#include "common/http/asio.h"
+
+namespace chorus::bench {
+namespace {
+
+using http::error_code;
+using http::net::buffer;
+using Instant = std::chrono::steady_clock::time_point;
+
+constexpr std::size_t kMessageBytes = 16 * 1024;
+constexpr std::size_t kMostWaiting = 8u << 20;  // [bytes] under way per direction
+constexpr auto kFrozenLook = std::chrono::milliseconds(20);
+
+struct Switches {
+  std::atomic<bool> frozen{false};
+  std::atomic<std::int64_t> passes{-1};  ///< Bytes of answers that still pass; -1: all.
+};
+
+struct Surroundings {
+  const LinkModel* model = nullptr;
+  Switches* switches = nullptr;
+  std::mt19937* random = nullptr;
+};
+
+/// One direction of one connection: reads, holds back, writes.
+class Direction {
+ public:
+  Direction(http::Socket& from, http::Socket& to, Surroundings around, bool answers)
+      : from_(from), to_(to), around_(around), answers_(answers), timer_(from.get_executor()) {}
+
+  void start(std::shared_ptr<void> keep) {
+    keep_ = std::move(keep);
+    read();
+  }
+  void stop() {
+    timer_.cancel();
+    keep_.reset();
+  }
+
+ private:
+  struct Message {
+    std::string bytes;
+    Instant due;
+  };
+
+  void read();
+  void take(std::size_t size);
+  void write_next();
+  void write_when_due();
+  void write();
+  void end();
+
+  http::Socket& from_;
+  http::Socket& to_;
+  Surroundings around_;
+  bool answers_;
+  http::Timer timer_;
+  std::shared_ptr<void> keep_;
+  std::array<char, kMessageBytes> bytes_{};
+  std::deque<Message> waiting_;
+  std::size_t waiting_bytes_ = 0;
+  bool reading_ = false;
+  bool writing_ = false;
+  bool over_ = false;  ///< The one end has hung up; the other hears of it behind the last message.
+};
+
+void Direction::read() {
+  if (reading_ || over_ || waiting_bytes_ > kMostWaiting) return;
+  reading_ = true;
+  from_.async_read_some(buffer(bytes_),
+                        [this, keep = keep_](const error_code& failed, std::size_t size) {
+                          reading_ = false;
+                          if (failed) {
+                            over_ = true;
+                            if (!writing_) end();
+                            return;
+                          }
+                          take(size);
+                          read();
+                        });
+}
+
+void Direction::take(std::size_t size) {
+  const Duration under_way = from_seconds(time_under_way(*around_.model, size, *around_.random));
+  Instant due = std::chrono::steady_clock::now() + under_way;
+  if (!waiting_.empty()) due = std::max(due, waiting_.back().due);
+  waiting_.push_back({std::string(bytes_.data(), size), due});
+  waiting_bytes_ += size;
+  if (!writing_) write_next();
+}
+
+void Direction::write_next() {
+  writing_ = !waiting_.empty();
+  if (writing_) return write_when_due();
+  if (over_) return end();
+  read();
+}
+
+void Direction::write_when_due() {
+  const bool held =
+      around_.switches->frozen || (answers_ && around_.switches->passes == std::int64_t{0});
+  timer_.expires_at(held ? std::chrono::steady_clock::now() + kFrozenLook : waiting_.front().due);
+  timer_.async_wait([this, held, keep = keep_](const error_code& failed) {
+    if (failed) return;
+    if (held) return write_when_due();
+    write();
+  });
+}
+
+void Direction::write() {
+  std::string& bytes = waiting_.front().bytes;
+  std::size_t size = bytes.size();
+  auto& passes = around_.switches->passes;
+  if (const std::int64_t left = passes; answers_ && left >= 0) {
+    size = std::min(size, static_cast<std::size_t>(left));
+    passes = left - static_cast<std::int64_t>(size);
+  }
+  http::net::async_write(to_, buffer(bytes.data(), size),
+                         [this, keep = keep_](const error_code& failed, std::size_t written) {
+                           if (failed) return end();
+                           waiting_bytes_ -= written;
+                           Message& first = waiting_.front();
+                           if (written < first.bytes.size()) {
+                             first.bytes.erase(0, written);
+                           } else {
+                             waiting_.pop_front();
+                           }
+                           write_next();
+                         });
+}
+
+void Direction::end() {
+  error_code ignored;
+  over_ = true;
+  to_.shutdown(http::tcp::socket::shutdown_send, ignored);
+  from_.shutdown(http::tcp::socket::shutdown_receive, ignored);
+  stop();
+}
+
+struct Connection : std::enable_shared_from_this<Connection> {
+  Connection(http::Socket accepted, Surroundings around)
+      : client(std::move(accepted)),
+        server(client.get_executor()),
+        requests(client, server, around, false),
+        answers(server, client, around, true) {}
+
+  void cut() {
+    error_code ignored;
+    requests.stop();
+    answers.stop();
+    client.close(ignored);
+    server.close(ignored);
+  }
+
+  http::Socket client;
+  http::Socket server;
+  Direction requests;
+  Direction answers;
+};
+
+/// Segments a message travels in, without headers.
+constexpr std::size_t kSegmentBytes = 1448;
+
+/// Where a segment stands in its message; it decides how soon its loss is noticed.
+enum class Standing { Alone, AtTheEnd, Followed };
+
+double stall(const LinkModel& link, Standing standing, std::mt19937& random) {
+  constexpr double kTimeout = 0.2;  // Linux: the shortest retransmission timeout [s]
+  constexpr double kProbe = 2.0;    // a tail loss probe goes after so many round trips
+  constexpr int kMostTries = 6;
+  std::bernoulli_distribution lost(link.loss);
+  const double round_trip = 2 * link.delay + link.jitter;
+  const double timeout = kTimeout + round_trip;
+  double out = 0.0;
+  double wait = standing == Standing::Alone      ? timeout
+                : standing == Standing::AtTheEnd ? (kProbe + 1) * round_trip
+                                                 : round_trip;
+  for (int i = 0; i < kMostTries && lost(random); ++i) {
+    out += wait;
+    wait = std::max(timeout, 2 * wait);
+  }
+  return out;
+}
+
+}  // namespace
+
+double time_under_way(const LinkModel& link, std::size_t bytes, std::mt19937& random) {
+  constexpr std::size_t kTail = 3;
+  double out = link.delay;
+  if (link.jitter > 0.0) out += std::uniform_real_distribution<>(0.0, link.jitter)(random);
+  if (link.loss <= 0.0) return out;
+  const std::size_t segments = (bytes + kSegmentBytes - 1) / kSegmentBytes;
+  double longest = 0.0;
+  for (std::size_t i = 0; i < segments; ++i) {
+    const Standing standing = segments == 1           ? Standing::Alone
+                              : i + kTail >= segments ? Standing::AtTheEnd
+                                                      : Standing::Followed;
+    longest = std::max(longest, stall(link, standing, random));
+  }
+  return out + longest;
+}
+
+struct Link::Impl {
+  Impl(std::uint16_t to, const LinkModel& first, std::uint32_t seed)
+      : model(first),
+        random(seed),
+        around{&model, &switches, &random},
+        target(http::net::ip::address_v4::loopback(), to),
+        acceptor(io, {http::net::ip::address_v4::loopback(), 0}) {}
+
+  void accept() {
+    acceptor.async_accept([this](const error_code& failed, http::Socket socket) {
+      if (failed) return;
+      auto connection = std::make_shared<Connection>(std::move(socket), around);
+      connections.push_back(connection);
+      connection->server.async_connect(target, [connection](const error_code& refused) {
+        if (refused) return connection->cut();
+        error_code ignored;
+        for (http::Socket* each : {&connection->client, &connection->server})
+          each->set_option(http::tcp::no_delay(true), ignored);
+        connection->requests.start(connection);
+        connection->answers.start(connection);
+      });
+      std::erase_if(connections, [](const auto& each) { return each.expired(); });
+      accept();
+    });
+  }
+
+  void stop() {
+    error_code ignored;
+    acceptor.close(ignored);
+    for (const auto& each : connections) {
+      if (const auto connection = each.lock()) connection->cut();
+    }
+    io.stop();
+  }
+
+  http::net::io_context io{1};
+  LinkModel model;  ///< Changed on the io_context's thread.
+  Switches switches;
+  std::mt19937 random;
+  Surroundings around;
+  http::tcp::endpoint target;
+  http::Acceptor acceptor;
+  std::list<std::weak_ptr<Connection>> connections;
+  std::jthread thread;
+};
+
+Link::Link(std::uint16_t target, const LinkModel& model, std::uint32_t seed)
+    : impl_(std::make_unique<Impl>(target, model, seed)) {
+  impl_->accept();
+  impl_->thread = std::jthread([impl = impl_.get()] { impl->io.run(); });
+}
+
+Link::~Link() {
+  http::net::post(impl_->io, [impl = impl_.get()] { impl->stop(); });
+}
+
+std::uint16_t Link::port() const { return impl_->acceptor.local_endpoint().port(); }
+
+void Link::become(const LinkModel& model) {
+  http::net::post(impl_->io, [impl = impl_.get(), model] { impl->model = model; });
+}
+
+void Link::freeze(bool frozen) {
+  impl_->switches.frozen = frozen;
+  if (!frozen) impl_->switches.passes = -1;
+}
+
+void Link::freeze_after(std::size_t bytes) {
+  impl_->switches.passes = static_cast<std::int64_t>(bytes);
+}
+
+}  // namespace chorus::bench

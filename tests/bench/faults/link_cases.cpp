@@ -1,0 +1,124 @@
+// Networks that delay, jitter and lose between the sensors and the server.
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "tests/bench/faults/trial.h"
+
+namespace chorus::bench {
+namespace {
+
+constexpr int kSensors = 4;
+constexpr double kMostLater = 0.030;  // what one bad link may cost everybody, age p90 [s]
+
+CellPlan with_links(const LinkModel& link, int from, int to) {
+  CellPlan plan;
+  plan.sensors = kSensors;
+  for (int i = from; i < to; ++i) plan.links[i] = link;
+  return plan;
+}
+
+/// The same link before all sensors; every one has to be in nearly all frames.
+Result<void> all_alike(Trial& trial, const LinkModel& link) {
+  auto cell = Cell::start(with_links(link, 0, kSensors));
+  if (!cell) return pass(cell);
+  const Watch watch(cell->port());
+  wait_for(1.0);
+  const Timestamp begun = now();
+  wait_for(6.0);
+  trial.check_others(*cell, account_of(watch.seen(), begun, now()), cell->placed());
+  return {};
+}
+
+/// Everybody is well connected; then one link turns bad, and the others must hardly notice.
+Result<Account> one_turns_bad(Trial& trial, Cell& cell, const LinkModel& link) {
+  const Watch watch(cell.port());
+  wait_for(1.0);
+  const Timestamp calm = now();
+  wait_for(3.0);
+  const Timestamp bad = now();
+  cell.link(1).become(link);
+  wait_for(8.0);
+  const auto seen = watch.seen();
+  const Account before = account_of(seen, calm, bad);
+  const Account after = account_of(seen, bad + std::chrono::seconds(2), now());
+  trial.check_others(cell, after, {"s1", "s3", "s4"});
+  const double later = after.age_p90 - before.age_p90;
+  trial.check(later <= kMostLater,
+              fmt::format("age p90 rises by at most 30 ms: {:.0f} to {:.0f} ms",
+                          1e3 * before.age_p90, 1e3 * after.age_p90));
+  return after;
+}
+
+Result<void> one_bad(Trial& trial, const LinkModel& link) {
+  auto cell = Cell::start(with_links({}, 1, 2));
+  if (!cell) return pass(cell);
+  const auto after = one_turns_bad(trial, *cell, link);
+  return after ? Result<void>{} : pass(after);
+}
+
+/// Frames that came too late for the live stream are not lost: asked a second later, the same
+/// instants use them.
+Result<void> used_later(Trial& trial, Cell& cell) {
+  constexpr int kAsked = 40;
+  constexpr double kLeast = 95.0;
+  int with = 0;
+  for (int i = 0; i < kAsked; ++i) {
+    const Timestamp instant = now() - std::chrono::milliseconds(1000);
+    const auto frame = cell.json("/frame?at=" + to_iso8601(instant));
+    if (frame.dump().find("s2") != std::string::npos) ++with;
+    wait_for(0.05);
+  }
+  const double share = 100.0 * with / kAsked;
+  trial.check(share >= kLeast,
+              fmt::format("?at= one second later uses the late sensor in {:.0f} %", share));
+  return {};
+}
+
+Result<void> jitter_400(Trial& trial) {
+  auto cell = Cell::start(with_links({}, 1, 2));
+  if (!cell) return pass(cell);
+  const auto after = one_turns_bad(trial, *cell, {0.0, 0.4, 0.0});
+  if (!after) return pass(after);
+  return used_later(trial, *cell);
+}
+
+Result<void> unplugged(Trial& trial) {
+  auto cell = Cell::start(with_links({}, 1, 2));
+  if (!cell) return pass(cell);
+  const Watch watch(cell->port());
+  wait_for(1.0);
+  const Timestamp begun = now();
+  cell->link(1).freeze(true);
+  wait_for(5.0);
+  cell->link(1).freeze(false);
+  const Timestamp back = now();
+  const auto took = [&] { return recovery(watch.seen(), back, cell->placed()); };
+  (void)wait_until(8.0, [&] { return std::isfinite(took()); });
+  trial.check_others(*cell, account_of(watch.seen(), begun, now()), {"s1", "s3", "s4"});
+  trial.check_recovery(took(), 1.5);
+  return {};
+}
+
+RunCase alike(const LinkModel& link) {
+  return [link](Trial& trial) { return all_alike(trial, link); };
+}
+RunCase bad(const LinkModel& link) {
+  return [link](Trial& trial) { return one_bad(trial, link); };
+}
+
+}  // namespace
+
+FaultCases link_cases() {
+  return {
+      {"delay-20ms", "20 ms one way to each of four sensors", alike({0.020, 0.0, 0.0})},
+      {"delay-50ms", "50 ms one way to each of four sensors", alike({0.050, 0.0, 0.0})},
+      {"loss-5", "5 ms one way and 5 % loss to each of four sensors", alike({0.005, 0.0, 0.05})},
+      {"jitter-120ms", "one of four links gets 0 to 120 ms of jitter", bad({0.0, 0.12, 0.0})},
+      {"jitter-400ms", "one of four links gets 0 to 400 ms of jitter", jitter_400},
+      {"slow-link", "one of four links takes a second one way", bad({1.0, 0.0, 0.0})},
+      {"unplugged", "one of four links passes nothing for 5 s", unplugged},
+  };
+}
+
+}  // namespace chorus::bench
