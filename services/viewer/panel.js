@@ -2,29 +2,34 @@
 
 const element = (id) => document.getElementById(id);
 const number = (value, digits = 0) => (Number.isFinite(value) ? value.toFixed(digits) : '–');
+const milliseconds = (value) => (Number.isFinite(value) ? `${value.toFixed(0)} ms` : '–');
 const STATE_CLASS = { live: 'good', connecting: 'warn', lost: 'bad', refused: 'bad' };
 const VERDICT_CLASS = { Good: 'good', Provisional: 'warn', Refused: 'bad', None: 'warn' };
 
 /// Output rate over the last frames, by their own capture times.
 const recent = [];
-function rateOf(frame) {
+export function rateOf(frame) {
   recent.push(Number(BigInt(frame.capturedNanoseconds) / 1000n) / 1e6);
   if (recent.length > 61) recent.shift();
   const span = recent.at(-1) - recent[0];
   return span > 0 ? (recent.length - 1) / span : NaN;
 }
 
-export function showFused(frame) {
-  element('bodies').textContent = frame.bodies?.length ?? 0;
-  element('rate').textContent = `${number(rateOf(frame), 1)} Hz`;
-  element('age').textContent = `${number(Date.now() - Date.parse(frame.captured))} ms`;
-  element('sequence').textContent = frame.sequence;
+export function showFused(frame, rate, age) {
+  element('bodies').textContent = frame?.bodies?.length ?? '–';
+  element('rate').textContent = `${number(rate, 1)} Hz`;
+  element('age').textContent = milliseconds(age);
+  element('sequence').textContent = frame?.sequence ?? '–';
 }
 
-export function showLink(up, why = '') {
+/// `fresh`: 'live', 'stale' or 'gone'; whatever is not live loses its colours.
+export function showState({ tone, sentence, next }, fresh) {
   const headline = element('headline');
-  headline.textContent = up ? 'one virtual tracker, live' : `no answer from the fusion server: ${why}`;
-  headline.className = up ? 'good' : 'bad';
+  headline.textContent = sentence;
+  headline.className = tone;
+  element('next').textContent = next;
+  document.body.dataset.fresh = fresh;
+  document.title = tone === 'good' || tone === 'calm' ? 'Chorus viewer' : `${sentence} – Chorus viewer`;
 }
 
 function cell(row, text, className = '') {
@@ -34,39 +39,55 @@ function cell(row, text, className = '') {
   return td;
 }
 
+function showLines(id, lines) {
+  const list = element(id);
+  if (list.childElementCount === lines.length && lines.every((line, i) => list.children[i].textContent === line)) return;
+  list.replaceChildren(...lines.map((line) => {
+    const li = document.createElement('li');
+    li.textContent = line;
+    return li;
+  }));
+}
+
 export function showSensors(all, colorOf) {
   const body = element('sensors');
   body.replaceChildren();
   for (const [id, sensor] of Object.entries(all)) {
+    const live = sensor.state === 'live';
     const row = body.insertRow();
     row.dataset.sensor = id;
-    row.title = sensor.lastError ?? sensor.url ?? '';
+    row.className = live ? '' : 'dead';
+    row.title = sensor.url ?? '';
     const swatch = document.createElement('span');
     swatch.className = 'swatch';
     swatch.style.background = `#${colorOf(id).toString(16).padStart(6, '0')}`;
     cell(row, '').append(swatch);
     cell(row, id);
     cell(row, sensor.state, STATE_CLASS[sensor.state] ?? '');
-    cell(row, `${number(sensor.ageMilliseconds)} ms`);
-    cell(row, `${number(sensor.rateHz, 1)}`);
-    cell(row, sensor.bodies ?? '–');
-    cell(row, number(sensor.weight, 2));
+    cell(row, milliseconds(sensor.ageMilliseconds));
+    cell(row, live ? number(sensor.rateHz, 1) : '–');
+    cell(row, live ? sensor.bodies ?? '–' : '–');
+    cell(row, live ? number(sensor.share, 2) : '–');
   }
+  showLines('errors', Object.entries(all)
+    .filter(([, sensor]) => sensor.lastError && sensor.state !== 'live')
+    .map(([id, sensor]) => `${id}: ${sensor.lastError}`));
+}
+
+function sessionLine(session) {
+  if (session?.state === 'solving') return 'the walk is over: solving';
+  if (session?.state !== 'collecting') return '';
+  return `watching the walk: ${number(session.elapsedSeconds)} of ${number(session.targetSeconds)} s`;
 }
 
 export function showRegistration(registration) {
   const verdict = element('verdict');
   verdict.textContent = registration.verdict ?? '–';
   verdict.className = `verdict ${VERDICT_CLASS[registration.verdict] ?? ''}`;
-  const session = registration.session;
-  element('session').textContent =
-    session?.state === 'collecting'
-      ? `watching the walk: ${number(session.elapsedSeconds)} of ${number(session.targetSeconds)} s`
-      : '';
-  const items = (registration.reasons ?? []).map((reason) => {
-    const li = document.createElement('li');
-    li.textContent = reason;
-    return li;
-  });
-  element('reasons').replaceChildren(...items);
+  element('session').textContent = sessionLine(registration.session);
+  const reasons = registration.reasons ?? [];
+  const last = (registration.session?.reasons ?? []).filter((reason) => !reasons.includes(reason));
+  showLines('reasons', [...reasons, ...last.map((reason) => `last walk: ${reason}`)]);
+  showLines('awaits', registration.awaits ?? []);
+  element('stored').textContent = registration.storeProblem ? `not stored: ${registration.storeProblem}` : '';
 }

@@ -1,7 +1,50 @@
 // Polling the public JSON resources: a long poll where a frame is wanted at once, plain conditional GETs else.
 
 const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
-const MAX_BACKOFF_MS = 5000;
+const MAX_BACKOFF_MS = 2000;
+const ANSWER_WITHIN_MS = 3000;
+
+/// The server's clock as its answers tell it (Chorus-Clock: when the request was complete, when the answer left).
+/// What came through fastest is nearest to the truth; of the browser's own clock only the ticking is used.
+export class ServerClock {
+  constructor(ticking = () => performance.now()) {
+    this.ticking = ticking;
+    this.samples = [];
+  }
+
+  observe(header) {
+    const left = Number(header?.split(' ')[1]);
+    if (!Number.isFinite(left) || left <= 0) return;
+    const now = this.ticking();
+    this.samples.push({ now, offset: left / 1e6 - now });
+    while (this.samples.length > 200 || now - this.samples[0].now > 60000) this.samples.shift();
+  }
+
+  /// Milliseconds since the epoch by the server's clock; NaN before its first answer.
+  now() {
+    if (this.samples.length === 0) return NaN;
+    return this.ticking() + this.samples.reduce((best, s) => Math.max(best, s.offset), -Infinity);
+  }
+}
+export const clock = new ServerClock();
+
+/// Whether the server answers at all.  An error status is an answer too.
+export class Link {
+  constructor(ticking = () => performance.now()) {
+    this.ticking = ticking;
+    this.answered = null;
+    this.error = null;
+  }
+
+  up() { [this.answered, this.error] = [this.ticking(), null]; }
+  down(error) { this.error = String(error?.message ?? error); }
+
+  /// `silent`: milliseconds since the last answer, NaN when there was none.
+  state() {
+    return { error: this.error, silent: this.answered === null ? NaN : this.ticking() - this.answered };
+  }
+}
+export const link = new Link();
 
 /// One resource: `next()` gives its JSON when it changed, null when it did not.
 export class Resource {
@@ -15,11 +58,24 @@ export class Resource {
     const headers = { Accept: 'application/json' };
     if (this.etag) headers['If-None-Match'] = this.etag;
     if (this.etag && this.wait) headers.Prefer = `wait=${this.wait}`;
-    const answer = await fetch(this.url, { headers, cache: 'no-store' });
+    const signal = AbortSignal.timeout(this.wait * 1000 + ANSWER_WITHIN_MS);
+    const answer = await this.answer(headers, signal);
     if (answer.status === 304) return null;
     if (!answer.ok) throw new Error(`${this.url} answered ${answer.status}`);
     this.etag = answer.headers.get('ETag');
     return answer.json();
+  }
+
+  async answer(headers, signal) {
+    try {
+      const answer = await fetch(this.url, { headers, cache: 'no-store', signal });
+      clock.observe(answer.headers.get('Chorus-Clock'));
+      link.up();
+      return answer;
+    } catch (error) {
+      link.down(error);
+      throw error;
+    }
   }
 }
 

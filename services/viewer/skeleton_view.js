@@ -45,16 +45,17 @@ export class RawView {
   }
 }
 
+// Shared by all bodies, so that nothing is left behind when one goes.
+const BONE = new THREE.CylinderGeometry(0.022, 0.022, 1, 10);
+const BALL = new THREE.SphereGeometry(0.03, 14, 10);
+
 /// One fused body: solid bones, joints as balls, inferred parts dimmer.
 class FusedBody {
   constructor(material, inferredMaterial) {
     this.materials = { Tracked: material, Inferred: inferredMaterial };
     this.object = new THREE.Group();
-    const bone = new THREE.CylinderGeometry(0.022, 0.022, 1, 10);
-    const ball = new THREE.SphereGeometry(0.03, 14, 10);
-    this.bones = BONES.map(() => this.add(bone));
+    this.bones = BONES.map(() => this.add(BONE));
     this.joints = new Map();
-    this.ball = ball;
   }
 
   add(geometry) {
@@ -66,7 +67,7 @@ class FusedBody {
   show(joints) {
     let drawn = 0;
     for (const [name, joint] of Object.entries(joints)) {
-      if (!this.joints.has(name)) this.joints.set(name, this.add(this.ball));
+      if (!this.joints.has(name)) this.joints.set(name, this.add(BALL));
       const mesh = this.joints.get(name);
       mesh.visible = seen(joint);
       if (!mesh.visible) continue;

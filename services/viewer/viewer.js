@@ -3,12 +3,14 @@
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
-import { Resource, follow } from './poll.js';
+import { Resource, clock, follow, link } from './poll.js';
 import { FusedView, RawView, frustum } from './skeleton_view.js';
-import { showFused, showLink, showRegistration, showSensors } from './panel.js';
+import { rateOf, showFused, showRegistration, showSensors, showState } from './panel.js';
+import { freshness, stateOf } from './state.js';
 
 const COLORS = [0x4cc9f0, 0xf2b84b, 0x80ed99, 0xf28482, 0xb892ff, 0xffd6a5, 0x2ec4b6, 0xff9f1c, 0xa0c4ff, 0xcaffbf];
 const RAW_EVERY_MS = 66;
+const STATE_EVERY_MS = 200;
 const base = new URL(new URLSearchParams(location.search).get('server') ?? '../', location.href);
 const resource = (path, wait) => new Resource(new URL(path, base).href, wait);
 
@@ -84,32 +86,59 @@ function placeSensors(registration) {
 }
 
 // ---- following the server ------------------------------------------------------------------------------------
-function failed(error) {
+const known = { frame: null, rate: NaN, sensors: null, registration: null };
+
+function failed() {
   shown.errors += 1;
-  showLink(false, error.message);
 }
 
 follow(resource('frame', 10), 0, (frame) => {
+  known.frame = frame;
+  known.rate = rateOf(frame);
   shown.fusedJoints = fused.show(frame.bodies ?? []);
   shown.fusedFrames += 1;
-  showFused(frame);
-  showLink(true);
 }, failed);
 
 follow(resource('sensors/'), 1000, ({ sensors: all }) => {
-  for (const [id, state] of Object.entries(all ?? {})) {
+  known.sensors = all ?? {};
+  for (const [id, state] of Object.entries(known.sensors)) {
     const view = sensorView(id);
     view.live = state.state === 'live';
-    if (!view.live) view.raw.show([]);
+    if (!view.live) showRaw(view, { bodies: [] });
   }
   shown.sensors = sensors.size;
-  showSensors(all ?? {}, (id) => sensorView(id).color);
+  showSensors(known.sensors, (id) => sensorView(id).color);
 }, failed);
 
 follow(resource('registration'), 1000, (registration) => {
+  known.registration = registration;
   placeSensors(registration);
   showRegistration(registration);
 }, failed);
+
+/// Looks at the clock too, because what does not come any more says nothing.
+setInterval(() => {
+  const age = known.frame ? clock.now() - Date.parse(known.frame.captured) : NaN;
+  const now = { ...known, link: link.state(), frameAge: age };
+  const fresh = freshness(now);
+  showState(stateOf(now), fresh);
+  showFused(fresh === 'gone' ? null : known.frame, fresh === 'live' ? known.rate : NaN, age);
+  shown.fresh = fresh;
+  if (fresh === 'gone' && known.frame) forget();
+}, STATE_EVERY_MS);
+
+/// Nothing is shown of a server that does not answer any more, but that its sensors exist.
+function forget() {
+  known.frame = null;
+  shown.fusedJoints = fused.show([]);
+  for (const view of sensors.values()) {
+    view.live = false;
+    showRaw(view, { bodies: [] });
+  }
+  const unknown = Object.keys(known.sensors ?? {}).map((id) => [id, { state: 'unknown' }]);
+  showSensors(Object.fromEntries(unknown), (id) => sensorView(id).color);
+  showRegistration({});
+}
 
 // ---- drawing -------------------------------------------------------------------------------------------------
 const switches = {

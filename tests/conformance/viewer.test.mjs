@@ -19,7 +19,7 @@ test('the viewer shows the fused person and every raw one, live', async () => {
     const shown = await page.evaluate(() => window.chorusViewer);
     assert.ok(shown.fusedFrames > before + 5, 'frames keep coming');
     assert.equal(shown.sensors, 6);
-    assert.match(await page.textContent('#headline'), /live/);
+    assert.match(await page.textContent('#headline'), /^Live: one person/);
     assert.equal(await page.locator('#sensors tr').count(), 6);
     assert.ok(await colorsOnCanvas(page) > 50, 'something is drawn');
     assert.deepEqual(complaints, []);

@@ -1,5 +1,5 @@
 // A fusion server's public JSON, made up: one standing person who sways, two sensors.  For looking at the viewer
-// alone; the system test shows it the real server.
+// alone; the system test shows it the real server.  Its clock is an hour ahead of the browser's.
 import { createServer } from 'node:http';
 import { readFile } from 'node:fs/promises';
 import { extname, join, normalize } from 'node:path';
@@ -26,8 +26,11 @@ function toSensor(place, [x, y, z]) {
   return place.qy === 1 ? [-dx, dy, -dz] : [dx, dy, dz];
 }
 
+export const CLOCK_AHEAD_MS = 3600000;
+const serverNow = () => Date.now() + CLOCK_AHEAD_MS;
+
 function frame(sequence, place) {
-  const now = Date.now();
+  const now = serverNow();
   const sway = 0.4 * Math.sin(sequence / 20);
   const joints = Object.fromEntries(Object.entries(STANDING).map(([name, [x, y, z]]) => {
     const [jx, jy, jz] = place ? toSensor(place, [x + sway, y, z]) : [x + sway, y, z];
@@ -38,23 +41,45 @@ function frame(sequence, place) {
   return { '@id': 'frame', sequence, ...times, bodies: [{ '@id': 'skeletons/1', bodyId: 1, ...times, joints }] };
 }
 
+const LIVE = { state: 'live', ageMilliseconds: 12, rateHz: 30, bodies: 1, weight: 0.8, share: 0.97 };
+const LOST = { state: 'lost', ageMilliseconds: 61000, rateHz: 30, bodies: 1, weight: 0, share: 0, lastError: 'connection refused' };
+
+/// What the fake server answers; tests change it while it runs.
+export function usualWorld() {
+  return {
+    people: 1,
+    frozen: false,
+    sensors: { s1: { ...LIVE, url: 'http://127.0.0.1/s1' }, s2: { ...LOST, url: 'http://127.0.0.1/s2' } },
+    registration: { version: 1, verdict: 'Good', reasons: ['a reason with <b>markup</b>'], awaits: [], session: { state: 'idle', reasons: [] }, sensors: SENSORS },
+  };
+}
+export const live = (extra) => ({ ...LIVE, ...extra });
+export const lost = (extra) => ({ ...LOST, ...extra });
+
 /// Starts on a free port; `files` is the viewer's folder.
-export async function startFakeFusion(files) {
+export async function startFakeFusion(files, world = usualWorld()) {
   let sequence = 1;
-  const timer = setInterval(() => { sequence += 1; }, 33);
+  let fused = null;
+  const timer = setInterval(() => { sequence += world.frozen ? 0 : 1; }, 33);
+  const current = () => {
+    if (!world.frozen || !fused) fused = frame(sequence);
+    return { ...fused, bodies: world.people > 0 ? fused.bodies : [] };
+  };
   const answers = {
-    '/frame': () => frame(sequence),
-    '/sensors/': () => ({ sensors: Object.fromEntries(Object.keys(SENSORS).map((id) =>
-      [id, { url: `http://127.0.0.1/${id}`, state: id === 's1' ? 'live' : 'lost', ageMilliseconds: 12, rateHz: 30, bodies: 1, weight: 0.8 }])) }),
+    '/frame': current,
+    '/sensors/': () => ({ sensors: world.sensors }),
     '/sensors/s1/frame': () => frame(sequence, SENSORS.s1),
     '/sensors/s2/frame': () => frame(sequence, SENSORS.s2),
-    '/registration': () => ({ version: 1, verdict: 'Good', reasons: ['a reason with <b>markup</b>'], sensors: SENSORS }),
+    '/registration': () => world.registration,
   };
   const server = createServer(async (request, response) => {
     const { pathname } = new URL(request.url, 'http://localhost');
+    const clock = `${serverNow()}000000`;
     if (answers[pathname]) {
-      response.writeHead(200, { 'Content-Type': 'application/json', ETag: `"${sequence}"` });
-      return response.end(JSON.stringify(answers[pathname]()));
+      const tag = pathname === '/frame' ? `"${sequence}"` : `"${Date.now()}"`;
+      const unchanged = request.headers['if-none-match'] === tag;
+      response.writeHead(unchanged ? 304 : 200, { 'Content-Type': 'application/json', ETag: tag, 'Chorus-Clock': `${clock} ${clock}` });
+      return response.end(unchanged ? '' : JSON.stringify(answers[pathname]()));
     }
     const inside = normalize(pathname.replace(/^\/viewer\//, '') || 'index.html');
     try {
@@ -66,5 +91,6 @@ export async function startFakeFusion(files) {
     }
   });
   await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
-  return { port: server.address().port, stop: () => { clearInterval(timer); server.closeAllConnections(); server.close(); } };
+  const { port } = server.address();
+  return { port, world, url: `http://127.0.0.1:${port}/viewer/`, stop: () => { clearInterval(timer); server.closeAllConnections(); server.close(); } };
 }

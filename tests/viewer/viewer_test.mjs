@@ -1,10 +1,13 @@
 // The viewer alone, against made-up JSON: it draws, names states, survives a server that goes away.
 import assert from 'node:assert/strict';
+import { copyFile, mkdtemp, rm } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 
 import { colorsOnCanvas, launch, openViewer } from './browser.mjs';
-import { startFakeFusion } from './fake_fusion.mjs';
+import { live, lost, startFakeFusion, usualWorld } from './fake_fusion.mjs';
 
 const FILES = fileURLToPath(new URL('../../services/viewer/', import.meta.url));
 let browser;
@@ -20,7 +23,7 @@ after(async () => {
 });
 
 test('draws the fused body, the raw one of the live sensor, and both sensors', async () => {
-  const { page, complaints } = await openViewer(browser, `http://127.0.0.1:${fusion.port}/viewer/`);
+  const { page, complaints } = await openViewer(browser, fusion.url);
   await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 20 && window.chorusViewer.rawBones.s1 > 0, null, { timeout: 30000 });
   const shown = await page.evaluate(() => window.chorusViewer);
   assert.equal(shown.fusedJoints, 24, '24 joints: the untracked thumb is not drawn');
@@ -42,11 +45,112 @@ test('draws the fused body, the raw one of the live sensor, and both sensors', a
   await page.close();
 });
 
-test('says so when the server goes away', async () => {
-  const doomed = await startFakeFusion(FILES);
-  const { page } = await openViewer(browser, `http://127.0.0.1:${doomed.port}/viewer/`);
-  await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 2, null, { timeout: 30000 });
-  doomed.stop();
-  await page.waitForFunction(() => document.getElementById('headline').textContent.startsWith('no answer'), null, { timeout: 15000 });
+const text = (page, selector) => page.textContent(selector);
+const headline = (page, pattern) => page.waitForFunction(
+  (source) => new RegExp(source).test(document.getElementById('headline').textContent), pattern.source, { timeout: 20000 });
+const colour = (page, selector) => page.evaluate((s) => getComputedStyle(document.querySelector(s)).color, selector);
+const GREEN = 'rgb(95, 211, 141)';
+const RED = 'rgb(242, 102, 91)';
+
+async function picture(page, name) {
+  if (process.env.CHORUS_SCREENSHOTS) await page.screenshot({ path: `${process.env.CHORUS_SCREENSHOTS}/${name}.png` });
+}
+
+test('the age of a frame is by the server’s clock, and errors of sensors are there to read', async () => {
+  const { page } = await openViewer(browser, fusion.url);
+  await headline(page, /^Live: one person\. s2 delivers nothing\.$/);
+  const age = Number.parseInt(await text(page, '#age'), 10);
+  assert.ok(age >= 0 && age < 1000, `an hour between the clocks must not be seen, but it says ${age} ms`);
+  assert.equal(await text(page, '#errors li'), 's2: connection refused');
+  assert.equal(await text(page, '#next'), 's2: connection refused');
+  assert.deepEqual(await page.locator('[data-sensor=s1] td').allTextContents(), ['', 's1', 'live', '12 ms', '30.0', '1', '0.97']);
+  assert.deepEqual(await page.locator('[data-sensor=s2] td').allTextContents(), ['', 's2', 'lost', '61000 ms', '–', '–', '–']);
   await page.close();
+});
+
+test('green only while all is well: nobody there, no sensors, dead sensors', async () => {
+  const world = usualWorld();
+  world.sensors = { s1: live(), s2: live() };
+  const server = await startFakeFusion(FILES, world);
+  const { page } = await openViewer(browser, server.url);
+  await headline(page, /^Live: one person, 2 sensors\.$/);
+  assert.equal(await colour(page, '#headline'), GREEN);
+  world.people = 0;
+  await headline(page, /^Nobody is in sight\.$/);
+  assert.notEqual(await colour(page, '#headline'), GREEN);
+  await picture(page, 'nobody');
+  world.sensors = { s1: lost(), s2: lost({ lastError: 'no answer within 3 s' }) };
+  await headline(page, /^None of the 2 sensors delivers anything\.$/);
+  assert.equal(await colour(page, '#headline'), RED);
+  assert.equal(await colour(page, '[data-sensor=s1] td:nth-child(3)'), RED);
+  assert.deepEqual(await page.locator('#errors li').allTextContents(), ['s1: connection refused', 's2: no answer within 3 s']);
+  await picture(page, 'dead');
+  world.sensors = {};
+  await headline(page, /^No sensors are configured\.$/);
+  assert.equal(await colour(page, '#headline'), RED);
+  await picture(page, 'none');
+  await page.close();
+  server.stop();
+});
+
+test('reasons, what is awaited, and what is not stored are shown without a registration too', async () => {
+  const world = usualWorld();
+  world.sensors = { s1: live(), s2: live() };
+  world.registration = { version: 0, verdict: 'None', reasons: ['sensors s1 and s2 disagree'], awaits: ['nobody is in sight'],
+    storeProblem: 'state_dir is empty', session: { state: 'idle', reasons: ['sensors s1 and s2 disagree', 'withdrawn'] }, sensors: {} };
+  const server = await startFakeFusion(FILES, world);
+  const { page } = await openViewer(browser, server.url);
+  await headline(page, /^It is not known yet where the sensors stand\.$/);
+  assert.deepEqual(await page.locator('#reasons li').allTextContents(), ['sensors s1 and s2 disagree', 'last walk: withdrawn']);
+  assert.deepEqual(await page.locator('#awaits li').allTextContents(), ['nobody is in sight']);
+  assert.equal(await text(page, '#next'), 'nobody is in sight');
+  assert.equal(await text(page, '#stored'), 'not stored: state_dir is empty');
+  await picture(page, 'unregistered');
+  world.registration.session = { state: 'collecting', elapsedSeconds: 12, targetSeconds: 30 };
+  await headline(page, /^Registering: 12 of 30 s of the walk seen\.$/);
+  await page.close();
+  server.stop();
+});
+
+test('frames that stand still are grey, then gone', async () => {
+  const server = await startFakeFusion(FILES);
+  const { page } = await openViewer(browser, server.url);
+  await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 5, null, { timeout: 30000 });
+  server.world.frozen = true;
+  await headline(page, /^The fused output has stood still for \d+ s\.$/);
+  assert.equal(await page.evaluate(() => document.body.dataset.fresh), 'stale');
+  await page.waitForFunction(() => window.chorusViewer.fusedJoints === 0, null, { timeout: 15000 });
+  await page.close();
+  server.stop();
+});
+
+test('says so when the server goes away, and shows nothing of it any more', async () => {
+  const doomed = await startFakeFusion(FILES);
+  const { page } = await openViewer(browser, doomed.url);
+  await page.waitForFunction(() => window.chorusViewer?.fusedFrames > 5 && window.chorusViewer.rawBones.s1 > 0, null, { timeout: 30000 });
+  doomed.stop();
+  await headline(page, /^The fusion server has not answered for \d+ s\.$/);
+  assert.equal(await colour(page, '#headline'), RED);
+  await page.waitForFunction(() => window.chorusViewer.fresh === 'gone', null, { timeout: 20000 });
+  await page.waitForTimeout(500);
+  const shown = await page.evaluate(() => window.chorusViewer);
+  assert.equal(shown.fusedJoints, 0, 'no skeleton of a dead server');
+  assert.equal(shown.rawBones.s1, 0);
+  assert.equal(await text(page, '#verdict'), '–');
+  assert.equal(await text(page, '[data-sensor=s1] td:nth-child(3)'), 'unknown');
+  await picture(page, 'gone');
+  await page.close();
+});
+
+test('says what is missing when three.js is not installed', async () => {
+  const folder = await mkdtemp(join(tmpdir(), 'chorus-viewer-'));
+  for (const file of ['index.html', 'boot.js', 'viewer.js', 'viewer.css', 'poll.js', 'panel.js', 'state.js', 'skeleton_view.js'])
+    await copyFile(join(FILES, file), join(folder, file));
+  const server = await startFakeFusion(folder);
+  const { page } = await openViewer(browser, server.url);
+  await headline(page, /three\.js is missing/);
+  assert.match(await text(page, '#next'), /npm ci/);
+  await page.close();
+  server.stop();
+  await rm(folder, { recursive: true });
 });

@@ -1,0 +1,86 @@
+// The state of the tracker in one plain sentence, and what to do next.  Pure: what is known goes in.
+
+export const STALE_MS = 1500;
+const GONE_MS = 4000;
+
+const many = (count, one, more) => (count === 1 ? `one ${one}` : `${count} ${more}`);
+const seconds = (ms) => `${Math.round(ms / 1000)} s`;
+
+function list(names) {
+  if (names.length < 2) return names.join('');
+  return `${names.slice(0, -1).join(', ')} and ${names.at(-1)}`;
+}
+
+/// Whether what is on the screen is current: 'live', 'stale' (old, and shown as old) or 'gone' (not shown any more).
+export function freshness(known) {
+  if (!known.frame) return 'gone';
+  const old = Math.max(known.link.error ? known.link.silent : 0, known.frameAge || 0);
+  if (old > GONE_MS) return 'gone';
+  return old > STALE_MS || known.link.error ? 'stale' : 'live';
+}
+
+function ofTheLink({ link, frame, frameAge }) {
+  const silent = link.silent;
+  if (link.error && !(silent < STALE_MS)) {
+    const since = Number.isFinite(silent) ? `The fusion server has not answered for ${seconds(silent)}.` : 'The fusion server does not answer.';
+    return { tone: 'bad', sentence: since, next: 'Is chorus-fusion running there? This page goes on by itself as soon as it answers.' };
+  }
+  if (!frame) return { tone: 'warn', sentence: 'Waiting for the first frame of the fusion server …', next: '' };
+  if (frameAge > STALE_MS) {
+    return { tone: 'bad', sentence: `The fused output has stood still for ${seconds(frameAge)}.`, next: 'Look into the log of chorus-fusion.' };
+  }
+  return null;
+}
+
+function ofTheSensors(sensors) {
+  const all = Object.entries(sensors);
+  const dead = all.filter(([, sensor]) => sensor.state !== 'live');
+  const why = dead.map(([id, sensor]) => (sensor.lastError ? `${id}: ${sensor.lastError}` : '')).find(Boolean);
+  if (all.length === 0) {
+    return { tone: 'bad', sentence: 'No sensors are configured.', next: 'Add them under "sensors" in the configuration of chorus-fusion.' };
+  }
+  if (dead.length === all.length) {
+    const sentence = all.length === 1 ? 'The only sensor delivers nothing.' : `None of the ${all.length} sensors delivers anything.`;
+    return { tone: 'bad', sentence, next: why ?? 'Start the sensors; their addresses are in the configuration.' };
+  }
+  if (dead.length === 0) return null;
+  const names = list(dead.map(([id]) => id));
+  return { tone: 'warn', sentence: `${names} ${dead.length === 1 ? 'delivers' : 'deliver'} nothing.`, next: why ?? 'Look after them.' };
+}
+
+function ofTheRegistration({ session, sensors = {}, awaits = [], verdict }) {
+  const placed = Object.keys(sensors).length;
+  if (session?.state === 'solving') return { tone: 'warn', sentence: 'The walk is over: the places are being solved.', next: '' };
+  if (session?.state === 'collecting') {
+    const walked = `${Math.round(session.elapsedSeconds)} of ${Math.round(session.targetSeconds)} s`;
+    return { tone: 'warn', sentence: `Registering: ${walked} of the walk seen.`, next: awaits.at(-1) ?? '' };
+  }
+  if (placed === 0) {
+    return { tone: 'warn', sentence: 'It is not known yet where the sensors stand.', next: awaits.at(-1) ?? 'Walk through the room.' };
+  }
+  if (verdict === 'Good') return null;
+  return { tone: 'warn', sentence: '', next: '' };
+}
+
+/// {tone: 'good' | 'calm' | 'warn' | 'bad', sentence, next}.
+export function stateOf(known) {
+  const link = ofTheLink(known);
+  if (link) return link;
+  const { sensors, registration, frame } = known;
+  if (!sensors || !registration) return { tone: 'warn', sentence: 'Connecting to the fusion server …', next: '' };
+  const missing = ofTheSensors(sensors);
+  if (missing?.tone === 'bad') return missing;
+  const places = ofTheRegistration(registration);
+  if (places?.sentence) return missing ? { ...places, sentence: `${places.sentence} ${missing.sentence}` } : places;
+  const people = frame.bodies?.length ?? 0;
+  const seen = people === 0 ? 'Nobody is in sight.' : `Live: ${many(people, 'person', 'people')}.`;
+  if (missing) return { ...missing, sentence: `${seen} ${missing.sentence}` };
+  if (places) return { tone: 'warn', sentence: `${seen} The places are provisional.`, next: registration.reasons?.[0] ?? '' };
+  const unplaced = Object.keys(registration.unplaced ?? {});
+  if (unplaced.length > 0) {
+    return { tone: 'warn', sentence: `${seen} ${list(unplaced)} ${unplaced.length === 1 ? 'has' : 'have'} no place.`,
+      next: Object.values(registration.unplaced)[0].reasons?.[0] ?? '' };
+  }
+  if (people === 0) return { tone: 'calm', sentence: seen, next: 'Walk to where a sensor can see you.' };
+  return { tone: 'good', sentence: `Live: ${many(people, 'person', 'people')}, ${many(Object.keys(sensors).length, 'sensor', 'sensors')}.`, next: '' };
+}

@@ -1,0 +1,75 @@
+// One sentence for each state of the tracker, and colours that do not lie.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+
+import { Link, ServerClock } from '../../services/viewer/poll.js';
+import { freshness, stateOf } from '../../services/viewer/state.js';
+
+const LIVE = { state: 'live' };
+const GOOD = { verdict: 'Good', reasons: [], awaits: [], session: { state: 'idle' }, sensors: { s1: {}, s2: {} } };
+const known = (changes) => ({
+  link: { error: null, silent: 20 }, frame: { bodies: [{}] }, frameAge: 40, sensors: { s1: LIVE, s2: LIVE }, registration: GOOD, ...changes,
+});
+const said = (changes) => { const { tone, sentence } = stateOf(known(changes)); return `${tone}: ${sentence}`; };
+
+test('good is only what is live, registered and seen', () => {
+  assert.equal(said({}), 'good: Live: one person, 2 sensors.');
+  assert.equal(said({ frame: { bodies: [{}, {}] } }), 'good: Live: 2 people, 2 sensors.');
+  assert.equal(said({ frame: { bodies: [] } }), 'calm: Nobody is in sight.');
+  assert.equal(said({ registration: { ...GOOD, verdict: 'Provisional', reasons: ['short'] } }), 'warn: Live: one person. The places are provisional.');
+  assert.equal(said({ registration: { ...GOOD, unplaced: { s5: { reasons: ['coat stand'] } } } }), 'warn: Live: one person. s5 has no place.');
+});
+
+test('dead sensors are told, with the reason as the next step', () => {
+  const dead = { state: 'lost', lastError: 'connection refused' };
+  assert.equal(said({ sensors: {} }), 'bad: No sensors are configured.');
+  assert.equal(said({ sensors: { s1: dead, s2: dead } }), 'bad: None of the 2 sensors delivers anything.');
+  const one = stateOf(known({ sensors: { s1: LIVE, s2: dead } }));
+  assert.deepEqual(one, { tone: 'warn', sentence: 'Live: one person. s2 delivers nothing.', next: 's2: connection refused' });
+});
+
+test('registering says how far it is and what it awaits', () => {
+  const walking = { ...GOOD, session: { state: 'collecting', elapsedSeconds: 11.6, targetSeconds: 30 }, awaits: ['keep walking: 18 s more'] };
+  assert.deepEqual(stateOf(known({ registration: walking })), { tone: 'warn', sentence: 'Registering: 12 of 30 s of the walk seen.', next: 'keep walking: 18 s more' });
+  const none = { verdict: 'None', sensors: {}, awaits: ['nobody is in sight'], session: { state: 'idle' } };
+  assert.equal(stateOf(known({ registration: none })).next, 'nobody is in sight');
+  assert.equal(said({ registration: none }), 'warn: It is not known yet where the sensors stand.');
+});
+
+test('a server that is gone or stands still is never good', () => {
+  const gone = { error: 'TypeError', silent: 61000 };
+  assert.equal(said({ link: gone }), 'bad: The fusion server has not answered for 61 s.');
+  assert.equal(said({ link: { error: 'TypeError', silent: NaN }, frame: null }), 'bad: The fusion server does not answer.');
+  assert.equal(said({ frameAge: 7000 }), 'bad: The fused output has stood still for 7 s.');
+  assert.equal(freshness(known({})), 'live');
+  assert.equal(freshness(known({ frameAge: 2000 })), 'stale');
+  assert.equal(freshness(known({ link: { error: 'x', silent: 500 } })), 'stale');
+  assert.equal(freshness(known({ link: gone })), 'gone');
+  assert.equal(freshness(known({ frame: null })), 'gone');
+});
+
+test('the server’s clock is read from the quickest answers and ticks by itself', () => {
+  let ticks = 1000;
+  const clock = new ServerClock(() => ticks);
+  assert.ok(Number.isNaN(clock.now()));
+  clock.observe(`${5_000_000_000n} ${5_000_000_000n}`); // 5000 ms
+  ticks += 300; // an answer that took 200 ms to arrive
+  clock.observe(`${5_100_000_000n} ${5_100_000_000n}`);
+  assert.equal(clock.now(), 5300);
+  clock.observe('nonsense');
+  clock.observe(null);
+  ticks += 10;
+  assert.equal(clock.now(), 5310);
+});
+
+test('an error status is an answer, no answer is none', () => {
+  let ticks = 0;
+  const link = new Link(() => ticks);
+  assert.ok(Number.isNaN(link.state().silent));
+  link.up();
+  ticks = 700;
+  link.down(new Error('refused'));
+  assert.deepEqual(link.state(), { error: 'refused', silent: 700 });
+  link.up();
+  assert.deepEqual(link.state(), { error: null, silent: 0 });
+});
