@@ -1,41 +1,41 @@
-// Many views of one person -> one body.  One function, several methods behind it, all pure.
+// Many views of each person -> one body each, by the configured method and what it remembers.
 #pragma once
 
-#include <cstdint>
 #include <map>
-#include <optional>
-#include <string_view>
+#include <memory>
+#include <set>
 #include <vector>
 
-#include "common/base/units.h"
 #include "fusion-server/flow.h"
-#include "fusion-server/fusion/noise_model.h"
+#include "fusion-server/fusion/estimator.h"
+#include "fusion-server/fusion/fusion_config.h"
+#include "fusion-server/fusion/methods.h"
 
 namespace chorus::fusion {
 
-enum class Method {
-  Otto,      ///< Weighted mean by Eqs. (1)-(3), orientation by LERP; all-zero: docs/decisions.
-  Mean,      ///< Plain mean of the seen joints.
-  BestView,  ///< The heaviest view alone; on a tie the one with more tracked joints.
-  InverseVariance,  ///< Anisotropic inverse variance along and across the line of sight, robust.
+/// One estimator per person.  A value: copies remember the same and go on apart.
+class Memory {
+ public:
+  Memory() = default;
+  Memory(const Memory& other);
+  Memory& operator=(const Memory& other);
+  Memory(Memory&&) noexcept = default;
+  Memory& operator=(Memory&&) noexcept = default;
+  ~Memory() = default;
+
+  /// One body per person, in their order.  Another configuration than last time forgets everybody.
+  [[nodiscard]] std::vector<FusedBody> fuse(const std::vector<Person>& people,
+                                            const Instant& instant, const FusionConfig& config);
+  /// Forgets whoever is not tracked any more.
+  void keep_only(const std::set<PersonId>& tracked);
+
+ private:
+  FusionConfig config_;
+  std::map<PersonId, std::unique_ptr<Estimator>> estimators_;
 };
 
-[[nodiscard]] std::string_view name_of(Method method);
-[[nodiscard]] std::optional<Method> method_named(std::string_view name);
-
-struct FusionConfig {
-  Method method = Method::InverseVariance;
-  /// Otto weight of every view that saw a joint when all of their weights are zero (decision 0007);
-  /// 0 leaves such a joint NotTracked.
-  double zero_weight_floor = 0.02;
-  NoiseModel noise;  ///< For sensors without an entry of their own.
-  std::map<SensorId, NoiseModel> sensor_noise;
-  double common_sigma = 0.0;  ///< Error all sensors share [m]; added to the stated variance.
-  double huber = 1.5;         ///< In standard deviations; robust loss of InverseVariance.
-};
-
-/// Fuses each joint over the views that saw it.  A joint nobody saw is NotTracked with zero
-/// position. Never divides by zero; permuting the views changes nothing but rounding.
+/// One instant by itself, as a method answers that remembers nothing yet.  Permuting the views
+/// changes nothing but rounding.
 [[nodiscard]] FusedBody fuse(const Person& person, const std::vector<SensorId>& sensors,
                              const FusionConfig& config);
 

@@ -11,22 +11,8 @@
 namespace chorus::fusion {
 namespace {
 
-constexpr int kIterations = 8;         // Huber settles in 4-6
-constexpr double kSettled = 1e-6;      // [m]
-constexpr double kShortestRay = 1e-3;  // [m] a joint in the eye has no line of sight
-constexpr double kAxes = 3.0;
-
-/// Sigma_i^-1 of the header comment.
-Eigen::Matrix3d information_of(const Sighting& sighting) {
-  const NoiseModel noise = noise_of(sighting);
-  const double sharp = 1.0 / (noise.across * noise.across);
-  Eigen::Matrix3d information = sharp * Eigen::Matrix3d::Identity();
-  const Eigen::Vector3d ray = sighting.joint.position - sighting.eye;
-  const double length = ray.norm();
-  if (!(length > kShortestRay) || !std::isfinite(length)) return information;
-  const Eigen::Vector3d r = ray / length;
-  return information + (1.0 / (noise.along * noise.along) - sharp) * r * r.transpose();
-}
+constexpr int kIterations = 8;     // Huber settles in 4-6
+constexpr double kSettled = 1e-6;  // [m]
 
 struct Estimate {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
@@ -54,16 +40,15 @@ FusedJoint finish(std::span<const Sighting> sightings, std::span<const double> t
   FusedJoint fused;
   fused.joint.position = estimate.position;
   fused.joint.state = JointState::Inferred;
-  fused.variance = estimate.information.inverse().trace() / kAxes;
+  state_covariance(fused, estimate.information.inverse());
   std::vector<Eigen::Quaterniond> rotations;
   std::vector<double> weights;
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     fused.joint.state = std::max(fused.joint.state, sightings[i].joint.state);
     fused.contributors |= sightings[i].contributor;
     if (!is_unit(sightings[i].joint.orientation)) continue;
-    const double across = noise_of(sightings[i]).across;
     rotations.push_back(sightings[i].joint.orientation);
-    weights.push_back(trust[i] / (across * across));
+    weights.push_back(trust[i] / mean_variance(sightings[i].covariance));
   }
   if (!rotations.empty()) fused.joint.orientation = weighted_lerp(rotations, weights);
   return fused;
@@ -74,7 +59,7 @@ FusedJoint finish(std::span<const Sighting> sightings, std::span<const double> t
 FusedJoint inverse_variance(std::span<const Sighting> sightings, double huber) {
   if (sightings.empty()) return {};
   std::vector<Eigen::Matrix3d> information;
-  for (const Sighting& s : sightings) information.push_back(information_of(s));
+  for (const Sighting& s : sightings) information.push_back(s.covariance.inverse());
   std::vector<double> trust(sightings.size(), 1.0);
   Estimate estimate = solve(sightings, information, trust);
   for (int i = 0; i < kIterations; ++i) {

@@ -1,7 +1,6 @@
 // Robust inverse-variance fusion of one joint.
 //
-// Each sensor is sharp across its line of sight and blunt along it:
-//   Sigma_i = across^2 I + (along^2 - across^2) r r^T,   r = unit ray eye -> joint
+// Sigma_i is what the error model says of each sighting (error_model.h):
 //   p = argmin sum_i rho(|p_i - p|_Sigma_i),             rho = Huber, solved by re-weighting
 // Two sensors at right angles thus replace each other's depth.  Convex: the start does not matter.
 #pragma once

@@ -9,6 +9,8 @@ struct NoiseModel {
   double along = 0.030;
   double across = 0.015;
   double inferred_factor = 3.0;  ///< Inferred joints are this much worse.
+
+  bool operator==(const NoiseModel&) const = default;
 };
 
 }  // namespace chorus::fusion

@@ -2,23 +2,39 @@
 
 #include <algorithm>
 
+#include "fusion-server/fusion/weight.h"
+
 namespace chorus::fusion {
 namespace {
 
-constexpr double kLeastSigma = 1e-4;  ///< [m] keeps a careless config from dividing by zero
-constexpr double kLeastFactor = 1.0;  ///< an inferred joint is never better than a tracked one
+constexpr std::size_t kMostSensors = 64;  // bits of FusedBody::contributors
+constexpr double kAxes = 3.0;
 
-double usable(double sigma, double factor) {
-  return sigma > kLeastSigma ? sigma * factor : kLeastSigma * factor;
+std::uint64_t bit_of(const SensorId& sensor, const std::vector<SensorId>& sensors) {
+  const auto at = std::find(sensors.begin(), sensors.end(), sensor);
+  const auto index = static_cast<std::size_t>(at - sensors.begin());
+  return at == sensors.end() || index >= kMostSensors ? 0 : std::uint64_t{1} << index;
 }
 
 }  // namespace
 
-NoiseModel noise_of(const Sighting& sighting) {
-  const bool inferred = sighting.joint.state == JointState::Inferred;
-  const double factor =
-      inferred ? std::max(kLeastFactor, sighting.noise.inferred_factor) : kLeastFactor;
-  return {usable(sighting.noise.along, factor), usable(sighting.noise.across, factor), factor};
+std::vector<Sighting> sightings_of(JointId joint, const Person& person,
+                                   const std::vector<SensorId>& sensors, const ErrorModel& errors) {
+  std::vector<Sighting> sightings;
+  for (const SensorView& view : person.views) {
+    const Joint& seen = view.skeleton[joint];
+    if (!seen.seen()) continue;
+    sightings.push_back({seen, Weight::clamped(view.weight).value(), errors.covariance(view, joint),
+                         bit_of(view.sensor, sensors)});
+  }
+  return sightings;
+}
+
+double mean_variance(const Eigen::Matrix3d& covariance) { return covariance.trace() / kAxes; }
+
+void state_covariance(FusedJoint& fused, const Eigen::Matrix3d& covariance) {
+  fused.variance = mean_variance(covariance);
+  fused.joint.covariance = Covariance(covariance);
 }
 
 }  // namespace chorus::fusion

@@ -2,29 +2,37 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "common/body/skeleton.h"
-#include "fusion-server/fusion/noise_model.h"
+#include "fusion-server/flow.h"
+#include "fusion-server/fusion/error_model.h"
 
 namespace chorus::fusion {
 
-/// Only seen joints become sightings.  World space.
+/// Only joints with a place become sightings; rays do not.  World space.
 struct Sighting {
   Joint joint;
-  double weight = 0.0;                            ///< Of the view, Eqs. (1)-(3); >= 0.
-  Eigen::Vector3d eye = Eigen::Vector3d::Zero();  ///< Sensor position [m].
-  NoiseModel noise;
+  double weight = 0.0;                                       ///< Of the view, Eqs. (1)-(3); >= 0.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< By the error model [m^2].
   std::uint64_t contributor = 0;  ///< The sensor's bit in FusedBody::contributors.
 };
 
 struct FusedJoint {
-  Joint joint;            ///< NotTracked with zero position when nothing could be fused.
+  Joint joint;  ///< NotTracked with zero position when nothing could be fused; with its covariance.
   double variance = 0.0;  ///< Mean per-axis variance [m^2].
   std::uint64_t contributors = 0;
 };
 
-/// Standard deviations usable as divisors: never below a tenth of a millimetre, inferred joints
-/// widened.
-[[nodiscard]] NoiseModel noise_of(const Sighting& sighting);
+/// What the views of a person bring to one joint.  Weights that are no numbers are zero.
+[[nodiscard]] std::vector<Sighting> sightings_of(JointId joint, const Person& person,
+                                                 const std::vector<SensorId>& sensors,
+                                                 const ErrorModel& errors);
+
+/// Sets a fused joint's covariance, and the mean variance that follows from it.
+void state_covariance(FusedJoint& fused, const Eigen::Matrix3d& covariance);
+
+/// Mean variance per axis [m^2].
+[[nodiscard]] double mean_variance(const Eigen::Matrix3d& covariance);
 
 }  // namespace chorus::fusion

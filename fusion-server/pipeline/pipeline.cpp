@@ -1,6 +1,7 @@
 #include "fusion-server/pipeline/pipeline.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "fusion-server/facing/front_rear.h"
@@ -28,9 +29,8 @@ std::vector<AlignedSensor> align_all(const Inputs& in, const Histories& historie
   return aligned;
 }
 
-/// 5.2.2 and 5.2.5: facing and weight, still in sensor space.
-SensorView sight(const AlignedSensor& from, const BodyFrame& body,
-                 const fusion::QualityLimits& quality) {
+/// 5.2.2: how the body stands before its sensor, still in sensor space.
+SensorView view_of(const AlignedSensor& from, const BodyFrame& body) {
   const facing::Sight seen = facing::view_of(body);
   SensorView view;
   view.sensor = from.sensor;
@@ -39,21 +39,19 @@ SensorView sight(const AlignedSensor& from, const BodyFrame& body,
   view.distance = seen.distance;
   view.facing = seen.facing;
   view.bearing = seen.bearing;
-  view.weight = fusion::view_weight(seen.distance, seen.facing, seen.bearing, quality).value();
   return view;
 }
 
 /// 5.2.3: into the world; bodies of sensors without a place there are left out.
 std::vector<SensorView> views_in_world(const std::vector<AlignedSensor>& aligned,
-                                       const Registration& registration,
-                                       const PipelineConfig& config) {
+                                       const Registration& registration) {
   std::vector<SensorView> views;
   for (const AlignedSensor& sensor : aligned) {
     const auto place = registration.sensors.find(sensor.sensor);
     if (place == registration.sensors.end()) continue;
     const Eigen::Isometry3d& world_from_sensor = place->second.world_from_sensor;
     for (const BodyFrame& body : sensor.bodies) {
-      SensorView view = sight(sensor, body, config.quality);
+      SensorView view = view_of(sensor, body);
       view.skeleton = to_world(world_from_sensor, body.skeleton);
       view.eye = world_from_sensor.translation();
       views.push_back(std::move(view));
@@ -62,24 +60,38 @@ std::vector<SensorView> views_in_world(const std::vector<AlignedSensor>& aligned
   return views;
 }
 
-/// 5.2.2 once more, now that it is known who is who: sides agreed between the sensors, and the
-/// weights that follow from them.
-void resolve_sides(Perceived& perceived, Timestamp instant, const PipelineConfig& config) {
-  Memory& memory = perceived.memory;
-  for (Person& person : perceived.people) {
+/// Who is still tracked, seen now or not.
+std::set<PersonId> ids_of(const associate::Tracks& tracks) {
+  std::set<PersonId> ids;
+  for (const associate::Track& track : tracks.people) ids.insert(track.id);
+  return ids;
+}
+
+/// 5.2.2 once more, now that it is known who is who: sides agreed between the sensors.
+void resolve_sides(std::vector<Person>& people, Timestamp instant, Memory& memory,
+                   const facing::SidesConfig& config) {
+  for (Person& person : people) {
     const auto track = std::ranges::find(memory.tracks.people, person.id, &associate::Track::id);
     const bool known = track != memory.tracks.people.end();
     const facing::Motion motion{instant, known ? track->velocity : Eigen::Vector3d::Zero()};
-    facing::resolve_sides(person, motion, memory.sides, config.sides);
+    facing::resolve_sides(person, motion, memory.sides, config);
+  }
+}
+
+/// 5.2.5, Eqs. (1)-(3).
+void weigh(std::vector<Person>& people, const fusion::QualityLimits& limits) {
+  for (Person& person : people) {
     for (SensorView& view : person.views) {
-      view.weight =
-          fusion::view_weight(view.distance, view.facing, view.bearing, config.quality).value();
+      view.weight = fusion::view_weight(view.distance, view.facing, view.bearing, limits).value();
     }
   }
-  std::erase_if(memory.sides, [&](const auto& entry) {
-    return std::ranges::find(memory.tracks.people, entry.first, &associate::Track::id) ==
-           memory.tracks.people.end();
-  });
+}
+
+/// Nothing is remembered of people who are not tracked any more.
+void forget_the_gone(Memory& memory) {
+  const std::set<PersonId> tracked = ids_of(memory.tracks);
+  std::erase_if(memory.sides, [&](const auto& entry) { return !tracked.contains(entry.first); });
+  memory.fusion.keep_only(tracked);
 }
 
 /// One report per known sensor: polled, registered, or both.
@@ -114,30 +126,27 @@ bool ready(const Inputs& in, const Histories& histories, const Registration& reg
 
 Perceived perceive(const Inputs& in, const Histories& histories, const Registration& registration,
                    const Memory& memory, const PipelineConfig& config) {
-  const std::vector<AlignedSensor> aligned = align_all(in, histories, config);
-  associate::Grouping grouping = associate::group(views_in_world(aligned, registration, config),
-                                                  in.instant, memory.tracks, config.association);
+  const auto aligned = align_all(in, histories, config);     // 5.2.4
+  const auto views = views_in_world(aligned, registration);  // 5.2.2, 5.2.3
+  auto grouped = associate::group(views, in.instant, memory.tracks, config.association);
   Perceived perceived;
-  perceived.people = std::move(grouping.people);
-  perceived.memory = {std::move(grouping.tracks), memory.sides};
-  resolve_sides(perceived, in.instant, config);
+  perceived.memory = {std::move(grouped.tracks), memory.sides, memory.fusion};
+  perceived.people = std::move(grouped.people);
+  resolve_sides(perceived.people, in.instant, perceived.memory, config.sides);  // 5.2.2
+  weigh(perceived.people, config.quality);                                      // 5.2.5
+  forget_the_gone(perceived.memory);
   perceived.reports = report(aligned, perceived.people, registration);
   return perceived;
 }
 
 Step step(const Inputs& in, const Histories& histories, const Registration& registration,
           const Memory& memory, const PipelineConfig& config) {
-  Perceived perceived = perceive(in, histories, registration, memory, config);
-  Step result;
-  result.snapshot.sequence = in.sequence;
-  result.snapshot.instant = in.instant;
-  result.snapshot.sensors = registered_sensors(registration);
-  result.snapshot.reports = std::move(perceived.reports);
-  for (const Person& person : perceived.people) {
-    result.snapshot.bodies.push_back(fusion::fuse(person, result.snapshot.sensors, config.fusion));
-  }
-  result.memory = std::move(perceived.memory);
-  return result;
+  Perceived seen = perceive(in, histories, registration, memory, config);  // Figure 10
+  Snapshot snapshot{in.sequence, in.instant, registered_sensors(registration), {}, {}};
+  snapshot.bodies = seen.memory.fusion.fuse(seen.people, {in.instant, snapshot.sensors},
+                                            config.fusion);  // 5.2.5
+  snapshot.reports = std::move(seen.reports);
+  return {std::move(snapshot), std::move(seen.memory)};
 }
 
 }  // namespace chorus::pipeline

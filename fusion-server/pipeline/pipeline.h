@@ -34,6 +34,7 @@ struct Inputs {
 struct Memory {
   associate::Tracks tracks;
   facing::SidesMemory sides;
+  fusion::Memory fusion;
 };
 
 /// Everything before fusion: who is there at an instant, each with all views of them.
@@ -52,7 +53,7 @@ struct Step {
 [[nodiscard]] bool ready(const Inputs& in, const Histories& histories,
                          const Registration& registration, const PipelineConfig& config);
 
-/// Alignment, facing, world, association, sides: the views that `step` hands to fusion.
+/// All of `step` before fusion: the views that it hands to it.
 [[nodiscard]] Perceived perceive(const Inputs& in, const Histories& histories,
                                  const Registration& registration, const Memory& memory,
                                  const PipelineConfig& config);

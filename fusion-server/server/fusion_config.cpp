@@ -91,16 +91,17 @@ void read_association(ConfigReader reader, associate::AssociationConfig& out) {
 }
 
 void read_fusion(ConfigReader reader, fusion::FusionConfig& out) {
-  constexpr std::array kMethods{fusion::Method::Otto, fusion::Method::Mean,
-                                fusion::Method::BestView, fusion::Method::InverseVariance};
   std::vector<std::string_view> names;
-  for (const fusion::Method method : kMethods) names.push_back(fusion::name_of(method));
-  std::size_t chosen = kMethods.size();
+  for (const fusion::MethodRow& row : fusion::methods()) names.push_back(row.name);
+  std::size_t chosen = names.size();
   reader.read_choice("method", chosen, names);
-  if (chosen < kMethods.size()) out.method = kMethods.at(chosen);
+  if (chosen < names.size()) out.method = fusion::methods()[chosen].method;
   reader.read("zero_weight_floor", out.zero_weight_floor, 0.0, 1.0);
   reader.read("common_sigma_m", out.common_sigma, 0.0, 1.0);
   reader.read("huber", out.huber, 0.1, 100.0);
+  reader.read_ms("hysteresis_ms", out.hysteresis, milliseconds(0), seconds(10));
+  reader.read("kalman_sigma_m", out.kalman_sigma, 1e-4, 1.0);
+  reader.read_ms("kalman_coast_ms", out.kalman_coast, milliseconds(0), seconds(10));
   ConfigReader noise = reader.child("noise");
   read_noise(noise, out.noise);
 }

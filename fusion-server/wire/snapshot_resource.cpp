@@ -23,6 +23,7 @@ BodyResource body_of(const FusedBody& body, Timestamp instant) {
     if (joint.state == JointState::NotTracked) continue;
     out.joints[j].variance = body.variance[j];
     out.joints[j].contributors = body.contributors[j];
+    out.joints[j].covariance = joint.covariance;
   }
   return out;
 }
@@ -37,6 +38,7 @@ JointResource joint_between(const JointResource& a, const JointResource& b, doub
   }
   if (a.variance && b.variance) out.variance = std::max(*a.variance, *b.variance);
   out.contributors = a.contributors | b.contributors;
+  out.covariance = between(a.covariance, b.covariance, s);
   return out;
 }
 

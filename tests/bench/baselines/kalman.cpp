@@ -12,9 +12,6 @@
 namespace chorus::bench::baselines {
 namespace {
 
-constexpr double kTrunkDensity = 3.0;
-constexpr double kLimbDensity = 40.0;
-constexpr double kFirstSpeed = 1.0;  // [m/s] standard deviation of a velocity not yet seen
 constexpr double kFullWeightSigma = mm(20);
 constexpr double kWeightFloor = 0.02;
 constexpr double kTrackedSigma = mm(25);
@@ -87,44 +84,6 @@ void update(BodyFilter& filter, const Person& person, Timestamp arrived) {
 }
 
 }  // namespace
-
-void PointFilter::predict(double dt) {
-  position_ += dt * velocity_;
-  Eigen::Matrix2d step;
-  step << 1, dt, 0, 1;
-  Eigen::Matrix2d noise;
-  noise << dt * dt * dt / 3, dt * dt / 2, dt * dt / 2, dt;
-  covariance_ = step * covariance_ * step.transpose() + density_ * noise;
-}
-
-void PointFilter::update(Timestamp instant, const Eigen::Vector3d& position, double variance) {
-  if (!updated_ || instant - *updated_ > kForgotten) {
-    position_ = position;
-    velocity_.setZero();
-    covariance_ << variance, 0, 0, kFirstSpeed * kFirstSpeed;
-    updated_ = instant;
-    return;
-  }
-  if (instant > *updated_) {
-    predict(seconds(instant - *updated_));
-    updated_ = instant;
-  }
-  const Eigen::Vector2d gain = covariance_.col(0) / (covariance_(0, 0) + variance);
-  const Eigen::Vector3d off = position - position_;
-  position_ += gain.x() * off;
-  velocity_ += gain.y() * off;
-  covariance_ = (covariance_ - gain * covariance_.row(0)).eval();
-}
-
-std::optional<Eigen::Vector3d> PointFilter::at(Timestamp instant) const {
-  if (!updated_) return std::nullopt;
-  return Eigen::Vector3d(position_ + std::max(0.0, seconds(instant - *updated_)) * velocity_);
-}
-
-double process_density(JointId joint) {
-  const bool trunk = std::ranges::find(kCoreJoints, joint) != kCoreJoints.end();
-  return trunk ? kTrunkDensity : kLimbDensity;
-}
 
 Method otto_kalman() {
   return [filter = BodyFilter{}](const Person& person, Timestamp instant) mutable {

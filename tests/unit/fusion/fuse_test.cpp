@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common/base/units.h"
 #include "common/geometry/rotation.h"
 #include "tests/unit/fusion/views.h"
 
@@ -14,8 +15,9 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 const std::vector<SensorId> kSensors{sensor(1), sensor(2), sensor(3), sensor(4)};
-constexpr std::array kMethods{Method::Otto, Method::Mean, Method::BestView,
-                              Method::InverseVariance};
+constexpr std::array kMethods{Method::Otto,         Method::Mean,
+                              Method::BestView,     Method::InverseVariance,
+                              Method::BestSkeleton, Method::OttoKalman};
 
 FusionConfig by(Method method) {
   FusionConfig config;

@@ -7,12 +7,12 @@ namespace {
 
 constexpr double kHuber = 1.5;
 
-Sighting from(const Eigen::Vector3d& eye, const Eigen::Vector3d& position, NoiseModel noise = {}) {
+Sighting from(const Eigen::Vector3d& eye, const Eigen::Vector3d& position, NoiseModel noise = {},
+              JointState state = JointState::Tracked) {
   Sighting sighting;
-  sighting.eye = eye;
-  sighting.noise = noise;
   sighting.joint.position = position;
-  sighting.joint.state = JointState::Tracked;
+  sighting.joint.state = state;
+  sighting.covariance = line_of_sight_covariance(sighting.joint, eye, noise);
   return sighting;
 }
 
@@ -41,8 +41,8 @@ TEST(InverseVariance, OneGrossOutlierAmongFourBarelyPulls) {
 }
 
 TEST(InverseVariance, InferredCountsLess) {
-  std::vector<Sighting> sightings{from({0, 0, 5}, {0, 0, 0}), from({0, 0, 5}, {0.01, 0, 0})};
-  sightings[1].joint.state = JointState::Inferred;
+  std::vector<Sighting> sightings{from({0, 0, 5}, {0, 0, 0}),
+                                  from({0, 0, 5}, {0.01, 0, 0}, {}, JointState::Inferred)};
   // Factor 3 in sigma is 9 in weight: 0.01 / (1 + 9).
   EXPECT_NEAR(inverse_variance(sightings, kHuber).joint.position.x(), 0.001, 1e-5);
 }

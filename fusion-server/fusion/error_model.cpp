@@ -1,0 +1,58 @@
+#include "fusion-server/fusion/error_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace chorus::fusion {
+namespace {
+
+constexpr double kLeastSigma = 1e-4;   ///< [m] keeps a careless config from dividing by zero
+constexpr double kLeastFactor = 1.0;   ///< an inferred joint is never better than a tracked one
+constexpr double kShortestRay = 1e-3;  ///< [m] a joint in the eye has no line of sight
+
+double usable(double sigma, double factor) {
+  return sigma > kLeastSigma ? sigma * factor : kLeastSigma * factor;
+}
+
+class LineOfSightErrors final : public ErrorModel {
+ public:
+  LineOfSightErrors(const NoiseModel& noise, const std::map<SensorId, NoiseModel>& of_sensors)
+      : noise_(noise), of_sensors_(of_sensors) {}
+
+  [[nodiscard]] Eigen::Matrix3d covariance(const SensorView& view, JointId id) const override {
+    const Joint& joint = view.skeleton[id];
+    if (joint.covariance.known()) {
+      return joint.covariance.matrix() + kLeastSigma * kLeastSigma * Eigen::Matrix3d::Identity();
+    }
+    const auto own = of_sensors_.find(view.sensor);
+    return line_of_sight_covariance(joint, view.eye,
+                                    own == of_sensors_.end() ? noise_ : own->second);
+  }
+
+ private:
+  NoiseModel noise_;
+  std::map<SensorId, NoiseModel> of_sensors_;
+};
+
+}  // namespace
+
+Eigen::Matrix3d line_of_sight_covariance(const Joint& joint, const Eigen::Vector3d& eye,
+                                         const NoiseModel& noise) {
+  const bool inferred = joint.state == JointState::Inferred;
+  const double factor = inferred ? std::max(kLeastFactor, noise.inferred_factor) : kLeastFactor;
+  const double along = usable(noise.along, factor);
+  const double across = usable(noise.across, factor);
+  const Eigen::Matrix3d round = across * across * Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d ray = joint.position - eye;
+  const double length = ray.norm();
+  if (!(length > kShortestRay) || !std::isfinite(length)) return round;
+  const Eigen::Vector3d r = ray / length;
+  return round + (along * along - across * across) * r * r.transpose();
+}
+
+std::unique_ptr<const ErrorModel> line_of_sight_errors(
+    const NoiseModel& noise, const std::map<SensorId, NoiseModel>& of_sensors) {
+  return std::make_unique<LineOfSightErrors>(noise, of_sensors);
+}
+
+}  // namespace chorus::fusion

@@ -1,0 +1,29 @@
+// The seam of fusion: whatever turns the views of one person into one body, instant after instant.
+//
+// An estimator belongs to one person and may remember; it is asked in order of time.  Pure but for
+// its memory: same views, same bodies.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "fusion-server/flow.h"
+
+namespace chorus::fusion {
+
+struct Instant {
+  Timestamp at;
+  const std::vector<SensorId>& sensors;  ///< Bit i of FusedBody::contributors is sensors[i].
+};
+
+class Estimator {
+ public:
+  virtual ~Estimator() = default;
+  /// A joint nobody saw is NotTracked with zero position, unless the method predicts it.  The order
+  /// of the views changes nothing but rounding.
+  [[nodiscard]] virtual FusedBody fuse(const Person& person, const Instant& instant) = 0;
+  /// With all it remembers.
+  [[nodiscard]] virtual std::unique_ptr<Estimator> clone() const = 0;
+};
+
+}  // namespace chorus::fusion

@@ -1,0 +1,40 @@
+// Which method fuses the views of a person, and what the methods can be told.
+#pragma once
+
+#include <map>
+
+#include "fusion-server/flow.h"
+#include "fusion-server/fusion/noise_model.h"
+
+namespace chorus::fusion {
+
+/// Rows of the table in methods.h.
+enum class Method {
+  Otto,      ///< Weighted mean by Eqs. (1)-(3), orientation by LERP; all-zero: docs/decisions.
+  Mean,      ///< Plain mean of the seen joints.
+  BestView,  ///< The heaviest view alone; on a tie the one with more tracked joints.
+  InverseVariance,  ///< Anisotropic inverse variance along and across the line of sight, robust.
+  BestSkeleton,     ///< One view alone, which changes hands only after a while.  Remembers.
+  OttoKalman,       ///< A Kalman filter per joint with Otto's weights in R.  Remembers.
+};
+
+struct FusionConfig {
+  Method method = Method::InverseVariance;
+  /// Otto weight of every view that saw a joint when all of their weights are zero (decision 0007);
+  /// 0 leaves such a joint NotTracked.
+  double zero_weight_floor = 0.02;
+  NoiseModel noise;  ///< For sensors without an entry of their own.
+  std::map<SensorId, NoiseModel> sensor_noise;
+  double common_sigma = 0.0;  ///< Error all sensors share [m]; added to the stated variance.
+  double huber = 1.5;         ///< In standard deviations; robust loss of InverseVariance.
+  /// BestSkeleton: how long another view must be better before it takes over.
+  Duration hysteresis = std::chrono::milliseconds(300);
+  /// OttoKalman: standard deviation of a view of weight 1 [m].
+  double kalman_sigma = 0.020;
+  /// OttoKalman: how long a joint that nobody sees is predicted.
+  Duration kalman_coast = std::chrono::milliseconds(300);
+
+  bool operator==(const FusionConfig&) const = default;
+};
+
+}  // namespace chorus::fusion

@@ -1,0 +1,94 @@
+#include "fusion-server/fusion/joint_wise.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "fusion-server/fusion/inverse_variance.h"
+#include "fusion-server/fusion/sighting.h"
+#include "fusion-server/fusion/view_score.h"
+#include "fusion-server/fusion/weight.h"
+#include "fusion-server/fusion/weighted_mean.h"
+
+namespace chorus::fusion {
+namespace {
+
+/// Heaviest; then most tracked joints; then least sensor id, so that order never matters.
+Person heaviest_view_of(const Person& person) {
+  const auto heavier = [](const SensorView& a, const SensorView& b) {
+    const double weight_a = Weight::clamped(a.weight).value();
+    const double weight_b = Weight::clamped(b.weight).value();
+    const long joints_a = tracked_joints(a);
+    const long joints_b = tracked_joints(b);
+    return std::tie(weight_a, joints_a, b.sensor, b.body) <
+           std::tie(weight_b, joints_b, a.sensor, a.body);
+  };
+  const auto best = std::max_element(person.views.begin(), person.views.end(), heavier);
+  if (best == person.views.end()) return {person.id, {}};
+  return {person.id, {*best}};
+}
+
+/// Decision 0007: when nobody who saw the joint has any weight, all of them have the same.
+void lift_zero_weights(std::vector<Sighting>& sightings, double floor) {
+  const bool any = std::any_of(sightings.begin(), sightings.end(),
+                               [](const Sighting& s) { return s.weight > 0; });
+  if (any) return;
+  for (Sighting& s : sightings) s.weight = floor;
+}
+
+class JointWise final : public Estimator {
+ public:
+  explicit JointWise(const FusionConfig& config)
+      : config_(config), errors_(line_of_sight_errors(config.noise, config.sensor_noise)) {}
+
+  FusedBody fuse(const Person& person, const Instant& instant) override {
+    if (config_.method == Method::BestView) {
+      return fuse_views(heaviest_view_of(person), instant);
+    }
+    return fuse_views(person, instant);
+  }
+
+  [[nodiscard]] std::unique_ptr<Estimator> clone() const override {
+    return std::make_unique<JointWise>(*this);
+  }
+
+ private:
+  [[nodiscard]] FusedBody fuse_views(const Person& person, const Instant& instant) const {
+    FusedBody body;
+    body.id = person.id;
+    for (std::size_t i = 0; i < kJointCount; ++i) {
+      const FusedJoint fused =
+          fuse_joint(sightings_of(static_cast<JointId>(i), person, instant.sensors, *errors_));
+      body.skeleton.joints[i] = fused.joint;
+      body.variance[i] = fused.variance;
+      body.contributors[i] = fused.contributors;
+    }
+    return body;
+  }
+
+  [[nodiscard]] FusedJoint fuse_joint(std::vector<Sighting> sightings) const {
+    if (config_.method == Method::Otto) {
+      lift_zero_weights(sightings, config_.zero_weight_floor);
+    } else {
+      for (Sighting& s : sightings) s.weight = 1.0;
+    }
+    FusedJoint fused = config_.method == Method::InverseVariance
+                           ? inverse_variance(sightings, config_.huber)
+                           : weighted_mean(sightings);
+    if (!fused.joint.seen()) return fused;
+    const double common = config_.common_sigma * config_.common_sigma;
+    state_covariance(fused, fused.joint.covariance.matrix() + common * Eigen::Matrix3d::Identity());
+    return fused;
+  }
+
+  FusionConfig config_;
+  std::shared_ptr<const ErrorModel> errors_;
+};
+
+}  // namespace
+
+std::unique_ptr<Estimator> joint_wise(const FusionConfig& config) {
+  return std::make_unique<JointWise>(config);
+}
+
+}  // namespace chorus::fusion

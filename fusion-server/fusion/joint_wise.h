@@ -1,0 +1,14 @@
+// Methods without memory that fuse each joint by itself: Otto's weighted mean, the plain mean, the
+// heaviest view, robust inverse variance (Otto et al. 5.2.5; inverse_variance.h).
+#pragma once
+
+#include <memory>
+
+#include "fusion-server/fusion/estimator.h"
+#include "fusion-server/fusion/fusion_config.h"
+
+namespace chorus::fusion {
+
+[[nodiscard]] std::unique_ptr<Estimator> joint_wise(const FusionConfig& config);
+
+}  // namespace chorus::fusion

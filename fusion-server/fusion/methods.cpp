@@ -1,0 +1,42 @@
+#include "fusion-server/fusion/methods.h"
+
+#include <algorithm>
+#include <array>
+
+#include "fusion-server/fusion/best_skeleton.h"
+#include "fusion-server/fusion/joint_wise.h"
+#include "fusion-server/fusion/otto_kalman.h"
+
+namespace chorus::fusion {
+namespace {
+
+constexpr std::array kMethods{
+    MethodRow{Method::InverseVariance, "inverse-variance", joint_wise},
+    MethodRow{Method::Otto, "otto", joint_wise},
+    MethodRow{Method::Mean, "mean", joint_wise},
+    MethodRow{Method::BestView, "best-view", joint_wise},
+    MethodRow{Method::BestSkeleton, "best-skeleton", best_skeleton},
+    MethodRow{Method::OttoKalman, "otto-kalman", otto_kalman},
+};
+
+}  // namespace
+
+std::span<const MethodRow> methods() { return kMethods; }
+
+std::string_view name_of(Method method) {
+  const auto* const row = std::ranges::find(kMethods, method, &MethodRow::method);
+  return row == kMethods.end() ? "unknown" : row->name;
+}
+
+std::optional<Method> method_named(std::string_view name) {
+  const auto* const row = std::ranges::find(kMethods, name, &MethodRow::name);
+  if (row == kMethods.end()) return std::nullopt;
+  return row->method;
+}
+
+std::unique_ptr<Estimator> begin(const FusionConfig& config) {
+  const auto* const row = std::ranges::find(kMethods, config.method, &MethodRow::method);
+  return (row == kMethods.end() ? kMethods.front() : *row).begin(config);
+}
+
+}  // namespace chorus::fusion

@@ -1,0 +1,28 @@
+// The table of methods that the configuration chooses from by name.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "fusion-server/fusion/estimator.h"
+#include "fusion-server/fusion/fusion_config.h"
+
+namespace chorus::fusion {
+
+struct MethodRow {
+  Method method;
+  std::string_view name;
+  /// For one person, remembering nothing yet.
+  std::unique_ptr<Estimator> (*begin)(const FusionConfig& config);
+};
+
+[[nodiscard]] std::span<const MethodRow> methods();
+[[nodiscard]] std::string_view name_of(Method method);
+[[nodiscard]] std::optional<Method> method_named(std::string_view name);
+
+/// The configured method, for one person.
+[[nodiscard]] std::unique_ptr<Estimator> begin(const FusionConfig& config);
+
+}  // namespace chorus::fusion

@@ -1,0 +1,21 @@
+// A Kalman filter per joint with Otto's weights in R: R = sigma^2 / (w + 0.02), w of Eqs. (1)-(3).
+//
+// Otto et al. 5.2.5 name the Kalman filter as the next step after the weighted mean and leave its
+// design open.  A joint that nobody sees is predicted for FusionConfig::kalman_coast; it is then
+// Inferred and nobody contributes to it.
+#pragma once
+
+#include <memory>
+
+#include "common/body/skeleton.h"
+#include "fusion-server/fusion/estimator.h"
+#include "fusion-server/fusion/fusion_config.h"
+
+namespace chorus::fusion {
+
+[[nodiscard]] std::unique_ptr<Estimator> otto_kalman(const FusionConfig& config);
+
+/// Density of the white acceleration of a joint: 3 for the trunk, 40 for limbs [m^2 / s^3].
+[[nodiscard]] double process_density(JointId joint);
+
+}  // namespace chorus::fusion

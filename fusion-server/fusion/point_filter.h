@@ -1,0 +1,44 @@
+// A constant-velocity Kalman filter of one point.
+//
+// State (p, v) per axis; process: white acceleration of density q:
+//   Q = q [dt^3/3 dt^2/2; dt^2/2 dt]
+// P is the same on every axis because all noise is round.  Metres, seconds.
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "common/time/timestamp.h"
+
+namespace chorus::fusion {
+
+/// Asynchronous: every update has its own time.
+class PointFilter {
+ public:
+  /// A point unseen for longer starts afresh.
+  static constexpr Duration kForgotten = std::chrono::milliseconds(500);
+
+  explicit PointFilter(double density) : density_(density) {}  ///< [m^2 / s^3]
+
+  /// A sight of the point at `instant`, `variance` per axis [m^2].
+  void update(Timestamp instant, const Eigen::Vector3d& position, double variance);
+  /// Where it should be at `instant`, or at its last update when that is later; none before the
+  /// first.
+  [[nodiscard]] std::optional<Eigen::Vector3d> at(Timestamp instant) const;
+  /// Of at(instant), per axis [m^2]; zero before the first update.
+  [[nodiscard]] double variance_at(Timestamp instant) const;
+  [[nodiscard]] const Eigen::Vector3d& velocity() const { return velocity_; }  ///< [m/s]
+  [[nodiscard]] double position_variance() const { return covariance_(0, 0); }
+
+ private:
+  void predict(double dt);
+
+  double density_;
+  std::optional<Timestamp> updated_;
+  Eigen::Vector3d position_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix2d covariance_ = Eigen::Matrix2d::Zero();
+};
+
+}  // namespace chorus::fusion

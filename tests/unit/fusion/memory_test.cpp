@@ -1,0 +1,151 @@
+// Methods that remember: best skeleton with hysteresis, Otto's weights in a Kalman filter.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "common/base/units.h"
+#include "fusion-server/fusion/error_model.h"
+#include "fusion-server/fusion/fuse.h"
+#include "tests/unit/fusion/views.h"
+
+namespace chorus::fusion {
+namespace {
+
+using std::chrono::milliseconds;
+
+const std::vector<SensorId> kSensors{sensor(1), sensor(2)};
+constexpr Timestamp kStart = from_unix_ns(1'795'246'200'000'000'000);
+
+/// A person that fusion sees instant after instant.
+class Seen {
+ public:
+  explicit Seen(Method method) { config_.method = method; }
+
+  FusedBody at(Duration after, std::vector<SensorView> views) {
+    return memory_.fuse({{PersonId{1}, std::move(views)}}, {kStart + after, kSensors}, config_)[0];
+  }
+  double neck_x(Duration after, std::vector<SensorView> views) {
+    return at(after, std::move(views)).skeleton[JointId::Neck].position.x();
+  }
+
+  FusionConfig config_;
+  Memory memory_;
+};
+
+/// The neck at x, seen by a body that faces its sensor or stands sideways.
+SensorView facing_view(int number, double x, double facing) {
+  SensorView view = neck_view(number, {x, 1, 0}, 0.5);
+  view.facing = facing;
+  return view;
+}
+
+std::vector<SensorView> better(int number) {
+  return {facing_view(1, 0.0, number == 1 ? 0.0 : deg(80)),
+          facing_view(2, 1.0, number == 2 ? 0.0 : deg(80))};
+}
+
+TEST(BestSkeleton, ChangesHandsOnlyAfterTheHysteresis) {
+  Seen seen(Method::BestSkeleton);
+  EXPECT_EQ(seen.neck_x(milliseconds(0), better(1)), 0.0);
+  EXPECT_EQ(seen.neck_x(milliseconds(33), better(2)), 0.0);
+  EXPECT_EQ(seen.neck_x(milliseconds(300), better(2)), 0.0);
+  EXPECT_EQ(seen.neck_x(milliseconds(340), better(2)), 1.0);
+}
+
+TEST(BestSkeleton, ARivalThatFallsBackBeginsAnew) {
+  Seen seen(Method::BestSkeleton);
+  EXPECT_EQ(seen.neck_x(milliseconds(0), better(1)), 0.0);
+  EXPECT_EQ(seen.neck_x(milliseconds(33), better(2)), 0.0);
+  EXPECT_EQ(seen.neck_x(milliseconds(200), better(1)), 0.0);
+  EXPECT_EQ(seen.neck_x(milliseconds(400), better(2)), 0.0);
+}
+
+TEST(BestSkeleton, AViewThatIsGoneIsReplacedAtOnce) {
+  Seen seen(Method::BestSkeleton);
+  EXPECT_EQ(seen.neck_x(milliseconds(0), better(1)), 0.0);
+  EXPECT_EQ(seen.neck_x(milliseconds(33), {better(1)[1]}), 1.0);
+}
+
+TEST(OttoKalman, FollowsSteadyMotionAndPredictsThroughLoss) {
+  Seen seen(Method::OttoKalman);
+  for (int i = 0; i <= 30; ++i) {
+    seen.neck_x(milliseconds(33 * i), {neck_view(1, {0.033 * i, 1, 0}, 0.5)});
+  }
+  SensorView blind = neck_view(1, {0, 1, 0}, 0.5);
+  blind.skeleton[JointId::Neck].state = JointState::NotTracked;
+  const FusedBody lost = seen.at(milliseconds(33 * 32), {blind});
+  EXPECT_NEAR(lost.skeleton[JointId::Neck].position.x(), 0.033 * 32, 0.01);
+  EXPECT_EQ(lost.skeleton[JointId::Neck].state, JointState::Inferred);
+  EXPECT_EQ(lost.contributors[index_of(JointId::Neck)], 0U);
+  const FusedBody before = seen.at(milliseconds(33 * 33), {neck_view(1, {0.033 * 33, 1, 0}, 0.5)});
+  EXPECT_GT(lost.variance[index_of(JointId::Neck)], before.variance[index_of(JointId::Neck)]);
+  EXPECT_EQ(seen.at(milliseconds(33 * 33 + 400), {blind}).skeleton[JointId::Neck].state,
+            JointState::NotTracked);
+}
+
+TEST(OttoKalman, AHeavyViewPullsMoreThanALightOne) {
+  Seen seen(Method::OttoKalman);
+  const double x =
+      seen.neck_x(milliseconds(0), {neck_view(1, {0, 1, 0}, 0.98), neck_view(2, {1, 1, 0}, 0.23)});
+  EXPECT_NEAR(x, 0.2, 1e-6);  // R0 / 1.00 against R0 / 0.25
+}
+
+TEST(FusionMemory, CopiesGoOnApart) {
+  Seen seen(Method::BestSkeleton);
+  EXPECT_EQ(seen.neck_x(milliseconds(0), better(1)), 0.0);
+  Seen copy = seen;
+  EXPECT_EQ(copy.neck_x(milliseconds(33), {better(2)[1]}), 1.0);
+  EXPECT_EQ(seen.neck_x(milliseconds(66), better(2)), 0.0) << "it has not seen what the copy saw";
+}
+
+TEST(FusionMemory, PeopleWhoLeftAndAnotherConfigurationBeginAnew) {
+  Seen seen(Method::BestSkeleton);
+  EXPECT_EQ(seen.neck_x(milliseconds(0), better(1)), 0.0);
+  seen.memory_.keep_only({PersonId{1}});
+  EXPECT_EQ(seen.neck_x(milliseconds(33), better(2)), 0.0);
+  seen.memory_.keep_only({PersonId{2}});
+  EXPECT_EQ(seen.neck_x(milliseconds(66), better(2)), 1.0);
+  seen.config_.huber = 2.0;
+  EXPECT_EQ(seen.neck_x(milliseconds(99), better(1)), 0.0);
+}
+
+TEST(ErrorModel, BelievesAMeasurementThatBringsItsCovariance) {
+  SensorView view = neck_view(1, {0, 1, 0}, 0.5, {0, 1, 5});
+  const auto errors = line_of_sight_errors({.along = 0.1, .across = 0.01}, {});
+  EXPECT_NEAR(errors->covariance(view, JointId::Neck)(2, 2), 0.01, 1e-12);
+  EXPECT_NEAR(errors->covariance(view, JointId::Neck)(0, 0), 0.0001, 1e-12);
+  view.skeleton[JointId::Neck].covariance =
+      Covariance(Eigen::Vector3d(4e-4, 5e-4, 6e-4).asDiagonal().toDenseMatrix());
+  EXPECT_NEAR(errors->covariance(view, JointId::Neck)(2, 2), 6e-4, 1e-7);
+}
+
+TEST(ErrorModel, ASensorMayHaveANoiseOfItsOwn) {
+  const SensorView view = neck_view(2, {0, 1, 0}, 0.5, {0, 1, 5});
+  const auto errors = line_of_sight_errors({}, {{sensor(2), {.along = 0.2, .across = 0.1}}});
+  EXPECT_NEAR(errors->covariance(view, JointId::Neck)(2, 2), 0.04, 1e-12);
+}
+
+TEST(Rays, AreRefusedByMethodsThatNeedPlaces) {
+  for (const MethodRow& row : methods()) {
+    Seen seen(row.method);
+    SensorView ray = neck_view(1, {0, 0, 1}, 0.5);
+    ray.skeleton[JointId::Neck].measurement = Measurement::Ray;
+    const FusedBody body = seen.at(milliseconds(0), {ray, neck_view(2, {1, 1, 0}, 0.5)});
+    EXPECT_EQ(body.contributors[index_of(JointId::Neck)] & 1U, 0U) << row.name;
+  }
+}
+
+TEST(FusedJoint, StatesACovarianceWhoseMeanIsItsVariance) {
+  for (const MethodRow& row : methods()) {
+    Seen seen(row.method);
+    const FusedBody body = seen.at(milliseconds(0), {neck_view(1, {0, 1, 0}, 0.5)});
+    const Covariance& covariance = body.skeleton[JointId::Neck].covariance;
+    ASSERT_TRUE(covariance.known()) << row.name;
+    EXPECT_NEAR(covariance.matrix().trace() / 3, body.variance[index_of(JointId::Neck)], 1e-9)
+        << row.name;
+  }
+}
+
+}  // namespace
+}  // namespace chorus::fusion
