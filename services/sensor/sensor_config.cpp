@@ -4,8 +4,8 @@
 
 #include "common/base/log.h"
 #include "common/service/http_config.h"
-#include "services/sensor/device/replay.h"
-#include "services/sensor/device/simulated.h"
+#include "services/sensor/device/replay/replay.h"
+#include "services/sensor/device/simulated/simulated.h"
 
 namespace chorus::sensor_service {
 

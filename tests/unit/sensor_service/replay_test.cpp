@@ -1,4 +1,4 @@
-#include "services/sensor/device/replay.h"
+#include "services/sensor/device/replay/replay.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
-#include "services/sensor/device/simulated.h"
+#include "services/sensor/device/simulated/simulated.h"
 
 #include "common/synthetic/scene.h"
-#include "services/sensor/device/scene_settings.h"
+#include "services/sensor/device/simulated/scene_settings.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "services/sensor/device/simulated_settings.h"
+#include "services/sensor/device/simulated/simulated_settings.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "services/sensor/device/replay_schedule.h"
+#include "services/sensor/device/replay/replay_schedule.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "services/sensor/device/scene_settings.h"
+#include "services/sensor/device/simulated/scene_settings.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "services/sensor/device/replay.h"
+#include "services/sensor/device/replay/replay.h"
 
 #include <algorithm>
 #include <charconv>
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/base/log.h"
-#include "services/sensor/device/replay_schedule.h"
+#include "services/sensor/device/replay/replay_schedule.h"
 
 namespace chorus::sensor_service {
 

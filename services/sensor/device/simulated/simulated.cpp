@@ -1,4 +1,4 @@
-#include "services/sensor/device/simulated.h"
+#include "services/sensor/device/simulated/simulated.h"
 
 #include <algorithm>
 #include <condition_variable>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/synthetic/render.h"
-#include "services/sensor/device/simulated_settings.h"
+#include "services/sensor/device/simulated/simulated_settings.h"
 
 namespace chorus::sensor_service {
 namespace {

@@ -24,7 +24,7 @@
 #include "common/synthetic/body_sensor.h"
 #include "common/synthetic/scene.h"
 #include "common/synthetic/sensor_choice.h"
-#include "services/sensor/device/scene_settings.h"
+#include "services/sensor/device/simulated/scene_settings.h"
 
 namespace chorus::sensor_service {
 
