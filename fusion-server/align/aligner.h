@@ -17,6 +17,8 @@ struct AlignConfig {
       std::chrono::milliseconds(120);  ///< Widest bracket that is interpolated across.
   /// Age at which Pending turns into Lost, unless the sensor's own habit says sooner (usual_wait).
   Duration patience = std::chrono::milliseconds(200);
+
+  bool operator==(const AlignConfig&) const = default;
 };
 
 /// The sensor's bodies at `instant`, as known `now` (both by the server's clock).

@@ -21,6 +21,8 @@ struct AssociationConfig {
   Duration coast = std::chrono::seconds(1);  ///< How long a track survives without any view.
   int merge_frames =
       15;  ///< Instants two confirmed tracks share a spot, but no sensor, before they merge.
+
+  bool operator==(const AssociationConfig&) const = default;
 };
 
 /// Memory of one person between instants.

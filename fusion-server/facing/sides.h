@@ -32,6 +32,8 @@ struct SidesConfig {
   double most_odds = 6.0;      ///< Log odds are kept within +- this.
   double change_odds = 1.0;    ///< Against the sides held, before they change.
   Duration forget = std::chrono::seconds(1);  ///< A person unseen for so long begins anew.
+
+  bool operator==(const SidesConfig&) const = default;
 };
 
 /// Pairs whose direction tells the sides, trunk first.

@@ -16,6 +16,8 @@ struct QualityLimits {
   double distance_reach = 1.0;   ///< |d - best_distance| at which it is 0 [m]
   double max_facing = deg(30);   ///< |phi| of Eq. (2) at which it is 0 [rad]
   double max_bearing = deg(25);  ///< |alpha| of Eq. (3) at which it is 0 [rad]
+
+  bool operator==(const QualityLimits&) const = default;
 };
 
 /// Eq. (1): 1 - (d - 2.5 m)^2 for 1.5 m < d <= 3.5 m, else 0.  Continuous at both ends.

@@ -20,6 +20,8 @@ struct PipelineConfig {
   associate::AssociationConfig association;
   facing::SidesConfig sides;
   fusion::FusionConfig fusion;
+
+  bool operator==(const PipelineConfig&) const = default;
 };
 
 using Histories = std::map<SensorId, align::History>;

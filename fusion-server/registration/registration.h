@@ -51,6 +51,8 @@ struct RegistrationConfig {
   /// Above this 95 % radius of a sensor's place on the floor the verdict is provisional [m].
   double good_position = 0.05;
   std::optional<SensorId> master;  ///< Default: the sensor with the best connection to all others.
+
+  bool operator==(const RegistrationConfig&) const = default;
 };
 
 /// One pair of tracks to one edge; an Error says in a full sentence why there is none.

@@ -58,7 +58,7 @@ void RegistrationResources::publish(const Registration& registration,
 }
 
 Result<http::ActionResult> RegistrationResources::post(const http::Request& request) const {
-  const auto target = parse_session_request(request.body, control_.default_target);
+  const auto target = parse_session_request(request.body, control_.default_target());
   if (!target) return pass(target);
   if (auto started = control_.start(*target); !started) return pass(started);
   return http::ActionResult{kAccepted, live_->current(), "/registration"};

@@ -21,7 +21,8 @@ struct RegistrationControl {
   /// Conflict when a session is running.
   std::function<Result<void>(Duration target)> start;
   std::function<Result<void>()> forget;
-  Duration default_target = std::chrono::seconds(30);
+  /// How long a session collects when the request does not say.
+  std::function<Duration()> default_target = [] { return std::chrono::seconds(30); };
 };
 
 class RegistrationResources {

@@ -6,7 +6,6 @@
 
 #include "common/base/config_reader.h"
 #include "common/resource/contributors.h"
-#include "common/service/config_source.h"
 #include "common/service/http_config.h"
 #include "fusion-server/rest/registration_resources.h"
 
@@ -22,7 +21,7 @@ void read_noise(ConfigReader& reader, fusion::NoiseModel& out) {
   reader.read("inferred_factor", out.inferred_factor, 1.0, 100.0);
 }
 
-void read_sensor(ConfigReader& reader, FusionConfig& out, std::set<SensorId>& known) {
+void read_sensor(ConfigReader& reader, LiveSettings& out, std::set<SensorId>& known) {
   std::string name;
   poll::PolledSensor sensor;
   reader.read("id", name);
@@ -43,7 +42,7 @@ void read_sensor(ConfigReader& reader, FusionConfig& out, std::set<SensorId>& kn
   out.sensors.push_back(std::move(sensor));
 }
 
-void read_sensors(ConfigReader& root, FusionConfig& out) {
+void read_sensors(ConfigReader& root, LiveSettings& out) {
   std::set<SensorId> known;
   for (ConfigReader& reader : root.items("sensors")) read_sensor(reader, out, known);
   if (out.sensors.size() > resource::kMaxSensors) {
@@ -60,10 +59,11 @@ void read_poll(ConfigReader reader, poll::PollTimings& out) {
   reader.read_s("floor_interval_s", out.floor_interval, seconds(1), seconds(3600));
 }
 
-void read_output(ConfigReader reader, FusionConfig& out) {
-  reader.read("rate_hz", out.output.rate_hz, 1, 240);
-  reader.read_ms("alignment_delay_ms", out.output.alignment_delay, milliseconds(0), seconds(2));
-  reader.read_s("history_s", out.history, seconds(1), seconds(120));
+void read_output(ConfigReader reader, FusionSettings& out) {
+  reader.read("rate_hz", out.live.output.rate_hz, 1, 240);
+  reader.read_ms("alignment_delay_ms", out.live.output.alignment_delay, milliseconds(0),
+                 seconds(2));
+  reader.read_s("history_s", out.at_start.history, seconds(1), seconds(120));
 }
 
 void read_align(ConfigReader reader, align::AlignConfig& out) {
@@ -132,86 +132,52 @@ void read_pairing(ConfigReader& reader, registration::RegistrationConfig& out) {
   reader.read_s("good_duration_s", out.good_duration, seconds(1), seconds(300));
 }
 
-void read_registration(ConfigReader reader, FusionConfig& out) {
-  reader.read("auto", out.session.automatic);
-  double target = chorus::seconds(out.session.target);
+void read_registration(ConfigReader reader, FusionSettings& out) {
+  auto& [live, at_start] = out;
+  reader.read("auto", live.session.automatic);
+  double target = chorus::seconds(live.session.target);
   reader.read("seconds", target, rest::kShortestSession, rest::kLongestSession);
-  out.session.target = from_seconds(target);
-  reader.read_s("first_solve_s", out.session.first_solve, seconds(2), seconds(60));
-  reader.read_s("solve_every_s", out.session.solve_every, seconds(1), seconds(60));
-  reader.read("file", out.registration_file);
+  live.session.target = from_seconds(target);
+  reader.read_s("first_solve_s", live.session.first_solve, seconds(2), seconds(60));
+  reader.read_s("solve_every_s", live.session.solve_every, seconds(1), seconds(60));
+  reader.read("file", at_start.registration_file);
   std::string master;
   reader.read("master", master);
   if (!master.empty()) {
     auto id = SensorId::parse(master);
     if (id) {
-      out.registration.master = *id;
+      live.registration.master = *id;
     } else {
       reader.complain("master", id.error().message);
     }
   }
-  read_pairing(reader, out.registration);
+  read_pairing(reader, live.registration);
 }
 
 }  // namespace
 
-Result<FusionConfig> read_fusion_config(ConfigReader root) {
-  FusionConfig config;
-  config.http.port = 8080;
-  root.read("title", config.title);
-  service::read_http(root.child("http"), config.http);
-  service::read_log(root.child("log"), config.log);
-  read_poll(root.child("poll"), config.poll);
-  read_output(root.child("output"), config);
-  read_align(root.child("align"), config.pipeline.align);
-  read_quality(root.child("quality"), config.pipeline.quality);
-  read_association(root.child("association"), config.pipeline.association);
-  read_facing(root.child("facing"), config.pipeline.sides);
-  read_fusion(root.child("fusion"), config.pipeline.fusion);
-  read_sensors(root, config);
-  read_registration(root.child("registration"), config);
-  outputs::read_outputs(root.child("outputs"), config.outputs);
-  root.read("state_dir", config.state_dir);
-  root.read("viewer_dir", config.viewer_dir);
-  service::read_recording(root.child("recording"), config.recording);
+Result<FusionSettings> read_fusion_settings(ConfigReader root) {
+  FusionSettings settings;
+  auto& [live, at_start] = settings;
+  root.read("title", at_start.title);
+  service::read_http(root.child("http"), at_start.http);
+  live.bearer_token = std::exchange(at_start.http.bearer_token, {});
+  service::read_log(root.child("log"), live.log);
+  read_poll(root.child("poll"), at_start.poll);
+  read_output(root.child("output"), settings);
+  read_align(root.child("align"), live.pipeline.align);
+  read_quality(root.child("quality"), live.pipeline.quality);
+  read_association(root.child("association"), live.pipeline.association);
+  read_facing(root.child("facing"), live.pipeline.sides);
+  read_fusion(root.child("fusion"), live.pipeline.fusion);
+  read_sensors(root, live);
+  read_registration(root.child("registration"), settings);
+  outputs::read_outputs(root.child("outputs"), at_start.outputs);
+  root.read("state_dir", at_start.state_dir);
+  root.read("viewer_dir", at_start.viewer_dir);
+  service::read_recording(root.child("recording"), at_start.recording);
   if (auto ok = root.finish(); !ok) return pass(ok);
-  return config;
-}
-
-Result<FusionConfig> read_fusion_config(std::string_view text, std::string_view origin,
-                                        const std::vector<std::string>& overrides) {
-  auto root = ConfigReader::parse(text, origin);
-  if (!root) return pass(root);
-  for (const std::string& assignment : overrides) {
-    if (auto ok = root->set(assignment); !ok) return pass(ok);
-  }
-  return read_fusion_config(std::move(*root));
-}
-
-Result<FusionConfig> load_fusion_config(const std::string& path,
-                                        const std::vector<std::string>& overrides) {
-  return service::read_config({path, overrides}).and_then([](ConfigReader root) {
-    return read_fusion_config(std::move(root));
-  });
-}
-
-std::string needs_restart(const FusionConfig& now, const FusionConfig& next) {
-  std::string keys;
-  const auto add = [&](bool changed, std::string_view key) {
-    if (!changed) return;
-    if (!keys.empty()) keys += ", ";
-    keys += key;
-  };
-  add(!service::differ_in_token_at_most(now.http, next.http), "http");
-  add(now.title != next.title, "title");
-  add(now.poll != next.poll, "poll");
-  add(now.history != next.history, "output.history_s");
-  add(now.state_dir != next.state_dir, "state_dir");
-  add(now.viewer_dir != next.viewer_dir, "viewer_dir");
-  add(now.outputs != next.outputs, "outputs");
-  add(now.recording != next.recording, "recording");
-  add(now.registration_file != next.registration_file, "registration.file");
-  return keys;
+  return settings;
 }
 
 }  // namespace chorus::server

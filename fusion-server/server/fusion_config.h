@@ -1,8 +1,7 @@
-// Everything deploy/config/fusion.json can say, as plain values.
+// Everything deploy/config/fusion.json can say, as plain values in two parts.
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "common/base/result.h"
@@ -18,38 +17,42 @@
 
 namespace chorus::server {
 
-struct FusionConfig {
-  std::string title = "Chorus fusion server";
-  http::ServerConfig http;
+/// What a reload takes over.
+struct LiveSettings {
   service::LogConfig log;
+  std::string bearer_token;  ///< Of http.
   std::vector<poll::PolledSensor> sensors;
-  poll::PollTimings poll;
   core::TickConfig output;
-  Duration history = std::chrono::seconds(10);  ///< How long /frames/{seq} and ?at= reach back.
   pipeline::PipelineConfig pipeline;
   registration::RegistrationConfig registration;
   core::SessionConfig session;
+
+  bool operator==(const LiveSettings&) const = default;
+};
+
+/// What waits for the next start.
+struct StartSettings {
+  std::string title = "Chorus fusion server";
+  http::ServerConfig http = {.port = 8080};  ///< Without its token.
+  poll::PollTimings poll;
+  Duration history = std::chrono::seconds(10);  ///< How long /frames/{seq} and ?at= reach back.
   outputs::OutputsConfig outputs;
   std::string registration_file;  ///< Given extrinsics; empty: registered from a walk.
   std::string state_dir;          ///< Where the registration survives a restart; empty: nowhere.
   service::RecordingConfig recording;
   std::string viewer_dir;  ///< Static files of /viewer/; empty: no viewer.
+
+  bool operator==(const StartSettings&) const = default;
+};
+
+struct FusionSettings {
+  LiveSettings live;
+  StartSettings at_start;
+
+  bool operator==(const FusionSettings&) const = default;
 };
 
 /// Every mistake is named, all at once.
-[[nodiscard]] Result<FusionConfig> read_fusion_config(ConfigReader root);
-
-/// `overrides` are "path=value" of the command line.
-[[nodiscard]] Result<FusionConfig> read_fusion_config(std::string_view text,
-                                                      std::string_view origin,
-                                                      const std::vector<std::string>& overrides);
-
-/// Reads the file first.
-[[nodiscard]] Result<FusionConfig> load_fusion_config(const std::string& path,
-                                                      const std::vector<std::string>& overrides);
-
-/// Keys whose change needs a restart ("http.port, state_dir"); empty when all can be taken over
-/// live.
-[[nodiscard]] std::string needs_restart(const FusionConfig& now, const FusionConfig& next);
+[[nodiscard]] Result<FusionSettings> read_fusion_settings(ConfigReader root);
 
 }  // namespace chorus::server

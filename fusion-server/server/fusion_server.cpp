@@ -27,19 +27,22 @@ std::vector<SensorId> ids_of(const std::vector<poll::PolledSensor>& sensors) {
   return ids;
 }
 
-core::CoreConfig core_config(const FusionConfig& config) {
+core::CoreConfig core_config(const FusionSettings& settings) {
+  const LiveSettings& live = settings.live;
   core::CoreConfig core;
-  core.output = config.output;
-  core.pipeline = config.pipeline;
-  core.registration = config.registration;
-  core.session = config.session;
-  if (!config.registration_file.empty()) core.session.automatic = false;  // places are given
-  for (const poll::PolledSensor& sensor : config.sensors) core.sensors.insert(sensor.id);
+  core.output = live.output;
+  core.pipeline = live.pipeline;
+  core.registration = live.registration;
+  core.session = live.session;
+  const bool places_are_given = !settings.at_start.registration_file.empty();
+  if (places_are_given) core.session.automatic = false;
+  for (const poll::PolledSensor& sensor : live.sensors) core.sensors.insert(sensor.id);
   return core;
 }
 
-std::size_t ring_capacity(const FusionConfig& config) {
-  return static_cast<std::size_t>(seconds(config.history) * config.output.rate_hz) + 1;
+std::size_t ring_capacity(const FusionSettings& settings) {
+  const double frames = seconds(settings.at_start.history) * settings.live.output.rate_hz;
+  return static_cast<std::size_t>(frames) + 1;
 }
 
 /// Says which sensors the stored places do not fit.
@@ -57,9 +60,11 @@ void report_fit(const Registration& registration, const std::vector<SensorId>& c
   }
 }
 
-Result<Registration> initial_registration(const FusionConfig& config) {
-  if (!config.registration_file.empty()) return load_registration_file(config.registration_file);
-  auto stored = RegistrationStore(config.state_dir).load();
+Result<Registration> initial_registration(const FusionSettings& settings) {
+  const StartSettings& at_start = settings.at_start;
+  if (!at_start.registration_file.empty())
+    return load_registration_file(at_start.registration_file);
+  auto stored = RegistrationStore(at_start.state_dir).load();
   if (!stored) {
     log::error("stored registration not used", {{"reason", to_string(stored.error())}});
     return Registration{};
@@ -67,7 +72,7 @@ Result<Registration> initial_registration(const FusionConfig& config) {
   if (!*stored) return Registration{};
   log::info("stored registration in use",
             {{"version", (*stored)->version}, {"sensors", (*stored)->sensors.size()}});
-  report_fit(**stored, ids_of(config.sensors));
+  report_fit(**stored, ids_of(settings.live.sensors));
   return std::move(**stored);
 }
 
@@ -81,7 +86,7 @@ service::Health health_of(const Status& status) {
   return {true, {}};
 }
 
-service::RecordingsOptions recordings_options(const FusionConfig& config,
+service::RecordingsOptions recordings_options(const StartSettings& config,
                                               const rest::RestContext& context,
                                               std::shared_ptr<const Clock> clock) {
   service::RecordingsOptions options;
@@ -92,6 +97,17 @@ service::RecordingsOptions recordings_options(const FusionConfig& config,
   options.root = context.root;
   options.clock = std::move(clock);
   return options;
+}
+
+void report_start(const FusionSettings& settings, std::uint16_t port) {
+  log::info("fusion server ready", {{"address", settings.at_start.http.address},
+                                    {"port", port},
+                                    {"sensors", settings.live.sensors.size()}});
+  if (settings.live.sensors.empty()) {
+    log::warn("no sensor is polled", {{"advice",
+                                       "name them in the section \"sensors\" of a file "
+                                       "and start with --config FILE"}});
+  }
 }
 
 record::RawFrame raw_frame(const poll::PolledFrame& polled) {
@@ -106,9 +122,11 @@ record::RawFrame raw_frame(const poll::PolledFrame& polled) {
 }  // namespace
 
 struct FusionServer::Impl {
-  Impl(FusionConfig c, std::shared_ptr<const Clock> k) : config(std::move(c)), clock(std::move(k)) {
+  Impl(FusionSettings c, std::shared_ptr<const Clock> k)
+      : config(std::move(c)), clock(std::move(k)) {
     context.instance = fmt::format("{:x}", to_unix_ns(clock->now()) / 1'000'000);
-    context.root = fmt::format("http://{}:{}/", config.http.address, config.http.port);
+    context.root =
+        fmt::format("http://{}:{}/", config.at_start.http.address, config.at_start.http.port);
   }
 
   std::shared_ptr<http::Router> make_router();
@@ -121,7 +139,7 @@ struct FusionServer::Impl {
     return status;
   }
 
-  FusionConfig config;
+  FusionSettings config;  ///< The live part is guarded by mutex.
   std::shared_ptr<const Clock> clock;
   rest::RestContext context;
   std::vector<std::unique_ptr<Sink>> sinks;  ///< Filled before the first request.
@@ -141,22 +159,25 @@ struct FusionServer::Impl {
 std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   auto router = std::make_shared<http::Router>();
   rest::RegistrationControl control;
-  control.default_target = config.session.target;
+  control.default_target = [this] {
+    const std::scoped_lock lock(mutex);
+    return config.live.session.target;
+  };
   control.start = [this](Duration target) { return start_session(target); };
   control.forget = [this]() -> Result<void> {
     loop->ask(Forget{});
     return {};
   };
   frames.emplace(context, ring_capacity(config));
-  sensors.emplace(context, ids_of(config.sensors));
+  sensors.emplace(context, ids_of(config.live.sensors));
   registration.emplace(context, std::move(control));
-  recordings.emplace(recordings_options(config, context, clock));
+  recordings.emplace(recordings_options(config.at_start, context, clock));
   tap.emplace(*recordings, clock);
   recordings->add_routes(*router);
   frames->add_routes(*router);
   sensors->add_routes(*router);
   registration->add_routes(*router);
-  rest::add_description_routes(*router, context, config.title, config.viewer_dir);
+  rest::add_description_routes(*router, context, config.at_start.title, config.at_start.viewer_dir);
   service::CommonResources common;
   common.clock = clock;
   common.health = [this] { return health_of(status_now()); };
@@ -194,7 +215,7 @@ LoopOptions FusionServer::Impl::loop_options(Registration places) {
   // ETags of an earlier run are never taken for ours by a cache.
   options.core.first_sequence = static_cast<std::uint64_t>(to_unix_ns(clock->now()) / 1'000'000);
   options.registration = std::move(places);
-  options.store = RegistrationStore(config.state_dir);
+  options.store = RegistrationStore(config.at_start.state_dir);
   options.clock = clock;
   options.sinks.push_back(&*frames);
   options.sinks.push_back(&*tap);
@@ -208,7 +229,7 @@ LoopOptions FusionServer::Impl::loop_options(Registration places) {
 
 void FusionServer::Impl::start_polling() {
   poll::PollerOptions options;
-  options.timings = config.poll;
+  options.timings = config.at_start.poll;
   options.clock = clock;
   options.deliver = [this](poll::PolledFrame polled) {
     tap->raw(raw_frame(polled));
@@ -217,11 +238,15 @@ void FusionServer::Impl::start_polling() {
     loop->give(std::move(polled.frame));
   };
   poller = std::make_unique<poll::Poller>(std::move(options));
-  poller->poll(config.sensors);
+  poller->poll(config.live.sensors);
 }
 
-FusionServer::FusionServer(FusionConfig config, std::shared_ptr<const Clock> clock)
-    : impl_(std::make_unique<Impl>(std::move(config), std::move(clock))) {}
+Result<std::unique_ptr<FusionServer>> FusionServer::make(const FusionSettings& settings) {
+  return std::make_unique<FusionServer>(settings, std::make_shared<SystemClock>());
+}
+
+FusionServer::FusionServer(FusionSettings settings, std::shared_ptr<const Clock> clock)
+    : impl_(std::make_unique<Impl>(std::move(settings), std::move(clock))) {}
 
 FusionServer::~FusionServer() { stop(); }
 
@@ -229,11 +254,12 @@ Result<void> FusionServer::start() {
   Impl& s = *impl_;
   auto registration = initial_registration(s.config);
   if (!registration) return pass(registration);
-  auto sinks =
-      outputs::open_outputs(s.config.outputs, s.clock, s.config.pipeline.association.coast);
+  auto sinks = outputs::open_outputs(s.config.at_start.outputs, s.clock,
+                                     s.config.live.pipeline.association.coast);
   if (!sinks) return pass(sinks);
   s.sinks = std::move(*sinks);
-  http::ServerConfig http = s.config.http;
+  http::ServerConfig http = s.config.at_start.http;
+  http.bearer_token = s.config.live.bearer_token;
   http.clock = s.clock;
   s.http = std::make_unique<http::Server>(http, s.make_router());
 
@@ -241,27 +267,22 @@ Result<void> FusionServer::start() {
   if (auto bound = s.http->start(); !bound) return bound;
   s.start_polling();
   s.loop->start();
+  report_start(s.config, s.http->port());
   return {};
 }
 
 std::uint16_t FusionServer::port() const { return impl_->http ? impl_->http->port() : 0; }
 
-void FusionServer::reload(const FusionConfig& next) {
+void FusionServer::take(const LiveSettings& live) {
   Impl& s = *impl_;
-  const std::string waiting = needs_restart(s.config, next);
-  if (!waiting.empty()) log::warn("changes wait for a restart", {{"keys", waiting}});
-  FusionConfig taken = s.config;
-  taken.sensors = next.sensors;
-  taken.output = next.output;
-  taken.pipeline = next.pipeline;
-  taken.registration = next.registration;
-  taken.session = next.session;
-  taken.http.bearer_token = next.http.bearer_token;
-  s.http->set_bearer_token(taken.http.bearer_token);
-  s.loop->ask(core_config(taken));
-  s.poller->poll(taken.sensors);
-  for (const auto& sink : s.sinks) sink->keep_slots_for(taken.pipeline.association.coast);
-  s.config = std::move(taken);
+  {
+    const std::scoped_lock lock(s.mutex);
+    s.config.live = live;
+  }
+  s.loop->ask(core_config(s.config));
+  s.poller->poll(live.sensors);
+  for (const auto& sink : s.sinks) sink->keep_slots_for(live.pipeline.association.coast);
+  s.http->set_bearer_token(live.bearer_token);
 }
 
 void FusionServer::stop() {
@@ -271,6 +292,15 @@ void FusionServer::stop() {
   if (s.poller) s.poller->stop();
   s.loop.reset();
   s.sinks.clear();
+}
+
+service::About about_fusion() {
+  return {
+      "chorus-fusion",
+      "chorus-fusion: polls body-tracking sensors, registers and fuses them, and answers as one "
+      "tracker.",
+      "  chorus-fusion --config deploy/config/fusion.json\n"
+      "  chorus-fusion --config deploy/config/fusion.json --set outputs.vrpn.enabled=true\n"};
 }
 
 }  // namespace chorus::server

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "common/base/result.h"
+#include "common/service/command_line.h"
 #include "common/time/clock.h"
 #include "fusion-server/server/fusion_config.h"
 
@@ -13,7 +14,9 @@ namespace chorus::server {
 
 class FusionServer {
  public:
-  FusionServer(FusionConfig config, std::shared_ptr<const Clock> clock);
+  /// On the host's clock.  Binds nothing yet.
+  [[nodiscard]] static Result<std::unique_ptr<FusionServer>> make(const FusionSettings& settings);
+  FusionServer(FusionSettings settings, std::shared_ptr<const Clock> clock);
   ~FusionServer();  ///< stop()s.
 
   /// Binds and starts everything.  Fails when the address is taken or given extrinsics cannot be
@@ -21,8 +24,8 @@ class FusionServer {
   [[nodiscard]] Result<void> start();
   [[nodiscard]] std::uint16_t port() const;
 
-  /// Takes over what can change while running and names what waits for a restart.
-  void reload(const FusionConfig& next);
+  /// Everything that can change while running.
+  void take(const LiveSettings& live);
 
   void stop();
 
@@ -30,5 +33,8 @@ class FusionServer {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// What chorus-fusion says of itself.
+[[nodiscard]] service::About about_fusion();
 
 }  // namespace chorus::server

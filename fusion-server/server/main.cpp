@@ -1,8 +1,9 @@
 // chorus-fusion: many sensors, one tracker.
-#include "fusion-server/server/fusion_program.h"
+#include "common/service/hosted_program.h"
+#include "fusion-server/server/fusion_server.h"
 
 int main(int argc, char** argv) {
-  using chorus::server::FusionProgram;
-  FusionProgram program;
-  return chorus::service::run_program(FusionProgram::about(), program, argc, argv);
+  using namespace chorus::server;
+  return chorus::service::run_service<FusionSettings, FusionServer>(
+      about_fusion(), &read_fusion_settings, argc, argv);
 }

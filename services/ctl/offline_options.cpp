@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "common/service/config_source.h"
 #include "fusion-server/server/fusion_config.h"
 
 namespace chorus::ctl {
@@ -22,14 +23,13 @@ Result<pipeline::OfflineConfig> offline_config(const OfflineOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (!options.method.empty()) overrides.push_back("fusion.method=" + options.method);
   if (!options.joints.empty()) overrides.push_back("registration.joints=" + options.joints);
-  const auto read = options.config.empty()
-                        ? server::read_fusion_config("{}", "command line", overrides)
-                        : server::load_fusion_config(options.config, overrides);
+  const auto read =
+      service::read_config({options.config, overrides}).and_then(server::read_fusion_settings);
   if (!read) return pass(read);
   pipeline::OfflineConfig config;
-  config.pipeline = read->pipeline;
-  config.registration = read->registration;
-  config.rate_hz = read->output.rate_hz;
+  config.pipeline = read->live.pipeline;
+  config.registration = read->live.registration;
+  config.rate_hz = read->live.output.rate_hz;
   return config;
 }
 

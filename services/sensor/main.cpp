@@ -1,8 +1,9 @@
 // chorus-sensor: one device as REST resources.
-#include "services/sensor/sensor_program.h"
+#include "common/service/hosted_program.h"
+#include "services/sensor/sensor_host.h"
 
 int main(int argc, char** argv) {
-  using chorus::sensor_service::SensorProgram;
-  SensorProgram program;
-  return chorus::service::run_program(SensorProgram::about(), program, argc, argv);
+  using namespace chorus::sensor_service;
+  return chorus::service::run_service<SensorSettings, SensorHost>(
+      about_sensor(), &read_sensor_settings, argc, argv);
 }

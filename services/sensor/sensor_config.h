@@ -1,46 +1,48 @@
-// deploy/config/sensor.json as a struct, and the device it asks for.
+// deploy/config/sensor.json as a struct of two parts.
 #pragma once
 
-#include <cstdint>
-#include <memory>
+#include <cstddef>
 #include <string>
-#include <vector>
 
 #include "common/base/config_reader.h"
 #include "common/base/strong_id.h"
 #include "common/http/server.h"
-#include "common/sensor/frame_source.h"
 #include "common/service/log_config.h"
 #include "common/service/recordings.h"
-#include "common/time/clock.h"
+#include "services/sensor/device/device_kinds.h"
 #include "services/sensor/host_clock.h"
 
 namespace chorus::sensor_service {
 
-struct SensorConfig {
-  SensorId id;
-  http::ServerConfig http = {.port = 8081};
+/// What a reload takes over.
+struct LiveSettings {
+  service::LogConfig log;
+  std::string bearer_token;  ///< Of http.
   bool images = false;
+
+  bool operator==(const LiveSettings&) const = default;
+};
+
+/// What waits for the next start.
+struct StartSettings {
+  SensorId id;
+  http::ServerConfig http = {.port = 8081};  ///< Without its token.
   std::size_t frames_kept = 90;
   ClockErrors clock;  ///< Of a simulated host; a real one's is as NTP keeps it.
-  service::LogConfig log;
   service::RecordingConfig recording;
+  DeviceChoice device;
 
-  bool operator==(const SensorConfig&) const = default;
+  bool operator==(const StartSettings&) const = default;
 };
 
-/// What a start needs: the settings, and the device ready to run.
-struct Setup {
-  SensorConfig config;
-  std::string device_text;             ///< The `device` object as read, to tell whether it changed.
-  std::shared_ptr<const Clock> clock;  ///< The host's, errors included.
-  std::unique_ptr<FrameSource> device;
+struct SensorSettings {
+  LiveSettings live;
+  StartSettings at_start;
+
+  bool operator==(const SensorSettings&) const = default;
 };
 
-/// Reads everything and makes the device; all mistakes come in one Error.
-[[nodiscard]] Result<Setup> read_setup(ConfigReader root);
-
-/// The keys whose change takes effect only with a new start.
-[[nodiscard]] std::vector<std::string> restart_keys(const Setup& running, const Setup& wanted);
+/// All mistakes come in one Error.
+[[nodiscard]] Result<SensorSettings> read_sensor_settings(ConfigReader root);
 
 }  // namespace chorus::sensor_service

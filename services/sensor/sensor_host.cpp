@@ -23,14 +23,15 @@ std::string run_name() {
 }
 
 ServiceOptions service_options(const Setup& setup) {
+  const StartSettings& at_start = setup.settings.at_start;
   ServiceOptions options;
-  options.id = setup.config.id;
+  options.id = setup.settings.at_start.id;
   options.device = setup.device->describe();
-  options.frames_kept = setup.config.frames_kept;
-  options.images = setup.config.images;
+  options.frames_kept = setup.settings.at_start.frames_kept;
+  options.images = setup.settings.live.images;
   options.serving.run = run_name();
   options.serving.root =
-      "http://" + setup.config.http.address + ":" + std::to_string(setup.config.http.port) + "/";
+      "http://" + at_start.http.address + ":" + std::to_string(at_start.http.port) + "/";
   return options;
 }
 
@@ -40,7 +41,7 @@ service::RecordingsOptions recordings_options(const Setup& setup, const ServiceO
   about.device = service.device.label;
   about.intrinsics = service.device.depth_camera;
   service::RecordingsOptions options;
-  options.config = setup.config.recording;
+  options.config = setup.settings.at_start.recording;
   options.head = {record::metadata_of(about), true};
   options.run = service.serving.run;
   options.root = service.serving.root;
@@ -49,7 +50,8 @@ service::RecordingsOptions recordings_options(const Setup& setup, const ServiceO
 }
 
 http::ServerConfig server_config(const Setup& setup) {
-  http::ServerConfig config = setup.config.http;
+  http::ServerConfig config = setup.settings.at_start.http;
+  config.bearer_token = setup.settings.live.bearer_token;
   config.clock = setup.clock;
   return config;
 }
@@ -65,6 +67,16 @@ bool rest(const std::stop_token& stop) {
 }
 
 }  // namespace
+
+Result<std::unique_ptr<SensorHost>> SensorHost::make(const SensorSettings& settings) {
+  const StartSettings& at_start = settings.at_start;
+  const auto world = std::make_shared<SystemClock>();
+  const HostTime time{world, host_clock(at_start.clock, world->now())};
+  auto device = make_device(at_start.device, {at_start.id, time});
+  if (!device) return pass(device);
+  return std::make_unique<SensorHost>(
+      Setup{settings, std::make_shared<ErringClock>(time.world, time.host), std::move(*device)});
+}
 
 SensorHost::SensorHost(Setup setup)
     : setup_(std::move(setup)),
@@ -94,8 +106,8 @@ SensorHost::~SensorHost() { stop(); }
 
 Result<void> SensorHost::start() {
   if (auto ok = server_.start(); !ok) return ok;
-  log::info("sensor serving", {{"sensor", setup_.config.id.str()},
-                               {"url", "http://" + setup_.config.http.address + ":" +
+  log::info("sensor serving", {{"sensor", setup_.settings.at_start.id.str()},
+                               {"url", "http://" + setup_.settings.at_start.http.address + ":" +
                                            std::to_string(server_.port()) + "/"},
                                {"device", setup_.device->describe().label}});
   encoder_ = std::jthread([this](const std::stop_token& stop) {
@@ -109,8 +121,8 @@ Result<void> SensorHost::start() {
 void SensorHost::record(const Sight& sight) {
   const auto recorder = recordings_.recorder(service::Recordings::Stream::Raw);
   if (!recorder) return;
-  recorder->offer(
-      record::RawFrame{setup_.config.id, sight.frame, setup_.clock->now(), sight.floor, {}});
+  recorder->offer(record::RawFrame{
+      setup_.settings.at_start.id, sight.frame, setup_.clock->now(), sight.floor, {}});
 }
 
 /// How a run of the device ended; nothing when it threw, which a new run may not do again.
@@ -150,16 +162,27 @@ void SensorHost::stop() {
   if (encoder_.joinable()) encoder_.join();
 }
 
-void SensorHost::reload(Setup wanted) {
-  std::string waiting;
-  for (const std::string& key : restart_keys(setup_, wanted)) {
-    waiting += (waiting.empty() ? "" : ", ") + key;
+void SensorHost::take(const LiveSettings& live) {
+  setup_.settings.live = live;
+  service_.show_images(live.images);
+  server_.set_bearer_token(live.bearer_token);
+}
+
+service::About about_sensor() {
+  std::string kinds;
+  for (const DeviceKind& kind : device_kinds()) {
+    kinds += (kinds.empty() ? "" : " or ") + std::string(kind.name);
   }
-  if (!waiting.empty()) log::warn("changes wait for a restart", {{"keys", waiting}});
-  setup_.config.images = wanted.config.images;
-  setup_.config.http.bearer_token = wanted.config.http.bearer_token;
-  service_.show_images(setup_.config.images);
-  server_.set_bearer_token(setup_.config.http.bearer_token);
+  return {"chorus-sensor",
+          "chorus-sensor: one body-tracking device as linked-data REST resources.\n"
+          "Without options: a simulated sensor on http://127.0.0.1:8081/.",
+          "  chorus-sensor --config deploy/config/sensor.json\n"
+          "  chorus-sensor --port 8082 --id s2 --set device.simulated.ring.index=1\n"
+          "  chorus-sensor --recording walk.mcap --set device.replay.speed=0.5\n",
+          {{"--id", "id", "Sensor id (id)"},
+           {"--recording", "device.replay.recording", "Replays this file (device.replay.recording)",
+            true, "device.kind=\"replay\""},
+           {"--device", "device.kind", kinds + " (device.kind)"}}};
 }
 
 }  // namespace chorus::sensor_service

@@ -7,14 +7,24 @@
 #include <thread>
 
 #include "common/http/server.h"
+#include "common/service/command_line.h"
 #include "common/service/recordings.h"
 #include "services/sensor/sensor_config.h"
 #include "services/sensor/sensor_service.h"
 
 namespace chorus::sensor_service {
 
+/// What a start needs: the settings, and the device ready to run.
+struct Setup {
+  SensorSettings settings;
+  std::shared_ptr<const Clock> clock;  ///< The host's, errors included.
+  std::unique_ptr<FrameSource> device;
+};
+
 class SensorHost {
  public:
+  /// Makes the device, which may not be there or not be as configured.  Binds nothing yet.
+  [[nodiscard]] static Result<std::unique_ptr<SensorHost>> make(const SensorSettings& settings);
   explicit SensorHost(Setup setup);
   ~SensorHost();
   SensorHost(const SensorHost&) = delete;
@@ -25,9 +35,8 @@ class SensorHost {
   /// Stops device and server; harmless when repeated.
   void stop();
 
-  /// Applies what can change while running and warns of what needs a new start.  A Setup that could
-  /// not be read never gets here: the old one stays.
-  void reload(Setup wanted);
+  /// Everything that can change while running.
+  void take(const LiveSettings& live);
 
   [[nodiscard]] std::uint16_t port() const { return server_.port(); }
 
@@ -44,5 +53,8 @@ class SensorHost {
   std::jthread device_;
   std::jthread encoder_;  ///< Idle unless images are switched on.
 };
+
+/// What chorus-sensor says of itself.
+[[nodiscard]] service::About about_sensor();
 
 }  // namespace chorus::sensor_service

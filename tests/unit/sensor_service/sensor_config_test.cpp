@@ -1,58 +1,66 @@
 #include "services/sensor/sensor_config.h"
 
-#include <fstream>
+#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/base/file.h"
 #include "common/service/config_source.h"
-#include "tests/support/temporary_folder.h"
+#include "common/service/waiting_keys.h"
+#include "services/sensor/sensor_host.h"
+#include "tests/support/builders.h"
+#include "tests/support/every_key.h"
 
 namespace chorus::sensor_service {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
-Result<Setup> read(const service::ConfigSource& source) {
-  return service::read_config(source).and_then(
-      [](const ConfigReader& root) { return read_setup(root); });
+Result<SensorSettings> read(const service::ConfigSource& source) {
+  return service::read_config(source).and_then(read_sensor_settings);
 }
 
-Setup setup_with(std::vector<std::string> assignments, const std::string& path = "") {
-  auto setup = read({path, std::move(assignments)});
-  EXPECT_TRUE(setup) << to_string(setup.error());
-  return setup ? std::move(*setup) : Setup{};
+SensorSettings settings_with(std::vector<std::string> assignments, const std::string& path = "") {
+  auto settings = read({path, std::move(assignments)});
+  EXPECT_TRUE(settings) << to_string(settings.error());
+  return settings ? std::move(*settings) : SensorSettings{};
+}
+
+Result<SensorSettings> read_text(const std::string& text) {
+  return ConfigReader::parse(text, "test").and_then(read_sensor_settings);
 }
 
 std::string refusal(std::vector<std::string> assignments) {
-  const auto setup = read({"", std::move(assignments)});
-  return setup ? "" : to_string(setup.error());
+  const auto settings = read({"", std::move(assignments)});
+  if (!settings) return to_string(settings.error());
+  const auto host = SensorHost::make(*settings);
+  return host ? "" : to_string(host.error());
 }
 
 TEST(SensorConfig, TheCommentedFileSaysTheDefaults) {
-  const auto documented = setup_with({}, "deploy/config/sensor.json");
-  EXPECT_EQ(documented.config, setup_with({}).config);
-  EXPECT_EQ(documented.device->describe().kind, "simulated");
+  auto documented = settings_with({}, "deploy/config/sensor.json");
+  const auto bare = settings_with({});
+  EXPECT_EQ(documented.at_start.device.kind, "simulated");
+  documented.at_start.device.section = bare.at_start.device.section;
+  EXPECT_EQ(documented, bare);
 }
 
 TEST(SensorConfig, EveryKeyIsRead) {
-  const auto setup =
-      setup_with({"id=cam-2", "http.address=0.0.0.0", "http.port=9000", "http.bearer_token=secret",
-                  "http.allowed_origin=http://a", "images=true", "frames_kept=7",
-                  "clock.offset_ms=-250", "clock.drift_ppm=50", "clock.step_ms=-2000",
-                  "clock.step_after_s=30", "log.level=warn", "log.format=json"});
-  const SensorConfig& config = setup.config;
-  EXPECT_EQ(config.id.str(), "cam-2");
-  EXPECT_EQ(config.http, (http::ServerConfig{"0.0.0.0", 9000, "secret", "http://a"}));
-  EXPECT_TRUE(config.images);
-  EXPECT_EQ(config.frames_kept, 7u);
-  EXPECT_EQ(config.clock, (ClockErrors{std::chrono::milliseconds(-250), 50e-6,
-                                       std::chrono::seconds(-2), std::chrono::seconds(30)}));
-  EXPECT_EQ(config.log, (service::LogConfig{log::Level::Warn, log::Format::Json}));
-  const Duration error = setup.clock->now() - SystemClock().now();
-  EXPECT_NEAR(seconds(error), -0.25, 0.1);
+  const auto settings = settings_with(
+      {"id=cam-2", "http.address=0.0.0.0", "http.port=9000", "http.bearer_token=secret",
+       "http.allowed_origin=http://a", "images=true", "frames_kept=7", "clock.offset_ms=-250",
+       "clock.drift_ppm=50", "clock.step_ms=-2000", "clock.step_after_s=30", "log.level=warn",
+       "log.format=json"});
+  const auto& [live, at_start] = settings;
+  EXPECT_EQ(at_start.id.str(), "cam-2");
+  EXPECT_EQ(at_start.http, (http::ServerConfig{"0.0.0.0", 9000, "", "http://a"}));
+  EXPECT_EQ(live.bearer_token, "secret");
+  EXPECT_TRUE(live.images);
+  EXPECT_EQ(at_start.frames_kept, 7u);
+  EXPECT_EQ(at_start.clock, (ClockErrors{std::chrono::milliseconds(-250), 50e-6,
+                                         std::chrono::seconds(-2), std::chrono::seconds(30)}));
+  EXPECT_EQ(live.log, (service::LogConfig{log::Level::Warn, log::Format::Json}));
 }
 
 TEST(SensorConfig, AllMistakesComeTogether) {
@@ -72,22 +80,46 @@ TEST(SensorConfig, AReplayNeedsARecording) {
 }
 
 TEST(SensorConfig, AFileThatIsNotThereIsNamed) {
-  const auto setup = read({"/no/such.json", {}});
-  ASSERT_FALSE(setup);
-  EXPECT_THAT(to_string(setup.error()), HasSubstr("/no/such.json"));
+  const auto settings = read({"/no/such.json", {}});
+  ASSERT_FALSE(settings);
+  EXPECT_THAT(to_string(settings.error()), HasSubstr("/no/such.json"));
 }
 
-TEST(SensorConfig, ChangesThatNeedARestartAreNamed) {
-  const chorus::testing::TemporaryFolder folder;
-  const auto path = (folder / "sensor.json").string();
-  std::ofstream(path) << R"({"device": {"simulated": {"latency_ms": 5}}})";
-  const auto running = setup_with({});
-  EXPECT_THAT(
-      restart_keys(running, setup_with({"images=true", "log.level=debug", "http.bearer_token=x"})),
-      IsEmpty());
-  EXPECT_THAT(restart_keys(running, setup_with({"id=s2", "http.port=1", "clock.drift_ppm=1"})),
-              ElementsAre("id", "http", "clock"));
-  EXPECT_THAT(restart_keys(running, setup_with({}, path)), ElementsAre("device"));
+/// A key of the section of a device counts when that device is chosen.
+std::string choosing_its_device(const std::string& key, const std::string& text) {
+  const bool replay = key.starts_with("device.replay.");
+  auto root = ConfigReader::parse(text, "test");
+  EXPECT_TRUE(!replay || root->set("device.kind=replay"));
+  return root->text();
+}
+
+TEST(SensorConfig, AReloadTakesEveryKeyOverOrItWaits) {
+  const std::string text = read_file("deploy/config/sensor.json", 1 << 20).value();
+  const auto is_good = [](const std::string& t) { return read_text(t).has_value(); };
+  const std::set<std::string> live{"log.level", "log.format", "http.bearer_token", "images"};
+  for (const auto& [key, changed] : chorus::testing::every_key_changed(text, is_good)) {
+    if (key == "device.simulated.scene.motion") continue;  // needs a file
+    ASSERT_NE(changed, "") << "no other value is accepted for " << key;
+    const std::string before = choosing_its_device(key, text);
+    const std::string after = choosing_its_device(key, changed);
+    const auto running = read_text(before);
+    const auto next = read_text(after);
+    ASSERT_TRUE(running && next) << key;
+    EXPECT_NE(*next, *running) << key << " is read, and goes nowhere";
+    EXPECT_EQ(next->at_start == running->at_start, live.contains(key)) << key;
+    const std::string named = service::waiting_keys(
+        before, after, [&](const auto& t) { return read_text(t)->at_start != running->at_start; });
+    EXPECT_EQ(named, live.contains(key) ? "" : key);
+  }
+}
+
+TEST(SensorConfig, OnlyTheDeviceThatIsChosenIsMade) {
+  const std::vector<std::string> broken{"device.replay.recording=/no/such.mcap"};
+  EXPECT_EQ(refusal(broken), "");
+  const auto host = SensorHost::make(settings_with(broken));
+  ASSERT_TRUE(host);
+  EXPECT_EQ(read_text(R"({"device": {"kind": "replay"}})")->at_start.device.kind, "replay");
+  EXPECT_FALSE(make_device({"usb", "{}"}, {chorus::testing::sensor_id("a"), {}}));
 }
 
 }  // namespace

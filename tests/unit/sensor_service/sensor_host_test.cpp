@@ -43,8 +43,8 @@ class FragileDevice final : public FrameSource {
 TEST(SensorHost, ADeviceThatThrowsIsStartedAgainAndItsNumbersGoOn) {
   const auto runs = std::make_shared<std::atomic<int>>(0);
   sensor_service::Setup setup;
-  setup.config.id = chorus::testing::sensor_id("s1");
-  setup.config.http.port = 0;
+  setup.settings.at_start.id = chorus::testing::sensor_id("s1");
+  setup.settings.at_start.http.port = 0;
   setup.clock = std::make_shared<SystemClock>();
   setup.device = std::make_unique<FragileDevice>(runs);
   SensorHost host(std::move(setup));

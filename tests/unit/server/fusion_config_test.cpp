@@ -3,42 +3,41 @@
 
 #include <gtest/gtest.h>
 
+#include "common/base/file.h"
+#include "common/service/config_source.h"
+#include "common/service/waiting_keys.h"
 #include "tests/support/builders.h"
+#include "tests/support/every_key.h"
 
 namespace chorus::server {
 namespace {
 
-Result<FusionConfig> read(std::string_view text, const std::vector<std::string>& overrides = {}) {
-  return read_fusion_config(text, "test.json", overrides);
+Result<FusionSettings> read(std::string_view text, const std::vector<std::string>& overrides = {}) {
+  auto root = ConfigReader::parse(text, "test.json");
+  if (!root) return pass(root);
+  for (const std::string& assignment : overrides) {
+    if (auto ok = root->set(assignment); !ok) return pass(ok);
+  }
+  return read_fusion_settings(*root);
 }
 
 std::string why(std::string_view text) {
-  const auto config = read(text);
-  return config ? "" : to_string(config.error());
+  const auto settings = read(text);
+  return settings ? "" : to_string(settings.error());
 }
 
 TEST(FusionConfig, TheShippedFileIsGoodAndSaysTheDefaults) {
-  const auto shipped = load_fusion_config("deploy/config/fusion.json", {});
+  auto shipped =
+      service::read_config({"deploy/config/fusion.json", {}}).and_then(read_fusion_settings);
   ASSERT_TRUE(shipped) << to_string(shipped.error());
+  EXPECT_EQ(shipped->live.sensors.size(), 6u);
+  EXPECT_EQ(shipped->at_start.viewer_dir, "services/viewer");
+  shipped->live.sensors.clear();
+  shipped->at_start.viewer_dir.clear();
   const auto bare = read("{}");
   ASSERT_TRUE(bare);
-  EXPECT_EQ(shipped->sensors.size(), 6u);
-  EXPECT_EQ(shipped->http.port, bare->http.port);
-  EXPECT_EQ(shipped->http.address, "127.0.0.1");
-  EXPECT_EQ(shipped->output, bare->output);
-  EXPECT_EQ(shipped->session, bare->session);
-  EXPECT_EQ(shipped->poll.wait, bare->poll.wait);
-  EXPECT_EQ(shipped->poll.max_backoff, bare->poll.max_backoff);
-  EXPECT_EQ(shipped->pipeline.align.max_gap, bare->pipeline.align.max_gap);
-  EXPECT_EQ(shipped->pipeline.align.patience, bare->pipeline.align.patience);
-  EXPECT_EQ(shipped->pipeline.association.gate, bare->pipeline.association.gate);
-  EXPECT_EQ(shipped->pipeline.fusion.method, bare->pipeline.fusion.method);
-  EXPECT_EQ(shipped->pipeline.fusion.noise.along, bare->pipeline.fusion.noise.along);
-  EXPECT_NEAR(shipped->pipeline.quality.max_facing, bare->pipeline.quality.max_facing, 1e-12);
-  EXPECT_EQ(shipped->registration.joints, bare->registration.joints);
-  EXPECT_EQ(shipped->registration.min_pairs, bare->registration.min_pairs);
-  EXPECT_EQ(shipped->registration.good_rms, bare->registration.good_rms);
-  EXPECT_EQ(shipped->registration.good_duration, bare->registration.good_duration);
+  EXPECT_EQ(shipped->at_start, bare->at_start);
+  EXPECT_EQ(shipped->live, bare->live);
 }
 
 TEST(FusionConfig, TheCommandLineWins) {
@@ -46,11 +45,11 @@ TEST(FusionConfig, TheCommandLineWins) {
                            {"http.port=4321", "fusion.method=otto", "registration.seconds=12.5",
                             R"(sensors=[{"id":"a","url":"http://h:1/"}])"});
   ASSERT_TRUE(config) << to_string(config.error());
-  EXPECT_EQ(config->http.port, 4321);
-  EXPECT_EQ(config->pipeline.fusion.method, fusion::Method::Otto);
-  EXPECT_EQ(config->session.target, from_seconds(12.5));
-  ASSERT_EQ(config->sensors.size(), 1u);
-  EXPECT_EQ(config->sensors[0].url, "http://h:1/");
+  EXPECT_EQ(config->at_start.http.port, 4321);
+  EXPECT_EQ(config->live.pipeline.fusion.method, fusion::Method::Otto);
+  EXPECT_EQ(config->live.session.target, from_seconds(12.5));
+  ASSERT_EQ(config->live.sensors.size(), 1u);
+  EXPECT_EQ(config->live.sensors[0].url, "http://h:1/");
 }
 
 TEST(FusionConfig, ASensorMayHaveANoiseOfItsOwn) {
@@ -58,7 +57,7 @@ TEST(FusionConfig, ASensorMayHaveANoiseOfItsOwn) {
       "sensors": [{"id": "a", "url": "http://h/"},
                   {"id": "b", "url": "http://i/", "noise": {"across_m": 0.2}}]})");
   ASSERT_TRUE(config) << to_string(config.error());
-  const auto& own = config->pipeline.fusion.sensor_noise;
+  const auto& own = config->live.pipeline.fusion.sensor_noise;
   ASSERT_EQ(own.size(), 1u);
   EXPECT_EQ(own.at(testing::sensor_id("b")).across, 0.2);
   EXPECT_EQ(own.at(testing::sensor_id("b")).along, 0.05);  // the general one below it
@@ -87,19 +86,26 @@ TEST(FusionConfig, TwoSensorsOfOneNameOrTooManyAreRefused) {
   EXPECT_NE(why(R"({"sensors": [)" + many + "]}").find("64"), std::string::npos);
 }
 
-TEST(FusionConfig, NamesWhatNeedsARestart) {
-  const auto a = read("{}");
-  const auto b = read(R"({"http": {"port": 1}, "state_dir": "x", "output": {"rate_hz": 60},
-      "poll": {"wait_s": 5}})");
-  ASSERT_TRUE(a && b);
-  EXPECT_EQ(needs_restart(*a, *a), "");
-  EXPECT_EQ(needs_restart(*a, *b), "http, poll, state_dir");
-}
-
-TEST(FusionConfig, AMissingFileSaysSo) {
-  const auto none = load_fusion_config("no/such/file.json", {});
-  ASSERT_FALSE(none);
-  EXPECT_NE(to_string(none.error()).find("no/such/file.json"), std::string::npos);
+TEST(FusionConfig, AReloadTakesEveryKeyOverOrItWaits) {
+  const std::string text = read_file("deploy/config/fusion.json", 1 << 20).value();
+  const std::string plain = ConfigReader::parse(text, "shipped")->text();
+  const auto shipped = read(text);
+  ASSERT_TRUE(shipped);
+  std::size_t live = 0;
+  std::size_t waiting = 0;
+  for (const auto& [key, changed] :
+       testing::every_key_changed(text, [](const std::string& t) { return why(t).empty(); })) {
+    ASSERT_NE(changed, "") << "no other value is accepted for " << key;
+    const auto next = read(changed);
+    EXPECT_NE(*next, *shipped) << key << " is read, and goes nowhere";
+    live += next->live == shipped->live ? 0 : 1;
+    waiting += next->at_start == shipped->at_start ? 0 : 1;
+    const std::string named = service::waiting_keys(
+        plain, changed, [&](const auto& t) { return read(t)->at_start != shipped->at_start; });
+    EXPECT_EQ(named, next->at_start == shipped->at_start ? "" : key);
+  }
+  EXPECT_GT(live, 40u);
+  EXPECT_GT(waiting, 40u);
 }
 
 }  // namespace

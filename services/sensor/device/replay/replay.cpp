@@ -195,4 +195,19 @@ Result<std::unique_ptr<FrameSource>> make_replay(record::FrameRecording recordin
   return device;
 }
 
+Result<std::unique_ptr<FrameSource>> open_replay(ConfigReader& config, const SensorId& sensor,
+                                                 const HostTime& time) {
+  const ReplayOptions options = read_replay_options(config);
+  if (options.recording.empty()) {
+    return fail(ErrorCode::InvalidArgument, "device.replay.recording",
+                "name the recording to replay, a .mcap file");
+  }
+  auto recording = record::read_frame_recording(options.recording, {}, sensor);
+  if (!recording) return pass(recording);
+  for (const auto& [name, note] : recording->notes) {
+    if (name.starts_with("damage.")) log::warn("recording is damaged", {{"note", note}});
+  }
+  return make_replay(std::move(*recording), options, sensor, {time.world, {}, time.host});
+}
+
 }  // namespace chorus::sensor_service

@@ -11,6 +11,7 @@
 #include "common/sensor/frame_source.h"
 #include "common/synthetic/host_clock.h"
 #include "common/time/clock.h"
+#include "services/sensor/device/host_time.h"
 
 namespace chorus::sensor_service {
 
@@ -49,5 +50,10 @@ struct ReplayClock {
                                                                const ReplayOptions& options,
                                                                const SensorId& sensor,
                                                                ReplayClock time);
+
+/// Reads device.replay and the recording that it names; damage in it is logged.
+[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_replay(ConfigReader& config,
+                                                               const SensorId& sensor,
+                                                               const HostTime& time);
 
 }  // namespace chorus::sensor_service

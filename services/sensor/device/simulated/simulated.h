@@ -10,16 +10,9 @@
 
 #include "common/base/config_reader.h"
 #include "common/sensor/frame_source.h"
-#include "common/synthetic/host_clock.h"
-#include "common/time/clock.h"
+#include "services/sensor/device/host_time.h"
 
 namespace chorus::sensor_service {
-
-/// True time, and what this host's clock makes of it: frames are stamped by the host's.
-struct HostTime {
-  std::shared_ptr<const Clock> world;
-  synthetic::HostClock host = {};
-};
 
 /// Mistakes are reported by the reader's finish().  The sensor's errors depend on its id, so that
 /// sensors with one seed differ.

@@ -1,0 +1,81 @@
+// From settings to a running service: the part of Program that is the same for all of them.
+//
+// Settings have two parts, each compared by value (defaulted ==): `live`, what a reload takes over,
+// and `at_start`, what waits for the next start.  A reload hands the whole live part on and names
+// the changed keys of the other part, so no key can be forgotten; nobody lists them.
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "common/base/log.h"
+#include "common/service/program.h"
+#include "common/service/waiting_keys.h"
+
+namespace chorus::service {
+
+/// `Settings`: `live` with a LogConfig `log`, and `at_start`.
+/// `Host`: static Result<std::unique_ptr<Host>> make(const Settings&), binds nothing yet;
+///         Result<void> start(); void take(const live part&); void stop().
+template <class Settings, class Host>
+class HostedProgram final : public Program {
+ public:
+  /// Reads all keys; ConfigReader::finish() included.
+  using Read = Result<Settings> (*)(ConfigReader);
+  explicit HostedProgram(Read read) : read_(read) {}
+
+  [[nodiscard]] Result<LogConfig> prepare(ConfigReader config) override {
+    started_as_ = config.text();
+    auto settings = read_(std::move(config));
+    if (!settings) return pass(settings);
+    auto host = Host::make(*settings);
+    if (!host) return pass(host);
+    settings_ = std::move(*settings);
+    host_ = std::move(*host);
+    return settings_.live.log;
+  }
+
+  [[nodiscard]] Result<void> start() override { return host_->start(); }
+
+  [[nodiscard]] Result<LogConfig> reload(ConfigReader config) override {
+    const std::string text = config.text();
+    const auto wanted = read_(std::move(config));
+    if (!wanted) return pass(wanted);
+    if (needs_restart(*wanted)) {
+      log::warn("changes wait for a restart", {{"keys", waiting(text)}});
+    }
+    settings_.live = wanted->live;
+    host_->take(settings_.live);
+    return settings_.live.log;
+  }
+
+  void stop() override { host_->stop(); }
+
+ private:
+  [[nodiscard]] bool needs_restart(const Settings& wanted) const {
+    return !(wanted.at_start == settings_.at_start);
+  }
+
+  /// A key that cannot change alone counts as one that waits.
+  [[nodiscard]] std::string waiting(const std::string& wanted) const {
+    return waiting_keys(started_as_, wanted, [this](const std::string& text) {
+      const auto probe = ConfigReader::parse(text, "reload").and_then(read_);
+      return !probe || needs_restart(*probe);
+    });
+  }
+
+  Read read_;
+  Settings settings_;
+  std::string started_as_;  ///< The configuration of the start, JSON.
+  std::unique_ptr<Host> host_;
+};
+
+/// The whole main() of a service.
+template <class Settings, class Host>
+[[nodiscard]] int run_service(const About& about, Result<Settings> (*read)(ConfigReader), int argc,
+                              const char* const* argv) {
+  HostedProgram<Settings, Host> program(read);
+  return run_program(about, program, argc, argv);
+}
+
+}  // namespace chorus::service

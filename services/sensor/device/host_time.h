@@ -1,0 +1,17 @@
+// True time, and what this host's clock makes of it.
+#pragma once
+
+#include <memory>
+
+#include "common/synthetic/host_clock.h"
+#include "common/time/clock.h"
+
+namespace chorus::sensor_service {
+
+/// Devices play by true time; frames are stamped by the host's.
+struct HostTime {
+  std::shared_ptr<const Clock> world;
+  synthetic::HostClock host = {};
+};
+
+}  // namespace chorus::sensor_service
