@@ -193,7 +193,8 @@ std::vector<RecordedEvent> Recorder::Impl::take() {
 
 Result<void> Recorder::Impl::write(const RecordedEvent& event) {
   if (rotates()) {
-    const bool full = writer->bytes() >= options.limits.max_file_bytes;
+    const bool full = writer->bytes() >= options.limits.max_file_bytes ||
+                      writer->unpacked_bytes() >= options.limits.max_unpacked_bytes;
     const Duration age = options.clock->now() - file_started;
     if (full || age >= options.limits.max_file_duration) {
       if (auto ok = next_file(); !ok) return ok;

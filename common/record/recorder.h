@@ -19,7 +19,9 @@
 namespace chorus::record {
 
 struct RecorderLimits {
-  std::uintmax_t max_file_bytes = 1ull << 30;             ///< Then the next file begins.
+  std::uintmax_t max_file_bytes = 1ull << 30;  ///< Then the next file begins.
+  /// Likewise, unpacked: programs that read a file whole must have the memory for it.
+  std::uintmax_t max_unpacked_bytes = 2ull << 30;
   Duration max_file_duration = std::chrono::minutes(10);  ///< Likewise.
   std::uintmax_t min_free_bytes = 200ull << 20;  ///< The recording ends before it takes these.
   std::size_t max_queue = 2048;                  ///< Seconds of ten sensors.

@@ -66,6 +66,8 @@ class RecordingWriter {
   [[nodiscard]] Result<void> sync();
   /// In the file, without the open chunk.
   [[nodiscard]] std::uint64_t bytes() const;
+  /// What its closed chunks hold when they are unpacked.
+  [[nodiscard]] std::uint64_t unpacked_bytes() const;
   /// Writes the last chunk, the summary and the footer, and waits for the disk.
   [[nodiscard]] Result<void> close();
 

@@ -67,6 +67,7 @@ struct RecordingWriter::Impl {
   bool closed = false;
   std::optional<Error> failure;  ///< The first IO error; nothing is written after it.
   std::uint64_t offset = 0;      ///< Bytes written so far.
+  std::uint64_t unpacked = 0;    ///< Of them, in chunks, before they were packed.
   std::uint64_t synced = 0;      ///< Of them, those the disk has for certain.
   std::uint32_t crc = 0;         ///< Over all of them.
 
@@ -171,6 +172,7 @@ Result<void> RecordingWriter::Impl::close_chunk() {
   entry.text(offsets.bytes()).u64(indexes.size()).text("zstd");
   entry.u64(packed.size()).u64(chunk.records.size());
   chunk_indexes.push_back(mcap::record(Op::ChunkIndex, entry.bytes()));
+  unpacked += chunk.records.size();
   chunk = {};
   return put(body + indexes);
 }
@@ -331,6 +333,7 @@ Result<void> RecordingWriter::sync() {
 }
 
 std::uint64_t RecordingWriter::bytes() const { return impl_->offset; }
+std::uint64_t RecordingWriter::unpacked_bytes() const { return impl_->unpacked; }
 
 Result<void> RecordingWriter::close() {
   if (impl_->closed) return {};

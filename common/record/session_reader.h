@@ -46,7 +46,8 @@ struct SessionQuery {
                                            const SessionQuery& query = {});
 
 /// The same from a file that has been read already; `name` is for messages.
-[[nodiscard]] Result<Session> session_of(Recording recording, const std::filesystem::path& name,
+[[nodiscard]] Result<Session> session_of(const Recording& recording,
+                                         const std::filesystem::path& name,
                                          const SessionQuery& query = {});
 
 }  // namespace chorus::record

@@ -73,6 +73,7 @@ class SessionWriter {
   [[nodiscard]] Result<void> close() { return writer_.close(); }
 
   [[nodiscard]] std::uint64_t bytes() const { return writer_.bytes(); }
+  [[nodiscard]] std::uint64_t unpacked_bytes() const { return writer_.unpacked_bytes(); }
 
  private:
   struct Stream {

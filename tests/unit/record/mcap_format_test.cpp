@@ -10,6 +10,17 @@ TEST(Crc32, MatchesThePublishedCheckValue) {
   EXPECT_EQ(crc32(""), 0u);
 }
 
+TEST(Crc32, IsTheSameInStepsOfOneByteAsInOneStep) {
+  std::string bytes;
+  std::uint32_t one_by_one = 0;
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_EQ(crc32(bytes), one_by_one) << bytes.size() << " bytes";
+    const auto next = static_cast<char>(i * 37 + i * i);
+    one_by_one = crc32(std::string_view(&next, 1), one_by_one);
+    bytes += next;
+  }
+}
+
 TEST(Crc32, ContinuesAnEarlierOne) { EXPECT_EQ(crc32("456789", crc32("123")), crc32("123456789")); }
 
 TEST(ByteWriter, WritesLittleEndian) {

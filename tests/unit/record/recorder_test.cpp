@@ -189,6 +189,20 @@ TEST(Recorder, BeginsANewFileWhenTheTimeIsUpAndEachStandsAlone) {
   }
 }
 
+TEST(Recorder, BeginsANewFileBeforeOneUnpacksToMoreThanReadersHold) {
+  const TemporaryFolder folder;
+  RecorderOptions options = options_in(folder);
+  options.limits.max_unpacked_bytes = 20'000;
+  auto recorder = Recorder::start(options);
+  ASSERT_TRUE(recorder);
+  for (int i = 0; i < 300; ++i) (*recorder)->offer(raw(i));
+  const RecordingReport report = stopped(**recorder);
+  EXPECT_GE(report.files.size(), 2u);
+  const auto session = read_session(folder / "recordings/rec");
+  ASSERT_TRUE(session);
+  EXPECT_THAT(session->sensors.at(0).frames, SizeIs(300));
+}
+
 TEST(Recorder, TwoRunsAreNeverTakenForOne) {
   const TemporaryFolder folder;
   RecorderOptions options = options_in(folder);

@@ -1,0 +1,73 @@
+// A recording read message by message, in the memory of a chunk or two, however long it is.
+//
+// Messages come in log-time order: a chunk is unpacked when its first message is due, and forgotten
+// after its last.  A file cut off by a crash is read up to its last complete chunk; a damaged chunk
+// is left out as a whole and named in the notes.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/record/recording.h"
+
+namespace chorus::record {
+
+/// A message that stays where it was unpacked: valid until the next call.
+struct MessageView {
+  std::string_view topic;
+  std::uint32_t sequence = 0;
+  Timestamp log_time;
+  Timestamp publish_time;
+  std::string_view data;
+
+  [[nodiscard]] Message copy() const {
+    return {std::string(topic), sequence, log_time, publish_time, std::string(data)};
+  }
+};
+
+class RecordingStream {
+ public:
+  /// Steps through the whole file once without unpacking it.  Of the limits, `max_total_bytes`
+  /// holds for what is in memory at one time, and `max_file_bytes` does not hold.
+  [[nodiscard]] static Result<RecordingStream> open(const std::filesystem::path& path,
+                                                    const ReadLimits& limits = {});
+  /// The same from bytes, which must outlive it.
+  [[nodiscard]] static Result<RecordingStream> of_bytes(std::string_view bytes,
+                                                        const ReadLimits& limits = {});
+  RecordingStream(RecordingStream&&) noexcept;
+  RecordingStream& operator=(RecordingStream&&) noexcept;
+  ~RecordingStream();
+
+  /// The next wanted message; none at the end.  TooLarge when its chunks cannot be put in order
+  /// within the limit.
+  [[nodiscard]] Result<std::optional<MessageView>> next();
+  /// From the beginning again, or from the first chunk that may hold something of `from` or later.
+  void rewind(std::optional<Timestamp> from = {});
+
+  /// The first and the last message of a topic; chunks without it are not unpacked.
+  [[nodiscard]] std::optional<Message> first_of(std::string_view topic);
+  [[nodiscard]] std::optional<Message> last_of(std::string_view topic);
+  /// Messages of a topic; nothing when not every chunk says how many it holds.
+  [[nodiscard]] std::optional<std::uint64_t> count(std::string_view topic) const;
+
+  /// Known so far: those that stand in chunks come with them.
+  [[nodiscard]] std::vector<Channel> channels() const;
+  [[nodiscard]] const std::map<std::string, std::map<std::string, std::string>>& metadata() const;
+  /// No footer, or the tail was unreadable.
+  [[nodiscard]] bool truncated() const;
+  /// What was left out so far and why, for people; at most kMaxNotes.
+  [[nodiscard]] const std::vector<std::string>& notes() const;
+
+ private:
+  struct Impl;
+  explicit RecordingStream(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace chorus::record
