@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "common/record/mcap_format.h"
+#include "common/record/session_stream.h"
 #include "common/resource/frame_resource.h"
 #include "fusion-server/client/live_poll.h"
 #include "fusion-server/client/recordings.h"
@@ -56,25 +57,32 @@ Result<void> add_frame(FusedSamples& samples, const resource::FrameResource& fra
   return {};
 }
 
+/// Reads as it goes: of a long recording only the samples are kept.
 Result<FusedFrames> read_recording_files(const std::string& source) {
   const auto files = find_recordings({source});
   if (!files) return pass(files);
   record::SessionQuery query;
   query.fused = true;
   query.raw = false;
-  const auto session = record::read_session(*files, query);
-  if (!session) return pass(session);
-  if (session->fused.empty() && !session->sensors.empty() &&
-      !session->sensors.front().frames.empty())
-    return not_fused(session->sensors.front().sensor.str(), source);
-  if (session->fused.empty())
+  record::SessionStream stream(*files, query);
+  FusedFrames out;
+  std::size_t frames = 0;
+  std::string raw;  // a sensor whose own frames are there
+  for (auto item = stream.next(); true; item = stream.next()) {
+    if (!item) return pass(item);
+    if (!*item) break;
+    if (const auto* sensor = std::get_if<SensorFrame>(&**item)) raw = sensor->sensor.str();
+    const auto* fused = std::get_if<resource::FrameResource>(&**item);
+    if (fused == nullptr) continue;
+    ++frames;
+    if (const auto added = add_frame(out.samples, *fused, source); !added) return pass(added);
+  }
+  if (frames == 0 && !raw.empty()) return not_fused(raw, source);
+  if (frames == 0)
     return fail(ErrorCode::NotFound, source,
                 "holds no fused frames (topic /frame). Fuse its sensors: chorus fuse DIR --out - | "
                 "chorus export - ...");
-  FusedFrames out{{}, notes_of(*session)};
-  for (const auto& frame : session->fused) {
-    if (const auto added = add_frame(out.samples, frame, source); !added) return pass(added);
-  }
+  out.notes = notes_of(stream.finish());
   return out;
 }
 

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "fusion-server/pipeline/recorded_walk.h"
+
 namespace chorus::pipeline {
 namespace {
 
@@ -34,39 +36,20 @@ class Grid {
   long double period_;
 };
 
-/// Plays a track into a history, just far enough to answer for an instant.
-class Feed {
- public:
-  explicit Feed(const registration::WalkTrack& track) : track_(track) {}
+Result<void> check_rate(const OfflineConfig& config) {
+  if (config.rate_hz > 0 && config.rate_hz <= kFastest) return {};
+  return fail(ErrorCode::InvalidArgument, "rate_hz",
+              fmt::format("the output rate must be above 0 and at most {} Hz", kFastest));
+}
 
-  void advance(Timestamp instant, align::History& history) {
-    while (next_ < track_.frames.size() && (!history.newest() || *history.newest() < instant)) {
-      SensorFrame frame = track_.frames[next_++];
-      frame.received = Timestamp{};  // when a recording was read says nothing about its stamps
-      history.push(std::move(frame));
-    }
-  }
-
-  /// Capture time of the first frame not before `instant` that is still to come or just came.
-  [[nodiscard]] std::optional<Timestamp> next_capture(Timestamp instant) const {
-    const std::size_t newest = next_ > 0 ? next_ - 1 : 0;
-    for (std::size_t i = newest; i < track_.frames.size(); ++i) {
-      if (track_.frames[i].captured > instant) return track_.frames[i].captured;
-    }
-    return std::nullopt;
-  }
-
- private:
-  const registration::WalkTrack& track_;
-  std::size_t next_ = 0;
-};
+tl::unexpected<Error> no_frame() {
+  return fail(ErrorCode::InvalidArgument, "recordings",
+              "there is no frame of a sensor to fuse; was it recorded with --fused alone?");
+}
 
 Result<void> check(const std::vector<registration::WalkTrack>& sensors,
                    const OfflineConfig& config) {
-  if (!(config.rate_hz > 0) || config.rate_hz > kFastest) {
-    return fail(ErrorCode::InvalidArgument, "rate_hz",
-                fmt::format("the output rate must be above 0 and at most {} Hz", kFastest));
-  }
+  if (auto ok = check_rate(config); !ok) return ok;
   std::set<SensorId> seen;
   bool any = false;
   for (const auto& track : sensors) {
@@ -76,7 +59,7 @@ Result<void> check(const std::vector<registration::WalkTrack>& sensors,
     }
     any = any || !track.frames.empty();
   }
-  if (!any) return fail(ErrorCode::InvalidArgument, "recordings", "there is no frame to fuse");
+  if (!any) return no_frame();
   return {};
 }
 
@@ -88,19 +71,13 @@ Timestamp newest_of(const std::vector<registration::WalkTrack>& sensors) {
   return newest;
 }
 
-Timestamp oldest_of(const std::vector<registration::WalkTrack>& sensors) {
-  Timestamp oldest = Timestamp::max();
-  for (const auto& track : sensors) {
-    for (const SensorFrame& frame : track.frames) oldest = std::min(oldest, frame.captured);
-  }
-  return oldest;
+bool usable(const Registration& found) {
+  return found.verdict == Verdict::Good || found.verdict == Verdict::Provisional;
 }
 
-Result<Registration> register_walk(const std::vector<registration::WalkTrack>& sensors,
-                                   const OfflineConfig& config) {
-  Registration found = registration::solve(sensors, newest_of(sensors), config.registration);
+Result<Registration> judged(Registration found) {
   found.version = 1;
-  if (found.verdict == Verdict::Good || found.verdict == Verdict::Provisional) return found;
+  if (usable(found)) return found;
   return fail(ErrorCode::Conflict, "registration",
               fmt::format("the walk could not be registered: {}", fmt::join(found.reasons, "; ")));
 }
@@ -114,73 +91,138 @@ bool covered(const Snapshot& snapshot) {
       });
 }
 
-/// All instants of all tracks, one after the other.
+/// All instants of all recordings, one after the other.
 class Replay {
  public:
-  Replay(const std::vector<registration::WalkTrack>& sensors, const Registration& registration,
-         const OfflineConfig& config)
-      : registration_(registration), config_(config), grid_(config.rate_hz) {
-    for (const auto& track : sensors) {
-      feeds_.emplace_back(track.sensor, Feed(track));
-      histories_.emplace(track.sensor, align::History{});
-    }
-  }
+  Replay(OfflineInput input, const Registration& registration, const OfflineConfig& config)
+      : frames_(std::move(input.lanes), input.sensors),
+        registration_(registration),
+        config_(config),
+        grid_(config.rate_hz) {}
 
-  std::vector<Snapshot> run(Timestamp first, Timestamp last) {
-    std::optional<std::int64_t> index = grid_.first_not_before(first);
-    while (index && grid_.at(*index) <= last) {
-      index = answer(*index) ? *index + 1 : after_gap(*index);
+  Result<void> run(const TakeSnapshot& take) {
+    const auto first = frames_.next_after(Timestamp::min());
+    if (!first) return pass(first);
+    if (!*first) return no_frame();
+    std::optional<std::int64_t> index = grid_.first_not_before(**first);
+    while (index) {
+      const Timestamp instant = grid_.at(*index);
+      if (auto ok = frames_.read_to(instant); !ok) return ok;
+      if (frames_.ended() && instant > frames_.newest()) break;
+      auto snapshot = answer(instant);
+      if (!snapshot) {
+        const auto next = after_gap(*index);
+        if (!next) return pass(next);
+        index = *next;
+        continue;
+      }
+      if (auto ok = take(std::move(*snapshot)); !ok) return ok;
+      ++*index;
     }
-    return std::move(snapshots_);
+    return {};
   }
 
  private:
-  /// True when somebody covered the instant.
-  bool answer(std::int64_t index) {
-    const Timestamp instant = grid_.at(index);
-    for (auto& [sensor, feed] : feeds_) feed.advance(instant, histories_[sensor]);
+  /// Nothing where nobody covered the instant.
+  std::optional<Snapshot> answer(Timestamp instant) {
+    frames_.advance(instant, histories_);
     const Timestamp late = instant + config_.pipeline.align.patience + Duration(1);
-    const Inputs in{instant, late, snapshots_.size() + 1};
-    Step next = step(in, histories_, registration_, memory_, config_.pipeline);
+    Step next =
+        step({instant, late, answered_ + 1}, histories_, registration_, memory_, config_.pipeline);
     memory_ = std::move(next.memory);
-    if (!covered(next.snapshot)) return false;
-    snapshots_.push_back(std::move(next.snapshot));
-    return true;
+    if (!covered(next.snapshot)) return std::nullopt;
+    ++answered_;
+    return std::move(next.snapshot);
   }
 
   /// The first instant after `index` that a frame could start to cover; none at the end.
-  [[nodiscard]] std::optional<std::int64_t> after_gap(std::int64_t index) const {
-    std::optional<Timestamp> next;
-    for (const auto& [sensor, feed] : feeds_) {
-      const auto capture = feed.next_capture(grid_.at(index));
-      if (capture && (!next || *capture < *next)) next = capture;
-    }
-    if (!next) return std::nullopt;
-    return std::max(index + 1, grid_.first_not_before(*next));
+  [[nodiscard]] Result<std::optional<std::int64_t>> after_gap(std::int64_t index) {
+    const auto next = frames_.next_after(grid_.at(index));
+    if (!next) return pass(next);
+    if (!*next) return std::nullopt;
+    return std::max(index + 1, grid_.first_not_before(**next));
   }
 
+  RecordedFrames frames_;
   const Registration& registration_;
   const OfflineConfig& config_;
   Grid grid_;
-  std::vector<std::pair<SensorId, Feed>> feeds_;
   Histories histories_;
   Memory memory_;
-  std::vector<Snapshot> snapshots_;
+  std::uint64_t answered_ = 0;
 };
 
+/// Reads on until the walk is long enough, or over.
+Result<void> read_enough(RecordedFrames& frames, RecordedWalk& walk) {
+  Timestamp instant = Timestamp::min();
+  while (!walk.enough()) {
+    const auto next = frames.next_after(instant);
+    if (!next) return pass(next);
+    if (!*next) return {};
+    instant = **next;
+    for (SensorFrame& frame : frames.take_waiting()) walk.take(std::move(frame));
+  }
+  return {};
+}
+
+/// A track in memory as a lane; it must outlive it.
+FrameLane lane_of(const registration::WalkTrack& track) {
+  return {track.sensor.str(),
+          [&frames = track.frames,
+           next = std::size_t{0}]() mutable -> Result<std::optional<SensorFrame>> {
+            if (next == frames.size()) return std::nullopt;
+            return frames[next++];
+          }};
+}
+
+OfflineInput input_of(const std::vector<registration::WalkTrack>& tracks) {
+  OfflineInput input;
+  for (const auto& track : tracks) {
+    input.lanes.push_back(lane_of(track));
+    input.sensors.push_back(track.sensor);
+  }
+  return input;
+}
+
 }  // namespace
+
+Result<Registration> register_recordings(OfflineInput input, const OfflineConfig& config) {
+  RecordedFrames frames(std::move(input.lanes), {});
+  RecordedWalk walk;
+  std::set<SensorId> expected(input.sensors.begin(), input.sensors.end());
+  while (true) {
+    if (auto ok = read_enough(frames, walk); !ok) return pass(ok);
+    if (walk.tracks().empty()) return no_frame();
+    auto found = registration::solve(walk.tracks(), newest_of(walk.tracks()), config.registration);
+    for (const auto& track : walk.tracks()) expected.insert(track.sensor);
+    const bool complete = usable(found) && found.sensors.size() == expected.size();
+    if (complete || frames.ended() || walk.used_up()) return judged(std::move(found));
+    walk.go_on();
+  }
+}
+
+Result<void> fuse_recordings(OfflineInput input, const Registration& registration,
+                             const OfflineConfig& config, const TakeSnapshot& take) {
+  if (auto ok = check_rate(config); !ok) return ok;
+  return Replay(std::move(input), registration, config).run(take);
+}
 
 Result<OfflineResult> fuse_offline(const std::vector<registration::WalkTrack>& sensors,
                                    const std::optional<Registration>& extrinsics,
                                    const OfflineConfig& config) {
   if (const auto ok = check(sensors, config); !ok) return pass(ok);
-  Result<Registration> registration =
-      extrinsics ? Result<Registration>(*extrinsics) : register_walk(sensors, config);
+  auto registration =
+      extrinsics ? Result<Registration>(*extrinsics)
+                 : judged(registration::solve(sensors, newest_of(sensors), config.registration));
   if (!registration) return pass(registration);
   OfflineResult result;
   result.registration = std::move(*registration);
-  Replay replay(sensors, result.registration, config);
-  result.snapshots = replay.run(oldest_of(sensors), newest_of(sensors));
+  const auto done = fuse_recordings(input_of(sensors), result.registration, config,
+                                    [&result](Snapshot snapshot) -> Result<void> {
+                                      result.snapshots.push_back(std::move(snapshot));
+                                      return {};
+                                    });
+  if (!done) return pass(done);
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fusion-server/pipeline/pipeline.h"
+#include "fusion-server/pipeline/recorded_frames.h"
 #include "fusion-server/registration/registration.h"
 
 namespace chorus::pipeline {
@@ -22,8 +23,25 @@ struct OfflineResult {
   std::vector<Snapshot> snapshots;
 };
 
-/// Registers from the walk unless extrinsics are given, then fuses every instant that any sensor
-/// covers.
+/// Recordings that are read as they are fused; reading them again takes new lanes.
+struct OfflineInput {
+  std::vector<FrameLane> lanes;
+  std::vector<SensorId> sensors = {};  ///< Those known beforehand.
+};
+
+/// An error ends the fusion.
+using TakeSnapshot = std::function<Result<void>(Snapshot)>;
+
+/// From the first minutes in which somebody is seen alone; from more of them while sensors are
+/// missing.  Conflict with the reasons when there is no registration.
+[[nodiscard]] Result<Registration> register_recordings(OfflineInput input,
+                                                       const OfflineConfig& config);
+
+/// Fuses every instant that any sensor covers, in the memory of a few seconds of frames.
+[[nodiscard]] Result<void> fuse_recordings(OfflineInput input, const Registration& registration,
+                                           const OfflineConfig& config, const TakeSnapshot& take);
+
+/// Both in memory: registers from the whole walk unless extrinsics are given.
 [[nodiscard]] Result<OfflineResult> fuse_offline(
     const std::vector<registration::WalkTrack>& sensors,
     const std::optional<Registration>& extrinsics, const OfflineConfig& config);

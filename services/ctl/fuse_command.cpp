@@ -1,5 +1,4 @@
 // chorus fuse REC --out FILE: recordings through the pipeline, without clocks or sockets.
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -8,18 +7,15 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "common/record/session_writer.h"
-#include "common/resource/frame_resource.h"
-#include "fusion-server/client/fused_frames.h"
 #include "fusion-server/client/recordings.h"
 #include "fusion-server/pipeline/offline.h"
-#include "fusion-server/server/recording_tap.h"
 #include "fusion-server/server/registration_store.h"
 #include "fusion-server/wire/registration_file.h"
-#include "fusion-server/wire/snapshot_resource.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
+#include "services/ctl/fused_file.h"
 #include "services/ctl/offline_options.h"
+#include "services/ctl/recorded_cell.h"
 #include "services/ctl/registration_report.h"
 #include "services/ctl/text_file.h"
 
@@ -36,53 +32,23 @@ struct FuseArguments {
   bool json = false;
 };
 
-std::vector<registration::WalkTrack> tracks_of(record::Session session) {
-  std::vector<registration::WalkTrack> tracks;
-  for (auto& recording : session.sensors)
-    tracks.push_back({recording.sensor, std::move(recording.frames)});
-  return tracks;
-}
-
-/// The last one that a recording was made with.
-Result<std::optional<Registration>> recorded_extrinsics(const std::vector<std::string>& recorded) {
-  for (auto text = recorded.rbegin(); text != recorded.rend(); ++text) {
-    auto registration = wire::read_registration(*text);
-    if (!registration)
-      return fail(registration.error().code, "/registration", to_string(registration.error()));
-    if (!registration->sensors.empty()) return std::optional(std::move(*registration));
-  }
-  return std::nullopt;
-}
-
-Result<std::optional<Registration>> read_extrinsics(const FuseArguments& arguments,
-                                                    const record::Session& session) {
+/// As asked for: from the person, from a file, or as recorded; none: from the person after all.
+Result<std::optional<Registration>> given_extrinsics(const FuseArguments& arguments,
+                                                     const RecordedCell& cell) {
   if (arguments.from_walk) return std::nullopt;
   const std::string& file = arguments.registration;
-  if (file.empty()) return recorded_extrinsics(session.registrations);
+  if (file.empty()) return cell.registration();
   auto registration = server::load_registration_file(file);
   if (!registration) return pass(registration);
   return std::optional(std::move(*registration));
 }
 
-std::string ndjson_of(const std::vector<Snapshot>& snapshots) {
-  std::string text;
-  for (const Snapshot& snapshot : snapshots)
-    text += client::frame_line(wire::to_resource(snapshot));
-  return text;
-}
-
-/// A recording of the fused frames alone.  Nothing in it depends on when or where it is made.
-Result<void> write_fused(const std::string& file, const pipeline::OfflineResult& result) {
-  auto writer = record::SessionWriter::create(file, {{{"title", "chorus fuse"}}, false});
-  if (!writer) return pass(writer);
-  const Timestamp begin = result.snapshots.empty() ? Timestamp{} : result.snapshots.front().instant;
-  if (auto ok = writer->write(wire::places_changed(begin, result.registration)); !ok) return ok;
-  for (const Snapshot& snapshot : result.snapshots) {
-    const auto ok = writer->write(record::FusedFrame{snapshot.instant, snapshot.instant,
-                                                     [&] { return wire::to_resource(snapshot); }});
-    if (!ok) return ok;
-  }
-  return writer->close();
+Result<Registration> extrinsics(const FuseArguments& arguments, RecordedCell& cell,
+                                const pipeline::OfflineConfig& config) {
+  auto given = given_extrinsics(arguments, cell);
+  if (!given) return pass(given);
+  if (*given) return std::move(**given);
+  return pipeline::register_recordings(cell.input(), config);
 }
 
 /// What writing must not destroy: all that is read.
@@ -94,28 +60,37 @@ Result<void> check_outputs(const FuseArguments& arguments,
   return may_write(arguments.save_registration, read);
 }
 
-Result<void> write_result(const std::string& file, const pipeline::OfflineResult& result) {
-  if (!file.ends_with(".mcap")) return write_text(file, ndjson_of(result.snapshots));
-  const std::string partial = file + ".partial";
-  std::error_code error;
-  std::filesystem::remove(partial, error);
-  auto ok = write_fused(partial, result);
-  if (ok) ok = may_write(file, {});  // made by somebody else meanwhile
-  if (ok) std::filesystem::rename(partial, file, error);
-  if (ok && error) ok = fail(ErrorCode::Io, file, error.message());
-  if (!ok) std::filesystem::remove(partial, error);
-  return ok;
+struct Fused {
+  Registration registration;
+  std::size_t frames = 0;
+  std::size_t with_bodies = 0;
+  RecordedCell::Told told;
+};
+
+Result<Fused> fuse_into(const std::string& out, RecordedCell& cell, Registration registration,
+                        const pipeline::OfflineConfig& config) {
+  Fused fused;
+  fused.registration = std::move(registration);
+  const auto file = create_fused_file(out, fused.registration);
+  if (!file) return pass(file);
+  const auto done = pipeline::fuse_recordings(cell.input(), fused.registration, config,
+                                              [&](const Snapshot& snapshot) {
+                                                ++fused.frames;
+                                                if (!snapshot.bodies.empty()) ++fused.with_bodies;
+                                                return (*file)->add(snapshot);
+                                              });
+  if (!done) return pass(done);
+  if (auto ok = (*file)->finish(); !ok) return pass(ok);
+  fused.told = cell.told();
+  return fused;
 }
 
-nlohmann::json summary_of(const pipeline::OfflineResult& result, std::size_t sensors,
-                          const std::vector<std::string>& notes) {
-  const auto with_bodies = std::count_if(result.snapshots.begin(), result.snapshots.end(),
-                                         [](const Snapshot& s) { return !s.bodies.empty(); });
-  return {{"sensors", sensors},
-          {"frames", result.snapshots.size()},
-          {"framesWithBodies", with_bodies},
-          {"notes", notes},
-          {"registration", nlohmann::json::parse(wire::write_registration(result.registration))}};
+nlohmann::json summary_of(const Fused& fused) {
+  return {{"sensors", fused.told.sensors},
+          {"frames", fused.frames},
+          {"framesWithBodies", fused.with_bodies},
+          {"notes", fused.told.notes},
+          {"registration", nlohmann::json::parse(wire::write_registration(fused.registration))}};
 }
 
 void print_summary(const nlohmann::json& summary, const FuseArguments& arguments) {
@@ -123,6 +98,8 @@ void print_summary(const nlohmann::json& summary, const FuseArguments& arguments
     std::cerr << summary.dump(2) << '\n';
     return;
   }
+  for (const auto& note : summary["notes"])
+    std::cerr << "note: " << note.get<std::string>() << '\n';
   std::cerr << registration_report(summary["registration"])
             << fmt::format("{} sensors, {} fused frames, {} with somebody in them\n",
                            summary["sensors"].get<std::size_t>(),
@@ -136,25 +113,20 @@ Result<int> run_fuse(const FuseArguments& arguments) {
   const auto files = client::find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
   if (!files) return pass(files);
   if (auto ok = check_outputs(arguments, *files); !ok) return pass(ok);
-  auto session = client::read_recordings(*files, arguments.json ? nullptr : &std::cerr);
-  if (!session) return pass(session);
-  const auto notes = client::notes_of(*session);
-  const auto extrinsics = read_extrinsics(arguments, *session);
-  if (!extrinsics) return pass(extrinsics);
-  const auto tracks = tracks_of(std::move(*session));
-  const auto result = pipeline::fuse_offline(tracks, *extrinsics, *config);
-  if (!result) return pass(result);
-  const auto written = write_result(arguments.out, *result);
-  if (!written) return pass(written);
+  auto cell = RecordedCell::open(*files);
+  if (!cell) return pass(cell);
+  auto registration = extrinsics(arguments, *cell, *config);
+  if (!registration) return pass(registration);
+  const auto fused = fuse_into(arguments.out, *cell, std::move(*registration), *config);
+  if (!fused) return pass(fused);
   if (!arguments.save_registration.empty()) {
     const auto saved =
-        write_text(arguments.save_registration, wire::write_registration(result->registration));
+        write_text(arguments.save_registration, wire::write_registration(fused->registration));
     if (!saved) return pass(saved);
   }
-  const nlohmann::json summary = summary_of(*result, tracks.size(), notes);
-  print_summary(summary, arguments);
+  print_summary(summary_of(*fused), arguments);
   // A file of empty frames is not what anybody asked for; the report says why.
-  return summary["framesWithBodies"].get<std::size_t>() > 0 ? kExitOk : kExitFailed;
+  return fused->with_bodies > 0 ? kExitOk : kExitFailed;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "fusion-server/pipeline/offline.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include <gmock/gmock.h>
@@ -144,6 +145,96 @@ TEST(FuseOffline, SaysWhyTheWalkCouldNotBeRegistered) {
   const auto fused = fuse_offline(tracks, std::nullopt, {});
   ASSERT_FALSE(fused);
   EXPECT_THAT(fused.error().message, HasSubstr("sensors s0 and s1 never saw the person together"));
+}
+
+/// All tracks as one recording: in the order of capture, whoever saw it.
+std::vector<SensorFrame> as_recorded(const std::vector<WalkTrack>& tracks) {
+  std::vector<SensorFrame> frames;
+  for (const WalkTrack& track : tracks)
+    frames.insert(frames.end(), track.frames.begin(), track.frames.end());
+  std::ranges::stable_sort(frames, {}, &SensorFrame::captured);
+  return frames;
+}
+
+FrameLane lane_of(const std::vector<SensorFrame>& frames, std::size_t& taken) {
+  return {"cell", [&frames, &taken]() -> Result<std::optional<SensorFrame>> {
+            if (taken == frames.size()) return std::nullopt;
+            return frames[taken++];
+          }};
+}
+
+TEST(FuseRecordings, OneLaneOfAllSensorsGivesWhatTracksInMemoryGive) {
+  auto tracks = walk({.length = 6});
+  // s1 leaves for a while, then everybody does.
+  std::erase_if(tracks[1].frames, [](const SensorFrame& frame) {
+    return frame.captured > registration::kWalkStart + std::chrono::seconds(2) &&
+           frame.captured < registration::kWalkStart + std::chrono::seconds(4);
+  });
+  for (WalkTrack& track : tracks) {
+    for (SensorFrame& frame : track.frames) {
+      if (frame.captured > registration::kWalkStart + std::chrono::seconds(5))
+        frame.captured += std::chrono::hours(3);
+    }
+  }
+  const auto whole = fuse_offline(tracks, published(), {});
+  ASSERT_TRUE(whole);
+  const auto frames = as_recorded(tracks);
+  std::size_t taken = 0;
+  std::vector<Snapshot> snapshots;
+  const OfflineConfig config;
+  const auto registration = published();
+  const auto done = fuse_recordings({{lane_of(frames, taken)}, {}}, registration, config,
+                                    [&](Snapshot snapshot) -> Result<void> {
+                                      EXPECT_LE(taken, 4 * 30 * (snapshots.size() / 30 + 8))
+                                          << "it reads a few seconds ahead, not all";
+                                      snapshots.push_back(std::move(snapshot));
+                                      return {};
+                                    });
+  ASSERT_TRUE(done) << to_string(done.error());
+  ASSERT_EQ(snapshots.size(), whole->snapshots.size());
+  for (std::size_t i = 0; i < snapshots.size(); ++i) {
+    EXPECT_EQ(snapshots[i].instant, whole->snapshots[i].instant);
+    ASSERT_EQ(snapshots[i].bodies.size(), whole->snapshots[i].bodies.size());
+    for (std::size_t b = 0; b < snapshots[i].bodies.size(); ++b)
+      EXPECT_EQ(snapshots[i].bodies[b].skeleton[JointId::Head].position,
+                whole->snapshots[i].bodies[b].skeleton[JointId::Head].position);
+  }
+}
+
+TEST(FuseRecordings, RefusesASensorThatTwoRecordingsHold) {
+  const auto frames = as_recorded(walk({.length = 1}));
+  std::size_t first = 0;
+  std::size_t second = 0;
+  const OfflineConfig config;
+  const auto registration = published();
+  const auto done =
+      fuse_recordings({{lane_of(frames, first), lane_of(frames, second)}, {}}, registration, config,
+                      [](const Snapshot&) { return Result<void>(); });
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().code, ErrorCode::Conflict);
+}
+
+TEST(RegisterRecordings, TakesTheFirstMinutesAndReadsNoFurther) {
+  const auto tracks = walk({.length = 150});
+  const auto frames = as_recorded(tracks);
+  std::size_t taken = 0;
+  const auto found = register_recordings({{lane_of(frames, taken)}, {}}, {});
+  ASSERT_TRUE(found) << to_string(found.error());
+  EXPECT_EQ(found->verdict, Verdict::Good);
+  EXPECT_EQ(found->sensors.size(), 4u);
+  EXPECT_LT(taken, frames.size() * 130 / 150);
+}
+
+TEST(RegisterRecordings, ReadsOnWhileSensorsAreMissing) {
+  auto tracks = walk({.length = 200});
+  std::erase_if(tracks[3].frames, [](const SensorFrame& frame) {
+    return frame.captured < registration::kWalkStart + std::chrono::seconds(150);
+  });
+  const auto frames = as_recorded(tracks);
+  std::size_t taken = 0;
+  const auto found = register_recordings({{lane_of(frames, taken)}, {sensor(3)}}, {});
+  ASSERT_TRUE(found) << to_string(found.error());
+  EXPECT_EQ(found->sensors.size(), 4u) << "s3 came late";
 }
 
 }  // namespace

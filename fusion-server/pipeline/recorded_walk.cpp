@@ -1,0 +1,42 @@
+#include "fusion-server/pipeline/recorded_walk.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace chorus::pipeline {
+namespace {
+
+constexpr std::size_t kMostBodies = 60'000;               // 100 MB
+constexpr std::size_t kMostSeveral = 10'000;              // they only tell where feet are
+constexpr Duration kNextSight = std::chrono::seconds(1);  // further apart nobody was seen between
+
+}  // namespace
+
+registration::WalkTrack& RecordedWalk::track_of(const SensorId& sensor) {
+  const auto at = std::ranges::lower_bound(tracks_, sensor, {}, &registration::WalkTrack::sensor);
+  if (at != tracks_.end() && at->sensor == sensor) return *at;
+  return *tracks_.insert(at, {sensor, {}});
+}
+
+void RecordedWalk::take(SensorFrame frame) {
+  auto& frames = track_of(frame.sensor).frames;
+  const std::size_t bodies = frame.bodies.size();
+  if (bodies == 1) {
+    ++bodies_;
+    const Timestamp t = frame.captured;
+    if (last_alone_ < t && t - kNextSight <= last_alone_) alone_ += t - last_alone_;
+    last_alone_ = std::max(last_alone_, t);
+  } else if (bodies > 1 && several_ + bodies <= kMostSeveral) {
+    several_ += bodies;
+  } else {
+    frame.bodies.clear();
+    if (!frames.empty() && frames.back().floor == frame.floor) return;
+  }
+  frames.push_back(std::move(frame));
+}
+
+bool RecordedWalk::used_up() const { return bodies_ >= kMostBodies; }
+
+void RecordedWalk::go_on() { wanted_ += std::chrono::minutes(2); }
+
+}  // namespace chorus::pipeline

@@ -1,0 +1,25 @@
+// Fused frames into a file as they come: a recording (.mcap), or lines of JSON.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "common/base/result.h"
+#include "fusion-server/flow.h"
+
+namespace chorus::ctl {
+
+/// What was there is replaced only by finish(); without it, nothing is left behind.  "-" is
+/// standard output.  Nothing in the file depends on when or where it is made.
+class FusedFile {
+ public:
+  virtual ~FusedFile() = default;
+
+  [[nodiscard]] virtual Result<void> add(const Snapshot& snapshot) = 0;
+  [[nodiscard]] virtual Result<void> finish() = 0;
+};
+
+[[nodiscard]] Result<std::unique_ptr<FusedFile>> create_fused_file(
+    const std::string& file, const Registration& registration);
+
+}  // namespace chorus::ctl

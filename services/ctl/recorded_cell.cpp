@@ -1,0 +1,60 @@
+#include "services/ctl/recorded_cell.h"
+
+#include <utility>
+
+#include "fusion-server/client/recordings.h"
+#include "fusion-server/wire/registration_file.h"
+
+namespace chorus::ctl {
+namespace {
+
+/// The sensors' frames of a session; whatever else is in it is passed over.
+Result<std::optional<SensorFrame>> next_frame(record::SessionStream& stream) {
+  for (auto item = stream.next(); true; item = stream.next()) {
+    if (!item) return pass(item);
+    if (!*item) return std::nullopt;
+    if (auto* frame = std::get_if<SensorFrame>(&**item)) return std::move(*frame);
+  }
+}
+
+}  // namespace
+
+Result<RecordedCell> RecordedCell::open(const std::vector<std::filesystem::path>& files) {
+  auto lines = record::session_lines(files);
+  if (!lines) return pass(lines);
+  return RecordedCell(std::move(*lines));
+}
+
+Result<std::optional<Registration>> RecordedCell::registration() const {
+  const auto text = record::last_registration(lines_);
+  if (!text) return pass(text);
+  if (!*text) return std::nullopt;
+  auto registration = wire::read_registration(**text);
+  if (!registration)
+    return fail(registration.error().code, "/registration", to_string(registration.error()));
+  return std::optional(std::move(*registration));
+}
+
+pipeline::OfflineInput RecordedCell::input() {
+  pipeline::OfflineInput input;
+  streams_.clear();
+  for (const record::SessionLine& line : lines_) {
+    const auto stream = std::make_shared<record::SessionStream>(line.files);
+    streams_.push_back(stream);
+    input.lanes.push_back({line.files.front().string(), [stream] { return next_frame(*stream); }});
+    input.sensors.insert(input.sensors.end(), line.sensors.begin(), line.sensors.end());
+  }
+  return input;
+}
+
+RecordedCell::Told RecordedCell::told() {
+  Told told;
+  for (const auto& stream : streams_) {
+    const record::Session session = stream->finish();
+    told.sensors += session.sensors.size();
+    for (std::string& note : client::notes_of(session)) told.notes.push_back(std::move(note));
+  }
+  return told;
+}
+
+}  // namespace chorus::ctl
