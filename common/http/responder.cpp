@@ -1,12 +1,12 @@
 #include "common/http/responder.h"
 
 #include <algorithm>
-#include <exception>
 
 #include "common/http/conditional.h"
+#include "common/http/handler_call.h"
 #include "common/http/media_range.h"
 #include "common/http/problem.h"
-#include "common/http/text.h"
+#include "common/http/route_lines.h"
 #include "common/http/uri.h"
 #include "common/http/websocket.h"
 
@@ -15,30 +15,6 @@ namespace {
 
 constexpr std::string_view kEventStream = "text/event-stream";
 constexpr std::string_view kWaitApplied = "Preference-Applied: wait\r\n";
-
-/// The lines that all answers of a server share (docs: linked data over HTTP).
-std::string common_lines(const ServerConfig& config) {
-  return "Vary: Accept, Origin\r\n"
-         "Access-Control-Allow-Origin: " +
-         config.allowed_origin +
-         "\r\n"
-         "Access-Control-Expose-Headers: ETag, Link, Location, Content-Location, Allow, "
-         "Preference-Applied, Retry-After, Chorus-Clock, Server-Timing\r\n"
-         "Timing-Allow-Origin: *\r\n"
-         "X-Content-Type-Options: nosniff\r\n"
-         "Link: </openapi.json>; rel=\"service-desc\"\r\n";
-}
-
-std::string lines_of(const ServerConfig& config, const Router::Entry& entry) {
-  return "Allow: " + allowed_methods(entry) +
-         "\r\nLink: <http://www.w3.org/ns/ldp#Resource>; rel=\"type\"\r\n" + common_lines(config);
-}
-
-Reaction to_answer(Answer answer) {
-  Reaction reaction;
-  reaction.answer = std::move(answer);
-  return reaction;
-}
 
 bool is_head(const RequestHead& head) { return head.method == Method::Head; }
 
@@ -76,53 +52,6 @@ bool asks_by_query(const RequestHead& head, const Router::Entry& entry) {
   return query && query->contains(entry.query_key);
 }
 
-Result<Request> request_of(const RequestHead& head, const Peer& peer, std::string_view path) {
-  auto query = decode_query(head.query);
-  if (!query) return pass(query);
-  Request request{head.method, path, std::move(*query), {}, {}, peer.loopback};
-  for (const Field& field : head.fields) {
-    auto [known, added] = request.headers.try_emplace(to_lower(field.name), field.value);
-    if (!added) known->second.append(", ").append(field.value);
-  }
-  return request;
-}
-
-/// Runs somebody's handler; nothing it throws gets further.
-template <class T, class Call>
-Result<T> guarded(const RequestHead& head, const Call& call) {
-  try {
-    return call();
-  } catch (const std::exception& thrown) {
-    return fail(ErrorCode::Internal, std::string(head.path), thrown.what());
-  }
-}
-
-Answer complaint(Problem problem, const RequestHead& head, std::string_view route) {
-  problem.instance = head.path;
-  Answer answer = problem_answer(problem, is_head(head));
-  answer.route = route;
-  answer.close = head.content_length > 0;  // Its body has not been read.
-  return answer;
-}
-
-/// The resource that an action answers with, or that there is none.
-Result<Answer> answer_of(const ActionResult& done, std::string_view accept) {
-  Answer answer;
-  answer.status = done.status;
-  if (!done.location.empty()) answer.extra = "Location: " + done.location + "\r\n";
-  constexpr int kNoContent = 204;
-  answer.own = done.status == kNoContent ? "\r\n" : "Content-Length: 0\r\n\r\n";
-  if (done.status == kNoContent || !done.document) return answer;
-  // It is done: a client that accepts nothing of ours gets the default rather than an error.
-  auto chosen = done.document->choose(accept);
-  if (!chosen) chosen = done.document->choose("");
-  if (!chosen) return pass(chosen);
-  answer.own = (*chosen)->head();
-  answer.body = (*chosen)->body();
-  answer.owner = done.document;
-  return answer;
-}
-
 }  // namespace
 
 Responder::Responder(const ServerConfig& config, std::shared_ptr<const Router> router)
@@ -142,14 +71,15 @@ std::string_view Responder::route_lines(const Router::Entry& entry) const {
 Reaction Responder::react(const RequestHead& head, const Peer& peer) const {
   if (!head.authority.empty() && !is_our_authority(head.authority, peer)) {
     constexpr int kMisdirected = 421;
-    return to_answer(refuse({kMisdirected, "this server is no proxy; ask it by its own address"}));
+    return Reaction::of(
+        refuse({kMisdirected, "this server is no proxy; ask it by its own address"}));
   }
   if (head.asterisk) return options(any_route_, "GET, HEAD, OPTIONS");
   std::string storage;
   const auto path = decode_path(head.path, storage);
-  if (!path) return to_answer(fault(path.error(), head, any_route_));
+  if (!path) return Reaction::of(fault(path.error(), head, any_route_));
   auto match = router_->match(*path);
-  if (!match) return to_answer(fault(match.error(), head, any_route_));
+  if (!match) return Reaction::of(fault(match.error(), head, any_route_));
   switch (head.method) {
     case Method::Options:
       return options(route_lines_[match->entry->index], allowed_methods(*match->entry));
@@ -174,7 +104,7 @@ Reaction Responder::options(const std::string& route, std::string_view allowed) 
       "\r\nAccess-Control-Allow-Headers: Accept, Authorization, Content-Type, If-None-Match, "
       "Prefer, Last-Event-ID\r\nAccess-Control-Max-Age: 86400\r\n");
   answer.own = "\r\n";
-  return to_answer(std::move(answer));
+  return Reaction::of(std::move(answer));
 }
 
 Reaction Responder::read(const RequestHead& head, const Router::Match& match, const Peer& peer,
@@ -189,15 +119,15 @@ Reaction Responder::read(const RequestHead& head, const Router::Match& match, co
     if (!request) return pass(request);
     return (entry.live ? entry.by_query : entry.getter)(*request, match.params);
   });
-  if (!document) return to_answer(fault(document.error(), head, route));
-  return to_answer(represent(*document, head, route));
+  if (!document) return Reaction::of(fault(document.error(), head, route));
+  return Reaction::of(represent(*document, head, route));
 }
 
 Reaction Responder::read_live(const RequestHead& head, const Router::Entry& entry) const {
   if (asks_for_websocket(head)) return upgrade(head, entry);
   const DocumentPtr document = entry.live->current();
   if (document == nullptr || head.accept.empty() || !wants_events(head, *document)) {
-    Reaction reaction = to_answer(represent(document, head, route_lines(entry)));
+    Reaction reaction = Reaction::of(represent(document, head, route_lines(entry)));
     constexpr int kNotModified = 304;
     const auto wait = wait_preference(head.prefer);
     if (!wait || !is_present(head.if_none_match)) return reaction;
@@ -221,7 +151,7 @@ Reaction Responder::read_live(const RequestHead& head, const Router::Entry& entr
 
 Reaction Responder::upgrade(const RequestHead& head, const Router::Entry& entry) const {
   if (!may_open(head, allowed_origin_)) {
-    return to_answer(
+    return Reaction::of(
         fault({ErrorCode::Forbidden, std::string(head.origin),
                "pages of this origin may not open a WebSocket here; see http.allowed_origin"},
               head, route_lines(entry)));
@@ -244,52 +174,6 @@ Answer Responder::given_up(const Router::Entry& entry, const RequestHead& head) 
   Answer answer = represent(entry.live->current(), head, route_lines(entry));
   answer.extra.append(kWaitApplied);
   return answer;
-}
-
-Reaction Responder::write(const RequestHead& head, Router::Match match, const Peer& peer) const {
-  const std::string_view route = route_lines(*match.entry);
-  const auto action = match.entry->actions.find(head.method);
-  if (action == match.entry->actions.end()) {
-    constexpr int kMethodNotAllowed = 405;
-    const std::string detail =
-        "this resource answers " + allowed_methods(*match.entry) + " and no other method";
-    return to_answer(complaint({kMethodNotAllowed, "unsupported", {}, {}, detail}, head, route));
-  }
-  if (const auto refused = refuse_writing(head, peer, bearer_token_))
-    return to_answer(fault(*refused, head, route));
-  if (head.content_length > limits_.max_body_bytes)
-    return to_answer(fault({ErrorCode::TooLarge, "Content-Length",
-                            "send at most " + std::to_string(limits_.max_body_bytes) + " bytes"},
-                           head, route));
-  Reaction reaction;
-  reaction.kind = Reaction::Kind::ReadBody;
-  reaction.entry = match.entry;
-  reaction.action = &action->second;
-  reaction.params = std::move(match.params);
-  return reaction;
-}
-
-Answer Responder::act(const Reaction& reaction, const RequestHead& head, const Peer& peer,
-                      std::string_view body) const {
-  const std::string_view route = route_lines(*reaction.entry);
-  const auto done = guarded<ActionResult>(head, [&]() -> Result<ActionResult> {
-    std::string storage;
-    const auto path = decode_path(head.path, storage);
-    if (!path) return pass(path);
-    auto request = request_of(head, peer, *path);
-    if (!request) return pass(request);
-    request->body = body;
-    return (*reaction.action)(*request, reaction.params);
-  });
-  if (!done) {
-    Answer answer = fault(done.error(), head, route);
-    answer.close = false;  // The body has been read.
-    return answer;
-  }
-  auto answer = answer_of(*done, head.accept);
-  if (!answer) return fault(answer.error(), head, route);
-  answer->route = route;
-  return std::move(*answer);
 }
 
 Answer Responder::represent(const DocumentPtr& document, const RequestHead& head,

@@ -34,6 +34,12 @@ struct Reaction {
   PathParams params = {};
   std::chrono::seconds wait{0};
   std::string_view event_type = {};  ///< Stream: what the events carry.
+
+  [[nodiscard]] static Reaction of(Answer ready) {
+    Reaction reaction;
+    reaction.answer = std::move(ready);
+    return reaction;
+  }
 };
 
 class Responder {

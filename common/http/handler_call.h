@@ -1,0 +1,34 @@
+// What stands between a request and somebody's handler, and what is said when that fails.
+#pragma once
+
+#include <exception>
+#include <string>
+#include <string_view>
+
+#include "common/base/result.h"
+#include "common/http/access.h"
+#include "common/http/answer.h"
+#include "common/http/problem.h"
+#include "common/http/request_head.h"
+#include "common/http/router.h"
+
+namespace chorus::http {
+
+/// `path` is decoded.  Malformed when the query is.
+[[nodiscard]] Result<Request> request_of(const RequestHead& head, const Peer& peer,
+                                         std::string_view path);
+
+/// The problem as the answer to this request.
+[[nodiscard]] Answer complaint(Problem problem, const RequestHead& head, std::string_view route);
+
+/// Runs somebody's handler; nothing it throws gets further.
+template <class T, class Call>
+Result<T> guarded(const RequestHead& head, const Call& call) {
+  try {
+    return call();
+  } catch (const std::exception& thrown) {
+    return fail(ErrorCode::Internal, std::string(head.path), thrown.what());
+  }
+}
+
+}  // namespace chorus::http
