@@ -3,11 +3,19 @@
 #include <array>
 #include <atomic>
 #include <charconv>
+#include <csignal>
+#include <cstdlib>
 #include <memory>
+#include <mutex>
 
+#include <spdlog/pattern_formatter.h>
+#include <spdlog/sinks/base_sink.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
+
+#include "common/base/line_writer.h"
+#include "common/base/log_queue.h"
 
 namespace chorus::log {
 namespace {
@@ -28,9 +36,27 @@ constexpr std::array kLevels{
 constexpr const char* kTextPattern = "%Y-%m-%dT%H:%M:%S.%eZ %v";
 constexpr const char* kJsonPattern = R"({"time":"%Y-%m-%dT%H:%M:%S.%eZ",%v})";
 
+/// Gives formatted lines to the writer.
+class QueueSink final : public spdlog::sinks::base_sink<std::mutex> {
+ public:
+  explicit QueueSink(LineWriter& writer) : writer_(writer) {}
+
+ private:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    spdlog::memory_buf_t line;
+    formatter_->format(message, line);
+    writer_.write(std::string(line.data(), line.size()));
+  }
+  void flush_() override {}
+
+  LineWriter& writer_;
+};
+
 struct Sink {
   spdlog::logger logger{"chorus", std::make_shared<spdlog::sinks::stderr_sink_mt>()};
   std::atomic<Format> format{Format::Text};
+  std::atomic<LineWriter*> writer = nullptr;  ///< Once configured; never destroyed.
+  std::once_flag queued;
 
   Sink() { logger.set_pattern(kTextPattern, spdlog::pattern_time_type::utc); }
 };
@@ -88,6 +114,52 @@ std::string json_members(const LevelName& level, std::string_view name, Fields f
   return line;
 }
 
+std::string line_of(const LevelName& level, std::string_view name, Fields fields, Format format) {
+  return format == Format::Json ? json_members(level, name, fields)
+                                : text_line(level, name, fields);
+}
+
+/// Tells of lines that were dropped.  Not through the queue: it stands where they are missing.
+std::string gap_line(std::uint64_t lines) {
+  const Format format = sink().format.load();
+  const LevelName& level = row_of(Level::Warn);
+  const std::string text =
+      line_of(level, "log lines dropped, nobody read them", {{"lines", lines}}, format);
+  spdlog::pattern_formatter formatter(format == Format::Json ? kJsonPattern : kTextPattern,
+                                      spdlog::pattern_time_type::utc);
+  spdlog::memory_buf_t line;
+  formatter.format({"chorus", level.in_spdlog, text}, line);
+  return {line.data(), line.size()};
+}
+
+constexpr std::chrono::milliseconds kLastPatience{500};
+
+void flush_on_crash(int signal) {
+  if (const LineWriter* writer = sink().writer.load())
+    writer->flush_in_signal_handler(kLastPatience);
+  std::raise(signal);  // SA_RESETHAND: now for good
+}
+
+/// Only where nobody else, a sanitizer for example, wants to know of it.
+void watch_for_crash(int signal) {
+  struct sigaction now {};
+  if (::sigaction(signal, nullptr, &now) != 0 || now.sa_handler != SIG_DFL) return;
+  struct sigaction ours {};
+  ours.sa_handler = flush_on_crash;
+  ours.sa_flags = static_cast<int>(SA_RESETHAND | SA_NODEFER);
+  ::sigaction(signal, &ours, nullptr);
+}
+
+void begin_queue() {
+  LineWriterOptions options;
+  options.gap = gap_line;
+  auto* writer = new LineWriter(std::move(options));
+  sink().logger.sinks() = {std::make_shared<QueueSink>(*writer)};
+  sink().writer.store(writer);
+  std::atexit([] { (void)flush(kLastPatience); });
+  for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) watch_for_crash(signal);
+}
+
 }  // namespace
 
 std::string number_text(double value) {
@@ -98,6 +170,7 @@ std::string number_text(double value) {
 
 void configure(Level least, Format format) {
   const bool json = format == Format::Json;
+  std::call_once(sink().queued, begin_queue);
   sink().format.store(format);
   sink().logger.set_level(row_of(least).in_spdlog);
   sink().logger.set_pattern(json ? kJsonPattern : kTextPattern, spdlog::pattern_time_type::utc);
@@ -121,9 +194,18 @@ Result<Format> parse_format(std::string_view text) {
 void event(Level level, std::string_view name, Fields fields) {
   const LevelName& row = row_of(level);
   if (!sink().logger.should_log(row.in_spdlog)) return;
-  const bool json = sink().format.load() == Format::Json;
-  const std::string line = json ? json_members(row, name, fields) : text_line(row, name, fields);
+  const std::string line = line_of(row, name, fields, sink().format.load());
   sink().logger.log(row.in_spdlog, spdlog::string_view_t(line.data(), line.size()));
+}
+
+bool flush(std::chrono::milliseconds patience) {
+  LineWriter* writer = sink().writer.load();
+  return writer == nullptr || writer->flush(patience);
+}
+
+std::uint64_t dropped_lines() {
+  const LineWriter* writer = sink().writer.load();
+  return writer == nullptr ? 0 : writer->dropped();
 }
 
 }  // namespace chorus::log

@@ -35,7 +35,7 @@ struct Field {
 };
 using Fields = std::initializer_list<Field>;
 
-/// Chooses the least level and the format; standard error is the only sink.
+/// Chooses level and format; from now on a thread of its own writes the lines (log_queue.h).
 void configure(Level least, Format format);
 
 /// "debug", "info", "warn", "error" / "text", "json", as config and command line spell them.

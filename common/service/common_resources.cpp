@@ -3,9 +3,11 @@
 #include <string_view>
 #include <utility>
 
+#include "common/base/log_queue.h"
 #include "common/resource/clock_resource.h"
 #include "common/resource/node.h"
 #include "common/resource/place.h"
+#include "common/service/metrics.h"
 #include "common/time/ntp_status.h"
 #include "proto/embedded.h"
 
@@ -66,6 +68,14 @@ Result<DocumentPtr> health_document(const Health& health, Timestamp now) {
   return std::make_shared<const http::Document>(std::move(variants), std::move(options));
 }
 
+/// What is of the process rather than of a service.
+std::string process_metrics() {
+  MetricsText text;
+  text.counter({"chorus_log_dropped_lines_total", "Log lines dropped because nobody read them."},
+               static_cast<double>(log::dropped_lines()));
+  return text.text();
+}
+
 DocumentPtr metrics_document(std::string text, Timestamp now) {
   DocumentOptions options = fleeting(now);
   options.rdf_source = false;
@@ -113,10 +123,15 @@ void add_routes(http::Router& router, const CommonResources& options) {
       [clock, health = options.health](const Request&, const PathParams&) -> Result<DocumentPtr> {
         return health_document(health ? health() : Health{}, clock->now());
       });
-  if (options.metrics)
+  router.vital("/healthz");
+  if (options.metrics) {
+    router.vital("/metrics");
     router.get("/metrics",
-               [clock, metrics = options.metrics](const Request&, const PathParams&)
-                   -> Result<DocumentPtr> { return metrics_document(metrics(), clock->now()); });
+               [clock, metrics = options.metrics](const Request&,
+                                                  const PathParams&) -> Result<DocumentPtr> {
+                 return metrics_document(metrics() + process_metrics(), clock->now());
+               });
+  }
   add_fixed(router);
 }
 

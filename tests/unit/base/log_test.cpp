@@ -1,10 +1,13 @@
 #include "common/base/log.h"
 
+#include <csignal>
+#include <cstdlib>
 #include <limits>
 #include <sstream>
 
 #include <nlohmann/json.hpp>
 
+#include "common/base/log_queue.h"
 #include "tests/support/matchers.h"
 
 namespace chorus {
@@ -21,6 +24,7 @@ std::string logged(log::Level least, log::Format format, const Write& write) {
   log::configure(least, format);
   ::testing::internal::CaptureStderr();
   write();
+  log::flush(std::chrono::seconds(10));
   return ::testing::internal::GetCapturedStderr();
 }
 
@@ -74,6 +78,17 @@ TEST(LogLevel, DropsWhatIsBelow) {
     log::error("d");
   });
   EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 2);
+}
+
+void log_much() {
+  log::configure(log::Level::Info, log::Format::Text);
+  for (int i = 0; i < 2000; ++i) log::info("line", {{"n", i}});
+}
+
+TEST(LogDeathTest, WhatWaitsIsWrittenAtTheEndHoweverThatComes) {
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";  // a process whose log begins anew
+  EXPECT_EXIT(log_much(); std::exit(0), ::testing::ExitedWithCode(0), "n=1999");
+  EXPECT_EXIT(log_much(); std::abort(), ::testing::KilledBySignal(SIGABRT), "n=1999");
 }
 
 TEST(LogOptions, ReadTheNamesTheConfigUses) {

@@ -1,0 +1,145 @@
+#include "common/base/line_writer.h"
+
+#include <poll.h>
+#include <pthread.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <climits>
+#include <condition_variable>
+#include <csignal>
+#include <ctime>
+#include <mutex>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace chorus {
+namespace {
+
+constexpr int kLookMs = 1000;  // A stuck writer looks that often whether it is still wanted.
+
+/// Blocks all signals for the thread that is being made: they are for the program's own.
+class SignalsBlocked {
+ public:
+  SignalsBlocked() {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  ~SignalsBlocked() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  SignalsBlocked(const SignalsBlocked&) = delete;
+  SignalsBlocked& operator=(const SignalsBlocked&) = delete;
+
+ private:
+  sigset_t before_{};
+};
+
+}  // namespace
+
+struct LineWriter::State {
+  explicit State(LineWriterOptions o) : options(std::move(o)) {}
+
+  void run();
+  bool write_out(std::string_view bytes);
+  void write_batch(const std::vector<std::string>& batch);
+
+  const LineWriterOptions options;
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::vector<std::string> waiting;    ///< Guarded by mutex.
+  std::uint64_t told = 0;              ///< Of `dropped`; the writer's thread's.
+  std::atomic<std::size_t> bytes = 0;  ///< Waiting or being written.
+  std::atomic<std::uint64_t> dropped = 0;
+  std::atomic<std::uint64_t> progress = 0;  ///< Pieces that the reader has taken, or lost for good.
+  std::atomic<bool> ended = false;
+};
+
+/// False when the reader is gone, or nobody waits for the writer any more.
+bool LineWriter::State::write_out(std::string_view rest) {
+  while (!rest.empty() && !ended) {
+    pollfd ready{options.descriptor, POLLOUT, 0};
+    if (::poll(&ready, 1, kLookMs) <= 0 || ended) continue;
+    // Not more than a pipe takes at once, so that a piece never waits for the reader.
+    const ssize_t taken =
+        ::write(options.descriptor, rest.data(), std::min<std::size_t>(rest.size(), PIPE_BUF));
+    if (taken < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+    if (taken < 0) return false;
+    rest.remove_prefix(static_cast<std::size_t>(taken));
+    ++progress;
+  }
+  return rest.empty();
+}
+
+void LineWriter::State::write_batch(const std::vector<std::string>& batch) {
+  for (const std::string& line : batch) {
+    if (!write_out(line)) ++dropped;
+    bytes -= line.size();
+    ++progress;
+  }
+}
+
+void LineWriter::State::run() {
+  std::vector<std::string> batch;
+  std::unique_lock lock(mutex);
+  while (true) {
+    changed.wait(lock, [&] { return !waiting.empty() || ended; });
+    if (ended && waiting.empty()) return;
+    batch.clear();
+    batch.swap(waiting);
+    lock.unlock();
+    write_batch(batch);
+    // What was dropped came after the lines that were waiting, and before those to come.
+    const std::uint64_t missing = dropped - told;
+    if (missing > 0 && options.gap && write_out(options.gap(missing))) told += missing;
+    lock.lock();
+    changed.notify_all();
+  }
+}
+
+LineWriter::LineWriter(LineWriterOptions options)
+    : state_(std::make_shared<State>(std::move(options))) {
+  const SignalsBlocked blocked;
+  std::thread([state = state_] { state->run(); }).detach();
+}
+
+LineWriter::~LineWriter() {
+  const std::scoped_lock lock(state_->mutex);
+  state_->ended = true;
+  state_->changed.notify_all();
+}
+
+void LineWriter::write(std::string line) {
+  const std::scoped_lock lock(state_->mutex);
+  if (state_->bytes + line.size() > state_->options.most_bytes) {
+    ++state_->dropped;
+    return;
+  }
+  state_->bytes += line.size();
+  state_->waiting.push_back(std::move(line));
+  state_->changed.notify_all();
+}
+
+bool LineWriter::flush(std::chrono::milliseconds patience) {
+  std::unique_lock lock(state_->mutex);
+  while (state_->bytes > 0) {
+    const std::uint64_t before = state_->progress;
+    const bool done = state_->changed.wait_for(lock, patience, [&] { return state_->bytes == 0; });
+    if (!done && state_->progress == before) return false;
+  }
+  return true;
+}
+
+void LineWriter::flush_in_signal_handler(std::chrono::milliseconds patience) const noexcept {
+  constexpr long kLookNs = 2'000'000;
+  const timespec look{0, kLookNs};
+  const auto looks = std::chrono::nanoseconds(patience).count() / kLookNs;
+  for (long i = 0; i < looks && state_->bytes > 0; ++i) ::nanosleep(&look, nullptr);
+}
+
+std::uint64_t LineWriter::dropped() const noexcept { return state_->dropped; }
+
+}  // namespace chorus
