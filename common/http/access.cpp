@@ -2,6 +2,7 @@
 
 #include <openssl/crypto.h>
 #include <openssl/sha.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -36,6 +37,14 @@ bool is_fixed_name(std::string_view host) {
 
 constexpr std::string_view kBearer = "bearer ";
 
+bool has_token(const RequestHead& head, std::string_view bearer_token) {
+  std::string_view given = head.authorization;
+  const bool is_bearer = given.size() > kBearer.size() &&
+                         equal_ignoring_case(given.substr(0, kBearer.size()), kBearer);
+  given.remove_prefix(std::min(given.size(), kBearer.size()));
+  return is_bearer && same_secret(trimmed(given), bearer_token);
+}
+
 }  // namespace
 
 bool same_secret(std::string_view a, std::string_view b) {
@@ -44,27 +53,45 @@ bool same_secret(std::string_view a, std::string_view b) {
   return CRYPTO_memcmp(digest_a.data(), digest_b.data(), digest_a.size()) == 0;
 }
 
+bool is_own_host(std::string_view host, const std::vector<std::string>& names) {
+  std::string_view name = host_part(host);
+  if (name.ends_with('.')) name.remove_suffix(1);
+  return is_fixed_name(name) || std::any_of(names.begin(), names.end(), [&](const auto& known) {
+           return equal_ignoring_case(name, known);
+         });
+}
+
+std::vector<std::string> host_names() {
+  std::array<char, 256> name{};
+  if (::gethostname(name.data(), name.size() - 1) != 0 || name[0] == '\0') return {};
+  return {name.data(), std::string(name.data()) + ".local"};
+}
+
+bool from_own_page(const RequestHead& head) {
+  // Behind a proxy that ends TLS the page is https.
+  for (const std::string_view scheme : {"http://", "https://"}) {
+    if (is_present(head.origin) && head.origin.starts_with(scheme) &&
+        equal_ignoring_case(head.origin.substr(scheme.size()), head.host))
+      return true;
+  }
+  return false;
+}
+
 bool is_trusted_local(const RequestHead& head, const Peer& peer) {
-  if (!peer.loopback || is_present(head.forwarded)) return false;
+  if (!peer.loopback || peer.proxy || is_present(head.forwarded)) return false;
   if (is_present(head.host) && !is_fixed_name(host_part(head.host))) return false;
-  if (!is_present(head.origin)) return true;
-  constexpr std::string_view kScheme = "http://";
-  return head.origin.starts_with(kScheme) &&
-         equal_ignoring_case(head.origin.substr(kScheme.size()), head.host);
+  return !is_present(head.origin) || from_own_page(head);
 }
 
 std::optional<Error> refuse_writing(const RequestHead& head, const Peer& peer,
                                     std::string_view bearer_token) {
-  if (is_trusted_local(head, peer)) return std::nullopt;
-  if (bearer_token.empty())
+  if (bearer_token.empty()) {
+    if (is_trusted_local(head, peer)) return std::nullopt;
     return Error{ErrorCode::Forbidden, "Authorization",
                  "writing methods are refused from here: this service has no bearer token "
                  "configured, so only direct requests from its own host are accepted"};
-  std::string_view given = head.authorization;
-  const bool is_bearer = given.size() > kBearer.size() &&
-                         equal_ignoring_case(given.substr(0, kBearer.size()), kBearer);
-  given.remove_prefix(std::min(given.size(), kBearer.size()));
-  if (is_bearer && same_secret(trimmed(given), bearer_token)) return std::nullopt;
+  }
+  if (has_token(head, bearer_token)) return std::nullopt;
   return Error{ErrorCode::Unauthorized, "Authorization",
                "send the bearer token of this service: \"Authorization: Bearer TOKEN\""};
 }

@@ -1,10 +1,11 @@
-// Who may use writing methods.
+// Who may read and who may write: by which name, from which page, from where, with which token.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/base/error.h"
 #include "common/http/request_head.h"
@@ -16,16 +17,29 @@ struct Peer {
   bool loopback = false;
   std::string local_address = {};  ///< Ours, as text without port.
   std::uint16_t local_port = 0;
+  bool proxy = false;        ///< One of ServerConfig::trusted_proxies: it asks for others.
+  std::string account = {};  ///< Whose connection it is, as limits count.
 };
 
 /// Constant time whatever the bytes are: compares SHA-256 digests.
 [[nodiscard]] bool same_secret(std::string_view a, std::string_view b);
 
+/// True when a Host field names this service: by an address, as localhost, or by one of `names`.
+/// Any other name may be one that a web page's owner lets point here (DNS rebinding).
+[[nodiscard]] bool is_own_host(std::string_view host, const std::vector<std::string>& names);
+
+/// The name of this host, and the same with ".local".
+[[nodiscard]] std::vector<std::string> host_names();
+
+/// True for a request that a page of this very service makes.
+[[nodiscard]] bool from_own_page(const RequestHead& head);
+
 /// True for a request of a person or program on this host.  Not for one that a proxy handed on, nor
 /// for a web page of some other origin that a browser on this host runs, DNS rebinding included.
 [[nodiscard]] bool is_trusted_local(const RequestHead& head, const Peer& peer);
 
-/// Nothing when a writing method is allowed: trusted local, or the right bearer token.
+/// Nothing when a writing method is allowed: with the right bearer token where there is one, else
+/// trusted local.  Being local does not replace the token: a proxy on this host is local as well.
 [[nodiscard]] std::optional<Error> refuse_writing(const RequestHead& head, const Peer& peer,
                                                   std::string_view bearer_token);
 

@@ -34,6 +34,7 @@ constexpr std::array kReasons{
     ReasonRow{414, "URI Too Long"},
     ReasonRow{417, "Expectation Failed"},
     ReasonRow{421, "Misdirected Request"},
+    ReasonRow{429, "Too Many Requests"},
     ReasonRow{431, "Request Header Fields Too Large"},
     ReasonRow{500, "Internal Server Error"},
     ReasonRow{501, "Not Implemented"},

@@ -18,20 +18,25 @@ constexpr int kRequestTimeout = 408;
 constexpr int kUriTooLong = 414;
 constexpr int kFieldsTooLarge = 431;
 constexpr int kNotModified = 304;
+constexpr int kUnauthorized = 401;
+constexpr int kTooManyRequests = 429;
+constexpr int kUnavailable = 503;
 
 }  // namespace
 
 Connection::Connection(ServerCore& core, Socket socket, const tcp::endpoint& remote)
-    : Session(remote.address().to_string()),
+    : Session(account_of(remote.address())),
       core_(core),
       socket_(std::move(socket)),
       buffer_(std::make_unique_for_overwrite<char[]>(core.config.limits.max_header_bytes)),
       capacity_(core.config.limits.max_header_bytes) {
   error_code failed;
   const auto local = socket_.local_endpoint(failed);
-  peer_.loopback = remote.address().is_loopback();
-  peer_.local_address = local.address().to_string();
+  peer_.loopback = unmapped(remote.address()).is_loopback();
+  peer_.proxy = core_.is_proxy(remote.address());
+  peer_.local_address = unmapped(local.address()).to_string();
   peer_.local_port = local.port();
+  peer_.account = peer_address();
   socket_.set_option(tcp::no_delay(true), failed);
 }
 
@@ -42,11 +47,13 @@ void Connection::start() {
   read();
 }
 
-void Connection::turn_away() {
-  constexpr int kUnavailable = 503;
-  received_ = core_.config.clock->now();
-  send(core_.responder.refuse({kUnavailable, "too many connections; keep fewer open"}));
+void Connection::start_in_reserve() {
+  in_reserve_ = close_after_ = true;
+  expire_in(core_.config.limits.header_timeout);
+  read();
 }
+
+bool Connection::idle() const { return state_ == State::Head && begin_ == end_ && !in_reserve_; }
 
 void Connection::read() {
   if (reading_ || end_ == capacity_) return;
@@ -116,6 +123,7 @@ void Connection::serve(std::size_t head_size) {
     return refuse(refusal->status, std::move(refusal->detail));
   count(core_.counters.requests);
   if (!head_.keep_alive) close_after_ = true;
+  if (!may_ask()) return refuse_for_now("too many connections; keep fewer open");
   reaction_ = core_.responder.react(head_, peer_);
   switch (reaction_.kind) {
     case Reaction::Kind::Answer:
@@ -130,6 +138,18 @@ void Connection::serve(std::size_t head_size) {
       return upgrade();
   }
 }
+
+/// Whether there is room for this request's sender; beyond the limits only for what is vital.
+bool Connection::may_ask() {
+  if (peer_.proxy) {
+    const auto account = forwarded_account(head_);
+    if (account && !core_.charge(*this, *account)) return core_.responder.is_vital(head_);
+    peer_.account = peer_address();
+  }
+  return !in_reserve_ || core_.responder.is_vital(head_);
+}
+
+void Connection::refuse_for_now(std::string detail) { refuse(kUnavailable, std::move(detail)); }
 
 /// The socket and what has been read of it go to a session that speaks the other protocol.
 void Connection::upgrade() {
@@ -172,12 +192,19 @@ void Connection::advance_body() {
 }
 
 void Connection::send(Answer answer) {
+  if (answer.file && !begin_download()) {
+    count(core_.counters.refused);
+    answer = core_.responder.refuse(
+        {kUnavailable, "too many files are on their way to others; ask again when one is done"});
+  }
   answer_ = std::move(answer);
   sent_of_file_ = 0;
   state_ = State::Writing;
   close_after_ = close_after_ || answer_.close || core_.stopping;
   expire_in(core_.config.limits.write_timeout);
   if (answer_.status == kNotModified) count(core_.counters.not_modified);
+  if (answer_.status == kUnauthorized || answer_.status == kTooManyRequests)
+    count(core_.counters.unauthorized);
   first_lines_.clear();
   const bool tell = head_.minor_version == 0 && !close_after_;
   write_first_lines(first_lines_, answer_,
@@ -195,6 +222,7 @@ void Connection::on_sent(error_code failed, std::size_t size) {
   count(core_.counters.bytes_sent, size);
   if (!failed && send_piece()) return;
   answer_ = {};
+  end_download();
   if (failed) return close();
   if (reaction_.kind == Reaction::Kind::Stream) {
     state_ = State::Streaming;
@@ -202,6 +230,18 @@ void Connection::on_sent(error_code failed, std::size_t size) {
   }
   if (close_after_ || core_.stopping) return linger();
   next_request();
+}
+
+bool Connection::begin_download() {
+  auto& open = core_.counters.downloads_open;
+  if (open.load(std::memory_order_relaxed) >= core_.config.limits.max_downloads) return false;
+  count(open);
+  return downloading_ = true;
+}
+
+void Connection::end_download() {
+  if (std::exchange(downloading_, false))
+    count(core_.counters.downloads_open, static_cast<std::uint64_t>(-1));
 }
 
 /// The next piece of the answer's file; false when there is none left.
@@ -246,6 +286,9 @@ void Connection::linger() {
 }
 
 void Connection::begin_wait() {
+  if (core_.counters.long_polls_waiting.load(std::memory_order_relaxed) >=
+      core_.config.limits.max_long_polls)
+    return refuse_for_now("too many long polls are waiting; ask without Prefer: wait");
   state_ = State::Waiting;
   expire_in(reaction_.wait);
   count(core_.counters.long_polls_waiting);
@@ -290,7 +333,6 @@ void Connection::expire() {
 }
 
 void Connection::stop() {
-  constexpr int kUnavailable = 503;
   switch (state_) {
     case State::Waiting:
       core_.stop_waiting(reaction_.entry->index, this);
@@ -308,6 +350,7 @@ void Connection::close() {
   if (state_ == State::Closed) return;
   const State before = std::exchange(state_, State::Closed);
   const auto self = shared_from_this();  // forget() drops what may be the last reference.
+  end_download();
   if (before == State::Waiting)
     count(core_.counters.long_polls_waiting, static_cast<std::uint64_t>(-1));
   if (reaction_.kind == Reaction::Kind::Stream)

@@ -25,12 +25,13 @@ class Connection final : public Session {
   Connection(ServerCore& core, Socket socket, const tcp::endpoint& remote);
 
   void start();
-  /// Answers 503 and closes: there are too many connections.
-  void turn_away();
+  /// There are too many connections: answers one request, if it is for something vital, and closes.
+  void start_in_reserve();
   void wake() override;
   void expire() override;
   void stop() override;
   void close() override;
+  [[nodiscard]] bool idle() const override;
 
  private:
   enum class State { Head, Body, Writing, Waiting, Streaming, Lingering, Closed };
@@ -43,7 +44,11 @@ class Connection final : public Session {
   void serve(std::size_t head_size);
   void begin_body();
   void advance_body();
+  [[nodiscard]] bool may_ask();
+  void refuse_for_now(std::string detail);
   void send(Answer answer);
+  [[nodiscard]] bool begin_download();
+  void end_download();
   void on_sent(error_code failed, std::size_t size);
   bool send_piece();
   void next_request();
@@ -67,6 +72,8 @@ class Connection final : public Session {
   bool reading_ = false;
   bool end_of_input_ = false;
   bool close_after_ = false;
+  bool in_reserve_ = false;
+  bool downloading_ = false;
 
   std::unique_ptr<char[]> buffer_;  ///< One head at most; what follows it stays in the kernel.
   std::size_t capacity_ = 0;

@@ -14,6 +14,7 @@ namespace chorus::http {
 namespace {
 
 constexpr std::string_view kEventStream = "text/event-stream";
+constexpr int kMisdirected = 421;
 constexpr std::string_view kWaitApplied = "Preference-Applied: wait\r\n";
 
 bool is_head(const RequestHead& head) { return head.method == Method::Head; }
@@ -57,10 +58,14 @@ bool asks_by_query(const RequestHead& head, const Router::Entry& entry) {
 Responder::Responder(const ServerConfig& config, std::shared_ptr<const Router> router)
     : bearer_token_(config.bearer_token),
       allowed_origin_(config.allowed_origin),
+      hosts_(host_names()),
       limits_(config.limits),
       router_(std::move(router)),
-      any_route_(common_lines(config)),
-      faults_(std::make_unique<RateReport>("request failed", log::Level::Error)) {
+      any_route_(common_lines(config.allowed_origin)),
+      faults_(std::make_unique<RateReport>("request failed", log::Level::Error)),
+      wrong_tokens_(std::make_unique<RateReport>("wrong bearer token")),
+      tries_(std::make_unique<TokenTries>()) {
+  hosts_.insert(hosts_.end(), config.hosts.begin(), config.hosts.end());
   for (const auto& entry : router_->entries()) route_lines_.push_back(lines_of(config, *entry));
 }
 
@@ -70,9 +75,13 @@ std::string_view Responder::route_lines(const Router::Entry& entry) const {
 
 Reaction Responder::react(const RequestHead& head, const Peer& peer) const {
   if (!head.authority.empty() && !is_our_authority(head.authority, peer)) {
-    constexpr int kMisdirected = 421;
     return Reaction::of(
         refuse({kMisdirected, "this server is no proxy; ask it by its own address"}));
+  }
+  if (is_present(head.host) && !is_own_host(head.host, hosts_)) {
+    return Reaction::of(
+        refuse({kMisdirected, "this service is not called " + std::string(head.host) +
+                                  ": ask it by its address, or list the name under http.hosts"}));
   }
   if (head.asterisk) return options(any_route_, "GET, HEAD, OPTIONS");
   std::string storage;
@@ -91,6 +100,14 @@ Reaction Responder::react(const RequestHead& head, const Peer& peer) const {
     default:
       return write(head, std::move(*match), peer);
   }
+}
+
+bool Responder::is_vital(const RequestHead& head) const {
+  std::string storage;
+  const auto path = decode_path(head.path, storage);
+  if (!path) return false;
+  const auto match = router_->match(*path);
+  return match && match->entry->vital;
 }
 
 Reaction Responder::options(const std::string& route, std::string_view allowed) const {
@@ -218,7 +235,11 @@ Answer Responder::fault(const Error& error, const RequestHead& head, std::string
 }
 
 Answer Responder::refuse(const Refusal& refusal) const {
-  Answer answer = problem_answer({refusal.status, "malformed", {}, {}, refusal.detail}, false);
+  constexpr int kUnavailable = 503;
+  std::string_view code = name_of(ErrorCode::Malformed);
+  if (refusal.status == kUnavailable) code = name_of(ErrorCode::Unavailable);
+  if (refusal.status == kMisdirected) code = name_of(ErrorCode::Forbidden);
+  Answer answer = problem_answer({refusal.status, code, {}, {}, refusal.detail}, false);
   answer.route = any_route_;
   answer.close = true;
   return answer;

@@ -15,6 +15,7 @@
 #include "common/http/request_head.h"
 #include "common/http/route_table.h"
 #include "common/http/server.h"
+#include "common/http/token_tries.h"
 
 namespace chorus::http {
 
@@ -59,19 +60,22 @@ class Responder {
   /// A problem document for a request that never became one.
   [[nodiscard]] Answer refuse(const Refusal& refusal) const;
 
+  /// True for a request for what is answered even when there is no room.
+  [[nodiscard]] bool is_vital(const RequestHead& head) const;
+
   [[nodiscard]] const Router& router() const { return *router_; }
 
   void set_bearer_token(std::string token) { bearer_token_ = std::move(token); }
 
  private:
-  struct Reading;
-
   [[nodiscard]] Reaction read(const RequestHead& head, const Router::Match& match, const Peer& peer,
                               std::string_view path) const;
   [[nodiscard]] Reaction read_live(const RequestHead& head, const Router::Entry& entry) const;
   [[nodiscard]] Reaction upgrade(const RequestHead& head, const Router::Entry& entry) const;
   [[nodiscard]] Reaction write(const RequestHead& head, Router::Match match,
                                const Peer& peer) const;
+  [[nodiscard]] std::optional<Answer> turn_down(const RequestHead& head, const Peer& peer,
+                                                std::string_view route) const;
   [[nodiscard]] Reaction options(const std::string& route, std::string_view allowed) const;
   [[nodiscard]] Answer represent(const DocumentPtr& document, const RequestHead& head,
                                  std::string_view route) const;
@@ -81,11 +85,14 @@ class Responder {
 
   std::string bearer_token_;
   std::string allowed_origin_;
+  std::vector<std::string> hosts_;  ///< What we are called.
   ServerLimits limits_;
   std::shared_ptr<const Router> router_;
   std::string any_route_;                 ///< Header lines of answers without a route.
   std::vector<std::string> route_lines_;  ///< By entry.
   std::unique_ptr<RateReport> faults_;
+  std::unique_ptr<RateReport> wrong_tokens_;
+  std::unique_ptr<TokenTries> tries_;
 };
 
 }  // namespace chorus::http

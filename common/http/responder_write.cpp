@@ -26,6 +26,29 @@ Result<Answer> answer_of(const ActionResult& done, std::string_view accept) {
 
 }  // namespace
 
+/// What says that this request may not write; nothing when it may.
+std::optional<Answer> Responder::turn_down(const RequestHead& head, const Peer& peer,
+                                           std::string_view route) const {
+  const auto now = std::chrono::steady_clock::now();
+  const bool tries = !bearer_token_.empty() && is_present(head.authorization);
+  if (tries && !tries_->may_try(peer.account, now)) {
+    constexpr int kTooManyRequests = 429;
+    const std::string detail =
+        "too many wrong tokens came from your address; try again in a second";
+    Answer answer = complaint({kTooManyRequests, name_of(ErrorCode::Unauthorized), {}, {}, detail},
+                              head, route);
+    answer.extra = "Retry-After: 1\r\n";
+    return answer;
+  }
+  const auto refused = refuse_writing(head, peer, bearer_token_);
+  if (!refused) return std::nullopt;
+  if (tries) {
+    tries_->note_wrong(peer.account, now);
+    wrong_tokens_->hit(peer.account);
+  }
+  return fault(*refused, head, route);
+}
+
 Reaction Responder::write(const RequestHead& head, Router::Match match, const Peer& peer) const {
   const std::string_view route = route_lines(*match.entry);
   const auto action = match.entry->actions.find(head.method);
@@ -35,8 +58,7 @@ Reaction Responder::write(const RequestHead& head, Router::Match match, const Pe
         "this resource answers " + allowed_methods(*match.entry) + " and no other method";
     return Reaction::of(complaint({kMethodNotAllowed, "unsupported", {}, {}, detail}, head, route));
   }
-  if (const auto refused = refuse_writing(head, peer, bearer_token_))
-    return Reaction::of(fault(*refused, head, route));
+  if (auto refused = turn_down(head, peer, route)) return Reaction::of(std::move(*refused));
   if (head.content_length > limits_.max_body_bytes)
     return Reaction::of(fault({ErrorCode::TooLarge, "Content-Length",
                                "send at most " + std::to_string(limits_.max_body_bytes) + " bytes"},

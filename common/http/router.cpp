@@ -117,6 +117,10 @@ void Router::files(std::string prefix, std::string folder) {
   entry.files = std::make_unique<StaticFiles>(std::move(folder));
 }
 
+void Router::vital(const std::string& pattern) { entry_of(pattern).vital = true; }
+
+void Router::shows_people(const std::string& pattern) { entry_of(pattern).shows_people = true; }
+
 Result<Router::Match> Router::match(std::string_view path) const {
   if (const auto literal = literal_.find(path); literal != literal_.end())
     return Match{literal->second};

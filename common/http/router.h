@@ -56,11 +56,17 @@ class Router {
   void live(std::string pattern, std::shared_ptr<LiveDocument> document);
   /// GET/HEAD with ?key=... of a pattern that live() knows: answered by the getter instead.
   void by_query(const std::string& pattern, std::string key, Getter getter);
-  /// A writing method; needs a bearer token unless the request comes from loopback.
+  /// A writing method; ServerConfig::bearer_token says who may use it.
   void action(Method method, std::string pattern, Action action);
   /// GET/HEAD of the files below `folder`, never outside it; types by extension.  Prefix ends in
   /// '/'.
   void files(std::string prefix, std::string folder);
+
+  /// What a monitor reads: still answered when there are as many connections as may be.
+  void vital(const std::string& pattern);
+  /// Pictures and recordings: no web page of another origin reads them unless that very origin is
+  /// allowed; "*" is not enough.
+  void shows_people(const std::string& pattern);
 
   struct Match;
   struct Entry;

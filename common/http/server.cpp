@@ -42,7 +42,8 @@ ServerCounters Server::counters() const {
   return {read(now.requests),           read(now.refused),          read(now.not_modified),
           read(now.connections_total),  read(now.connections_open), read(now.long_polls_waiting),
           read(now.event_streams_open), read(now.websockets_open),  read(now.events_skipped),
-          read(now.bytes_sent)};
+          read(now.bytes_sent),         read(now.downloads_open),   read(now.unauthorized),
+          read(now.closed_for_room),    read(now.connections_limit)};
 }
 
 void Server::set_bearer_token(std::string token) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "common/base/result.h"
 #include "common/http/router.h"
@@ -14,8 +15,12 @@
 namespace chorus::http {
 
 struct ServerLimits {
+  /// Fewer when the system gives fewer descriptors.  Some more are let in, to be told so and to
+  /// read what is vital (Router::vital).
   std::size_t max_connections = 2000;
-  std::size_t max_connections_per_peer = 1000;
+  std::size_t max_per_address = 64;  ///< Not for loopback and trusted proxies.
+  std::size_t max_long_polls = 1500;
+  std::size_t max_downloads = 16;  ///< Files under way at once; each costs 256 KiB.
   std::size_t max_header_bytes = 8192;
   std::size_t max_body_bytes = 65536;  ///< Only for routes with an action; GET takes no body.
   std::chrono::seconds idle_timeout{60};
@@ -29,9 +34,15 @@ struct ServerLimits {
 
 struct ServerConfig {
   std::string address = "127.0.0.1";
-  std::uint16_t port = 0;         ///< 0: any free port; ask port() after start.
-  std::string bearer_token = {};  ///< Empty: writing methods are refused except from loopback.
-  std::string allowed_origin = "*";
+  std::uint16_t port = 0;  ///< 0: any free port; ask port() after start.
+  /// Once set, every writing method needs it.  Empty: only direct requests from loopback may write.
+  std::string bearer_token = {};
+  /// Web pages that may read beside our own: of one origin, or "*" for all.  Empty: none.
+  std::string allowed_origin = {};
+  /// What this service is called, beside addresses, localhost and the name of this host.
+  std::vector<std::string> hosts = {};
+  /// Numeric addresses whose X-Forwarded-For is believed, for limits; never taken for this host.
+  std::vector<std::string> trusted_proxies = {};
   std::shared_ptr<const Clock> clock = {};  ///< Stamps Chorus-Clock and Date; null: the host's.
   ServerLimits limits = {};
 
@@ -50,6 +61,10 @@ struct ServerCounters {
   std::uint64_t websockets_open = 0;
   std::uint64_t events_skipped = 0;  ///< Frames a slow reader of a stream did not get.
   std::uint64_t bytes_sent = 0;
+  std::uint64_t downloads_open = 0;
+  std::uint64_t unauthorized = 0;       ///< Writing requests with a wrong token, or with none.
+  std::uint64_t closed_for_room = 0;    ///< Idle connections that gave way to others.
+  std::uint64_t connections_limit = 0;  ///< That many at once, as far as descriptors go.
 };
 
 /// Owns one thread that runs all sockets.

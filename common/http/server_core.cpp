@@ -2,12 +2,23 @@
 
 #include <algorithm>
 
+#include "common/base/log.h"
+
 namespace chorus::http {
 namespace {
 
 constexpr std::chrono::milliseconds kSweepInterval{250};
 constexpr std::chrono::seconds kStopTime{2};
-constexpr std::size_t kMaxTurnedAway = 64;  // Beyond the limit, so many still get to read a 503.
+
+void warn_of_open_door(const ServerConfig& config) {
+  error_code failed;
+  const auto address = net::ip::make_address(config.address, failed);
+  if (failed || address.is_loopback() || !config.bearer_token.empty()) return;
+  log::warn("open to the network without a token",
+            {{"address", config.address},
+             {"means", "everybody there may read where people are; nobody there may write"},
+             {"advice", "set http.bearer_token, or http.address to 127.0.0.1"}});
+}
 
 }  // namespace
 
@@ -23,31 +34,14 @@ ServerCore::ServerCore(ServerConfig server_config, std::shared_ptr<const Router>
 }
 
 Result<void> ServerCore::listen() {
+  fit_descriptors();
+  warn_of_open_door(config);
   return accepting.listen({config.address, config.port, "http.port"});
 }
 
 void ServerCore::ensure() {
   accepting.ensure();
   sweeping.ensure();
-}
-
-void ServerCore::welcome(Socket socket) {
-  error_code gone;
-  const tcp::endpoint remote = socket.remote_endpoint(gone);
-  if (gone) return;
-  const std::size_t most = config.limits.max_connections;
-  if (sessions.size() >= most + kMaxTurnedAway) return;  // Closes it.
-  auto connection = std::make_shared<Connection>(*this, std::move(socket), remote);
-  std::size_t& of_peer = per_peer[connection->peer_address()];
-  const bool too_many =
-      sessions.size() >= most || of_peer >= config.limits.max_connections_per_peer;
-  ++of_peer;
-  sessions.emplace(connection.get(), connection);
-  count(counters.connections_total);
-  counters.connections_open.store(sessions.size(), std::memory_order_relaxed);
-  if (!too_many) return connection->start();
-  count(counters.refused);
-  connection->turn_away();
 }
 
 void ServerCore::sweep() {

@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "common/http/admission.h"
 #include "common/http/asio.h"
 #include "common/http/connection.h"
 #include "common/http/every.h"
@@ -22,7 +23,8 @@ struct AtomicCounters {
   using Count = std::atomic<std::uint64_t>;
   Count requests = 0, refused = 0, not_modified = 0, connections_total = 0, connections_open = 0,
         long_polls_waiting = 0, event_streams_open = 0, websockets_open = 0, events_skipped = 0,
-        bytes_sent = 0;
+        bytes_sent = 0, downloads_open = 0, unauthorized = 0, closed_for_room = 0,
+        connections_limit = 0;
 };
 
 /// One writer: a plain load and store is cheaper than a locked add.
@@ -37,6 +39,10 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   /// Starts what must always be under way, as far as it is not.
   void ensure();
   void welcome(Socket socket);
+  /// Counts the session for another address from now on, which a trusted proxy names; false when
+  /// that has too many connections already.
+  [[nodiscard]] bool charge(Session& session, const std::string& account);
+  [[nodiscard]] bool is_proxy(const net::ip::address& address) const;
   void sweep();
   void subscribe();
   /// From any thread: wakes who waits for the entry, soon; many calls before that count as one.
@@ -60,9 +66,14 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   bool stopping = false;
   SteadyTime stop_deadline{};
   std::unordered_map<const Session*, std::shared_ptr<Session>> sessions;
-  std::map<std::string, std::size_t> per_peer;
+  std::map<std::string, std::size_t> per_peer;  ///< Connections by account_of the client.
+  std::size_t most_connections = 0;             ///< limits.max_connections, or what there is.
   std::vector<std::vector<std::shared_ptr<Session>>> waiting;  ///< By entry.
   std::unique_ptr<std::atomic<bool>[]> wake_posted;            ///< By entry.
+
+ private:
+  void fit_descriptors();
+  [[nodiscard]] bool close_an_idle_one(const Session* newcomer, bool of_its_address);
 };
 
 }  // namespace chorus::http

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 #include <string>
+#include <utility>
 
 namespace chorus::http {
 
@@ -24,7 +25,12 @@ class Session : public std::enable_shared_from_this<Session> {
   virtual void close() = 0;
 
   [[nodiscard]] SteadyTime deadline() const { return deadline_; }
+  /// True between requests: it may be closed when others need the room.
+  [[nodiscard]] virtual bool idle() const { return false; }
+
+  /// Whose connection this is, as limits count: see account_of.
   [[nodiscard]] const std::string& peer_address() const { return peer_address_; }
+  void charge_to(std::string account) { peer_address_ = std::move(account); }
 
  protected:
   SteadyTime deadline_{};

@@ -165,7 +165,8 @@ bool asks_for_websocket(const RequestHead& head) {
 }
 
 bool may_open(const RequestHead& head, std::string_view allowed_origin) {
-  return !is_present(head.origin) || allowed_origin == "*" || head.origin == allowed_origin;
+  return !is_present(head.origin) || from_own_page(head) || allowed_origin == "*" ||
+         head.origin == allowed_origin;
 }
 
 std::shared_ptr<Session> open_websocket(ServerCore& core, WebSocketOpening opening) {

@@ -1,6 +1,44 @@
 #include "common/service/http_config.h"
 
+#include <string>
+
+#include "common/http/admission.h"
+
 namespace chorus::service {
+namespace {
+
+void read_names(ConfigReader& config, http::ServerConfig& out) {
+  config.read("hosts", out.hosts);
+  for (const std::string& host : out.hosts) {
+    if (host.empty() || host.find_first_of(":/ ") != std::string::npos)
+      config.complain("hosts", "names only, without scheme and port, such as tracker.example");
+  }
+  config.read("trusted_proxies", out.trusted_proxies);
+  for (std::string& proxy : out.trusted_proxies) {
+    http::error_code failed;
+    const auto address = http::net::ip::make_address(proxy, failed);
+    if (failed) {
+      config.complain("trusted_proxies", "numeric addresses only, such as 127.0.0.1");
+    } else {
+      proxy = http::unmapped(address).to_string();
+    }
+  }
+}
+
+void read_limits(ConfigReader& config, http::ServerLimits& out) {
+  constexpr int kMost = 60'000;
+  const auto read_count = [&](std::string_view key, std::size_t& count, int least) {
+    int value = static_cast<int>(count);
+    config.read(key, value, least, kMost);
+    count = static_cast<std::size_t>(value);
+  };
+  read_count("max_connections", out.max_connections, 8);
+  read_count("max_per_address", out.max_per_address, 1);
+  read_count("max_long_polls", out.max_long_polls, 1);
+  read_count("max_downloads", out.max_downloads, 1);
+}
+
+}  // namespace
 
 void read_http(ConfigReader config, http::ServerConfig& out) {
   config.read("address", out.address);
@@ -9,6 +47,8 @@ void read_http(ConfigReader config, http::ServerConfig& out) {
   out.port = static_cast<std::uint16_t>(port);
   config.read("bearer_token", out.bearer_token);
   config.read("allowed_origin", out.allowed_origin);
+  read_names(config, out);
+  read_limits(config, out.limits);
 }
 
 bool differ_in_token_at_most(const http::ServerConfig& a, const http::ServerConfig& b) {

@@ -117,9 +117,16 @@ void add_server(MetricsText& text, const http::ServerCounters& counters) {
       Row{"chorus_http_events_skipped_total", "Frames that slow event-stream readers did not get.",
           counters.events_skipped},
       Row{"chorus_http_sent_bytes_total", "Bytes sent.", counters.bytes_sent},
+      Row{"chorus_http_unauthorized_total", "Writing requests with a wrong token or none.",
+          counters.unauthorized},
+      Row{"chorus_http_closed_for_room_total", "Idle connections that gave way to others.",
+          counters.closed_for_room},
   };
   const std::array now{
       Row{"chorus_http_connections", "Open connections.", counters.connections_open},
+      Row{"chorus_http_connections_limit", "Connections that are possible at once.",
+          counters.connections_limit},
+      Row{"chorus_http_downloads", "Files being sent.", counters.downloads_open},
       Row{"chorus_http_longpoll_waiters", "Long polls waiting.", counters.long_polls_waiting},
       Row{"chorus_http_event_streams", "Open event streams.", counters.event_streams_open},
       Row{"chorus_http_websockets", "Open WebSockets.", counters.websockets_open},

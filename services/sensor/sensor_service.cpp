@@ -144,6 +144,8 @@ void SensorService::add_image_routes(http::Router& router) {
     return images_.ask().map(
         [this](const SightPtr& now) { return image_list(*now, options_.serving); });
   });
+  router.shows_people("/images/color");
+  router.shows_people("/images/depth");
   router.get("/images/color",
              [this](const Request&, const PathParams&) { return image(&Sight::color); });
   router.get("/images/depth",

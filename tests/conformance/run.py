@@ -34,7 +34,8 @@ def tracks_somebody(base):
 def main(command):
     port = free_ports(SENSORS + 1)
     base = f"http://127.0.0.1:{port}"
-    demo = subprocess.Popen(["deploy/demo.sh", "--bin", os.environ["CHORUS_BIN"], "--port", str(port)], cwd=ROOT,
+    demo = subprocess.Popen(["deploy/demo.sh", "--bin", os.environ["CHORUS_BIN"], "--port", str(port),
+                             "--set", 'http.allowed_origin="null"'], cwd=ROOT,  # of pages opened as files
                             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
     try:
         deadline = time.monotonic() + TRACKS_WITHIN_S

@@ -12,7 +12,7 @@ READERS = {
                     "fusion-server/natnet", "fusion-server/trackd", "fusion-server/osc", "fusion-server/mxtp", "common/service"],
     "sensor.json": ["services/sensor", "common/service"],
 }
-READ = re.compile(r"""(?:(?:\.|->)(?:read(?:_ms|_s|_deg|_choice)?|child|items)\(|\bread_\w+\(\w+,|\bvisit\(|\bDeviceKind\{|\bread_mb\()\s*"([A-Za-z0-9_]+)\"""")
+READ = re.compile(r"""(?:(?:\.|->)(?:read(?:_ms|_s|_deg|_choice)?|child|items)\(|\bread_\w+\(\w+,|\bvisit\(|\bDeviceKind\{|\bread_mb\(|\bread_count\()\s*"([A-Za-z0-9_]+)\"""")
 KEY_LINE = re.compile(r'^\s*"([A-Za-z0-9_]+)"\s*:')
 UNITS = {"read_ms": "_ms", "read_s": "_s", "read_deg": "_deg"}
 READ_UNIT = re.compile(r"""(?:\.|->)(read_ms|read_s|read_deg)\(\s*"([A-Za-z0-9_]+)\"""")

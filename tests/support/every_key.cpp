@@ -29,6 +29,7 @@ std::vector<json> other_values(const json& value) {
   if (value.is_array()) {
     others.push_back(json::array());
     others.push_back(json::array({"127.0.0.1:7"}));
+    others.push_back(json::array({"127.0.0.1"}));
     others.push_back(json::parse(R"([{"kind": "pillar"}])"));
   }
   std::erase(others, value);  // zero times something

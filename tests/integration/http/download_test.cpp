@@ -4,9 +4,13 @@
 
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <thread>
+#include <vector>
 
 #include "common/http/client.h"
 #include "common/http/server.h"
+#include "tests/integration/http/raw_client.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chorus::http {
@@ -49,6 +53,26 @@ class Download : public ::testing::Test {
   std::string content_;
   std::unique_ptr<Server> server_;
 };
+
+TEST_F(Download, OnlySoManyAtOnce) {
+  write(64u << 20);
+  const std::size_t most = ServerLimits{}.max_downloads;
+  std::vector<std::unique_ptr<test::RawClient>> readers;
+  for (std::size_t i = 0; i < most; ++i) {
+    readers.push_back(std::make_unique<test::RawClient>(server_->port(), 4096));
+    readers.back()->say("GET /file HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    EXPECT_EQ(test::status_in(readers.back()->hear_until("\r\n\r\n")), 200);
+  }
+  EXPECT_EQ(server_->counters().downloads_open, most);
+  const auto refused = ask();
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->status, 503);
+  EXPECT_EQ(refused->headers.at("retry-after"), "1");
+  readers.clear();
+  for (int i = 0; i < 300 && server_->counters().downloads_open > 0; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_EQ(server_->counters().downloads_open, 0u);
+}
 
 TEST_F(Download, ArrivesByteForByteWhateverItsSize) {
   for (const std::size_t size :

@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr std::string_view kGood = "GET /frame HTTP/1.1\r\nHost: x\r\n\r\n";
+constexpr std::string_view kGood = "GET /frame HTTP/1.1\r\nHost: localhost\r\n\r\n";
 
 class HostileTest : public testing::Test {
  protected:
@@ -25,8 +25,6 @@ class HostileTest : public testing::Test {
     config.limits.header_timeout = std::chrono::seconds(1);
     config.limits.body_timeout = std::chrono::seconds(1);
     config.limits.write_timeout = std::chrono::seconds(1);
-    config.limits.max_connections = 40;
-    config.limits.max_connections_per_peer = 30;
     return config;
   }
   void SetUp() override { service_.frame->publish(frame_document(1)); }
@@ -133,8 +131,8 @@ TEST_F(HostileTest, AcceptedOddities) {
   for (const std::string& request :
        {"GET http://" + own + "/frame HTTP/1.1\r\nHost: " + own + "\r\n\r\n",
         "GET HTTP://" + own + "/frame HTTP/1.1\r\nHost: " + own + "\r\n\r\n",
-        std::string("GET /frame HTTP/1.1\r\nhOsT:\t x \t\r\nX:\r\n\r\n"),
-        std::string("GET /%66rame?a HTTP/1.1\r\nHost: x\r\nContent-Length: 0\r\n\r\n")}) {
+        std::string("GET /frame HTTP/1.1\r\nhOsT:\t localhost \t\r\nX:\r\n\r\n"),
+        std::string("GET /%66rame?a HTTP/1.1\r\nHost: localhost\r\nContent-Length: 0\r\n\r\n")}) {
     RawClient client(port());
     client.say(request);
     EXPECT_EQ(status_in(client.hear_until(".\n")), 200) << request;
@@ -191,7 +189,7 @@ TEST_F(HostileTest, TenThousandPipelinedRequestsAreAnsweredInOrder) {
   RawClient client(port());
   std::string requests;
   for (int i = 0; i < kRequests; ++i)
-    requests += "GET /frames/" + std::to_string(i) + " HTTP/1.1\r\nHost: x\r\n" +
+    requests += "GET /frames/" + std::to_string(i) + " HTTP/1.1\r\nHost: localhost\r\n" +
                 (i + 1 == kRequests ? "Connection: close\r\n\r\n" : "\r\n");
   std::thread sender([&] { client.say(requests); });
   const std::string answers = client.hear_all(std::chrono::seconds(60));
@@ -208,7 +206,7 @@ TEST_F(HostileTest, TenThousandPipelinedRequestsAreAnsweredInOrder) {
 TEST_F(HostileTest, AClientThatNeverReadsIsClosed) {
   RawClient client(port(), 4096);
   std::string requests;
-  for (int i = 0; i < 100; ++i) requests += "GET /big HTTP/1.1\r\nHost: x\r\n\r\n";
+  for (int i = 0; i < 100; ++i) requests += "GET /big HTTP/1.1\r\nHost: localhost\r\n\r\n";
   client.say(requests);
   // While it hangs, others are served; then the write deadline frees the connection.
   EXPECT_EQ(service_.ask("/frame").status, 200);
@@ -220,7 +218,9 @@ TEST_F(HostileTest, AClientThatNeverReadsIsClosed) {
 }
 
 TEST_F(HostileTest, ConnectionCloseAndHttp10AreHonoured) {
-  EXPECT_EQ(status_in(refused("GET /frame HTTP/1.1\r\nHost: x\r\nConnection: Close\r\n\r\n")), 200);
+  EXPECT_EQ(
+      status_in(refused("GET /frame HTTP/1.1\r\nHost: localhost\r\nConnection: Close\r\n\r\n")),
+      200);
   EXPECT_EQ(status_in(refused("GET /frame HTTP/1.0\r\n\r\n")), 200);
   RawClient kept(port());
   for (int i = 0; i < 2; ++i) {
@@ -229,18 +229,6 @@ TEST_F(HostileTest, ConnectionCloseAndHttp10AreHonoured) {
     EXPECT_EQ(status_in(answer), 200);
     EXPECT_THAT(answer, HasSubstr("Connection: keep-alive"));
   }
-}
-
-TEST_F(HostileTest, TooManyConnectionsOfOnePeerAreTurnedAway) {
-  std::vector<std::unique_ptr<RawClient>> clients;
-  for (int i = 0; i < 30; ++i) {
-    clients.push_back(std::make_unique<RawClient>(port()));
-    clients.back()->say(kGood);
-    EXPECT_EQ(status_in(clients.back()->hear_until(".\n")), 200) << i;
-  }
-  const std::string answer = refused(kGood);
-  EXPECT_EQ(status_in(answer), 503);
-  EXPECT_THAT(answer, HasSubstr("too many connections"));
 }
 
 TEST_F(HostileTest, RunningOutOfDescriptorsDoesNotEndTheServer) {
@@ -293,7 +281,7 @@ TEST_F(HostileTest, ABodyIsNeverTakenForARequest) {
   const std::string inner(kGood);
   client.say("POST /registration HTTP/1.1\r\nHost: localhost\r\nContent-Length: " +
              std::to_string(inner.size()) + "\r\n\r\n" + inner +
-             "GET /frame HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+             "GET /frame HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   EXPECT_EQ(times(client.hear_all(), "HTTP/1.1 "), 2u);
   EXPECT_EQ(service_.last_body, inner);
 }

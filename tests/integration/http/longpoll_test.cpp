@@ -14,7 +14,7 @@ namespace {
 using testing::HasSubstr;
 
 std::string poll_for(int version, int wait_s, const std::string& accept = "*/*") {
-  return "GET /frame HTTP/1.1\r\nHost: x\r\nAccept: " + accept +
+  return "GET /frame HTTP/1.1\r\nHost: localhost\r\nAccept: " + accept +
          "\r\nPrefer: wait=" + std::to_string(wait_s) + "\r\nIf-None-Match: \"" +
          std::to_string(version) + "-ttl\"\r\n\r\n";
 }
@@ -124,10 +124,10 @@ TEST(LongPoll, PipelinedRequestsBehindAPollWaitForIt) {
   TestServer service;
   service.frame->publish(frame_document(1));
   RawClient client(service.server.port());
-  client.say(poll_for(1, 30) + "GET /frames/7 HTTP/1.1\r\nHost: x\r\n\r\n" +
+  client.say(poll_for(1, 30) + "GET /frames/7 HTTP/1.1\r\nHost: localhost\r\n\r\n" +
              "POST /registration HTTP/1.1\r\nHost: localhost\r\nContent-Length: 4\r\n\r\nab");
   ASSERT_TRUE(waiting(service.server, 1));
-  client.say("cdGET /frames/8 HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  client.say("cdGET /frames/8 HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   service.frame->publish(frame_document(2));
   const std::string answers = client.hear_all();
   EXPECT_EQ(times(answers, "HTTP/1.1 200"), 3u);

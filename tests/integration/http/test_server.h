@@ -67,6 +67,10 @@ struct TestServer {
       for (const auto& [key, value] : request.headers) text += key + ":" + value + ";";
       return make_document("text/plain", text, {"1"});
     });
+    router->get("/vital", [](const Request&, const PathParams&) -> Result<DocumentPtr> {
+      return make_document("text/plain", "well", {"1"});
+    });
+    router->vital("/vital");
     router->get("/big",
                 [big = std::string(8u << 20, 'x')](const Request&,
                                                    const PathParams&) -> Result<DocumentPtr> {

@@ -14,7 +14,7 @@ using testing::HasSubstr;
 
 // The key and its answer are those of RFC 6455 1.3.
 std::string hello(const std::string& more = {}) {
-  return "GET /frame HTTP/1.1\r\nHost: x\r\nUpgrade: websocket\r\nConnection: keep-alive, "
+  return "GET /frame HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: keep-alive, "
          "Upgrade\r\n"
          "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
          more + "\r\n";
@@ -97,9 +97,35 @@ TEST(WebSocket, PagesOfOtherOriginsMayOpenItOnlyIfAllowed) {
   RawClient stranger(service.server.port());
   stranger.say(hello("Origin: https://evil.example\r\n"));
   EXPECT_EQ(status_in(stranger.hear_until("\r\n\r\n")), 403);
+  RawClient own(service.server.port());
+  own.say(hello("Origin: http://localhost\r\n"));
+  EXPECT_EQ(status_in(own.hear_until("\r\n\r\n")), 101);
   RawClient friendly(service.server.port());
   friendly.say(hello("Origin: https://lab.example\r\n"));
   EXPECT_EQ(status_in(friendly.hear_until("\r\n\r\n")), 101);
+}
+
+TEST(WebSocket, NoOtherPageMayOpenItByDefault) {
+  TestServer service;
+  for (const std::string origin : {"https://evil.example", "http://localhost:81", "null"}) {
+    RawClient stranger(service.server.port());
+    stranger.say(hello("Origin: " + origin + "\r\n"));
+    EXPECT_EQ(status_in(stranger.hear_until("\r\n\r\n")), 403) << origin;
+  }
+}
+
+TEST(WebSocket, OneVersionIsOneFrameHoweverLong) {
+  TestServer service;
+  const std::string text = "{\"n\":\"" + std::string(20'000, 'x') + "\"}";
+  service.frame->publish(std::make_shared<const Document>(
+      std::vector<Variant>{{"application/json", [text] { return text; }}}, DocumentOptions{"1"}));
+  RawClient client(service.server.port());
+  client.say(hello());
+  const std::string heard = client.hear_until("x\"}");
+  const std::size_t begin = heard.find("\r\n\r\n") + 4;
+  ASSERT_GT(heard.size(), begin + 4);
+  EXPECT_EQ(static_cast<unsigned char>(heard[begin]), 0x81u) << "a text message, whole";
+  EXPECT_EQ(heard.substr(begin + 4), text);
 }
 
 TEST(WebSocket, OfAnythingElseIsAnOrdinaryAnswer) {
@@ -114,7 +140,9 @@ TEST(WebSocket, OfAnythingElseIsAnOrdinaryAnswer) {
 TEST(WebSocket, ABadHandshakeIsRefusedAndClosed) {
   TestServer service;
   RawClient client(service.server.port());
-  client.say("GET /frame HTTP/1.1\r\nHost: x\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\r\n");
+  client.say(
+      "GET /frame HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: "
+      "Upgrade\r\n\r\n");
   EXPECT_EQ(status_in(client.hear_all()), 400);
   EXPECT_TRUE(open_sockets(service.server, 0));
 }

@@ -103,8 +103,8 @@ class Program(Rig):
         wait_for("it answers", lambda: get(url + "frame")[0] in (200, 503))
         self.assertIn("fusion server ready", [json.loads(line)["event"] for line in fusion.text().splitlines()])
 
-        def allowed(token):  # through a proxy, so that coming from this host does not count
-            headers = {"Authorization": f"Bearer {token}", "Via": "1.1 proxy"}
+        def allowed(token):
+            headers = {"Authorization": f"Bearer {token}"}
             return send("DELETE", url + "recordings/none", headers=headers)[0] == 404
 
         self.assertEqual((allowed("old"), allowed("new")), (True, False))
@@ -120,7 +120,7 @@ class Program(Rig):
         fusion = self.fusion({"gone": "http://127.0.0.1:1/"})
         tag = get(fusion.url + "registration")[1]["ETag"]
         waiting = socket.create_connection(("127.0.0.1", fusion.port))
-        waiting.sendall(f"GET /registration HTTP/1.1\r\nHost: x\r\nIf-None-Match: {tag}\r\nPrefer: wait=30\r\n\r\n".encode())
+        waiting.sendall(f"GET /registration HTTP/1.1\r\nHost: localhost\r\nIf-None-Match: {tag}\r\nPrefer: wait=30\r\n\r\n".encode())
         begun = time.monotonic()
         self.assertEqual(fusion.stop(), 0)
         self.assertLess(time.monotonic() - begun, 2.5)

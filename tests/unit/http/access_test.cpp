@@ -44,6 +44,43 @@ TEST(TrustedLocal, NotOthersThroughABrowserOrAProxy) {
   EXPECT_FALSE(is_trusted_local(proxied, kLocal));
 }
 
+TEST(TrustedLocal, NotATrustedProxy) {
+  Peer proxy = kLocal;
+  proxy.proxy = true;
+  EXPECT_FALSE(is_trusted_local(head_of("127.0.0.1:8080"), proxy));
+}
+
+TEST(OwnHost, AddressesLocalhostAndWhatIsConfigured) {
+  const std::vector<std::string> names{"tracker.example", "cell-2"};
+  for (const auto ours : {"127.0.0.1:8080", "192.0.2.1", "[::1]:8080", "[fe80::1]", "LOCALHOST:1",
+                          "localhost.", "Tracker.Example:8080", "tracker.example.", "cell-2"}) {
+    EXPECT_TRUE(is_own_host(ours, names)) << ours;
+  }
+  for (const auto other : {"evil.example:8080", "tracker.example.evil.example", "x", "", ":8080",
+                           "127.0.0.1.evil.example", "localhost.evil.example"}) {
+    EXPECT_FALSE(is_own_host(other, names)) << other;
+  }
+}
+
+TEST(OwnHost, ThisHostHasAName) { EXPECT_TRUE(is_own_host(host_names().at(0), host_names())); }
+
+TEST(OwnPage, SchemeAndHostOfThisService) {
+  EXPECT_TRUE(from_own_page(head_of("cell-2:8080", "http://cell-2:8080")));
+  EXPECT_TRUE(from_own_page(head_of("cell-2", "https://CELL-2")));
+  EXPECT_FALSE(from_own_page(head_of("cell-2:8080", "http://cell-2")));
+  EXPECT_FALSE(from_own_page(head_of("cell-2:8080", "ftp://cell-2:8080")));
+  EXPECT_FALSE(from_own_page(head_of("cell-2:8080"))) << "no page at all";
+}
+
+TEST(RefuseWriting, OnceThereIsATokenLoopbackNeedsItToo) {
+  RequestHead head = head_of("127.0.0.1:8080");
+  EXPECT_FALSE(refuse_writing(head, kLocal, ""));
+  ASSERT_TRUE(refuse_writing(head, kLocal, "secret")) << "it may be a proxy's connection";
+  EXPECT_EQ(refuse_writing(head, kLocal, "secret")->code, ErrorCode::Unauthorized);
+  head.authorization = "Bearer secret";
+  EXPECT_FALSE(refuse_writing(head, kLocal, "secret"));
+}
+
 TEST(RefuseWriting, RemoteNeedsTheToken) {
   RequestHead head = head_of("10.0.0.1:8080");
   EXPECT_EQ(refuse_writing(head, kRemote, "")->code, ErrorCode::Forbidden);

@@ -39,8 +39,8 @@ class ResponderTest : public testing::Test {
 };
 
 TEST_F(ResponderTest, ALongPollWaitsUntilTheTagChanges) {
-  const Reaction reaction =
-      react("GET /frame HTTP/1.1\r\nHost: x\r\nPrefer: wait=100\r\nIf-None-Match: \"1-txt\"\r\n");
+  const Reaction reaction = react(
+      "GET /frame HTTP/1.1\r\nHost: localhost\r\nPrefer: wait=100\r\nIf-None-Match: \"1-txt\"\r\n");
   ASSERT_EQ(reaction.kind, Reaction::Kind::Wait);
   EXPECT_EQ(reaction.wait, config_.limits.max_wait);
   EXPECT_FALSE(responder_->waited(*reaction.entry, head_));
@@ -55,14 +55,14 @@ TEST_F(ResponderTest, ALongPollWaitsUntilTheTagChanges) {
 }
 
 TEST_F(ResponderTest, TheBodyOfTheHotPathIsTheDocumentsOwn) {
-  const Reaction reaction = react("GET /frame HTTP/1.1\r\nHost: x\r\n");
+  const Reaction reaction = react("GET /frame HTTP/1.1\r\nHost: localhost\r\n");
   const auto* rendered = *frame_->current()->choose("");
   EXPECT_EQ(reaction.answer.body.data(), rendered->body().data());
   EXPECT_EQ(reaction.answer.own.data(), rendered->wire->data());
 }
 
 TEST_F(ResponderTest, AnAnswerOutlivesTheNextPublish) {
-  const Reaction reaction = react("GET /frame HTTP/1.1\r\nHost: x\r\n");
+  const Reaction reaction = react("GET /frame HTTP/1.1\r\nHost: localhost\r\n");
   publish(2);
   EXPECT_EQ(reaction.answer.body, "x");
 }
@@ -74,15 +74,17 @@ TEST_F(ResponderTest, ActionsAskForTheirBodyFirst) {
 }
 
 TEST_F(ResponderTest, UnreadBodiesEndTheConnection) {
-  EXPECT_TRUE(react("POST /frame HTTP/1.1\r\nHost: x\r\nContent-Length: 2\r\n").answer.close);
-  EXPECT_TRUE(react("POST /nope HTTP/1.1\r\nHost: x\r\nContent-Length: 2\r\n").answer.close);
-  EXPECT_FALSE(react("POST /nope HTTP/1.1\r\nHost: x\r\n").answer.close);
+  EXPECT_TRUE(
+      react("POST /frame HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2\r\n").answer.close);
+  EXPECT_TRUE(
+      react("POST /nope HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2\r\n").answer.close);
+  EXPECT_FALSE(react("POST /nope HTTP/1.1\r\nHost: localhost\r\n").answer.close);
 }
 
 TEST_F(ResponderTest, OneOriginWhenConfigured) {
   config_.allowed_origin = "http://viewer.example";
   const Responder strict(config_, std::make_shared<Router>());
-  EXPECT_FALSE(read_head("GET /frame HTTP/1.1\r\nHost: x\r\n\r\n", head_));
+  EXPECT_FALSE(read_head("GET /frame HTTP/1.1\r\nHost: localhost\r\n\r\n", head_));
   EXPECT_THAT(std::string(strict.react(head_, {}).answer.route),
               HasSubstr("Access-Control-Allow-Origin: http://viewer.example\r\n"));
 }

@@ -1,0 +1,96 @@
+"""Behind a real nginx on the same host, configured as plainly as can be: the token is still needed."""
+import http.client
+import pathlib
+import shutil
+import subprocess
+import unittest
+
+from rig import BIN, Rig, free_port, get, wait_for
+
+NGINX = shutil.which("nginx") or shutil.which("nginx", path="/usr/sbin")
+TOKEN = "open sesame"
+CONFIG = """
+daemon off; worker_processes 1; pid {folder}/pid; error_log {folder}/error.log;
+events {{}}
+http {{
+  access_log off; client_body_temp_path {folder}/a; proxy_temp_path {folder}/b;
+  fastcgi_temp_path {folder}/c; uwsgi_temp_path {folder}/d; scgi_temp_path {folder}/e;
+  server {{ listen 127.0.0.1:{port}; location / {{ proxy_pass http://127.0.0.1:{behind}; {more} }} }}
+}}
+"""
+
+
+def ask(port, method, path, token=None, body=b"", host=None):
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
+    try:
+        headers = {"Authorization": f"Bearer {token}"} if token else {}
+        if host:
+            headers["Host"] = host
+        connection.request(method, path, body=body or None, headers=headers)
+        answer = connection.getresponse()
+        return answer.status, answer.read()
+    finally:
+        connection.close()
+
+
+@unittest.skipUnless(NGINX, "needs nginx (Debian package nginx)")
+class BehindAProxy(Rig):
+    def proxy(self, behind, more=""):
+        folder = pathlib.Path(self.folder.name) / f"nginx-{behind}"
+        folder.mkdir()
+        port = free_port()
+        config = folder / "nginx.conf"
+        config.write_text(CONFIG.format(folder=folder, port=port, behind=behind, more=more))
+        child = subprocess.Popen([NGINX, "-e", str(folder / "error.log"), "-p", str(folder), "-c", str(config)],
+                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(child.wait)
+        self.addCleanup(child.terminate)
+        wait_for("nginx answers", lambda: ask(port, "GET", "/clock")[0] in (200, 421))
+        return port
+
+    def tracker(self, **settings):
+        recordings = pathlib.Path(self.folder.name) / "recordings"
+        return self.fusion({"gone": "http://127.0.0.1:1/"}, **{"recording.folder": recordings, **settings})
+
+    def test_writing_needs_the_token_whatever_the_proxy_says_of_itself(self):
+        fusion = self.tracker(**{"http.bearer_token": TOKEN})
+        port = self.proxy(fusion.port)
+        for way in (port, fusion.port):
+            self.assertEqual(ask(way, "GET", "/frame")[0], 200)
+            for method, path in (("POST", "/registration"), ("DELETE", "/registration"), ("POST", "/recordings/"),
+                                 ("DELETE", "/recordings/x")):
+                self.assertEqual(ask(way, method, path)[0], 401, f"{method} {path} on {way}")
+                self.assertEqual(ask(way, method, path, "wrong")[0], 401, f"{method} {path} on {way}")
+        self.assertEqual(list(pathlib.Path(self.folder.name).glob("recordings/*")), [])
+        self.assertEqual(ask(port, "POST", "/registration", TOKEN, b'{"seconds": 30}')[0], 202)
+        wait_for("the session is cancelled", lambda: ask(port, "DELETE", "/registration", TOKEN)[0] in (200, 202, 204))
+        self.assertEqual(ask(port, "POST", "/recordings/", TOKEN, b'{"name": "walk"}')[0], 201)
+        metrics = get(fusion.url + "metrics", accept="*/*")[2].decode()
+        self.assertRegex(metrics, r"chorus_http_unauthorized_total 16\b")
+        self.assertIn("wrong bearer token", fusion.text())
+
+    def test_guesses_through_the_proxy_are_slowed(self):
+        fusion = self.tracker(**{"http.bearer_token": TOKEN})
+        port = self.proxy(fusion.port)
+        answers = [ask(port, "DELETE", "/registration", f"guess {i}")[0] for i in range(60)]
+        self.assertLess(answers.count(401), 30)
+        self.assertGreater(answers.count(429), 30)
+
+    def test_a_listed_proxy_is_nobody_on_this_host(self):
+        fusion = self.tracker(**{"http.trusted_proxies": '["127.0.0.1"]'})
+        port = self.proxy(fusion.port, "proxy_set_header X-Forwarded-For $proxy_add_x_forwarded_for;")
+        self.assertEqual(ask(port, "GET", "/frame")[0], 200)
+        self.assertEqual(ask(port, "POST", "/registration")[0], 403)
+
+    def test_the_name_that_a_proxy_hands_on_has_to_be_ours(self):
+        fusion = self.tracker(**{"http.hosts": '["tracker.example"]'})
+        port = self.proxy(fusion.port, "proxy_set_header Host $host;")
+        self.assertEqual(ask(port, "GET", "/frame", host="tracker.example")[0], 200)
+        status, body = ask(port, "GET", "/frame", host="evil.example")
+        self.assertEqual(status, 421)
+        self.assertIn(b"http.hosts", body)
+
+
+if __name__ == "__main__":
+    assert BIN.exists(), f"build chorus-fusion first ({BIN})"
+    unittest.main(verbosity=2)

@@ -1,0 +1,51 @@
+#include "common/http/token_tries.h"
+
+#include <gtest/gtest.h>
+
+namespace chorus::http {
+namespace {
+
+using std::chrono::seconds;
+constexpr TokenTries::Time kStart{std::chrono::hours(1)};
+
+/// How many of `asked` tries, evenly spread over `time`, were looked at; all were wrong.
+int looked_at(TokenTries& tries, int asked, std::chrono::milliseconds time) {
+  int looked = 0;
+  for (int i = 0; i < asked; ++i) {
+    const auto now = kStart + time * i / asked;
+    if (!tries.may_try("192.0.2.1", now)) continue;
+    ++looked;
+    tries.note_wrong("192.0.2.1", now);
+  }
+  return looked;
+}
+
+TEST(TokenTries, TenAtOnceThenOneASecond) {
+  TokenTries tries;
+  EXPECT_EQ(looked_at(tries, 5000, std::chrono::milliseconds(1)), 10);
+  TokenTries patient;
+  EXPECT_EQ(looked_at(patient, 60'000, seconds(60)), 10 + 59);
+}
+
+TEST(TokenTries, AMistakeNowAndThenIsNeverHeldUp) {
+  TokenTries tries;
+  EXPECT_EQ(looked_at(tries, 100, seconds(100)), 100);
+}
+
+TEST(TokenTries, OneAddressDoesNotHoldUpAnother) {
+  TokenTries tries;
+  looked_at(tries, 20, std::chrono::milliseconds(1));
+  EXPECT_FALSE(tries.may_try("192.0.2.1", kStart));
+  EXPECT_TRUE(tries.may_try("192.0.2.2", kStart));
+  EXPECT_TRUE(tries.may_try("192.0.2.1", kStart + seconds(2)));
+}
+
+TEST(TokenTries, ManyAddressesShareOneAccountInTheEnd) {
+  TokenTries tries;
+  for (int i = 0; i < 5000; ++i) tries.note_wrong("host " + std::to_string(i), kStart);
+  EXPECT_FALSE(tries.may_try("one more", kStart));
+  EXPECT_TRUE(tries.may_try("one more", kStart + std::chrono::hours(1)));
+}
+
+}  // namespace
+}  // namespace chorus::http
