@@ -58,6 +58,7 @@ class Connection final : public Session {
   void begin_stream();
   void push_event();
   void on_event_sent(error_code failed, std::size_t size);
+  void event_done();
   void upgrade();
   void expire_in(std::chrono::seconds time);
   [[nodiscard]] std::shared_ptr<Connection> self() {

@@ -116,11 +116,13 @@ struct Document::Impl {
   std::vector<Variant> variants;
   DocumentOptions options;
   std::vector<std::string_view> offers;  ///< Bare media types, by variant.
-  std::vector<Rendered> rendered;
+  std::vector<Rendered> rendered;        ///< By variant, then the same in gzip.
   std::unique_ptr<Once[]> once;
   struct Event {
     Once once;
     std::shared_ptr<const std::string> text;
+    Once coded_once;
+    std::shared_ptr<const std::string> coded;  ///< A gzip_piece of the text.
   };
   std::array<Event, kEventTypes.size()> events;  ///< In the order of kEventTypes.
   bool has_json_ld = false;
@@ -148,15 +150,37 @@ struct Document::Impl {
     out.media_type = offers[index];
     out.etag = entity_tag(options, variants[index], index);
     const std::string shared = shared_lines(out);
+    const auto size = options.file ? options.file->size() : body.size();
+    write_wire(out, content_type(variants[index].media_type), {shared, body, size});
+  }
+
+  struct Content {
+    const std::string& lines;  ///< That a 304 has as well.
+    const std::string& body;
+    std::uint64_t size = 0;
+  };
+  static void write_wire(Rendered& out, const std::string& type, const Content& content) {
     std::string wire;
-    wire.reserve(shared.size() + body.size() + 128);  // Type and length lines fit in 128 bytes.
-    add_line(wire, "Content-Type", content_type(variants[index].media_type));
-    add_line(wire, "Content-Length",
-             std::to_string(options.file ? options.file->size() : body.size()));
-    wire.append(shared).append("\r\n");
+    constexpr std::size_t kTypeAndLength = 128;
+    wire.reserve(content.lines.size() + content.body.size() + kTypeAndLength);
+    add_line(wire, "Content-Type", type);
+    add_line(wire, "Content-Length", std::to_string(content.size));
+    wire.append(content.lines).append("\r\n");
     out.head_size = wire.size();
-    out.wire = std::make_shared<const std::string>(wire.append(body));
-    out.not_modified = shared + "\r\n";
+    out.wire = std::make_shared<const std::string>(wire.append(content.body));
+    out.not_modified = content.lines + "\r\n";
+  }
+
+  /// Another representation, so another tag: "42-json" and "42-json-gz".
+  void compress(std::size_t index) {
+    const Rendered& plain = rendered[index];
+    Rendered& out = rendered[variants.size() + index];
+    out.media_type = plain.media_type;
+    out.etag = plain.etag.substr(0, plain.etag.size() - 1) + "-gz\"";
+    std::string shared = shared_lines(out);
+    add_line(shared, "Content-Encoding", "gzip");
+    const std::string body = gzipped(plain.body());
+    write_wire(out, content_type(variants[index].media_type), {shared, body, body.size()});
   }
 
   Result<const Rendered*> rendered_at(std::size_t index) {
@@ -167,6 +191,16 @@ struct Document::Impl {
       return fail(ErrorCode::Internal, std::string(offers[index]),
                   std::string("the representation cannot be written: ") + failure.what());
     }
+  }
+
+  /// rendered_at(), in gzip if that is worth it.
+  Result<const Rendered*> coded_at(std::size_t index, Coding coding) {
+    auto plain = rendered_at(index);
+    if (!plain || coding == Coding::Identity || options.file) return plain;
+    if (!worth_compressing((*plain)->media_type, (*plain)->body().size())) return plain;
+    const std::size_t coded = variants.size() + index;
+    once[coded].run([&] { compress(index); });
+    return &rendered[coded];
   }
 
   void make_event(std::size_t type) {
@@ -188,8 +222,8 @@ Document::Document(std::vector<Variant> variants, DocumentOptions options)
   impl_->variants = std::move(variants);
   impl_->options = std::move(options);
   const std::size_t count = impl_->variants.size();
-  impl_->rendered.resize(count);
-  impl_->once = std::make_unique<Once[]>(count);
+  impl_->rendered.resize(2 * count);
+  impl_->once = std::make_unique<Once[]>(2 * count);
   for (const Variant& variant : impl_->variants) {
     impl_->offers.push_back(without_parameters(variant.media_type));
     impl_->has_json_ld |= impl_->offers.back() == "application/ld+json";
@@ -198,11 +232,12 @@ Document::Document(std::vector<Variant> variants, DocumentOptions options)
 
 Document::~Document() = default;
 
-Result<const Rendered*> Document::choose(std::string_view accept, std::string_view profile) const {
+Result<const Rendered*> Document::choose(std::string_view accept, std::string_view profile,
+                                         Coding coding) const {
   // The usual request: no preference, no profile.
   const auto& variants = impl_->variants;
   if (accept.empty() && profile.empty() && !variants.empty() && variants[0].profile.empty())
-    return impl_->rendered_at(0);
+    return impl_->coded_at(0, coding);
 
   std::vector<std::string_view> offers;
   std::vector<std::size_t> indices;
@@ -214,20 +249,24 @@ Result<const Rendered*> Document::choose(std::string_view accept, std::string_vi
   if (offers.empty())
     return fail(ErrorCode::NotFound, "profile",
                 "this resource has no profile \"" + std::string(profile) + "\"");
-  if (const auto best = negotiate(offers, accept)) return impl_->rendered_at(indices[*best]);
+  if (const auto best = negotiate(offers, accept)) return impl_->coded_at(indices[*best], coding);
   std::string list;
   for (const auto offer : offers) list.append(list.empty() ? "" : ", ").append(offer);
   return fail(ErrorCode::NotAcceptable, "Accept",
               "none of the accepted media types is available; ask for one of: " + list);
 }
 
-std::shared_ptr<const std::string> Document::event(std::string_view media_type) const {
+std::shared_ptr<const std::string> Document::event(std::string_view media_type,
+                                                   Coding coding) const {
   const auto* const type = std::find(kEventTypes.begin(), kEventTypes.end(), media_type);
   if (type == kEventTypes.end()) return nullptr;
   const auto index = static_cast<std::size_t>(type - kEventTypes.begin());
   Impl::Event& event = impl_->events[index];
   event.once.run([&] { impl_->make_event(index); });
-  return event.text;
+  if (coding == Coding::Identity || event.text == nullptr) return event.text;
+  event.coded_once.run(
+      [&] { event.coded = std::make_shared<const std::string>(gzip_piece(*event.text)); });
+  return event.coded;
 }
 
 std::vector<std::string_view> Document::media_types(std::string_view profile) const {

@@ -15,6 +15,7 @@
 
 #include "common/base/result.h"
 #include "common/http/file_body.h"
+#include "common/http/gzip.h"
 #include "common/time/timestamp.h"
 
 namespace chorus::http {
@@ -64,12 +65,16 @@ class Document {
 
   /// RFC 9110 12.5.1 over this document's variants; absent or empty Accept takes the first variant
   /// of the profile.  NotAcceptable lists what there is; an unknown profile is NotFound.
+  /// With Coding::Gzip it is compressed where that is worth it, once for all who ask.
   [[nodiscard]] Result<const Rendered*> choose(std::string_view accept,
-                                               std::string_view profile = {}) const;
+                                               std::string_view profile = {},
+                                               Coding coding = Coding::Identity) const;
 
-  /// The default representation in JSON or Turtle as one server-sent event (id = version); null
-  /// when there is none in that type.  Written at most once for each type.
-  [[nodiscard]] std::shared_ptr<const std::string> event(std::string_view media_type) const;
+  /// The default representation in JSON or Turtle as one server-sent event (id = version), with
+  /// Coding::Gzip as a gzip_piece; null when there is none in that type.  Written at most once
+  /// each.
+  [[nodiscard]] std::shared_ptr<const std::string> event(std::string_view media_type,
+                                                         Coding coding = Coding::Identity) const;
 
   /// Media types of a profile, best first, without parameters.
   [[nodiscard]] std::vector<std::string_view> media_types(std::string_view profile = {}) const;

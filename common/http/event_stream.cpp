@@ -1,25 +1,25 @@
 // Server-sent events (WHATWG HTML 9.2): the newest document, as often as the reader can take it.
 #include "common/http/connection.h"
 #include "common/http/server_core.h"
+#include "common/http/small_queue.h"
 
 namespace chorus::http {
 namespace {
 
 constexpr std::chrono::seconds kHeartbeat{15};
-constexpr int kSendBufferBytes =
-    64 * 1024;  // The kernel queues no more than this for a slow reader.
 
-std::shared_ptr<const std::string> heartbeat() {
-  static const auto comment = std::make_shared<const std::string>(":\n\n");
-  return comment;
+std::shared_ptr<const std::string> heartbeat(Coding coding) {
+  constexpr std::string_view kComment = ":\n\n";
+  static const auto plain = std::make_shared<const std::string>(kComment);
+  static const auto coded = std::make_shared<const std::string>(gzip_piece(kComment));
+  return coding == Coding::Gzip ? coded : plain;
 }
 
 }  // namespace
 
 void Connection::begin_stream() {
   count(core_.counters.event_streams_open);
-  error_code ignored;
-  socket_.set_option(net::socket_base::send_buffer_size(kSendBufferBytes), ignored);
+  keep_queue_small(socket_);
   core_.wait_for(reaction_.entry->index, shared_from_this());
   const auto current = reaction_.entry->live->current();
   // A reader that comes back and has the newest already gets the next one.
@@ -38,11 +38,12 @@ void Connection::push_event() {
     event_pending_ = true;
     return;
   }
+  const Coding coding = coding_for(head_.accept_encoding);
   const DocumentPtr newest = reaction_.entry->live->current();
-  event_ = newest && newest != streamed_ ? newest->event(reaction_.event_type) : nullptr;
+  event_ = newest && newest != streamed_ ? newest->event(reaction_.event_type, coding) : nullptr;
   if (newest) streamed_ = newest;
   if (!event_ && core_.now < deadline_) return;
-  if (!event_) event_ = heartbeat();
+  if (!event_) event_ = heartbeat(coding);
   event_under_way_ = true;
   expire_in(core_.config.limits.write_timeout);
   net::async_write(
@@ -53,9 +54,17 @@ void Connection::push_event() {
 void Connection::on_event_sent(error_code failed, std::size_t size) {
   if (state_ == State::Closed) return;
   count(core_.counters.bytes_sent, size);
-  event_under_way_ = false;
   event_.reset();
   if (failed) return close();
+  if (is_queue_small(socket_)) return event_done();
+  socket_.async_wait(Socket::wait_write, [self = self()](error_code broken) {
+    if (self->state_ == State::Closed) return;
+    broken ? self->close() : self->event_done();
+  });
+}
+
+void Connection::event_done() {
+  event_under_way_ = false;
   expire_in(kHeartbeat);
   if (std::exchange(event_pending_, false)) push_event();
 }

@@ -50,6 +50,7 @@ struct KnownField {
 constexpr std::array kKnown{
     KnownField{"host", &RequestHead::host, false},
     KnownField{"accept", &RequestHead::accept, true},
+    KnownField{"accept-encoding", &RequestHead::accept_encoding, true},
     KnownField{"prefer", &RequestHead::prefer, true},
     KnownField{"if-none-match", &RequestHead::if_none_match, true},
     KnownField{"connection", &RequestHead::connection, true},

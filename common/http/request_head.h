@@ -54,8 +54,8 @@ struct RequestHead {
   std::uint64_t content_length = 0;
 
   // Fields we act on; data() is null when absent.  Lists are joined with ", ".
-  std::string_view host, accept, if_none_match, prefer, authorization, origin, last_event_id,
-      forwarded, connection, upgrade, length_text, transfer_encoding, expect;
+  std::string_view host, accept, accept_encoding, if_none_match, prefer, authorization, origin,
+      last_event_id, forwarded, connection, upgrade, length_text, transfer_encoding, expect;
 
   std::vector<Field> fields;       ///< All, in order.
   std::deque<std::string> joined;  ///< Storage of joined lists.

@@ -38,6 +38,13 @@ std::string_view event_type_of(std::string_view accept) {
   return turtle > explicit_quality_of(kJson, accept).value_or(0) ? kTurtle : kJson;
 }
 
+constexpr std::string_view kStreamBegin = "retry: 1000\n\n";  // Browsers come back after 1 s.
+
+std::string_view coded_stream_begin() {
+  static const std::string begin = std::string(gzip_begin()) + gzip_piece(kStreamBegin);
+  return begin;
+}
+
 Result<std::string> profile_of(const RequestHead& head) {
   if (head.query.empty()) return std::string();
   auto query = decode_query(head.query);
@@ -160,8 +167,10 @@ Reaction Responder::read_live(const RequestHead& head, const Router::Entry& entr
   reaction.entry = &entry;
   reaction.event_type = event_type_of(head.accept);
   reaction.answer.route = route_lines(entry);
+  const bool coded = coding_for(head.accept_encoding) == Coding::Gzip;
+  if (coded) reaction.answer.extra = "Content-Encoding: gzip\r\n";
   reaction.answer.own = "Content-Type: text/event-stream\r\nCache-Control: no-store\r\n\r\n";
-  if (!is_head(head)) reaction.answer.body = "retry: 1000\n\n";  // Browsers come back after 1 s.
+  if (!is_head(head)) reaction.answer.body = coded ? coded_stream_begin() : kStreamBegin;
   reaction.answer.close = true;
   return reaction;
 }
@@ -201,7 +210,7 @@ Answer Responder::represent(const DocumentPtr& document, const RequestHead& head
                  head, route);
   const auto profile = profile_of(head);
   if (!profile) return fault(profile.error(), head, route);
-  const auto chosen = document->choose(head.accept, *profile);
+  const auto chosen = document->choose(head.accept, *profile, coding_for(head.accept_encoding));
   if (!chosen && chosen.error().code == ErrorCode::NotAcceptable) {
     Problem problem = problem_of(chosen.error());
     problem.available = document->media_types(*profile);

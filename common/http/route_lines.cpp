@@ -18,7 +18,7 @@ std::string sharing_lines(const std::string& origin) {
 }  // namespace
 
 std::string common_lines(const std::string& origin) {
-  return "Vary: Accept, Origin\r\n" + sharing_lines(origin) +
+  return "Vary: Accept, Accept-Encoding, Origin\r\n" + sharing_lines(origin) +
          "X-Content-Type-Options: nosniff\r\n"
          "Link: </openapi.json>; rel=\"service-desc\"\r\n";
 }

@@ -3,8 +3,10 @@
 #include <optional>
 #include <utility>
 
+#include "common/http/access.h"
 #include "common/http/beast_websocket.h"
 #include "common/http/server_core.h"
+#include "common/http/small_queue.h"
 #include "common/http/text.h"
 
 namespace chorus::http {
@@ -13,8 +15,6 @@ namespace {
 namespace websocket = boost::beast::websocket;
 
 constexpr std::size_t kMostSaid = 4096;  ///< Bytes of one message from a client.
-constexpr int kSendBufferBytes =
-    64 * 1024;  // The kernel queues no more than this for a slow reader.
 /// Beast ends a broken or closed conversation by waiting for the client to hang up; we look that
 /// often whether one is over, and hang up ourselves.
 constexpr std::chrono::seconds kLook{1};
@@ -49,6 +49,7 @@ class WebSocketSession final : public Session {
   void look_again() { deadline_ = core_.now + kLook; }
   void push();
   void on_pushed(error_code failed, std::size_t size);
+  void pushed();
   [[nodiscard]] std::shared_ptr<WebSocketSession> self() {
     return std::static_pointer_cast<WebSocketSession>(shared_from_this());
   }
@@ -73,8 +74,8 @@ void WebSocketSession::open() {
   stream_.set_option(patience);
   stream_.read_message_max(kMostSaid);
   stream_.text(true);
-  error_code ignored;
-  stream_.next_layer().set_option(net::socket_base::send_buffer_size(kSendBufferBytes), ignored);
+  stream_.auto_fragment(false);  // pieces of 4 KiB cost three times the CPU of one message
+  keep_queue_small(stream_.next_layer());
   deadline_ = core_.now + limits.header_timeout;
   stream_.async_accept(net::buffer(received_), [me = self()](error_code failed) {
     if (me->state_ != State::Opening) return;
@@ -129,10 +130,21 @@ void WebSocketSession::push() {
 }
 
 void WebSocketSession::on_pushed(error_code failed, std::size_t size) {
-  writing_ = false;
-  if (state_ != State::Open) return;
+  if (state_ != State::Open) {
+    writing_ = false;
+    return;
+  }
   if (failed) return close();
   count(core_.counters.bytes_sent, size);
+  if (is_queue_small(stream_.next_layer())) return pushed();
+  stream_.next_layer().async_wait(Socket::wait_write, [me = self()](error_code broken) {
+    if (me->state_ != State::Open) return;
+    broken ? me->close() : me->pushed();
+  });
+}
+
+void WebSocketSession::pushed() {
+  writing_ = false;
   look_again();
   if (pending_) push();
 }

@@ -30,7 +30,7 @@ TEST(Server, NegotiatesTheRepresentation) {
   service.frame->publish(frame_document(1));
   const auto json = service.ask("/frame", {{"Accept", "application/json"}});
   EXPECT_EQ(json.headers.at("content-type"), "application/json");
-  EXPECT_EQ(json.headers.at("vary"), "Accept, Origin");
+  EXPECT_EQ(json.headers.at("vary"), "Accept, Accept-Encoding, Origin");
   EXPECT_THAT(json.headers.at("link"), HasSubstr("json-ld#context"));
   const auto several = service.ask(
       "/frame", {{"Accept", "image/png"}, {"Accept", "application/ld+json, text/turtle;q=0.9"}});

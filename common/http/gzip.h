@@ -1,0 +1,26 @@
+// Compression for those who ask for it (RFC 9110 12.5.3, RFC 1952).
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace chorus::http {
+
+enum class Coding { Identity, Gzip };
+
+/// Gzip where an Accept-Encoding field allows it by name or by "*", and not with q=0.
+[[nodiscard]] Coding coding_for(std::string_view accept_encoding);
+
+/// True for text of a size that is worth it and does not hold others up while it is done.
+[[nodiscard]] bool worth_compressing(std::string_view media_type, std::size_t size);
+
+/// The whole of `bytes` as one gzip file, fast rather than small.
+[[nodiscard]] std::string gzipped(std::string_view bytes);
+
+/// For streams: what a gzip file begins with ...
+[[nodiscard]] std::string_view gzip_begin();
+/// ... and pieces that may follow in any order, because none refers to another: each can be shared
+/// by all streams.  The reader gets each whole as soon as it has come.
+[[nodiscard]] std::string gzip_piece(std::string_view bytes);
+
+}  // namespace chorus::http
