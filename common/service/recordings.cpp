@@ -1,7 +1,10 @@
 #include "common/service/recordings.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <charconv>
 #include <filesystem>
+#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -46,11 +49,38 @@ std::string version_of(const RecordingReport& report) {
          std::to_string(report.bytes());
 }
 
-/// Why a recording did not start, without where this host keeps its files when that is no help.
+/// Why a recording did not start, without where this host keeps its files.
 tl::unexpected<Error> refused(const Error& error, const std::string& name) {
-  if (error.code != ErrorCode::Conflict) return tl::unexpected<Error>(error);
-  return fail(ErrorCode::Conflict, std::string(kWhere) + "/" + name,
-              "there is a recording of this name already: choose another `name`");
+  const std::string where = std::string(kWhere) + "/" + name;
+  if (error.code == ErrorCode::Conflict)
+    return fail(error.code, where,
+                "there is a recording of this name already: choose another `name`");
+  const std::string full = std::generic_category().message(ENOSPC);
+  if (error.message.find(full) != std::string::npos)
+    return fail(ErrorCode::Unavailable, where, "the disk of this service is full: make room on it");
+  return fail(error.code, where, error.message);
+}
+
+/// The part of the list that a request asks for.
+struct Page {
+  std::string after;  ///< Names up to this one are left out.
+  std::size_t limit = 100;
+};
+
+Result<Page> page_of(const http::Request& request) {
+  Page page;
+  constexpr std::size_t kMost = 1000;
+  if (const auto after = request.query.find("after"); after != request.query.end())
+    page.after = after->second;
+  const auto limit = request.query.find("limit");
+  if (limit == request.query.end()) return page;
+  const std::string& text = limit->second;
+  const auto end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, page.limit);
+  if (error == std::errc{} && stop == end && page.limit >= 1 && page.limit <= kMost) return page;
+  return fail(
+      ErrorCode::InvalidArgument, "limit",
+      "a whole number from 1 to " + std::to_string(kMost) + ", not '" + text.substr(0, 32) + "'");
 }
 
 }  // namespace
@@ -163,30 +193,43 @@ Result<RecordingReport> Recordings::stop(std::string_view name) {
   return recorder->report();
 }
 
-std::map<std::string, RecordingReport> Recordings::all() const {
+std::map<std::string, RecordingReport> Recordings::some(const std::string& after,
+                                                        std::size_t most) const {
   const std::scoped_lock lock(mutex_);
-  auto reports = ended_;
-  if (running_.recorder) {
-    auto report = running_.recorder->report();
-    reports[report.name] = report;
-  }
+  std::map<std::string, RecordingReport> reports;
+  for (auto it = ended_.upper_bound(after); it != ended_.end() && reports.size() < most; ++it)
+    reports.insert(*it);
+  if (!running_.recorder) return reports;
+  auto report = running_.recorder->report();
+  if (report.name <= after) return reports;
+  reports[report.name] = report;
+  if (reports.size() > most) reports.erase(std::prev(reports.end()));
   return reports;
 }
 
 Result<RecordingReport> Recordings::find(std::string_view name) const {
-  const auto reports = all();
-  const auto found = reports.find(std::string(name));
-  if (found != reports.end()) return found->second;
+  {
+    const std::scoped_lock lock(mutex_);
+    const std::string key(name);
+    if (running_.recorder && running_.recorder->report().name == key)
+      return running_.recorder->report();
+    if (const auto found = ended_.find(key); found != ended_.end()) return found->second;
+  }
   return fail(ErrorCode::NotFound, "recordings/" + std::string(name),
               "there is no recording of this name");
 }
 
-Result<http::DocumentPtr> Recordings::list() const {
+Result<http::DocumentPtr> Recordings::list(const http::Request& request) const {
+  const auto page = page_of(request);
+  if (!page) return pass(page);
+  auto reports = some(page->after, page->limit + 1);
+  const bool more = reports.size() > page->limit;
+  if (more) reports.erase(std::prev(reports.end()));
   resource::Node node{"", {"RecordingList", "ldp:BasicContainer", "ldp:Container"}, {}};
   std::vector<Ref> contains;
   std::vector<resource::Node> members;
   std::string version;
-  for (const auto& [name, report] : all()) {
+  for (const auto& [name, report] : reports) {
     contains.push_back({name});
     members.push_back(recording_node(report, name));
     version += version_of(report) + "/";
@@ -198,6 +241,10 @@ Result<http::DocumentPtr> Recordings::list() const {
   options.container = true;
   options.version = options_.run + "-" + std::to_string(std::hash<std::string>{}(version));
   options.headers = {{"Accept-Post", "application/json"}};
+  if (more) {
+    options.headers.emplace_back("Link", "<?after=" + reports.rbegin()->first + "&limit=" +
+                                             std::to_string(page->limit) + ">; rel=\"next\"");
+  }
   return resource::document_of(std::move(node), std::move(options),
                                {"recordings/", {}, options_.root});
 }
@@ -257,12 +304,15 @@ Result<http::ActionResult> Recordings::post(const http::Request& request) {
 void Recordings::add_routes(http::Router& router) {
   using http::PathParams;
   using http::Request;
-  router.get("/recordings/", [this](const Request&, const PathParams&) { return list(); });
+  router.get("/recordings/",
+             [this](const Request& request, const PathParams&) { return list(request); });
   router.get("/recordings/{name}",
              [this](const Request&, const PathParams& path) { return one(path.at("name")); });
   router.get("/recordings/{name}/{file}", [this](const Request&, const PathParams& path) {
     return file(path.at("name"), path.at("file"));
   });
+  router.shows_people("/recordings/{name}");
+  router.shows_people("/recordings/{name}/{file}");
   router.action(http::Method::Post, "/recordings/",
                 [this](const Request& request, const PathParams&) { return post(request); });
   router.action(

@@ -72,9 +72,11 @@ class Recordings {
 
   [[nodiscard]] record::RecorderOptions options_for(const RecordingRequest& request) const;
   void settle();  ///< Takes note of a recording that has ended.  Called with the mutex held.
-  [[nodiscard]] std::map<std::string, record::RecordingReport> all() const;
+  /// In the order of their names, those after `after`, at most so many.
+  [[nodiscard]] std::map<std::string, record::RecordingReport> some(const std::string& after,
+                                                                    std::size_t most) const;
   [[nodiscard]] Result<record::RecordingReport> find(std::string_view name) const;
-  [[nodiscard]] Result<http::DocumentPtr> list() const;
+  [[nodiscard]] Result<http::DocumentPtr> list(const http::Request& request) const;
   [[nodiscard]] http::DocumentPtr description(const record::RecordingReport& report) const;
   [[nodiscard]] Result<http::DocumentPtr> one(const std::string& name) const;
   [[nodiscard]] Result<http::DocumentPtr> file(const std::string& name,

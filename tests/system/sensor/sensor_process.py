@@ -42,8 +42,8 @@ class Answer:
 class Sensor:
     """A running chorus-sensor; `log` collects its lines up to `sensor serving`."""
 
-    def __init__(self, *options, **popen):
-        command = [SENSOR, "--port", "0", "--log-format", "json", *options]
+    def __init__(self, *options, before=(), **popen):
+        command = [*before, SENSOR, "--port", "0", "--log-format", "json", *options]
         self.process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, **popen)
         self.port = int(self.wait_for_event("sensor serving")["url"].split(":")[2].rstrip("/"))
 

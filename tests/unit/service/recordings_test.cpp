@@ -98,6 +98,18 @@ TEST(Recordings, ANameThatIsTakenAsksForAnotherAndDoesNotSayWhereFilesAre) {
   EXPECT_THAT(to_string(refused.error()), Not(HasSubstr((folder / "rec").string())));
 }
 
+TEST(Recordings, TooLittleSpaceIsUnavailableAndDoesNotSayWhereFilesAre) {
+  const chorus::testing::TemporaryFolder folder;
+  auto options = options_in((folder / "rec").string());
+  options.config.limits.min_free_bytes = std::uintmax_t{1} << 60;
+  Recordings recordings(options);
+  const auto refused = recordings.start({"walk", Duration{0}, true, true});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::Unavailable);
+  EXPECT_THAT(to_string(refused.error()), Not(HasSubstr((folder / "rec").string())));
+  EXPECT_THAT(refused.error().message, HasSubstr("min_free_mb"));
+}
+
 TEST(Recordings, AreOffWithoutAFolder) {
   Recordings recordings(options_in(""));
   const auto refused = recordings.start({});
@@ -223,6 +235,46 @@ TEST_F(RecordingRoutes, ADocumentThatHasNotChangedIsNotSentAgain) {
                    {}});
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->status, 304);
+}
+
+TEST_F(RecordingRoutes, TheListComesInPages) {
+  const chorus::testing::TemporaryFolder folder;
+  const auto root = std::filesystem::path(folder / "rec");
+  for (const char* name : {"a", "b", "c", "d", "e"}) {
+    Recordings earlier(options_in(root.string()));
+    ASSERT_TRUE(earlier.start({name, Duration{0}, true, true}));
+    ASSERT_TRUE(earlier.stop(name));
+    ASSERT_TRUE(earlier.recorder(Stream::Any)->wait(seconds(10)));
+  }
+  Recordings recordings(options_in(root.string()));
+  auto router = std::make_shared<http::Router>();
+  recordings.add_routes(*router);
+  http::Server server(http::ServerConfig{}, router);
+  ASSERT_TRUE(server.start());
+  const auto get = [&](const std::string& query) {
+    const auto answer =
+        http::fetch({"127.0.0.1", server.port(), "/"},
+                    {"GET", "/recordings/" + query, {{"Accept", "application/json"}}, {}});
+    EXPECT_TRUE(answer);
+    return answer ? *answer : http::ClientResponse{};
+  };
+  std::string seen;
+  std::string query = "?limit=2";
+  for (int pages = 0; pages < 5 && !query.empty(); ++pages) {
+    const auto answer = get(query);
+    ASSERT_EQ(answer.status, 200) << query;
+    const auto listed = nlohmann::json::parse(answer.body).at("recordings");
+    EXPECT_LE(listed.size(), 2u);
+    for (const auto& one : listed) seen += one.at("name");
+    const std::string& links = answer.headers.at("link");
+    const auto next = links.find(">; rel=\"next\"");
+    const auto from = next == std::string::npos ? next : links.rfind('<', next) + 1;
+    query = next == std::string::npos ? "" : links.substr(from, next - from);
+  }
+  EXPECT_EQ(seen, "abcde");
+  EXPECT_THAT(get("").headers.at("link"), Not(HasSubstr("rel=\"next\""))) << "all on one page";
+  for (const auto wrong : {"?limit=0", "?limit=1001", "?limit=x", "?limit=-1", "?limit="})
+    EXPECT_EQ(get(wrong).status, 400) << wrong;
 }
 
 TEST(RecordingNode, SpeaksOnlyDeclaredTerms) {
