@@ -51,10 +51,4 @@ void read_http(ConfigReader config, http::ServerConfig& out) {
   read_limits(config, out.limits);
 }
 
-bool differ_in_token_at_most(const http::ServerConfig& a, const http::ServerConfig& b) {
-  http::ServerConfig same_token = b;
-  same_token.bearer_token = a.bearer_token;
-  return a == same_token;
-}
-
 }  // namespace chorus::service

@@ -9,9 +9,4 @@ namespace chorus::service {
 /// What is absent keeps the value that `out` has: each service brings its own port.
 void read_http(ConfigReader config, http::ServerConfig& out);
 
-/// True when a running server needs no restart to become the other: they differ in the bearer token
-/// at most.
-[[nodiscard]] bool differ_in_token_at_most(const http::ServerConfig& a,
-                                           const http::ServerConfig& b);
-
 }  // namespace chorus::service
