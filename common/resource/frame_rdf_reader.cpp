@@ -14,6 +14,9 @@ namespace {
 using rdf::TermKind;
 using rdf::TermView;
 
+/// Of so many things a document may speak; 64 bodies of 25 joints are 1 665.
+constexpr std::size_t kMaxSubjects = 4096;
+
 enum class Property : std::uint8_t {
   BodyIs,
   BodyId,
@@ -109,6 +112,11 @@ class Collector {
   /// False when the document is refused; error() says why.
   bool take(const rdf::TripleView& triple) {
     const std::size_t at = subject_of(triple.subject);
+    if (facts_.size() > kMaxSubjects) {
+      error_ = Error{ErrorCode::TooLarge, "frame",
+                     "it speaks of more than " + std::to_string(kMaxSubjects) + " things"};
+      return false;
+    }
     const std::string_view verb = triple.predicate.value;
     if (verb == type_) {
       if (individual(triple.object) == "Frame") facts_[at].is_frame = true;

@@ -1,5 +1,8 @@
 #include "fusion-server/poll/answer.h"
 
+#include <array>
+#include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,6 +13,8 @@ namespace chorus::poll {
 namespace {
 
 constexpr int kOk = 200;
+constexpr Duration kMostAhead = std::chrono::seconds(2);
+constexpr Duration kMostBehind = std::chrono::seconds(10);
 constexpr std::size_t kMaxFloorBytes = 64u << 10;
 
 std::string_view header(const http::ClientResponse& response, std::string_view name) {
@@ -52,7 +57,7 @@ FrameAnswer read_frame_answer(const http::ClientResponse& response, const Sensor
   if (!format || *format == resource::Format::NTriples) {
     return {unreadable(ErrorCode::Unsupported, "frame",
                        "the content type is \"" + std::string(type.substr(0, 64)) +
-                           "\", where a sensor sends text/turtle"),
+                           "\", where a sensor sends text/turtle or application/json"),
             nullptr};
   }
   auto frame = resource::read_frame(response.body, *format);
@@ -60,6 +65,15 @@ FrameAnswer read_frame_answer(const http::ClientResponse& response, const Sensor
   if (auto error = stranger(*frame, expected)) return {Unreadable{std::move(*error)}, nullptr};
   auto shared = std::make_shared<const resource::FrameResource>(std::move(*frame));
   return {FrameAnswered{kOk, etag, shared->captured}, shared};
+}
+
+Result<std::shared_ptr<const resource::FrameResource>> read_frame_event(std::string_view text,
+                                                                        const SensorId& expected) {
+  const bool json = text.starts_with('{');
+  auto frame = resource::read_frame(text, json ? resource::Format::Json : resource::Format::Turtle);
+  if (!frame) return pass(frame);
+  if (auto error = stranger(*frame, expected)) return tl::unexpected<Error>(std::move(*error));
+  return std::make_shared<const resource::FrameResource>(std::move(*frame));
 }
 
 std::optional<FloorPlane> read_floor_answer(const http::ClientResponse& response) {
@@ -86,6 +100,18 @@ SensorFrame place_in_time(const resource::FrameResource& frame, const SensorId& 
   for (BodyFrame& body : placed.bodies) body.captured += shift;
   placed.floor = frame.space == resource::SpaceKind::World ? FloorPlane{} : floor;
   return placed;
+}
+
+std::optional<Error> untimely(const SensorFrame& frame) {
+  const Duration ahead = frame.captured - frame.received;
+  if (ahead <= kMostAhead && -ahead <= kMostBehind) return std::nullopt;
+  const bool future = ahead > Duration{0};
+  std::array<char, 64> amount{};
+  std::snprintf(amount.data(), amount.size(), "%.1f s %s", std::abs(seconds(ahead)),
+                future ? "ahead of" : "behind");
+  return Error{ErrorCode::InvalidArgument, "frame",
+               "its capture time is " + std::string(amount.data()) +
+                   " our clock; set the clock of the sensor's host, best by NTP"};
 }
 
 }  // namespace chorus::poll

@@ -22,6 +22,11 @@ struct FrameAnswer {
 [[nodiscard]] FrameAnswer read_frame_answer(const http::ClientResponse& response,
                                             const SensorId& expected);
 
+/// The data of an event: a frame in JSON, which begins with a brace, or in Turtle, which never
+/// does.
+[[nodiscard]] Result<std::shared_ptr<const resource::FrameResource>> read_frame_event(
+    std::string_view text, const SensorId& expected);
+
 /// /floor-plane; none when there is none or it is none.
 [[nodiscard]] std::optional<FloorPlane> read_floor_answer(const http::ClientResponse& response);
 
@@ -32,5 +37,8 @@ struct FrameAnswer {
 [[nodiscard]] SensorFrame place_in_time(const resource::FrameResource& frame,
                                         const SensorId& sensor, Timestamp received, Duration shift,
                                         const std::optional<FloorPlane>& floor);
+
+/// Why no pipeline can use a frame that came at this time: it is from the future, or very old.
+[[nodiscard]] std::optional<Error> untimely(const SensorFrame& frame);
 
 }  // namespace chorus::poll

@@ -52,6 +52,9 @@ class ClockFilter {
 
   [[nodiscard]] std::optional<ClockEstimate> at(Timestamp now) const;
 
+  /// The last exchange contradicts the estimate; the next ones say whether a clock was set.
+  [[nodiscard]] bool doubtful() const noexcept { return contradictions_ > 0; }
+
  private:
   struct Sample {
     Timestamp received;

@@ -9,17 +9,23 @@ namespace {
 
 constexpr Duration kNoticeInterval = std::chrono::seconds(1);
 constexpr int kMaxDoublings = 20;  // 0.1 s * 2^20 is far beyond any max_backoff
+constexpr Duration kFloorPause = std::chrono::seconds(1);
+
+constexpr Duration kStreamAlive = std::chrono::milliseconds(500);  // no frame for longer: no proof
+constexpr Duration kStreamProven = std::chrono::seconds(10);
+constexpr Duration kStreamPause = std::chrono::seconds(1);
+constexpr Duration kNoStreamPause = std::chrono::seconds(60);
+
+constexpr Duration kClockHurry = std::chrono::milliseconds(100);  // while it is not well known
+constexpr Duration kClockInterval = std::chrono::milliseconds(500);
+constexpr Duration kNoClockInterval = std::chrono::seconds(5);
+constexpr Duration kWellKnown = std::chrono::microseconds(300);
+constexpr Duration kOddInterval = std::chrono::seconds(2);
+constexpr int kClockChecks = 4;  // the filter believes a step at the third
 
 constexpr int kOk = 200;
 constexpr int kNotModified = 304;
 constexpr int kServiceUnavailable = 503;
-
-template <class... Ts>
-struct Overloaded : Ts... {
-  using Ts::operator()...;
-};
-template <class... Ts>
-Overloaded(Ts...) -> Overloaded<Ts...>;
 
 Duration backoff(const PollTimings& timings, int failures_in_row, double jitter) {
   const int doublings = std::clamp(failures_in_row - 1, 0, kMaxDoublings);
@@ -47,32 +53,23 @@ std::string_view name_of(SensorState state) noexcept {
 }
 
 Step PollFsm::resume(const Event& event, Duration now, double jitter) {
-  Step step =
-      std::visit(Overloaded{
-                     [&](const Started&) { return Step{next_request(now)}; },
-                     [&](const Woke&) { return Step{next_request(now)}; },
-                     [&](const FrameAnswered& answer) { return on_frame(answer, now, jitter); },
-                     [&](const FloorAnswered&) { return Step{next_request(now)}; },
-                     [&](const Unreadable& body) {
-                       etag_.clear();  // ask for the next body, whatever its tag
-                       return fail(SensorState::Refused, to_string(body.error), jitter);
-                     },
-                     [&](const Failed& failed) {
-                       const bool was_here = last_captured_.has_value();
-                       return fail(was_here ? SensorState::Lost : SensorState::Connecting,
-                                   to_string(failed.error), jitter);
-                     },
-                 },
-                 event);
+  const bool of_stream =
+      std::holds_alternative<StreamFrame>(event) || std::holds_alternative<StreamEnded>(event);
+  if (!of_stream) asking_ = false;
+  Step step = std::visit([&](const auto& one) { return on(one, now, jitter); }, event);
+  if (step.action) asking_ = std::holds_alternative<Send>(*step.action);
   step.notice = due_notice(now);
   return step;
 }
 
-Step PollFsm::on_frame(const FrameAnswered& answer, Duration now, double jitter) {
+Step PollFsm::on(const Started&, Duration now, double) { return go_on(now); }
+
+Step PollFsm::on(const Woke&, Duration now, double) { return go_on(now); }
+
+Step PollFsm::on(const FrameAnswered& answer, Duration now, double jitter) {
+  if (streaming_) return go_on(now);  // asked before the stream began; it brings the same frames
   if (answer.status == kServiceUnavailable) {
-    const bool was_here = last_captured_.has_value();
-    return fail(was_here ? SensorState::Lost : SensorState::Connecting,
-                "the sensor service answers 503: its device delivers no frames", jitter);
+    return fail(gone(), "the sensor service answers 503: its device delivers no frames", jitter);
   }
   if (answer.status != kNotModified && (answer.status != kOk || !answer.captured)) {
     return fail(SensorState::Refused,
@@ -85,17 +82,109 @@ Step PollFsm::on_frame(const FrameAnswered& answer, Duration now, double jitter)
   if (answer.status == kOk) etag_ = answer.etag;
   if (news) {
     last_captured_ = answer.captured;
-    enter(SensorState::Live, {});
-    return {after(timings_.min_interval, now), true};
+    became_live(now);
+    Step step{after(timings_.min_interval, now, answer.rest), true};
+    if (wants_stream(now)) step.stream = StreamOrder::Open;
+    return step;
   }
   const bool waited = now - sent_at_ >= asked_wait_ / 2;
   if (answer.status == kNotModified && waited) {
-    enter(last_captured_ ? SensorState::Lost : SensorState::Connecting,
-          "the sensor service answers, but has no new frame");
+    enter(gone(), "the sensor service answers, but has no new frame");
     return {after(timings_.min_interval, now)};
   }
-  ++repeats_;  // a server that ignores Prefer, or sends the same frame again
-  return {after(timings_.idle_interval, now)};
+  // A server that ignores Prefer, or sends the same frame again.
+  return {after(timings_.idle_interval, now, answer.rest)};
+}
+
+Step PollFsm::on(const FloorAnswered& answer, Duration now, double) {
+  floor_known_ = answer.known;
+  floor_pause_ = Duration{0};
+  if (!answer.known) floor_due_ = now + kFloorPause;
+  return go_on(now);
+}
+
+Step PollFsm::on(const KeptAnswered& answer, Duration now, double) {
+  backfill_.answered(answer.there);
+  return {after(timings_.min_interval, now, answer.rest), answer.there};
+}
+
+Step PollFsm::on(const ClockAnswered& answer, Duration now, double) {
+  if (clock_checks_ > 0) --clock_checks_;
+  if (!answer.uncertainty) {
+    clock_checks_ = 0;
+    clock_due_ = now + kNoClockInterval;
+  } else if (clock_checks_ > 0 || answer.doubtful) {
+    clock_due_ = now;
+  } else {
+    clock_due_ = now + (*answer.uncertainty > kWellKnown ? kClockHurry : kClockInterval);
+  }
+  return {after(timings_.min_interval, now)};
+}
+
+Step PollFsm::on(const Unreadable& body, Duration, double jitter) {
+  etag_.clear();  // ask for the next body, whatever its tag
+  Step step = fail(SensorState::Refused, to_string(body.error), jitter);
+  auto& pause = std::get<Sleep>(*step.action).duration;
+  pause = std::max(pause, body.rest);
+  return step;
+}
+
+Step PollFsm::on(const Failed& failed, Duration now, double jitter) {
+  if (asked_ == Resource::FloorPlane && state_ == SensorState::Live)
+    floor_pause_ = std::clamp(2 * floor_pause_, kFloorPause, timings_.floor_interval);
+  if (asked_ == Resource::Clock) clock_checks_ = 0;
+  if (streaming_ && now - streamed_at_ < kStreamAlive) {  // frames come: only the requests suffer
+    ++failures_;
+    clock_due_ = now + kClockInterval;
+    return {Sleep{backoff(timings_, ++failures_in_row_, jitter)}};
+  }
+  const bool close = stream_asked_;
+  if (close) leave_stream(now, kStreamPause);
+  stream_due_ = now;  // who comes back may have learnt to stream
+  floor_known_ = false;
+  Step step = fail(gone(), to_string(failed.error), jitter);
+  if (close) step.stream = StreamOrder::Close;
+  return step;
+}
+
+Step PollFsm::on(const StreamFrame& frame, Duration now, double) {
+  Step step;
+  if (!std::exchange(streaming_, true)) {
+    streamed_since_ = now;
+    clock_due_ = now + kClockHurry;
+  }
+  if (now - streamed_since_ > kStreamProven) stream_pause_ = Duration{0};
+  streamed_at_ = now;
+  backfill_.saw(frame.sequence, now);
+  step.deliver = frame.captured != last_captured_;
+  last_captured_ = frame.captured;
+  became_live(now);
+  if (frame.odd && (!clock_checked_at_ || now - *clock_checked_at_ > kOddInterval)) {
+    clock_checked_at_ = now;
+    clock_checks_ = kClockChecks;
+    clock_due_ = now;
+  }
+  const bool work = !backfill_.empty() || checking_clock() || !floor_due_ || now >= *floor_due_;
+  if (work && !asking_) step.action = next_request(now);
+  return step;
+}
+
+Step PollFsm::on(const StreamEnded& end, Duration now, double) {
+  const bool lived_on_it = streaming_;
+  leave_stream(now, end.error.code == ErrorCode::Unsupported ? kNoStreamPause : kStreamPause);
+  Step step;
+  step.stream = StreamOrder::Close;
+  if (lived_on_it && !asking_) step.action = next_request(now);
+  return step;
+}
+
+/// Whatever is due; a stream that has fallen silent is given up for the polling.
+Step PollFsm::go_on(Duration now) {
+  const bool silent = streaming_ && now - streamed_at_ > timings_.wait;
+  if (silent) leave_stream(now, kStreamPause);
+  Step step{next_request(now)};
+  if (silent) step.stream = StreamOrder::Close;
+  return step;
 }
 
 Step PollFsm::fail(SensorState state, std::string reason, double jitter) {
@@ -105,20 +194,63 @@ Step PollFsm::fail(SensorState state, std::string reason, double jitter) {
   return {Sleep{backoff(timings_, failures_in_row_, jitter)}};
 }
 
-Action PollFsm::next_request(Duration now) {
-  sent_at_ = now;
-  if (!floor_due_ || now >= *floor_due_) {
-    floor_due_ = now + timings_.floor_interval;
-    asked_wait_ = Duration{0};
-    return Send{Resource::FloorPlane, {}, Duration{0}, timings_.answer_slack};
-  }
-  asked_wait_ = etag_.empty() ? Duration{0} : timings_.wait;
-  return Send{Resource::Frame, etag_, asked_wait_, asked_wait_ + timings_.answer_slack};
+SensorState PollFsm::gone() const {
+  return last_captured_ ? SensorState::Lost : SensorState::Connecting;
 }
 
-Action PollFsm::after(Duration interval, Duration now) {
-  const Duration earliest = sent_at_ + interval;
-  if (now < earliest) return Sleep{earliest - now};
+/// A floor that was asked for in vain, or of an earlier run, is asked for again.
+void PollFsm::became_live(Duration now) {
+  failures_in_row_ = 0;
+  if (state_ != SensorState::Live && floor_due_ && !floor_known_) {
+    floor_due_ = std::min(*floor_due_, now + floor_pause_);
+  }
+  enter(SensorState::Live, {});
+}
+
+bool PollFsm::wants_stream(Duration now) {
+  if (!timings_.stream || stream_asked_ || now < stream_due_) return false;
+  backfill_.restart();
+  return stream_asked_ = true;
+}
+
+/// Each end in a row doubles the pause, up to a minute.
+void PollFsm::leave_stream(Duration now, Duration pause) {
+  stream_asked_ = false;
+  streaming_ = false;
+  clock_checks_ = 0;
+  stream_pause_ = std::clamp(2 * stream_pause_, pause, kNoStreamPause);
+  stream_due_ = now + stream_pause_;
+}
+
+Action PollFsm::next_request(Duration now) {
+  sent_at_ = now;
+  asked_wait_ = Duration{0};
+  asked_ = Resource::FloorPlane;
+  if (!floor_due_ || (now >= *floor_due_ && state_ == SensorState::Live)) {
+    floor_due_ = now + timings_.floor_interval;
+    return Send{asked_, {}, Duration{0}, timings_.answer_slack};
+  }
+  if (streaming_) return next_beside_stream(now);
+  asked_ = Resource::Frame;
+  asked_wait_ = etag_.empty() ? Duration{0} : timings_.wait;
+  return Send{asked_, etag_, asked_wait_, asked_wait_ + timings_.answer_slack};
+}
+
+Action PollFsm::next_beside_stream(Duration now) {
+  if (!checking_clock()) {
+    if (const auto sequence = backfill_.next(now)) {
+      asked_ = Resource::KeptFrame;
+      return Send{asked_, {}, Duration{0}, timings_.answer_slack, *sequence};
+    }
+  }
+  if (now < clock_due_) return Sleep{std::min(clock_due_ - now, kClockInterval)};
+  asked_ = Resource::Clock;
+  return Send{asked_, {}, Duration{0}, timings_.answer_slack};
+}
+
+Action PollFsm::after(Duration interval, Duration now, Duration rest) {
+  const Duration pause = std::max(sent_at_ + interval - now, rest);
+  if (pause > Duration{0}) return Sleep{pause};
   return next_request(now);
 }
 
@@ -126,7 +258,7 @@ void PollFsm::enter(SensorState state, std::string reason) {
   const bool changed = state != state_ || (!reason.empty() && reason != last_error_);
   if (!changed) return;
   state_ = state;
-  if (!reason.empty()) last_error_ = reason;
+  last_error_ = reason;
   if (state == SensorState::Live) {
     pending_notice_ = Notice{false, "sensor live", {}};
   } else if (state == SensorState::Refused) {

@@ -1,7 +1,7 @@
-// Polls every sensor: executes what PollFsm decides, reads the frames, corrects their clocks.
+// Follows every sensor: executes what PollFsm decides, reads the frames, corrects their clocks.
 //
-// One thread and one kept-alive connection per sensor; a sensor that is dead, slow or lying costs
-// the others nothing but its bytes.
+// One thread for all, and one or two connections per sensor; a sensor that is dead, slow or lying
+// costs the others nothing but its bytes, and a tenth of the thread for reading them.
 #pragma once
 
 #include <functional>
@@ -37,18 +37,20 @@ struct PolledFrame {
 struct PollReport {
   PolledSensor sensor;
   SensorState state = SensorState::Connecting;
-  std::string last_error;
+  std::string last_error;           ///< What is wrong now; empty while it is live.
+  bool streaming = false;           ///< Its frames come by event stream, not by polling.
   std::optional<Timestamp> newest;  ///< Capture time of the last frame, by our clock.
-  double rate_hz = 0.0;  ///< Frames per second of capture time, over the last two seconds.
+  double rate_hz = 0.0;             ///< Frames per second that arrived, over the last two seconds.
   std::optional<ClockEstimate> clock;
   std::uint64_t frames = 0;
-  std::uint64_t missed = 0;  ///< Gaps in the sensor's sequence.
+  std::uint64_t missed = 0;   ///< Gaps in the sensor's sequence that were not filled.
+  std::uint64_t refused = 0;  ///< Frames of quite another time.
   std::uint64_t failures = 0;
 };
 
 struct PollerOptions {
   PollTimings timings;
-  std::size_t max_body_bytes = 2u << 20;
+  std::size_t max_body_bytes = 512u << 10;  ///< Of one frame; 64 bodies are about 350 kB.
   std::shared_ptr<const Clock> clock;
   /// Called on the poll thread; must return at once.  What it throws is a failed poll.
   std::function<void(PolledFrame)> deliver;

@@ -72,6 +72,35 @@ TEST(FrameAnswer, RefusesWebPagesNonsenseAndStrangers) {
       "frame: the service calls itself \"s2\", the config calls it \"s1\"; make both the same");
 }
 
+TEST(FrameAnswer, ADocumentOfThousandsOfStrangersIsRefusedEarly) {
+  std::string text = "@prefix ch: <https://w3id.org/chorus-tracking/ns#> .\n";
+  for (int i = 0; i < 5000; ++i) text += "<x" + std::to_string(i) + "> a ch:Joint .\n";
+  EXPECT_NE(why(read_frame_answer(answer(200, "text/turtle", text), sensor_id("s1"))).find("4096"),
+            std::string::npos);
+}
+
+TEST(FrameEvent, IsJsonOrTurtle) {
+  for (const auto format : {resource::Format::Turtle, resource::Format::Json}) {
+    const auto read = read_frame_event(write(frame("s1"), format), sensor_id("s1"));
+    ASSERT_TRUE(read) << media_type(format);
+    EXPECT_EQ((*read)->bodies.size(), 1u);
+    EXPECT_FALSE(read_frame_event(write(frame("s1"), format), sensor_id("s2")));
+  }
+  EXPECT_FALSE(read_frame_event("", sensor_id("s1")));
+}
+
+TEST(Untimely, IsTheFutureAndThePastButNotTheDelay) {
+  SensorFrame frame = testing::sensor_frame("s1", kStart, {});
+  const auto at = [&](Duration received) {
+    frame.received = kStart + received;
+    return untimely(frame);
+  };
+  EXPECT_FALSE(at(std::chrono::milliseconds(150)));
+  EXPECT_FALSE(at(std::chrono::seconds(-1)));
+  EXPECT_NE(to_string(*at(std::chrono::hours(1))).find("3600.0 s behind"), std::string::npos);
+  EXPECT_NE(to_string(*at(std::chrono::hours(-1))).find("3600.0 s ahead of"), std::string::npos);
+}
+
 TEST(FrameAnswer, ARefusedContentTypeIsQuotedOnlyInPart) {
   const auto read = read_frame_answer(answer(200, std::string(5000, 'x'), ""), sensor_id("s1"));
   EXPECT_LT(why(read).size(), 200u);

@@ -22,8 +22,8 @@ FrameAnswered frame(int ms, std::string etag) { return {200, std::move(etag), at
 
 Failed reset() { return {Error{ErrorCode::Io, "127.0.0.1:8081", "connection reset"}}; }
 
-const Send& send_of(const Step& step) { return std::get<Send>(step.action); }
-Duration sleep_of(const Step& step) { return std::get<Sleep>(step.action).duration; }
+const Send& send_of(const Step& step) { return std::get<Send>(*step.action); }
+Duration sleep_of(const Step& step) { return std::get<Sleep>(*step.action).duration; }
 
 /// Past the floor plane, with the first request for a frame under way since `now`.
 PollFsm at_first_frame(Duration now) {
@@ -78,7 +78,6 @@ TEST(PollFsm, AServerThatIgnoresPreferIsAskedAtTheIdleInterval) {
   const Step step = fsm.resume(FrameAnswered{304, "\"1\""}, milliseconds(1001), kFull);
   EXPECT_FALSE(step.deliver);
   EXPECT_EQ(sleep_of(step), milliseconds(9));
-  EXPECT_EQ(fsm.repeats(), 1u);
   EXPECT_EQ(fsm.state(), SensorState::Live);
 }
 
@@ -108,9 +107,9 @@ TEST(PollFsm, TimeGoingBackwardsIsNewsForTheHistoryToJudge) {
   EXPECT_TRUE(fsm.resume(frame(-500, "\"2\""), milliseconds(1033), kFull).deliver);
 }
 
-TEST(PollFsm, BackOffDoublesFromATenthOfASecondToFiveSeconds) {
+TEST(PollFsm, BackOffDoublesFromATenthOfASecondToOneSecond) {
   PollFsm fsm = live(milliseconds(0));
-  const int expected_ms[] = {100, 200, 400, 800, 1600, 3200, 5000, 5000, 5000};
+  const int expected_ms[] = {100, 200, 400, 800, 1000, 1000, 1000, 1000, 1000};
   Duration now{0};
   for (const int ms : expected_ms) {
     const Step step = fsm.resume(reset(), now, kFull);
@@ -142,7 +141,7 @@ TEST(PollFsm, AFailureNeverFollowsWithoutAPauseHoweverManyThereAre) {
   for (int i = 0; i < 1000; ++i) {
     const Step step = fsm.resume(reset(), milliseconds(i), kHalf);
     EXPECT_GE(sleep_of(step), milliseconds(50));
-    EXPECT_LE(sleep_of(step), seconds(5));
+    EXPECT_LE(sleep_of(step), seconds(1));
   }
 }
 
@@ -232,6 +231,46 @@ TEST(PollFsm, EveryStateHasAName) {
   EXPECT_EQ(name_of(SensorState::Live), "live");
   EXPECT_EQ(name_of(SensorState::Lost), "lost");
   EXPECT_EQ(name_of(SensorState::Refused), "refused");
+}
+
+TEST(PollFsm, TheFloorIsAskedForOnBecomingLiveWhenItWasAskedInVain) {
+  PollFsm fsm;
+  (void)fsm.resume(Started{}, milliseconds(0), kFull);
+  (void)fsm.resume(reset(), milliseconds(1), kFull);  // the sensor is not there yet
+  (void)fsm.resume(Woke{}, milliseconds(101), kFull);
+  const Step live = fsm.resume(frame(0, "\"1\""), milliseconds(120), kFull);
+  EXPECT_TRUE(live.deliver);
+  EXPECT_EQ(send_of(live).resource, Resource::FloorPlane);
+}
+
+TEST(PollFsm, AFloorThatIsNotKnownYetIsAskedForAgainSoon) {
+  PollFsm fsm = at_first_frame(milliseconds(0));
+  (void)fsm.resume(frame(0, "\"1\""), milliseconds(20), kFull);
+  (void)fsm.resume(frame(33, "\"2\""), seconds(11), kFull);  // the floor is due
+  (void)fsm.resume(FloorAnswered{false}, seconds(11), kFull);
+  EXPECT_EQ(send_of(fsm.resume(frame(66, "\"3\""), milliseconds(12100), kFull)).resource,
+            Resource::FloorPlane);
+}
+
+TEST(PollFsm, ALiveSensorHasNoError) {
+  PollFsm fsm = live(milliseconds(0));
+  (void)fsm.resume(reset(), milliseconds(10), kFull);
+  EXPECT_NE(fsm.last_error(), "");
+  (void)fsm.resume(Woke{}, milliseconds(110), kFull);
+  (void)fsm.resume(frame(200, "\"5\""), milliseconds(200), kFull);
+  EXPECT_EQ(fsm.last_error(), "");
+}
+
+TEST(PollFsm, WhoCostsMuchReadingRests) {
+  PollFsm fsm = live(milliseconds(0));
+  FrameAnswered heavy = frame(33, "\"2\"");
+  heavy.rest = milliseconds(300);
+  const Step step = fsm.resume(heavy, milliseconds(33), kFull);
+  EXPECT_TRUE(step.deliver);
+  EXPECT_EQ(sleep_of(step), milliseconds(300));
+  (void)fsm.resume(Woke{}, milliseconds(333), kFull);
+  Unreadable junk{Error{ErrorCode::Malformed, "", "junk"}, seconds(3)};
+  EXPECT_EQ(sleep_of(fsm.resume(junk, milliseconds(340), kFull)), seconds(3));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // side.
 #include "fusion-server/poll/poller.h"
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <map>
@@ -27,22 +28,33 @@ constexpr auto kPatience = seconds(20);  // a ceiling for loaded machines; nothi
 /// A sensor service with frames on demand, or anything else at /frame.
 class FakeSensor {
  public:
-  explicit FakeSensor(std::string name, std::uint16_t port = 0) : name_(std::move(name)) {
+  explicit FakeSensor(std::string name, std::uint16_t port = 0,
+                      std::shared_ptr<const Clock> clock = std::make_shared<SystemClock>())
+      : name_(std::move(name)) {
     auto router = std::make_shared<http::Router>();
     router->live("/frame", live_);
+    router->get(
+        "/frames/{seq}",
+        [this](const http::Request&, const http::PathParams& params) -> Result<http::DocumentPtr> {
+          const std::scoped_lock lock(mutex_);
+          const auto kept = kept_.find(params.at("seq"));
+          if (kept != kept_.end()) return kept->second;
+          return fail(ErrorCode::NotFound, "frames", "no such frame");
+        });
     http::ServerConfig config;
     config.port = port;
+    config.clock = std::move(clock);
     server_ = std::make_unique<http::Server>(config, router);
     if (auto ok = server_->start(); !ok) ADD_FAILURE() << to_string(ok.error());
   }
 
   void send(std::uint64_t sequence, Timestamp captured) {
-    auto frame = testing::sensor_frame(name_, captured, {});
-    auto resource = resource::to_resource(frame);
-    resource.sequence = sequence;
-    const auto shared = std::make_shared<const resource::FrameResource>(std::move(resource));
-    live_->publish(
-        resource::frame_document(shared, {"frame", {}}, resource::latest_options(*shared)));
+    live_->publish(document(sequence, captured));
+  }
+  /// At /frames/{seq} only.
+  void keep(std::uint64_t sequence, Timestamp captured) {
+    const std::scoped_lock lock(mutex_);
+    kept_[std::to_string(sequence)] = document(sequence, captured);
   }
   void answer(std::string type, std::string body) {
     http::DocumentOptions options;
@@ -57,7 +69,17 @@ class FakeSensor {
   }
 
  private:
+  http::DocumentPtr document(std::uint64_t sequence, Timestamp captured) const {
+    auto frame = testing::sensor_frame(name_, captured, {});
+    auto resource = resource::to_resource(frame);
+    resource.sequence = sequence;
+    const auto shared = std::make_shared<const resource::FrameResource>(std::move(resource));
+    return resource::frame_document(shared, {"frame", {}}, resource::latest_options(*shared));
+  }
+
   std::string name_;
+  std::mutex mutex_;
+  std::map<std::string, http::DocumentPtr> kept_;  ///< Guarded by mutex_.
   std::shared_ptr<http::LiveDocument> live_ = std::make_shared<http::LiveDocument>();
   std::unique_ptr<http::Server> server_;
   int version_ = 0;
@@ -203,15 +225,120 @@ TEST_F(Polling, WhatIsThrownOverAFrameIsAFailedPollAndNotTheEnd) {
 TEST_F(Polling, AnEndlessStreamOfTheSameFrameIsNotASpin) {
   FakeSensor s1("s1");
   poller_->poll({{sensor_id("s1"), s1.url()}});
-  s1.send(1, testing::kStart);
+  const Timestamp once = clock_->now();
+  s1.send(1, once);
   ASSERT_TRUE(wait_for("s1", 1));
   const auto before = s1.requests();
   for (int i = 2; i < 40; ++i) {  // new tag, old capture time
-    s1.send(static_cast<std::uint64_t>(i), testing::kStart);
+    s1.send(static_cast<std::uint64_t>(i), once);
     std::this_thread::sleep_for(milliseconds(2));
   }
   EXPECT_EQ(count("s1"), 1u);
   EXPECT_LT(s1.requests() - before, 40u);
+}
+
+bool streams(const PollReport& report) { return report.streaming; }
+
+TEST_F(Polling, ASensorWithAnEventStreamIsNotPolled) {
+  FakeSensor s1("s1");
+  poller_->poll({{sensor_id("s1"), s1.url()}});
+  expect_every_frame(s1, "s1", 2);
+  ASSERT_TRUE(wait_until(streams, "s1"));
+  const auto before = s1.requests();
+  expect_every_frame(s1, "s1", 50);
+  EXPECT_LT(s1.requests() - before, 25u);  // the clock's
+}
+
+TEST_F(Polling, WhatAStreamLeftOutIsFetched) {
+  FakeSensor s1("s1");
+  poller_->poll({{sensor_id("s1"), s1.url()}});
+  expect_every_frame(s1, "s1", 2);
+  ASSERT_TRUE(wait_until(streams, "s1"));
+  const Timestamp now = clock_->now();
+  s1.keep(3, now - milliseconds(99));
+  s1.keep(4, now - milliseconds(66));
+  s1.send(5, now);
+  ASSERT_TRUE(wait_for("s1", 5));
+  EXPECT_EQ(poller_->reports().at(0).missed, 0u);
+}
+
+TEST_F(Polling, OneThatNeverStreamsIsPolled) {
+  PollerOptions options;
+  options.clock = clock_;
+  options.timings.stream = false;
+  std::atomic<int> frames = 0;
+  options.deliver = [&](const PolledFrame&) { ++frames; };
+  Poller polling(options);
+  FakeSensor s1("s1");
+  polling.poll({{sensor_id("s1"), s1.url()}});
+  for (int i = 1; i <= 20; ++i) {
+    s1.send(static_cast<std::uint64_t>(i), clock_->now());
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (frames < i && std::chrono::steady_clock::now() < deadline)
+      std::this_thread::sleep_for(milliseconds(1));
+  }
+  EXPECT_EQ(frames, 20);
+  EXPECT_FALSE(polling.reports().at(0).streaming);
+}
+
+/// A clock that is set while everybody watches.
+class SetClock final : public Clock {
+ public:
+  [[nodiscard]] Timestamp now() const override {
+    return SystemClock().now() + Duration(error_ns_.load());
+  }
+  void set(Duration error) { error_ns_ = error.count(); }
+
+ private:
+  std::atomic<std::int64_t> error_ns_ = 0;
+};
+
+TEST_F(Polling, AClockThatIsSetIsFollowedAndCostsHardlyAFrame) {
+  for (const Duration step : {Duration(milliseconds(-700)), Duration(milliseconds(900))}) {
+    const auto theirs = std::make_shared<SetClock>();
+    FakeSensor s1("s1", 0, theirs);
+    poller_->poll({{sensor_id("s1"), s1.url()}});
+    expect_every_frame(s1, "s1", 20);
+    ASSERT_TRUE(wait_until(streams, "s1"));
+    const std::size_t before = count("s1");
+    theirs->set(step);
+    std::vector<Timestamp> truth;
+    for (int i = 0; i < 40; ++i) {
+      truth.push_back(clock_->now());
+      s1.send(++sequence_, theirs->now());
+      std::this_thread::sleep_for(milliseconds(33));
+    }
+    ASSERT_TRUE(wait_for("s1", before + 38));
+    const std::scoped_lock lock(mutex_);
+    int wrong = 0;
+    const auto& frames = frames_[sensor_id("s1")];
+    for (std::size_t i = before; i < frames.size(); ++i) {
+      const auto nearest = std::min_element(truth.begin(), truth.end(), [&](auto a, auto b) {
+        return std::chrono::abs(a - frames[i].captured) < std::chrono::abs(b - frames[i].captured);
+      });
+      wrong += std::chrono::abs(*nearest - frames[i].captured) > milliseconds(10) ? 1 : 0;
+    }
+    EXPECT_LE(wrong, 2) << seconds(1) / step;
+    poller_->poll({});
+    frames_.clear();
+  }
+}
+
+TEST_F(Polling, StampsOfAnotherTimeAreRefusedByName) {
+  FakeSensor ahead("s1");
+  FakeSensor behind("s2");
+  poller_->poll({{sensor_id("s1"), ahead.url()}, {sensor_id("s2"), behind.url()}});
+  ahead.send(1, clock_->now() + std::chrono::hours(1));
+  behind.send(1, from_unix_ns(0));
+  const auto refused = [](const PollReport& r) { return r.state == SensorState::Refused; };
+  ASSERT_TRUE(wait_until(refused, "s1"));
+  ASSERT_TRUE(wait_until(refused, "s2"));
+  const auto reports = poller_->reports();
+  EXPECT_NE(reports.at(0).last_error.find("s ahead of our clock"), std::string::npos)
+      << reports.at(0).last_error;
+  EXPECT_NE(reports.at(1).last_error.find("s behind our clock"), std::string::npos);
+  EXPECT_GE(reports.at(0).refused, 1u);
+  EXPECT_EQ(count("s1") + count("s2"), 0u);
 }
 
 TEST_F(Polling, NothingIsDeliveredAfterStop) {

@@ -1,0 +1,293 @@
+#include "fusion-server/poll/follower.h"
+
+#include <time.h>
+
+#include <algorithm>
+#include <exception>
+#include <string>
+#include <utility>
+
+#include "common/base/log.h"
+
+namespace chorus::poll {
+namespace {
+
+constexpr std::size_t kMostHeld = 10;
+constexpr std::string_view kAccept = "text/turtle, application/json;q=0.9";
+constexpr std::string_view kAcceptStream =
+    "text/event-stream, text/turtle;q=0.9, application/json;q=0.8";
+constexpr int kServerFault = 500;
+
+Duration steady_now() { return std::chrono::steady_clock::now().time_since_epoch(); }
+
+/// Of this thread: what others take from the processor is not the sensor's fault.
+Duration cpu_now() {
+  timespec spent{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &spent);
+  return std::chrono::seconds(spent.tv_sec) + std::chrono::nanoseconds(spent.tv_nsec);
+}
+
+std::chrono::milliseconds at_least_1ms(Duration d) {
+  return std::max(std::chrono::milliseconds(1), std::chrono::ceil<std::chrono::milliseconds>(d));
+}
+
+http::ClientLimits limits_of(const PollerOptions& options) {
+  http::ClientLimits limits;
+  limits.max_body_bytes = options.max_body_bytes;
+  limits.connect_timeout = std::chrono::seconds(1);
+  limits.answer_timeout = at_least_1ms(options.timings.answer_slack);
+  return limits;
+}
+
+std::string target_of(const Send& send) {
+  switch (send.resource) {
+    case Resource::Frame:
+      return "frame";
+    case Resource::FloorPlane:
+      return "floor-plane";
+    case Resource::KeptFrame:
+      return "frames/" + std::to_string(send.sequence);
+    case Resource::Clock:
+      return "clock";
+  }
+  return "frame";
+}
+
+}  // namespace
+
+Follower::Follower(http::net::io_context& io, PolledSensor sensor, http::Url url,
+                   const PollerOptions& options)
+    : options_(options),
+      sensor_(std::move(sensor)),
+      url_(std::move(url)),
+      client_(io, url_.host, url_.port, limits_of(options)),
+      stream_(io, url_.host, url_.port, limits_of(options)),
+      timer_(io),
+      fsm_(options.timings),
+      random_(std::random_device{}()) {
+  if (url_.target.empty() || url_.target.back() != '/') url_.target += '/';
+  report_.sensor = sensor_;
+}
+
+void Follower::start() {
+  survive([this] { feed(Started{}); });
+}
+
+void Follower::stop() {
+  stopped_ = true;
+  client_.close();
+  stream_.close();
+  timer_.cancel();
+}
+
+PollReport Follower::report(Timestamp now) const {
+  const std::scoped_lock lock(mutex_);
+  PollReport copy = report_;
+  copy.rate_hz = tally_.rate_hz(now);
+  copy.newest = tally_.newest();
+  copy.frames = tally_.frames();
+  copy.missed = tally_.missed();
+  return copy;
+}
+
+/// Whatever is thrown on the way (no memory, a frame nobody thought of) is a failed poll of this
+/// sensor: it is asked again after its back-off, and the others do not notice.
+template <class Doing>
+void Follower::survive(const Doing& doing) {
+  try {
+    doing();
+  } catch (const std::exception& thrown) {
+    answered_.reset();
+    feed(Failed{{ErrorCode::Internal, sensor_.url, thrown.what()}});
+  }
+}
+
+void Follower::feed(const Event& event) {
+  const double jitter = std::uniform_real_distribution<double>(0.0, 1.0)(random_);
+  const Step step = fsm_.resume(event, steady_now(), jitter);
+  if (step.stream == StreamOrder::Close) stream_.close();
+  if (step.stream == StreamOrder::Open) open_stream();
+  if (auto arrival = std::exchange(answered_, std::nullopt); arrival && step.deliver)
+    deliver(std::move(*arrival));
+  if (!held_.empty() && !in_doubt()) hand_on_held();
+  if (step.notice) tell(*step.notice);
+  publish_state();
+  if (step.action) std::visit([this](const auto& action) { act(action); }, *step.action);
+}
+
+void Follower::act(const Send& send) {
+  timer_.cancel();
+  http::ClientRequest request;
+  request.target = url_.target + target_of(send);
+  if (send.resource != Resource::Clock) request.headers.emplace_back("Accept", kAccept);
+  if (!send.etag.empty()) request.headers.emplace_back("If-None-Match", send.etag);
+  if (send.wait > Duration{0}) {
+    const auto wait = std::chrono::ceil<std::chrono::seconds>(send.wait);
+    request.headers.emplace_back("Prefer", "wait=" + std::to_string(wait.count()));
+  }
+  client_.send(std::move(request), at_least_1ms(send.deadline),
+               [weak = weak_from_this(), send](Result<http::ClientResponse> response) {
+                 const auto self = weak.lock();
+                 if (!self || self->stopped_) return;
+                 self->survive([&] { self->take(std::move(response), send); });
+               });
+}
+
+void Follower::act(const Sleep& sleep) {
+  timer_.expires_after(sleep.duration);
+  timer_.async_wait([weak = weak_from_this()](const http::error_code& error) {
+    const auto self = weak.lock();
+    if (!self || error || self->stopped_) return;
+    // Expired and replaced in the same instant: what replaced it is under way.
+    if (self->timer_.expiry() > std::chrono::steady_clock::now() || self->fsm_.asking()) return;
+    self->survive([&] { self->feed(Woke{}); });
+  });
+}
+
+void Follower::open_stream() {
+  http::ClientRequest request;
+  request.target = url_.target + "frame";
+  request.headers.emplace_back("Accept", kAcceptStream);
+  const auto weak = weak_from_this();
+  const auto guarded = [weak](const auto& doing) {
+    const auto self = weak.lock();
+    if (self && !self->stopped_) self->survive([&] { doing(*self); });
+  };
+  http::AsyncEventStream::Handlers handlers;
+  handlers.on_head = [guarded](const http::ClientResponse& head) {
+    guarded([&](Follower& self) { self.take_clock(head); });
+  };
+  handlers.on_events = [guarded](const std::vector<http::ServerEvent>& events) {
+    guarded([&](Follower& self) { self.take_events(events); });
+  };
+  handlers.on_end = [guarded](const Error& error) {
+    guarded([&](Follower& self) { self.feed(StreamEnded{error}); });
+  };
+  rested_ = false;
+  stream_.open(request, std::move(handlers));
+}
+
+void Follower::take_clock(const http::ClientResponse& response) {
+  if (const auto exchange = exchange_of(response)) clock_.add(*exchange);
+  received_ = from_unix_ns(response.received_ns);
+}
+
+void Follower::take(Result<http::ClientResponse> response, const Send& asked) {
+  if (!response) return feed(Failed{response.error()});
+  take_clock(*response);
+  switch (asked.resource) {
+    case Resource::FloorPlane: {
+      floor_ = read_floor_answer(*response);
+      return feed(FloorAnswered{response->status < kServerFault});
+    }
+    case Resource::Clock: {
+      const auto clock = clock_.at(received_);
+      ClockAnswered answer;
+      if (clock && exchange_of(*response)) answer.uncertainty = clock->uncertainty;
+      answer.doubtful = clock_.doubtful();
+      return feed(answer);
+    }
+    case Resource::Frame:
+    case Resource::KeptFrame:
+      return take_frame(*response, asked.resource);
+  }
+}
+
+void Follower::take_frame(const http::ClientResponse& response, Resource asked) {
+  const Duration before = cpu_now();
+  FrameAnswer answer = read_frame_answer(response, sensor_.id);
+  const Duration rest = budget_.spend(cpu_now() - before, steady_now());
+  const bool kept = asked == Resource::KeptFrame;
+  if (answer.frame) answered_ = Arrival{std::move(answer.frame), received_, kept};
+  if (kept) return feed(KeptAnswered{answered_.has_value(), rest});
+  if (answered_) {
+    if (auto error = untimely_now(*answered_)) {
+      answer.event = Unreadable{std::move(*error)};
+      ++refused_;
+    }
+  }
+  if (auto* good = std::get_if<FrameAnswered>(&answer.event)) good->rest = rest;
+  if (auto* bad = std::get_if<Unreadable>(&answer.event)) bad->rest = rest;
+  feed(answer.event);
+}
+
+/// After a rest only the newest event is read: the others are what the rest was for.
+void Follower::take_events(const std::vector<http::ServerEvent>& events) {
+  received_ = from_unix_ns(to_unix_ns(SystemClock().now()));
+  const Duration before = cpu_now();
+  const std::size_t first = std::exchange(rested_, false) ? events.size() - 1 : 0;
+  for (std::size_t i = first; i < events.size() && !stopped_; ++i) take_event(events[i].data);
+  const Duration rest = budget_.spend(cpu_now() - before, steady_now());
+  if (rest == Duration{0}) return;
+  rested_ = true;
+  stream_.pause(at_least_1ms(rest));
+}
+
+void Follower::take_event(std::string_view text) {
+  auto frame = read_frame_event(text, sensor_.id);
+  if (!frame) {
+    stream_.close();
+    return feed(StreamEnded{{ErrorCode::Unsupported, "event stream", to_string(frame.error())}});
+  }
+  answered_ = Arrival{std::move(*frame), received_, false};
+  const SensorFrame here = placed(*answered_);
+  const bool odd = ages_.odd(here.received - here.captured) && clock_.at(received_);
+  if (const auto error = untimely_now(*answered_); error && !odd) {
+    answered_.reset();
+    stream_.close();  // the polling will say what is wrong
+    return feed(StreamEnded{{ErrorCode::Unsupported, "event stream", to_string(*error)}});
+  }
+  feed(StreamFrame{here.sequence, answered_->raw->captured, odd});
+}
+
+SensorFrame Follower::placed(const Arrival& arrival) const {
+  const auto clock = clock_.at(arrival.received);
+  return place_in_time(*arrival.raw, sensor_.id, arrival.received, correction(clock), floor_);
+}
+
+std::optional<Error> Follower::untimely_now(const Arrival& arrival) const {
+  if (clock_.doubtful()) return std::nullopt;  // judged when it is known which clock was set
+  return untimely(placed(arrival));
+}
+
+void Follower::deliver(Arrival arrival) {
+  if (!in_doubt()) return hand_on(arrival);
+  held_.push_back(std::move(arrival));
+  if (held_.size() > kMostHeld) hand_on_held();
+}
+
+void Follower::hand_on_held() {
+  for (const Arrival& arrival : std::exchange(held_, {})) {
+    if (!untimely(placed(arrival))) hand_on(arrival);
+  }
+}
+
+void Follower::hand_on(const Arrival& arrival) {
+  SensorFrame frame = placed(arrival);
+  {
+    const std::scoped_lock lock(mutex_);
+    arrival.late ? tally_.note_late(frame) : tally_.note(frame);
+  }
+  options_.deliver({std::move(frame), arrival.raw, clock_.at(arrival.received)});
+}
+
+void Follower::publish_state() {
+  const std::scoped_lock lock(mutex_);
+  report_.state = fsm_.state();
+  report_.last_error = fsm_.last_error();
+  report_.failures = fsm_.failures();
+  report_.refused = refused_;
+  report_.streaming = fsm_.streaming();
+  report_.clock = clock_.at(received_);
+}
+
+void Follower::tell(const Notice& notice) const {
+  if (notice.reason.empty()) {
+    log::info(notice.event, {{"sensor", sensor_.id.str()}, {"url", sensor_.url}});
+    return;
+  }
+  log::event(notice.warning ? log::Level::Warn : log::Level::Info, notice.event,
+             {{"sensor", sensor_.id.str()}, {"url", sensor_.url}, {"reason", notice.reason}});
+}
+
+}  // namespace chorus::poll

@@ -1,0 +1,84 @@
+// One sensor followed: executes what PollFsm decides, on the poll thread.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <random>
+#include <string_view>
+#include <vector>
+
+#include "common/http/asio.h"
+#include "common/http/event_stream_client.h"
+#include "fusion-server/poll/answer.h"
+#include "fusion-server/poll/frame_tally.h"
+#include "fusion-server/poll/parse_budget.h"
+#include "fusion-server/poll/poller.h"
+
+namespace chorus::poll {
+
+/// One connection for requests and one for the event stream.  Lives on the poll thread; report() is
+/// for any.
+class Follower : public std::enable_shared_from_this<Follower> {
+ public:
+  Follower(http::net::io_context& io, PolledSensor sensor, http::Url url,
+           const PollerOptions& options);
+
+  void start();
+  void stop();
+  [[nodiscard]] PollReport report(Timestamp now) const;
+
+ private:
+  using FramePtr = std::shared_ptr<const resource::FrameResource>;
+  /// A frame read, its time of receipt, and whether a stream had left it out.
+  struct Arrival {
+    FramePtr raw;
+    Timestamp received;
+    bool late = false;
+  };
+
+  template <class Doing>
+  void survive(const Doing& doing);
+  void feed(const Event& event);
+  void act(const Send& send);
+  void act(const Sleep& sleep);
+  void open_stream();
+  void take(Result<http::ClientResponse> response, const Send& asked);
+  void take_clock(const http::ClientResponse& response);
+  void take_frame(const http::ClientResponse& response, Resource asked);
+  void take_events(const std::vector<http::ServerEvent>& events);
+  void take_event(std::string_view text);
+  [[nodiscard]] SensorFrame placed(const Arrival& arrival) const;
+  [[nodiscard]] std::optional<Error> untimely_now(const Arrival& arrival) const;
+  [[nodiscard]] bool in_doubt() const { return clock_.doubtful() || fsm_.checking_clock(); }
+  void deliver(Arrival arrival);
+  void hand_on(const Arrival& arrival);
+  void hand_on_held();
+  void publish_state();
+  void tell(const Notice& notice) const;
+
+  const PollerOptions& options_;
+  PolledSensor sensor_;
+  http::Url url_;
+  http::AsyncClient client_;
+  http::AsyncEventStream stream_;
+  http::Timer timer_;
+  PollFsm fsm_;
+  ClockFilter clock_;
+  ParseBudget budget_;
+  AgeWatch ages_;
+  std::minstd_rand random_;
+  bool stopped_ = false;
+  std::uint64_t refused_ = 0;
+  bool rested_ = false;  ///< The stream was left unread: only its newest event is worth reading.
+  Timestamp received_{};
+  std::optional<FloorPlane> floor_;
+  std::optional<Arrival> answered_;  ///< What the event being fed has brought.
+  std::deque<Arrival> held_;         ///< Until it is known by what clock.
+  mutable std::mutex mutex_;
+  PollReport report_;  ///< Guarded by mutex_, as tally_.
+  FrameTally tally_;
+};
+
+}  // namespace chorus::poll

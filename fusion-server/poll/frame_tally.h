@@ -1,0 +1,46 @@
+// What has come from one sensor, counted: nothing it says makes a count negative or a rate absurd.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "common/sensor/sensor_frame.h"
+
+namespace chorus::poll {
+
+class FrameTally {
+ public:
+  void note(const SensorFrame& frame);
+  /// One that was fetched after the stream had left it out: counted as missed until now.
+  void note_late(const SensorFrame& frame);
+
+  /// Frames per second that arrived lately, by our clock.
+  [[nodiscard]] double rate_hz(Timestamp now) const;
+  [[nodiscard]] std::optional<Timestamp> newest() const noexcept { return newest_; }
+  [[nodiscard]] std::uint64_t frames() const noexcept { return frames_; }
+  [[nodiscard]] std::uint64_t missed() const noexcept { return missed_; }
+
+ private:
+  void arrived(Timestamp received);
+
+  std::deque<Timestamp> arrivals_;  ///< Of the last two seconds.
+  std::optional<Timestamp> first_;  ///< Arrival since the last pause.
+  std::optional<Timestamp> newest_;
+  std::optional<std::uint64_t> last_sequence_;
+  std::uint64_t frames_ = 0;
+  std::uint64_t missed_ = 0;
+};
+
+/// Notices a frame whose age does not fit those before: perhaps a clock was set.
+class AgeWatch {
+ public:
+  /// `age`: from capture to receipt, as the clocks are known.
+  [[nodiscard]] bool odd(Duration age);
+
+ private:
+  std::deque<Duration> ages_;
+  int odd_in_row_ = 0;
+};
+
+}  // namespace chorus::poll

@@ -1,0 +1,28 @@
+// Reading a sensor's frames may cost a tenth of the poll thread: who costs t rests ten times t.
+#pragma once
+
+#include <algorithm>
+
+#include "common/base/duration.h"
+
+namespace chorus::poll {
+
+class ParseBudget {
+ public:
+  /// `cost` of reading has just been spent.  How long to leave the sensor alone: zero as long as
+  /// its debt is below one frame interval, so that an ordinary sensor never rests.
+  [[nodiscard]] Duration spend(Duration cost, Duration now) {
+    debt_ = std::max(Duration{0}, debt_ - (now - at_)) + kTimes * cost;
+    at_ = now;
+    return debt_ > kAllowed ? debt_ : Duration{0};
+  }
+
+ private:
+  static constexpr int kTimes = 10;
+  static constexpr Duration kAllowed = std::chrono::milliseconds(30);
+
+  Duration debt_{0};  ///< Time that has to pass before all that was spent is a tenth of it.
+  Duration at_{0};
+};
+
+}  // namespace chorus::poll

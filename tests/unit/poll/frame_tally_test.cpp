@@ -1,0 +1,97 @@
+// Counts and rates of what a sensor says, honest or not; and who costs how much.
+#include "fusion-server/poll/frame_tally.h"
+
+#include <gtest/gtest.h>
+
+#include "fusion-server/poll/parse_budget.h"
+#include "tests/support/builders.h"
+
+namespace chorus::poll {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::kStart;
+
+SensorFrame frame(std::uint64_t sequence, Duration received) {
+  SensorFrame f = testing::sensor_frame("s1", kStart + received - milliseconds(5), {});
+  f.sequence = sequence;
+  f.received = kStart + received;
+  return f;
+}
+
+TEST(FrameTally, CountsGapsAndWhatFillsThem) {
+  FrameTally tally;
+  tally.note(frame(7, milliseconds(0)));
+  tally.note(frame(10, milliseconds(100)));
+  EXPECT_EQ(tally.missed(), 2u);
+  tally.note_late(frame(8, milliseconds(150)));
+  EXPECT_EQ(tally.missed(), 1u);
+  EXPECT_EQ(tally.frames(), 3u);
+  EXPECT_EQ(tally.newest(), kStart + milliseconds(95));
+}
+
+TEST(FrameTally, ARestartAndAnAbsurdSequenceAreNoGap) {
+  FrameTally tally;
+  tally.note(frame(1'795'000'000'000, milliseconds(0)));
+  tally.note(frame(3, milliseconds(33)));
+  tally.note(frame(~std::uint64_t{0}, milliseconds(66)));
+  tally.note(frame(0, milliseconds(99)));
+  EXPECT_EQ(tally.missed(), 0u);
+}
+
+TEST(FrameTally, TheRateIsOfArrivalsWhateverTheStampsSay) {
+  FrameTally tally;
+  for (int i = 0; i < 90; ++i) {
+    SensorFrame f = frame(static_cast<std::uint64_t>(i), milliseconds(i * 33));
+    f.captured = kStart + microseconds(i);  // a thousand a millisecond
+    tally.note(f);
+  }
+  EXPECT_NEAR(tally.rate_hz(kStart + milliseconds(89 * 33)), 30.3, 1.0);
+  EXPECT_EQ(tally.rate_hz(kStart + seconds(5)), 0.0);
+}
+
+TEST(FrameTally, AFewAtOnceAreNoThousandASecond) {
+  FrameTally tally;
+  for (int i = 0; i < 4; ++i) tally.note(frame(static_cast<std::uint64_t>(i), milliseconds(i)));
+  EXPECT_LE(tally.rate_hz(kStart + milliseconds(4)), 8.0);
+}
+
+TEST(AgeWatch, ASteadyAgeIsNeverOddAndAJumpIs) {
+  AgeWatch watch;
+  for (int i = 0; i < 100; ++i) EXPECT_FALSE(watch.odd(milliseconds(20 + i % 10))) << i;
+  EXPECT_TRUE(watch.odd(milliseconds(-700)));
+  EXPECT_TRUE(watch.odd(milliseconds(720)));
+  EXPECT_FALSE(watch.odd(milliseconds(22)));
+}
+
+TEST(AgeWatch, WhatStaysBecomesTheRule) {
+  AgeWatch watch;
+  for (int i = 0; i < 50; ++i) (void)watch.odd(milliseconds(20));
+  int odd = 0;
+  for (int i = 0; i < 50; ++i) odd += watch.odd(milliseconds(900)) ? 1 : 0;
+  EXPECT_LE(odd, 5);
+}
+
+TEST(ParseBudget, AnOrdinarySensorNeverRests) {
+  ParseBudget budget;
+  for (int i = 0; i < 300; ++i)
+    EXPECT_EQ(budget.spend(milliseconds(2), milliseconds(33 * i)), Duration{0}) << i;
+}
+
+TEST(ParseBudget, WhoCostsMuchRestsTenTimesAsLong) {
+  ParseBudget budget;
+  Duration now{0};
+  Duration spent{0};
+  for (int i = 0; i < 50; ++i) {
+    now += milliseconds(80) + budget.spend(milliseconds(80), now);
+    spent += milliseconds(80);
+  }
+  EXPECT_LE(spent / now, 1);
+  EXPECT_GE(now, 9 * spent);
+  EXPECT_LE(now, 12 * spent);
+}
+
+}  // namespace
+}  // namespace chorus::poll

@@ -1,0 +1,201 @@
+// Following by event stream, without a socket and without a sleep.
+#include "fusion-server/poll/poll_fsm.h"
+
+#include <gtest/gtest.h>
+
+namespace chorus::poll {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr double kFull = 0.999999999;  // jitter that keeps the whole back-off
+
+const Timestamp kT0 = from_unix_ns(1'790'000'000'000'000'000);
+
+Timestamp at_ms(int ms) { return kT0 + milliseconds(ms); }
+
+FrameAnswered frame(int ms, std::string etag) { return {200, std::move(etag), at_ms(ms)}; }
+
+Failed reset() { return {Error{ErrorCode::Io, "127.0.0.1:8081", "connection reset"}}; }
+
+const Send& send_of(const Step& step) { return std::get<Send>(*step.action); }
+Duration sleep_of(const Step& step) { return std::get<Sleep>(*step.action).duration; }
+
+/// Past the floor plane, with the first request for a frame under way since `now`.
+PollFsm at_first_frame(Duration now) {
+  PollFsm fsm;
+  (void)fsm.resume(Started{}, now, kFull);
+  (void)fsm.resume(FloorAnswered{}, now, kFull);
+  return fsm;
+}
+
+/// Live: one frame delivered, and the long poll for the second under way since `now`.
+PollFsm live(Duration now) {
+  PollFsm fsm = at_first_frame(now - milliseconds(20));
+  (void)fsm.resume(frame(0, "\"1\""), now, kFull);
+  return fsm;
+}
+
+StreamFrame streamed(std::uint64_t sequence, int ms, bool odd = false) {
+  return {sequence, at_ms(ms), odd};
+}
+
+/// Living on a stream since `now`, no request under way: asleep until the clock is due.
+PollFsm streaming(Duration now) {
+  PollFsm fsm = live(now);
+  (void)fsm.resume(streamed(2, 33), now, kFull);
+  (void)fsm.resume(FrameAnswered{304, "\"1\""}, now + milliseconds(1), kFull);
+  return fsm;
+}
+
+TEST(PollFsmStream, OnceFramesComeAStreamIsOpenedBesideThePolling) {
+  PollFsm fsm = at_first_frame(milliseconds(0));
+  const Step step = fsm.resume(frame(0, "\"1\""), milliseconds(20), kFull);
+  EXPECT_EQ(step.stream, StreamOrder::Open);
+  EXPECT_EQ(send_of(step).resource, Resource::Frame);
+  EXPECT_FALSE(fsm.streaming());
+  EXPECT_EQ(fsm.resume(frame(1, "\"2\""), milliseconds(50), kFull).stream, StreamOrder::None);
+}
+
+TEST(PollFsmStream, NotWhenItIsSwitchedOff) {
+  PollTimings timings;
+  timings.stream = false;
+  PollFsm fsm(timings);
+  (void)fsm.resume(Started{}, milliseconds(0), kFull);
+  (void)fsm.resume(FloorAnswered{}, milliseconds(0), kFull);
+  EXPECT_EQ(fsm.resume(frame(0, "\"1\""), milliseconds(20), kFull).stream, StreamOrder::None);
+}
+
+TEST(PollFsmStream, ItsFramesAreDeliveredAndTheRequestsOnlyKeepTheClock) {
+  PollFsm fsm = live(milliseconds(0));
+  const Step first = fsm.resume(streamed(2, 33), milliseconds(33), kFull);
+  EXPECT_TRUE(first.deliver);
+  EXPECT_FALSE(first.action);  // the long poll is still under way
+  EXPECT_TRUE(fsm.streaming());
+  const Step old = fsm.resume(frame(33, "\"2\""), milliseconds(34), kFull);
+  EXPECT_FALSE(old.deliver);
+  const Step clock = fsm.resume(Woke{}, milliseconds(34) + sleep_of(old), kFull);
+  EXPECT_EQ(send_of(clock).resource, Resource::Clock);
+  const Step hurry =
+      fsm.resume(ClockAnswered{milliseconds(5)}, milliseconds(140), kFull);  // badly known yet
+  EXPECT_LE(sleep_of(hurry), milliseconds(100));
+  (void)fsm.resume(streamed(3, 66), milliseconds(141), kFull);
+  (void)fsm.resume(Woke{}, milliseconds(240), kFull);
+  (void)fsm.resume(ClockAnswered{std::chrono::microseconds(100)}, milliseconds(241), kFull);
+  const Step calm = fsm.resume(Woke{}, milliseconds(245), kFull);
+  EXPECT_GT(sleep_of(calm), milliseconds(400));
+}
+
+TEST(PollFsmStream, AFrameTwiceIsNoNews) {
+  PollFsm fsm = streaming(milliseconds(0));
+  EXPECT_FALSE(fsm.resume(streamed(2, 33), milliseconds(5), kFull).deliver);
+  EXPECT_TRUE(fsm.resume(streamed(3, 66), milliseconds(40), kFull).deliver);
+}
+
+TEST(PollFsmStream, WhatItLeavesOutIsFetchedAtOnceOneByOne) {
+  PollFsm fsm = streaming(milliseconds(0));
+  const Step gap = fsm.resume(streamed(5, 132), milliseconds(100), kFull);
+  EXPECT_EQ(send_of(gap).resource, Resource::KeptFrame);
+  EXPECT_EQ(send_of(gap).sequence, 3u);
+  EXPECT_FALSE(fsm.resume(streamed(6, 165), milliseconds(133), kFull).action);  // one in flight
+  const Step next = fsm.resume(KeptAnswered{true}, milliseconds(201), kFull);
+  EXPECT_TRUE(next.deliver);
+  EXPECT_EQ(send_of(next).sequence, 4u);
+  EXPECT_FALSE(fsm.resume(KeptAnswered{false}, milliseconds(300), kFull).deliver);
+}
+
+TEST(PollFsmStream, OneThatEndsLeavesThePolling) {
+  PollFsm fsm = streaming(milliseconds(0));
+  const Step ended =
+      fsm.resume(StreamEnded{{ErrorCode::Unavailable, "x", "broke off"}}, milliseconds(50), kFull);
+  EXPECT_EQ(send_of(ended).resource, Resource::Frame);
+  EXPECT_EQ(fsm.state(), SensorState::Live);  // the polling will see
+  EXPECT_FALSE(fsm.streaming());
+  // The next stream waits a second.
+  EXPECT_EQ(fsm.resume(frame(99, "\"3\""), milliseconds(80), kFull).stream, StreamOrder::None);
+  EXPECT_EQ(fsm.resume(frame(1200, "\"4\""), milliseconds(1200), kFull).stream, StreamOrder::Open);
+}
+
+TEST(PollFsmStream, WhoHasNoneIsAskedAgainAfterAMinute) {
+  PollFsm fsm = live(milliseconds(0));
+  (void)fsm.resume(StreamEnded{{ErrorCode::Unsupported, "x", "no stream"}}, milliseconds(5), kFull);
+  int ms = 33;
+  while (fsm.resume(frame(ms, "\"" + std::to_string(ms) + "\""), milliseconds(ms), kFull).stream ==
+         StreamOrder::None)
+    ms += 33;
+  EXPECT_NEAR(ms, 60000, 100);
+}
+
+TEST(PollFsmStream, OneThatFallsSilentIsClosedForThePolling) {
+  PollFsm fsm = streaming(milliseconds(0));
+  Duration now = milliseconds(1);
+  Step step{Sleep{milliseconds(99)}};
+  while (step.stream == StreamOrder::None && now < seconds(10)) {
+    if (std::holds_alternative<Sleep>(*step.action)) {
+      now += sleep_of(step);
+      step = fsm.resume(Woke{}, now, kFull);
+    } else {
+      step = fsm.resume(ClockAnswered{milliseconds(1)}, now += milliseconds(1), kFull);
+    }
+  }
+  EXPECT_EQ(step.stream, StreamOrder::Close);
+  EXPECT_EQ(send_of(step).resource, Resource::Frame);
+  EXPECT_GT(now, PollTimings{}.wait);
+  EXPECT_LT(now, PollTimings{}.wait + milliseconds(600));
+}
+
+TEST(PollFsmStream, ARequestThatFailsBesideItCostsTheSensorNothing) {
+  PollFsm fsm = streaming(milliseconds(0));
+  (void)fsm.resume(Woke{}, milliseconds(150), kFull);
+  (void)fsm.resume(streamed(3, 66), milliseconds(151), kFull);
+  const Step failed = fsm.resume(reset(), milliseconds(160), kFull);
+  EXPECT_EQ(fsm.state(), SensorState::Live);
+  EXPECT_EQ(failed.stream, StreamOrder::None);
+  EXPECT_TRUE(fsm.streaming());
+  // But with the stream silent it is lost, and the stream with it.
+  (void)fsm.resume(Woke{}, milliseconds(700), kFull);
+  const Step lost = fsm.resume(reset(), milliseconds(1700), kFull);
+  EXPECT_EQ(fsm.state(), SensorState::Lost);
+  EXPECT_EQ(lost.stream, StreamOrder::Close);
+  // Who comes back is streamed from at once.
+  EXPECT_EQ(fsm.resume(frame(1750, "\"9\""), milliseconds(1750), kFull).stream, StreamOrder::Open);
+}
+
+TEST(PollFsmStream, AnOddFrameMakesTheClockUrgent) {
+  PollFsm fsm = streaming(milliseconds(0));
+  const Step odd = fsm.resume(streamed(3, 900, true), milliseconds(40), kFull);
+  EXPECT_EQ(send_of(odd).resource, Resource::Clock);
+  EXPECT_TRUE(fsm.checking_clock());
+  Duration now = milliseconds(40);
+  int checks = 1;
+  Step step = fsm.resume(ClockAnswered{milliseconds(1), true}, now += milliseconds(5), kFull);
+  for (; fsm.checking_clock(); ++checks) {
+    ASSERT_EQ(send_of(step).resource, Resource::Clock);
+    step = fsm.resume(ClockAnswered{milliseconds(1), true}, now += milliseconds(5), kFull);
+  }
+  EXPECT_GE(checks, 3);  // as many as the filter wants before it believes a step
+  EXPECT_LT(now, milliseconds(100));
+  // A link that is odd all the time does not keep the clock busy.
+  (void)fsm.resume(ClockAnswered{milliseconds(1)}, now, kFull);
+  (void)fsm.resume(streamed(4, 950, true), now + milliseconds(10), kFull);
+  EXPECT_FALSE(fsm.checking_clock());
+}
+
+TEST(PollFsmStream, ASensorThatTellsNoTimeIsHardlyAskedForIt) {
+  PollFsm fsm = streaming(milliseconds(0));
+  (void)fsm.resume(Woke{}, milliseconds(150), kFull);
+  Step step = fsm.resume(ClockAnswered{}, milliseconds(151), kFull);
+  int asked = 0;
+  for (Duration now = milliseconds(151); now < seconds(5); now += milliseconds(33)) {
+    (void)fsm.resume(streamed(3 + static_cast<std::uint64_t>(now.count()),
+                              static_cast<int>(now / milliseconds(1))),
+                     now, kFull);
+    step = fsm.resume(Woke{}, now, kFull);
+    asked += std::holds_alternative<Send>(*step.action) ? 1 : 0;
+  }
+  EXPECT_EQ(asked, 0);
+}
+
+}  // namespace
+}  // namespace chorus::poll
