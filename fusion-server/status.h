@@ -18,17 +18,21 @@ struct SensorStatus {
   SensorId id;
   std::string url;
   std::string state;            ///< "live", "connecting", "lost", "refused"
-  std::string last_error;       ///< Empty: none yet.
+  std::string last_error;       ///< What is wrong now; empty: nothing.
+  bool streaming = false;       ///< Its frames come by event stream, not by polling.
   std::optional<Duration> age;  ///< Since the newest capture, by our clock; none: no frame yet.
   double rate_hz = 0.0;
   std::size_t bodies = 0;
   double weight = 0.0;
+  double share = 0.0;                    ///< Of all fused joints, those it contributed to, lately.
+  double share_afterwards = 0.0;         ///< The same with its late frames, as /frame?at= has it.
+  double awaited = 0.0;                  ///< Of all instants, those that waited for it to the last.
   std::optional<Duration> clock_offset;  ///< Ours minus theirs.
   std::optional<Duration> clock_uncertainty;
   bool clock_corrected = false;  ///< The offset is larger than its uncertainty, so it is applied.
   std::uint64_t frames = 0;      ///< Delivered since start.
-  std::uint64_t missed = 0;      ///< Gaps in the sensor's own sequence.
-  std::uint64_t refused = 0;     ///< Frames that went back in time or came from the future.
+  std::uint64_t missed = 0;      ///< Gaps in the sensor's own sequence that were not filled.
+  std::uint64_t refused = 0;     ///< Frames that went back in time, or of quite another time.
   std::uint64_t failures = 0;    ///< Requests without a usable answer.
 
   bool operator==(const SensorStatus&) const = default;

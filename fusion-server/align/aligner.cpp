@@ -8,8 +8,6 @@
 namespace chorus::align {
 namespace {
 
-constexpr std::size_t kHabit = 30;       ///< Frames that make a habit: one second.
-constexpr std::size_t kLeastHabit = 10;  ///< Fewer say nothing.
 constexpr Duration kGrace = std::chrono::milliseconds(15);  ///< Later than ever before, but coming.
 
 /// The frames around an instant; `before` and `after` are the same frame when it is hit exactly.
@@ -88,18 +86,8 @@ Skeleton<SensorSpace> interpolate(const Skeleton<SensorSpace>& a, const Skeleton
 }
 
 std::optional<Duration> usual_wait(const History& history) {
-  const auto& frames = history.frames();
-  const std::size_t count = std::min(frames.size(), kHabit);
-  if (count < kLeastHabit) return std::nullopt;
-  Duration gap{0};
-  Duration delay{0};
-  for (auto frame = frames.end() - static_cast<std::ptrdiff_t>(count); frame != frames.end();
-       ++frame) {
-    if (frame->received == Timestamp{}) return std::nullopt;
-    delay = std::max(delay, frame->received - frame->captured);
-    if (frame != frames.begin()) gap = std::max(gap, frame->captured - std::prev(frame)->captured);
-  }
-  return gap + delay + kGrace;
+  if (!history.habit()) return std::nullopt;
+  return history.habit()->gap + history.habit()->most_delay + kGrace;
 }
 
 Basis basis_at(Timestamp instant, Timestamp now, const History& history,

@@ -17,6 +17,9 @@ struct AlignConfig {
       std::chrono::milliseconds(120);  ///< Widest bracket that is interpolated across.
   /// Age at which Pending turns into Lost, unless the sensor's own habit says sooner (usual_wait).
   Duration patience = std::chrono::milliseconds(200);
+  /// A sensor whose frames are late by more or less than this from one to the next is waited for
+  /// no longer than the others need: one bad link does not make everybody's bodies old.
+  Duration unsteady = std::chrono::milliseconds(30);
 
   bool operator==(const AlignConfig&) const = default;
 };

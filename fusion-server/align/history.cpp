@@ -6,6 +6,9 @@
 namespace chorus::align {
 namespace {
 
+constexpr std::size_t kHabit = 30;       ///< Frames that make a habit: one second.
+constexpr std::size_t kLeastHabit = 10;  ///< Fewer say nothing.
+
 /// Two bodies with one id in a frame cannot be told apart later: the first keeps it, the rest go.
 void keep_first_of_each_id(std::vector<BodyFrame>& bodies) {
   for (std::size_t i = 1; i < bodies.size();) {
@@ -19,11 +22,22 @@ void keep_first_of_each_id(std::vector<BodyFrame>& bodies) {
   }
 }
 
-bool contains(const std::deque<SensorFrame>& frames, Timestamp captured) {
-  const auto at =
-      std::lower_bound(frames.begin(), frames.end(), captured,
-                       [](const SensorFrame& frame, Timestamp t) { return frame.captured < t; });
-  return at != frames.end() && at->captured == captured;
+std::optional<Habit> habit_of(const std::deque<SensorFrame>& frames) {
+  const std::size_t count = std::min(frames.size(), kHabit);
+  if (count < kLeastHabit) return std::nullopt;
+  Habit habit{Duration{0}, Duration::max(), Duration{0}};
+  Timestamp first_received = Timestamp::max();  // of the frames captured later
+  for (std::size_t i = 1; i <= count; ++i) {
+    const SensorFrame& frame = frames[frames.size() - i];
+    if (frame.received == Timestamp{}) return std::nullopt;
+    if (i > 1)
+      habit.gap = std::max(habit.gap, frames[frames.size() - i + 1].captured - frame.captured);
+    if (frame.received > first_received) continue;  // out of turn
+    first_received = frame.received;
+    habit.least_delay = std::min(habit.least_delay, frame.received - frame.captured);
+    habit.most_delay = std::max(habit.most_delay, frame.received - frame.captured);
+  }
+  return habit;
 }
 
 }  // namespace
@@ -38,17 +52,21 @@ PushVerdict History::push(SensorFrame frame) {
   if (received_known && frame.captured - frame.received > limits_.max_future) {
     return PushVerdict::Future;
   }
-  if (contains(frames_, frame.captured)) return PushVerdict::Duplicate;
+  auto place = std::lower_bound(frames_.begin(), frames_.end(), frame.captured,
+                                [](const SensorFrame& f, Timestamp t) { return f.captured < t; });
+  if (place != frames_.end() && place->captured == frame.captured) return PushVerdict::Duplicate;
   PushVerdict verdict = PushVerdict::Added;
-  if (!frames_.empty() && frame.captured < frames_.back().captured) {
-    if (frames_.back().captured - frame.captured <= limits_.restart_step) {
-      return PushVerdict::Backwards;
-    }
-    frames_.clear();
-    verdict = PushVerdict::Restarted;
+  if (place != frames_.end()) {
+    const SensorFrame& newest = frames_.back();
+    const bool restarted = newest.captured - frame.captured > limits_.restart_step;
+    if (!restarted && frame.sequence >= newest.sequence) return PushVerdict::Backwards;
+    verdict = restarted ? PushVerdict::Restarted : PushVerdict::Late;
+    if (restarted) frames_.clear();
+    if (restarted) place = frames_.end();
   }
   keep_first_of_each_id(frame.bodies);
-  frames_.push_back(std::move(frame));
+  frames_.insert(place, std::move(frame));
+  habit_ = habit_of(frames_);
   const Timestamp oldest = frames_.back().captured - limits_.max_age;
   while (frames_.size() > 1 &&
          (frames_.size() > limits_.max_frames || frames_.front().captured < oldest)) {

@@ -15,7 +15,8 @@ FusionCore::FusionCore(CoreConfig config, Registration registration)
     : config_(std::move(config)),
       schedule_(config_.output, config_.first_sequence),
       registration_(std::move(registration)),
-      session_(config_.session) {}
+      session_(config_.session),
+      hindsight_(config_.output.late_frames) {}
 
 void FusionCore::reconfigure(CoreConfig config) {
   const bool same_output = config.output == config_.output;
@@ -34,7 +35,9 @@ void FusionCore::take(const SensorFrame& frame) {
   const align::PushVerdict verdict = histories_[frame.sensor].push(frame);
   if (verdict == align::PushVerdict::Duplicate) return;
   if (verdict == align::PushVerdict::Backwards || verdict == align::PushVerdict::Future) {
-    ++refused_[frame.sensor];
+    Refusals& refusals = refused_[frame.sensor];
+    ++refusals.count;
+    refusals.last = frame.received;
     return;
   }
   if (!frame.bodies.empty()) saw_body_[frame.sensor] = frame.received;
@@ -46,16 +49,52 @@ std::optional<Snapshot> FusionCore::tick(Timestamp now) {
   const Tick tick = schedule_.next(now);
   pipeline::Step step = pipeline::step({tick.instant, now, tick.sequence}, histories_,
                                        registration_, memory_, config_.pipeline);
-  memory_ = std::move(step.memory);
+  Answered answered{
+      tick, std::exchange(memory_, std::move(step.memory)), {}, parts_of(step.snapshot)};
   reports_ = step.snapshot.reports;
+  for (const SensorReport& report : reports_) {
+    const bool spoke = report.basis == Basis::Exact || report.basis == Basis::Interpolated;
+    if (!spoke && registration_.sensors.contains(report.sensor))
+      answered.without.push_back(report.sensor);
+  }
+  shares_.answered(step.snapshot, awaited_);
+  if (answered.without.empty()) shares_.settled(answered.parts);
+  awaited_.clear();
+  hindsight_.remember(std::move(answered));
   schedule_.answered(now);
   return std::move(step.snapshot);
 }
 
+std::optional<Snapshot> FusionCore::amended(Timestamp now) {
+  const auto answered = hindsight_.due(now);
+  if (!answered) return std::nullopt;
+  if (!improves(*answered, now)) {
+    shares_.settled(answered->parts);
+    return std::nullopt;
+  }
+  const Tick& tick = answered->tick;
+  pipeline::Step step = pipeline::step({tick.instant, now, tick.sequence}, histories_,
+                                       registration_, answered->before, config_.pipeline);
+  shares_.settled(parts_of(step.snapshot));
+  return std::move(step.snapshot);
+}
+
+bool FusionCore::improves(const Answered& answered, Timestamp now) const {
+  return std::any_of(answered.without.begin(), answered.without.end(), [&](const SensorId& sensor) {
+    const auto history = histories_.find(sensor);
+    if (history == histories_.end()) return false;
+    const Basis basis =
+        align::basis_at(answered.tick.instant, now, history->second, config_.pipeline.align);
+    return basis == Basis::Exact || basis == Basis::Interpolated;
+  });
+}
+
 Duration FusionCore::idle(Timestamp now) {
   const Tick tick = schedule_.next(now);
-  const bool ready = pipeline::ready({tick.instant, now, tick.sequence}, histories_, registration_,
-                                     config_.pipeline);
+  auto awaited = pipeline::awaited({tick.instant, now, tick.sequence}, histories_, registration_,
+                                   config_.pipeline);
+  const bool ready = awaited.empty();
+  if (!ready && now > tick.instant) awaited_ = std::move(awaited);
   return schedule_.wait(now, ready);
 }
 
@@ -79,6 +118,7 @@ void FusionCore::forget() {
   registration_.version = version;
   memory_.tracks.people.clear();  // the ids go on
   memory_.sides.clear();
+  hindsight_.forget();
 }
 
 void FusionCore::start_by_itself(Timestamp now) {
@@ -135,6 +175,7 @@ bool FusionCore::solved(Solution solution) {
   }
   session_reasons_.clear();
   const std::uint64_t version = registration_.version + 1;
+  hindsight_.forget();  // what was answered stands in another world
   registration_ = std::move(solution.registration);
   registration_.version = version;
   return true;
@@ -151,7 +192,12 @@ SessionStatus FusionCore::session() const {
 
 std::uint64_t FusionCore::refused(const SensorId& sensor) const {
   const auto it = refused_.find(sensor);
-  return it == refused_.end() ? 0 : it->second;
+  return it == refused_.end() ? 0 : it->second.count;
+}
+
+bool FusionCore::refuses(const SensorId& sensor, Timestamp now) const {
+  const auto it = refused_.find(sensor);
+  return it != refused_.end() && now - it->second.last < kSeenLately;
 }
 
 }  // namespace chorus::core

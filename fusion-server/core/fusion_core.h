@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "fusion-server/core/hindsight.h"
 #include "fusion-server/core/registration_session.h"
 #include "fusion-server/core/tick_schedule.h"
 #include "fusion-server/pipeline/pipeline.h"
@@ -50,6 +51,9 @@ class FusionCore {
 
   /// The next snapshot when its time has come.
   [[nodiscard]] std::optional<Snapshot> tick(Timestamp now);
+  /// An earlier snapshot once more, now with the frames that came too late for it: the people's ids
+  /// are the same.  Ask after each tick; none is the rule.
+  [[nodiscard]] std::optional<Snapshot> amended(Timestamp now);
   /// How long nothing will come unless a frame arrives.
   [[nodiscard]] Duration idle(Timestamp now);
 
@@ -67,10 +71,19 @@ class FusionCore {
   [[nodiscard]] SessionStatus session() const;
   [[nodiscard]] const std::vector<SensorReport>& reports() const noexcept { return reports_; }
   [[nodiscard]] std::uint64_t refused(const SensorId& sensor) const;
+  /// Frames of this sensor have been refused within the last seconds.
+  [[nodiscard]] bool refuses(const SensorId& sensor, Timestamp now) const;
+  [[nodiscard]] Share share(const SensorId& sensor) const { return shares_.of(sensor); }
   [[nodiscard]] std::uint64_t skipped() const noexcept { return schedule_.skipped(); }
 
  private:
+  struct Refusals {
+    std::uint64_t count = 0;
+    Timestamp last;  ///< Receipt of the last refused frame.
+  };
+
   void start_by_itself(Timestamp now);
+  [[nodiscard]] bool improves(const Answered& answered, Timestamp now) const;
   [[nodiscard]] std::vector<std::string> shortfalls(const Registration& candidate) const;
 
   CoreConfig config_;
@@ -83,7 +96,10 @@ class FusionCore {
   bool solving_ = false;
   std::vector<std::string> session_reasons_;
   std::map<SensorId, Timestamp> saw_body_;  ///< By our clock.
-  std::map<SensorId, std::uint64_t> refused_;
+  std::map<SensorId, Refusals> refused_;
+  std::vector<SensorId> awaited_;  ///< When the pending instant was last asked about.
+  Hindsight hindsight_;
+  Shares shares_;
   std::vector<SensorReport> reports_;
 };
 

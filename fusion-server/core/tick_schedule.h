@@ -18,6 +18,8 @@ struct TickConfig {
   Duration min_spacing = std::chrono::milliseconds(13);
   Duration max_lag =
       std::chrono::seconds(1);  ///< Further behind (suspended host): skip, and say so.
+  /// So long after an instant it is fused once more, if frames have come too late for it.
+  Duration late_frames = std::chrono::milliseconds(800);
 
   bool operator==(const TickConfig&) const = default;
 };

@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "fusion-server/align/patience.h"
 #include "fusion-server/facing/front_rear.h"
 
 namespace chorus::pipeline {
@@ -19,12 +20,24 @@ std::vector<SensorId> registered_sensors(const Registration& registration) {
   return sensors;
 }
 
+/// Of the sensors that the instant waits for: those with a place.
+align::Patience patience_of(const Histories& histories, const Registration& registration,
+                            const PipelineConfig& config) {
+  std::map<SensorId, const align::History*> placed;
+  for (const auto& [sensor, history] : histories) {
+    if (registration.sensors.contains(sensor)) placed.emplace(sensor, &history);
+  }
+  return {placed, config.align};
+}
+
 /// 5.2.4: every sensor's bodies at the common instant.
 std::vector<AlignedSensor> align_all(const Inputs& in, const Histories& histories,
+                                     const Registration& registration,
                                      const PipelineConfig& config) {
+  const align::Patience patience = patience_of(histories, registration, config);
   std::vector<AlignedSensor> aligned;
   for (const auto& [sensor, history] : histories) {
-    aligned.push_back(align::at(in.instant, in.now, sensor, history, config.align));
+    aligned.push_back(align::at(in.instant, in.now, sensor, history, patience.of(history)));
   }
   return aligned;
 }
@@ -116,18 +129,22 @@ std::vector<SensorReport> report(const std::vector<AlignedSensor>& aligned,
 
 }  // namespace
 
-bool ready(const Inputs& in, const Histories& histories, const Registration& registration,
-           const PipelineConfig& config) {
-  return std::all_of(histories.begin(), histories.end(), [&](const auto& entry) {
-    return !registration.sensors.contains(entry.first) ||
-           align::basis_at(in.instant, in.now, entry.second, config.align) != Basis::Pending;
-  });
+std::vector<SensorId> awaited(const Inputs& in, const Histories& histories,
+                              const Registration& registration, const PipelineConfig& config) {
+  const align::Patience patience = patience_of(histories, registration, config);
+  std::vector<SensorId> sensors;
+  for (const auto& [sensor, history] : histories) {
+    if (!registration.sensors.contains(sensor)) continue;
+    const Basis basis = align::basis_at(in.instant, in.now, history, patience.of(history));
+    if (basis == Basis::Pending) sensors.push_back(sensor);
+  }
+  return sensors;
 }
 
 Perceived perceive(const Inputs& in, const Histories& histories, const Registration& registration,
                    const Memory& memory, const PipelineConfig& config) {
-  const auto aligned = align_all(in, histories, config);     // 5.2.4
-  const auto views = views_in_world(aligned, registration);  // 5.2.2, 5.2.3
+  const auto aligned = align_all(in, histories, registration, config);  // 5.2.4
+  const auto views = views_in_world(aligned, registration);             // 5.2.2, 5.2.3
   auto grouped = associate::group(views, in.instant, memory.tracks, config.association);
   Perceived perceived;
   perceived.memory = {std::move(grouped.tracks), memory.sides, memory.fusion};

@@ -51,9 +51,11 @@ struct Step {
   Memory memory;
 };
 
-/// True when no sensor's answer for the instant is still pending: waiting longer cannot improve it.
-[[nodiscard]] bool ready(const Inputs& in, const Histories& histories,
-                         const Registration& registration, const PipelineConfig& config);
+/// The sensors with a place whose answer for the instant may still come.  None: waiting longer
+/// cannot improve it.
+[[nodiscard]] std::vector<SensorId> awaited(const Inputs& in, const Histories& histories,
+                                            const Registration& registration,
+                                            const PipelineConfig& config);
 
 /// All of `step` before fusion: the views that it hands to it.
 [[nodiscard]] Perceived perceive(const Inputs& in, const Histories& histories,

@@ -48,12 +48,18 @@ void FrameResources::publish(std::shared_ptr<const Snapshot> snapshot) {
                                           resource::latest_options(*frame, context_.instance)));
 }
 
+void FrameResources::amend(const Snapshot& snapshot) {
+  ring_.amend(std::make_shared<const resource::FrameResource>(wire::to_resource(snapshot)));
+}
+
 Result<http::DocumentPtr> FrameResources::frame_at(const http::Request& request) const {
+  const std::string amendments = std::to_string(ring_.amendments());
   const auto at = request.query.find("at");
   auto frame = ring_.at(at == request.query.end() ? std::string() : at->second);
   if (!frame) return pass(frame);
   http::DocumentOptions options;
-  options.version = context_.instance + "-" + std::to_string(to_unix_ns((*frame)->captured));
+  options.version =
+      context_.instance + "-" + std::to_string(to_unix_ns((*frame)->captured)) + "-" + amendments;
   return resource::frame_document(std::move(*frame), place_of(context_, "frame"),
                                   std::move(options));
 }

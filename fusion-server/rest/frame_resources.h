@@ -30,6 +30,8 @@ class FrameResources final : public Sink {
 
   [[nodiscard]] std::string_view name() const override { return "rest"; }
   void publish(std::shared_ptr<const Snapshot> snapshot) override;
+  /// An earlier instant with the frames that came too late for it.
+  void amend(const Snapshot& snapshot);
 
   /// The router keeps using this object, which must outlive it.
   void add_routes(http::Router& router);

@@ -22,6 +22,12 @@ class FrameRing {
 
   void push(FramePtr frame);
 
+  /// A better answer for an instant that is here; ?at= has it from now on, /frames/{seq} never:
+  /// those do not change.
+  void amend(FramePtr frame);
+  /// How often that has happened.
+  [[nodiscard]] std::uint64_t amendments() const;
+
   /// Gone when it is older than all that are kept; NotFound when no frame has this number: not yet,
   /// or never, because it was skipped.
   [[nodiscard]] Result<FramePtr> find(std::uint64_t sequence) const;
@@ -35,7 +41,12 @@ class FrameRing {
  private:
   const std::size_t capacity_;
   mutable std::mutex mutex_;
-  std::deque<FramePtr> frames_;
+  struct Kept {
+    FramePtr first;   ///< As it was published.
+    FramePtr better;  ///< The same, unless it was amended.
+  };
+  std::deque<Kept> frames_;
+  std::uint64_t amendments_ = 0;
 };
 
 }  // namespace chorus::rest

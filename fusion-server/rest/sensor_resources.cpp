@@ -20,10 +20,14 @@ resource::Node sensor_node(const SensorStatus& sensor, std::string id) {
   out.emplace_back("sensorId", sensor.id.str());
   out.emplace_back("url", resource::Ref{sensor.url});
   out.emplace_back("state", sensor.state);
+  out.emplace_back("transport", std::string(sensor.streaming ? "stream" : "poll"));
   if (sensor.age) out.emplace_back("ageMilliseconds", Decimal{milliseconds_of(*sensor.age), 1});
   out.emplace_back("rateHz", Decimal{sensor.rate_hz, 2});
   out.emplace_back("bodies", static_cast<std::int64_t>(sensor.bodies));
   out.emplace_back("weight", Decimal{sensor.weight, 3});
+  out.emplace_back("share", Decimal{sensor.share, 3});
+  out.emplace_back("shareAfterwards", Decimal{sensor.share_afterwards, 3});
+  out.emplace_back("awaited", Decimal{sensor.awaited, 3});
   if (sensor.clock_offset) {
     out.emplace_back("clockOffsetMilliseconds", Decimal{milliseconds_of(*sensor.clock_offset), 3});
   }

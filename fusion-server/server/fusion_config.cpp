@@ -56,6 +56,7 @@ void read_poll(ConfigReader reader, poll::PollTimings& out) {
   reader.read_ms("min_interval_ms", out.min_interval, milliseconds(1), seconds(1));
   reader.read_ms("first_backoff_ms", out.first_backoff, milliseconds(10), seconds(10));
   reader.read_ms("max_backoff_ms", out.max_backoff, milliseconds(100), seconds(600));
+  reader.read("stream", out.stream);
   reader.read_s("floor_interval_s", out.floor_interval, seconds(1), seconds(3600));
 }
 
@@ -69,6 +70,7 @@ void read_output(ConfigReader reader, FusionSettings& out) {
 void read_align(ConfigReader reader, align::AlignConfig& out) {
   reader.read_ms("max_gap_ms", out.max_gap, milliseconds(1), seconds(2));
   reader.read_ms("patience_ms", out.patience, milliseconds(1), seconds(5));
+  reader.read_ms("unsteady_ms", out.unsteady, milliseconds(0), seconds(5));
 }
 
 void read_quality(ConfigReader reader, fusion::QualityLimits& out) {

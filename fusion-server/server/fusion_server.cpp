@@ -221,6 +221,7 @@ LoopOptions FusionServer::Impl::loop_options(Registration places) {
   options.sinks.push_back(&*tap);
   for (const auto& sink : sinks) options.sinks.push_back(sink.get());
   options.on_status = [this](const Status& next) { take_status(next); };
+  options.on_amended = [this](const Snapshot& snapshot) { frames->amend(snapshot); };
   options.poll_reports = [this] {
     return poller ? poller->reports() : std::vector<poll::PollReport>{};
   };

@@ -13,10 +13,16 @@ namespace {
 constexpr std::size_t kMostFrames = 4096;   // 64 sensors at 30 Hz for two seconds
 constexpr std::size_t kMostCommands = 256;  // people, not frames, send these
 constexpr Duration kMostIdle = std::chrono::milliseconds(20);
+constexpr Duration kGathering = std::chrono::milliseconds(2);
 constexpr Duration kStatusInterval = std::chrono::milliseconds(200);
 /// What broke may break again at once, at every turn.
 constexpr Duration kAfterFailure = std::chrono::milliseconds(10);
 constexpr Duration kStale = std::chrono::milliseconds(1500);
+
+constexpr std::string_view kOutOfOrder =
+    "a frame was captured before the one it follows, and is refused: the clock of the sensor's "
+    "host "
+    "was set back, or it numbers its frames wrongly";
 
 /// Around one frame interval, the alignment delay, and what nobody should see [s].
 const std::vector<double> kAgeBounds{0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.08, 0.1, 0.15, 0.2, 0.5};
@@ -82,8 +88,7 @@ void PipelineLoop::run(const std::stop_token& stop) {
 }
 
 void PipelineLoop::turn() {
-  const Duration idle = std::min(core_.idle(options_.clock->now()), kMostIdle);
-  for (const SensorFrame& frame : frames_.take(idle)) core_.take(frame);
+  gather(std::min(core_.idle(options_.clock->now()), kMostIdle));
   for (Command& command : commands_.take(Duration{0})) obey(std::move(command));
   take_solutions();
   const auto begun = std::chrono::steady_clock::now();
@@ -92,8 +97,23 @@ void PipelineLoop::turn() {
     publish(std::move(*snapshot));
     counters_.step_seconds += seconds(std::chrono::steady_clock::now() - begun);
   }
+  if (const auto amended = core_.amended(now)) options_.on_amended(*amended);
   if (auto job = core_.due_job(now)) solve(std::move(*job));
   if (now - status_at_ >= kStatusInterval || now < status_at_) publish_status(now);
+}
+
+/// Takes the frames that are there, or the first that comes.  Of many sensors one comes every other
+/// millisecond: those are left to gather, so that not each of them wakes this thread.
+void PipelineLoop::gather(Duration idle) {
+  const auto since = std::chrono::steady_clock::now() - gathered_at_;
+  if (since < kGathering) {
+    const Duration pause = std::min<Duration>(kGathering - since, idle);
+    std::this_thread::sleep_for(pause);
+    idle -= pause;
+  }
+  const std::vector<SensorFrame> frames = frames_.take(idle);
+  if (!frames.empty()) gathered_at_ = std::chrono::steady_clock::now();
+  for (const SensorFrame& frame : frames) core_.take(frame);
 }
 
 void PipelineLoop::obey(Command command) {
@@ -162,11 +182,23 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
   const bool silent = report.state == poll::SensorState::Live && status.age && *status.age > kStale;
   status.state = poll::name_of(silent ? poll::SensorState::Lost : report.state);
   status.last_error = report.last_error;
+  if (status.last_error.empty() && core_.refuses(report.sensor.id, now)) {
+    status.last_error = std::string(kOutOfOrder);
+  } else if (status.last_error.empty() && silent) {
+    status.last_error =
+        "its newest frame was captured " + log::number_text(seconds(*status.age)) +
+        " s ago by our clock; it delivers nothing, or the clock of its host is wrong";
+  }
+  status.streaming = report.streaming;
   status.rate_hz = report.rate_hz;
   status.frames = report.frames;
   status.missed = report.missed;
   status.failures = report.failures;
-  status.refused = core_.refused(report.sensor.id);
+  status.refused = core_.refused(report.sensor.id) + report.refused;
+  const core::Share share = core_.share(report.sensor.id);
+  status.share = share.in_time;
+  status.share_afterwards = share.afterwards;
+  status.awaited = share.awaited;
   if (report.clock) {
     status.clock_offset = report.clock->ours_minus_theirs;
     status.clock_uncertainty = report.clock->uncertainty;

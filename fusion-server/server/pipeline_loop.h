@@ -36,6 +36,8 @@ struct LoopOptions {
   /// thread.
   std::function<void(const Status&)> on_status;
   std::function<std::vector<poll::PollReport>()> poll_reports;
+  /// An earlier snapshot with the frames that came too late for it, on the pipeline's thread.
+  std::function<void(const Snapshot&)> on_amended;
 };
 
 class PipelineLoop {
@@ -53,6 +55,7 @@ class PipelineLoop {
  private:
   void run(const std::stop_token& stop);
   void turn();
+  void gather(Duration idle);
   void obey(Command command);
   void publish(Snapshot snapshot);
   void solve(core::SolveJob job);
@@ -68,6 +71,7 @@ class PipelineLoop {
   Counters counters_;
   Histogram age_;  ///< Instant to publication [s].
   Timestamp status_at_{};
+  std::chrono::steady_clock::time_point gathered_at_{};
   RateReport trouble_{"pipeline step failed", log::Level::Error};
   Worker worker_;
   std::jthread thread_;

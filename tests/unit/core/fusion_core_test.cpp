@@ -1,7 +1,9 @@
 // The pipeline thread's whole world, driven by hand: frames in, snapshots and jobs out.
 #include "fusion-server/core/fusion_core.h"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <gtest/gtest.h>
 
@@ -127,6 +129,7 @@ TEST(FusionCore, StrangersAndFramesThatGoBackAreRefused) {
   FusionCore core(config(), ring());
   (void)run(core, Duration{0}, milliseconds(500));
   SensorFrame back = sight(0, milliseconds(300));
+  back.sequence = ~std::uint64_t{0};  // a later one of the sensor's
   core.take(back);
   EXPECT_EQ(core.refused(sensor_id("s1")), 1u);
   SensorFrame stranger = sight(0, milliseconds(600));
@@ -257,6 +260,106 @@ TEST(FusionCore, TheRateMayChangeWhileRunning) {
   EXPECT_NEAR(static_cast<double>(after.size()), 60.0, 5.0);
   EXPECT_GT(after.front().sequence, before.back().sequence);
   EXPECT_GT(after.front().instant, before.back().instant);
+}
+
+/// As run(), but the last sensor's frames come `lateness(i)` after their capture, i counting them.
+struct Delayed {
+  Answers live;
+  std::vector<Snapshot> amended;
+  std::vector<double> ages;  ///< [s]
+};
+
+template <class Lateness>
+Delayed run_delayed(FusionCore& core, Duration length, const Lateness& lateness) {
+  Delayed out;
+  std::vector<std::pair<Duration, SensorFrame>> on_the_way;
+  for (Duration t{0}; t < length; t += milliseconds(1)) {
+    for (int i = 0; i < kSensors; ++i) {
+      if ((t - milliseconds(7 * i)) % milliseconds(33) != Duration{0}) continue;
+      SensorFrame frame = sight(i, t);
+      frame.sequence = static_cast<std::uint64_t>(t / milliseconds(33));
+      const Duration late = i == kSensors - 1 ? lateness(frame.sequence) : milliseconds(2);
+      // A connection never overtakes itself.
+      Duration comes = t + late;
+      for (const auto& [when, other] : on_the_way)
+        if (other.sensor == frame.sensor) comes = std::max(comes, when);
+      frame.received = kStart + comes;
+      on_the_way.emplace_back(comes, frame);
+    }
+    for (auto it = on_the_way.begin(); it != on_the_way.end();) {
+      if (it->first > t) {
+        ++it;
+        continue;
+      }
+      core.take(it->second);
+      it = on_the_way.erase(it);
+    }
+    while (auto snapshot = core.tick(kStart + t)) {
+      out.ages.push_back(chorus::seconds(kStart + t - snapshot->instant));
+      out.live.push_back(std::move(*snapshot));
+      if (auto better = core.amended(kStart + t)) out.amended.push_back(std::move(*better));
+    }
+  }
+  std::sort(out.ages.begin(), out.ages.end());
+  return out;
+}
+
+double p90(const std::vector<double>& sorted) { return sorted.at(sorted.size() * 9 / 10); }
+
+TEST(FusionCore, OneBadLinkCostsTheOthersAtMostThirtyMillisecondsAndIsUsedAfterwards) {
+  const auto steady = [](std::uint64_t) { return milliseconds(2); };
+  const auto bad = [](std::uint64_t i) { return milliseconds(i * 7919 % 401); };
+  FusionCore good(config(), ring());
+  const double before = p90(run_delayed(good, seconds(10), steady).ages);
+  FusionCore core(config(), ring());
+  const Delayed with = run_delayed(core, seconds(10), bad);
+  EXPECT_LT(p90(with.ages), before + 0.030);
+  // A second later almost all instants have what it saw, under the ids that were told.
+  std::map<std::uint64_t, const Snapshot*> afterwards;
+  for (const Snapshot& snapshot : with.live) afterwards[snapshot.sequence] = &snapshot;
+  for (const Snapshot& snapshot : with.amended) {
+    if (snapshot.instant < kStart + seconds(1)) continue;
+    ASSERT_EQ(snapshot.bodies.size(), 1u);
+    EXPECT_EQ(snapshot.bodies[0].id, with.live.back().bodies[0].id);
+    afterwards[snapshot.sequence] = &snapshot;
+  }
+  int all = 0;
+  int used = 0;
+  for (const auto& [sequence, snapshot] : afterwards) {
+    if (snapshot->instant < kStart + seconds(1) || snapshot->instant > kStart + seconds(9))
+      continue;
+    ++all;
+    used += snapshot->bodies.at(0).contributors[index_of(JointId::Neck)] == 0b111U ? 1 : 0;
+  }
+  EXPECT_GE(used, 0.95 * all);
+  const Share share = core.share(sensor_id("s3"));
+  EXPECT_LT(share.in_time, 0.5);
+  EXPECT_GT(share.afterwards, 0.9);
+  EXPECT_GT(core.share(sensor_id("s1")).in_time, 0.9);
+}
+
+TEST(FusionCore, SaysWhoIsWaitedFor) {
+  FusionCore core(config(), ring());
+  (void)run_delayed(core, seconds(5), [](std::uint64_t i) { return milliseconds(i * 7919 % 91); });
+  EXPECT_GT(core.share(sensor_id("s3")).awaited, 0.5);
+  EXPECT_LT(core.share(sensor_id("s1")).awaited, 0.5);
+}
+
+TEST(FusionCore, WithoutLateFramesNothingIsAmended) {
+  FusionCore core(config(), ring());
+  EXPECT_TRUE(
+      run_delayed(core, seconds(5), [](std::uint64_t) { return milliseconds(2); }).amended.empty());
+}
+
+TEST(FusionCore, SaysForAWhileThatFramesAreRefused) {
+  FusionCore core(config(), ring());
+  (void)run(core, Duration{0}, milliseconds(500));
+  EXPECT_FALSE(core.refuses(sensor_id("s1"), kStart + milliseconds(500)));
+  SensorFrame back = sight(0, milliseconds(300));
+  back.sequence = ~std::uint64_t{0};
+  core.take(back);
+  EXPECT_TRUE(core.refuses(sensor_id("s1"), kStart + milliseconds(500)));
+  EXPECT_FALSE(core.refuses(sensor_id("s1"), kStart + seconds(4)));
 }
 
 }  // namespace

@@ -139,12 +139,13 @@ TEST(Ready, WaitsForRegisteredSensorsOnlyAndOnlySoLong) {
   Histories histories = ring_histories({});
   const Registration registration = ring_registration(6);
   const Timestamp inside = kStart + milliseconds(500);
-  EXPECT_TRUE(ready({inside, inside, 0}, histories, registration, {}));
+  EXPECT_TRUE(awaited({inside, inside, 0}, histories, registration, {}).empty());
   const Timestamp beyond = kStart + milliseconds(2010);
-  EXPECT_FALSE(ready({beyond, beyond, 0}, histories, registration, {}));
-  EXPECT_TRUE(ready({beyond, beyond + milliseconds(201), 0}, histories, registration, {}));
+  EXPECT_FALSE(awaited({beyond, beyond, 0}, histories, registration, {}).empty());
+  EXPECT_TRUE(
+      awaited({beyond, beyond + milliseconds(201), 0}, histories, registration, {}).empty());
   histories[sensor(77)] = align::History();
-  EXPECT_TRUE(ready({inside, inside, 0}, histories, registration, {}));
+  EXPECT_TRUE(awaited({inside, inside, 0}, histories, registration, {}).empty());
 }
 
 TEST(StepCost, TenSensorsAndSixPeopleFitManyTimesIntoAFrame) {

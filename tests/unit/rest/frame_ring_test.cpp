@@ -87,5 +87,20 @@ TEST(FrameRing, AClockSetBackEmptiesIt) {
   EXPECT_EQ(ring.find(10).error().code, ErrorCode::Gone);
 }
 
+TEST(FrameRing, ABetterAnswerIsForWhoAsksByTimeAndNeverChangesAFrame) {
+  Filled ring(1, 5);
+  auto better = std::make_shared<resource::FrameResource>(*frame(3));
+  better->bodies[0].joints[0].position.x() = 30.0;
+  ring.amend(better);
+  EXPECT_EQ(ring.amendments(), 1u);
+  const auto by_time = ring.at(to_iso8601(frame(3)->captured));
+  EXPECT_DOUBLE_EQ((*by_time)->bodies[0].joints[0].position.x(), 30.0);
+  EXPECT_DOUBLE_EQ((*ring.find(3))->bodies[0].joints[0].position.x(), 3.0);
+  const auto between = ring.at(to_iso8601(frame(3)->captured + kFrameInterval / 2));
+  EXPECT_NEAR((*between)->bodies[0].joints[0].position.x(), 17.0, 0.01);
+  ring.amend(frame(77));  // not here
+  EXPECT_EQ(ring.amendments(), 1u);
+}
+
 }  // namespace
 }  // namespace chorus::rest

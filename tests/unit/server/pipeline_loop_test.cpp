@@ -39,6 +39,7 @@ TEST(PipelineLoop, GoesOnAfterASinkHasThrownAndCountsIt) {
   LoopOptions options;
   options.clock = std::make_shared<SystemClock>();
   options.sinks.push_back(&sink);
+  options.on_amended = [](const Snapshot&) {};
   options.poll_reports = [] { return std::vector<poll::PollReport>{}; };
   options.on_status = [&](const Status& status) {
     const std::scoped_lock lock(mutex);

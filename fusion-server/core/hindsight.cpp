@@ -1,0 +1,64 @@
+#include "fusion-server/core/hindsight.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace chorus::core {
+namespace {
+
+constexpr std::size_t kMostWaiting = 512;  // two seconds at 240 Hz
+constexpr double kBlend = 1.0 / 30.0;
+
+void blend(double& average, double now) { average += kBlend * (now - average); }
+
+}  // namespace
+
+Parts parts_of(const Snapshot& snapshot) {
+  std::vector<double> counts(snapshot.sensors.size(), 0.0);
+  double joints = 0.0;
+  for (const FusedBody& body : snapshot.bodies) {
+    for (const std::uint64_t contributors : body.contributors) {
+      if (contributors == 0) continue;
+      joints += 1.0;
+      for (std::size_t i = 0; i < counts.size(); ++i)
+        counts[i] += static_cast<double>((contributors >> i) & 1U);
+    }
+  }
+  Parts parts;
+  if (joints == 0.0) return parts;
+  for (std::size_t i = 0; i < counts.size(); ++i) parts[snapshot.sensors[i]] = counts[i] / joints;
+  return parts;
+}
+
+void Hindsight::remember(Answered answered) {
+  if (answered.without.empty()) return;
+  if (!waiting_.empty() && answered.tick.instant <= waiting_.back().tick.instant) forget();
+  waiting_.push_back(std::move(answered));
+  if (waiting_.size() > kMostWaiting) waiting_.pop_front();
+}
+
+std::optional<Answered> Hindsight::due(Timestamp now) {
+  if (waiting_.empty() || now - waiting_.front().tick.instant < delay_) return std::nullopt;
+  Answered oldest = std::move(waiting_.front());
+  waiting_.pop_front();
+  return oldest;
+}
+
+void Shares::answered(const Snapshot& snapshot, const std::vector<SensorId>& awaited) {
+  for (const SensorId& sensor : snapshot.sensors) {
+    const bool last = std::find(awaited.begin(), awaited.end(), sensor) != awaited.end();
+    blend(shares_[sensor].awaited, last ? 1.0 : 0.0);
+  }
+  for (const auto& [sensor, part] : parts_of(snapshot)) blend(shares_[sensor].in_time, part);
+}
+
+void Shares::settled(const Parts& parts) {
+  for (const auto& [sensor, part] : parts) blend(shares_[sensor].afterwards, part);
+}
+
+Share Shares::of(const SensorId& sensor) const {
+  const auto it = shares_.find(sensor);
+  return it == shares_.end() ? Share{} : it->second;
+}
+
+}  // namespace chorus::core
