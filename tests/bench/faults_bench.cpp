@@ -14,7 +14,8 @@ namespace {
 
 FaultCases all_cases() {
   FaultCases all;
-  for (const auto& part : {sensor_cases(), link_cases()})
+  for (const auto& part : {sensor_cases(), lie_cases(), link_cases(), client_cases(),
+                           output_cases(), access_cases(), server_cases()})
     all.insert(all.end(), part.begin(), part.end());
   return all;
 }

@@ -91,7 +91,10 @@ std::string Cell::write_places() const {
   for (const Neighbour& each : plan_.neighbours) {
     if (each.place >= 0) places[each.id] = place_json(place_of(each.place, plan_.ring));
   }
-  const std::string path = (folder() / "places.json").string();
+  std::error_code ignored;
+  const auto state = folder() / "state";
+  std::filesystem::create_directory(state, ignored);
+  const std::string path = (state / "registration.json").string();
   std::ofstream(path) << nlohmann::json{{"sensors", places}};
   return path;
 }
@@ -130,7 +133,13 @@ Result<void> Cell::start_sensor(int index) {
 Result<void> Cell::start_fusion() {
   Settings settings{"http.address=" + plan_.address, fmt::format("http.port={}", port_),
                     "sensors=" + polled(), "viewer_dir=", "output.history_s=60"};
-  if (plan_.placed) settings.push_back("registration.file=" + write_places());
+  const bool again = fusion_.has_value();
+  if (plan_.stored) {
+    if (!again) write_places();
+    settings.push_back("state_dir=" + (folder() / "state").string());
+  } else if (plan_.placed) {
+    settings.push_back("registration.file=" + write_places());
+  }
   settings.insert(settings.end(), plan_.fusion.begin(), plan_.fusion.end());
   fusion_.reset();
   auto started = ChildProcess::start(

@@ -41,6 +41,7 @@ struct CellPlan {
   Settings fusion = {};
   ChildSurroundings surroundings = {};  ///< Of chorus-fusion.
   bool placed = true;     ///< Extrinsics are given; else nobody knows where the sensors stand.
+  bool stored = false;    ///< By the server's own state folder, not by registration.file.
   bool start_all = true;  ///< False: nothing is started yet.
   std::string address = "127.0.0.1";  ///< Where chorus-fusion listens.
 };
@@ -78,7 +79,7 @@ class Cell {
  private:
   Cell(CellPlan plan, ScratchFolder folder) : plan_(std::move(plan)), folder_(std::move(folder)) {}
   void take_ports();
-  [[nodiscard]] std::string write_places() const;
+  std::string write_places() const;
   [[nodiscard]] std::string polled() const;
 
   CellPlan plan_;

@@ -25,7 +25,7 @@ Result<void> all_alike(Trial& trial, const LinkModel& link) {
   const Watch watch(cell->port());
   wait_for(1.0);
   const Timestamp begun = now();
-  wait_for(6.0);
+  wait_for(5.0);
   trial.check_others(*cell, account_of(watch.seen(), begun, now()), cell->placed());
   return {};
 }
@@ -38,7 +38,7 @@ Result<Account> one_turns_bad(Trial& trial, Cell& cell, const LinkModel& link) {
   wait_for(3.0);
   const Timestamp bad = now();
   cell.link(1).become(link);
-  wait_for(8.0);
+  wait_for(7.0);
   const auto seen = watch.seen();
   const Account before = account_of(seen, calm, bad);
   const Account after = account_of(seen, bad + std::chrono::seconds(2), now());

@@ -60,5 +60,10 @@ using FaultCases = std::vector<FaultCase>;
 
 [[nodiscard]] FaultCases sensor_cases();
 [[nodiscard]] FaultCases link_cases();
+[[nodiscard]] FaultCases lie_cases();
+[[nodiscard]] FaultCases client_cases();
+[[nodiscard]] FaultCases output_cases();
+[[nodiscard]] FaultCases access_cases();
+[[nodiscard]] FaultCases server_cases();
 
 }  // namespace chorus::bench

@@ -134,6 +134,16 @@ double Account::share_of(const std::string& sensor) const {
   return it == share.end() ? 0.0 : it->second;
 }
 
+namespace {
+
+std::vector<double> ages_of(const std::vector<FusedInstant>& part) {
+  std::vector<double> out;
+  for (const FusedInstant& each : part) out.push_back(seconds(each.received - each.instant));
+  return out;
+}
+
+}  // namespace
+
 Account account_of(std::span<const FusedInstant> seen, Timestamp from, Timestamp to) {
   constexpr double kRate = 30.0;  // [Hz]
   std::vector<FusedInstant> part;
@@ -144,13 +154,11 @@ Account account_of(std::span<const FusedInstant> seen, Timestamp from, Timestamp
   out.frames = part.size();
   out.longest_gap = seconds(to - (part.empty() ? from : part.back().received));
   if (part.size() < 2) return out;
-  std::vector<double> ages;
   std::size_t with_body = 0;
   std::size_t several = 0;
   for (std::size_t i = 0; i < part.size(); ++i) {
     if (i > 0)
       out.longest_gap = std::max(out.longest_gap, seconds(part[i].received - part[i - 1].received));
-    ages.push_back(seconds(part[i].received - part[i].instant));
     with_body += part[i].bodies.empty() ? 0 : 1;
     several += part[i].bodies.size() > 1 ? 1 : 0;
     for (const std::string& name : part[i].contributors) out.share[name] += 1.0;
@@ -159,9 +167,9 @@ Account account_of(std::span<const FusedInstant> seen, Timestamp from, Timestamp
   const auto all = static_cast<std::size_t>(std::llround(due)) + 1;
   out.lost = all - std::min(all, with_body);
   const auto frames = static_cast<double>(part.size());
-  out.hz = (frames - 1.0) / seconds(part.back().received - part.front().received);
-  out.age_p50 = percentile(ages, 0.5);
-  out.age_p90 = percentile(ages, 0.9);
+  out.hz = frames / seconds(to - from);
+  out.age_p50 = percentile(ages_of(part), 0.5);
+  out.age_p90 = percentile(ages_of(part), 0.9);
   out.several_percent = kPercent * static_cast<double>(several) / frames;
   for (auto& [name, share] : out.share) share *= kPercent / frames;
   return out;

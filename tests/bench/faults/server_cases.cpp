@@ -1,0 +1,190 @@
+// The server's own host: it is killed, its log is not read, its disk is full, its folders are not
+// there.
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "tests/bench/faults/trial.h"
+
+namespace chorus::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where every sensor stands, to the bit.
+std::string extrinsics(const Cell& cell) {
+  nlohmann::json out;
+  const auto told = cell.json("/registration");
+  if (!told.is_object() || !told.contains("sensors")) return {};
+  for (const auto& [name, place] : told["sensors"].items()) {
+    for (const auto* key : {"x", "y", "z", "qx", "qy", "qz", "qw"}) out[name][key] = place[key];
+  }
+  return out.dump();
+}
+
+/// SIGKILL, and at once again; what has to be as before.
+Result<void> kill_and_return(Trial& trial, Cell& cell) {
+  constexpr double kFirstBody = 0.5;  // after the first answer [s]
+  const Watch watch(cell.port());
+  wait_for(1.0);
+  const std::string before = extrinsics(cell);
+  const FusedInstant last = watch.newest();
+  trial.check(!before.empty() && !last.bodies.empty(), "there was a registration and a person");
+  cell.fusion().kill();
+  if (auto started = cell.start_fusion(); !started) return started;
+  const Timestamp back = now();
+  const auto first = [&]() -> std::optional<FusedInstant> {
+    for (const FusedInstant& each : watch.seen()) {
+      if (each.received > back && !each.bodies.empty()) return each;
+    }
+    return std::nullopt;
+  };
+  (void)wait_until(8.0, [&] { return first().has_value(); });
+  const auto body = first();
+  trial.recover_s = body ? seconds(body->received - back) : INFINITY;
+  trial.check(trial.recover_s <= kFirstBody,
+              fmt::format("first body within {} s: {:.2f}", kFirstBody, trial.recover_s));
+  trial.check(extrinsics(cell) == before, "extrinsics are identical to the bit");
+  const bool on = body && !last.bodies.empty() && body->bodies.front() > last.bodies.back();
+  trial.check(on, fmt::format("ids go on: {} before, {} after",
+                              last.bodies.empty() ? 0 : last.bodies.back(),
+                              body ? body->bodies.front() : 0));
+  trial.rss_mb = cell.fusion().resident_mb();
+  return {};
+}
+
+Result<void> server_killed(Trial& trial) {
+  CellPlan plan;
+  plan.stored = true;
+  auto cell = Cell::start(plan);
+  if (!cell) return pass(cell);
+  return kill_and_return(trial, *cell);
+}
+
+/// Nothing is said about folders, as in the configuration we ship; a walk, then the server dies.
+Result<void> default_folders(Trial& trial) {
+  auto home = ScratchFolder::make();
+  if (!home) return pass(home);
+  const std::string folder = home->path().string();
+  CellPlan plan;
+  plan.placed = false;
+  plan.fusion = {"registration.seconds=10", "registration.first_solve_s=4"};
+  plan.surroundings.environment = {"HOME=" + folder, "XDG_STATE_HOME=" + folder + "/state",
+                                   "STATE_DIRECTORY=" + folder + "/state"};
+  for (int i = 0; i < 3; ++i) plan.of_sensor[i] = {"device.simulated.scene.reach_m=1.2"};
+  auto cell = Cell::start(plan);
+  if (!cell) return pass(cell);
+  const auto over = [&] {
+    const auto told = cell->json("/registration");
+    return told.is_object() && told.value("sensors", nlohmann::json::object()).size() == 3 &&
+           told.value("session", nlohmann::json::object()).value("state", "") == "idle";
+  };
+  if (!wait_until(40.0, over))
+    return fail(ErrorCode::Timeout, "/registration", "three sensors were not registered in 40 s");
+  if (auto settled = cell->settle(); !settled) return settled;
+  return kill_and_return(trial, *cell);
+}
+
+Result<void> folder_not_writable(Trial& trial) {
+  constexpr int kMistaken = 2;
+  CellPlan plan;
+  plan.fusion = {"state_dir=/proc/chorus"};
+  plan.start_all = false;
+  auto cell = Cell::start(plan);
+  if (!cell) return pass(cell);
+  for (int i = 0; i < 3; ++i) {
+    if (auto started = cell->start_sensor(i); !started) return started;
+  }
+  if (!cell->start_fusion()) {
+    const int code = cell->fusion().wait(1.0);
+    trial.check(code == kMistaken, fmt::format("it does not start, and says why: {}", code));
+    return {};
+  }
+  std::string told;
+  for (const auto* path : {"/healthz", "/registration", "/metrics"})
+    told += cell->ask({"GET", path, {{"Accept", "*/*"}}, {}}).body;
+  trial.check(
+      told.find("/proc/chorus") != std::string::npos || told.find("state_dir") != std::string::npos,
+      "/healthz, /registration or /metrics says that nothing can be stored");
+  trial.rss_mb = cell->fusion().resident_mb();
+  return {};
+}
+
+/// A pipe of one page whose reading end nobody reads.
+struct UnreadPipe {
+  UnreadPipe() {
+    if (::pipe2(ends.data(), O_CLOEXEC) == 0) ::fcntl(ends[1], F_SETPIPE_SZ, 4096);
+  }
+  ~UnreadPipe() {
+    ::close(ends[0]);
+    ::close(ends[1]);
+  }
+  UnreadPipe(const UnreadPipe&) = delete;
+  UnreadPipe& operator=(const UnreadPipe&) = delete;
+  /// By an end of its own, so that the program's does not become one that never blocks.
+  void fill() const {
+    const int end = ::open(fmt::format("/proc/self/fd/{}", ends[1]).c_str(), O_WRONLY | O_NONBLOCK);
+    while (::write(end, "x", 1) == 1) {
+    }
+    ::close(end);
+  }
+  std::array<int, 2> ends{};
+};
+
+Result<void> unread_log(Trial& trial) {
+  const UnreadPipe pipe;
+  CellPlan plan;
+  plan.surroundings.error_output = pipe.ends[1];
+  auto cell = Cell::start(plan);
+  if (!cell) return pass(cell);
+  const Watch watch(cell->port());
+  wait_for(1.0);
+  pipe.fill();
+  const Timestamp begun = now();
+  cell->sensor(1).kill();
+  wait_for(6.0);
+  trial.check_others(*cell, account_of(watch.seen(), begun, now()), {"s1", "s3"});
+  return {};
+}
+
+Result<void> full_disk(Trial& trial) {
+  if (::geteuid() != 0) return trial.leave_out("a small file system needs root"), Result<void>{};
+  auto disk = ScratchFolder::make();
+  if (!disk) return pass(disk);
+  CellPlan plan;
+  plan.fusion = {"recording.folder=" + (disk->path() / "recordings").string()};
+  plan.surroundings.small_disk = disk->path().string();
+  auto cell = Cell::start(plan);
+  if (!cell) return pass(cell);
+  const Watch watch(cell->port());
+  wait_for(1.0);
+  const Timestamp begun = now();
+  const auto answer = cell->ask({"POST", "/recordings/"});
+  trial.check(answer.status == 503, fmt::format("POST /recordings/: {}", answer.status));
+  trial.check(answer.body.find(disk->path().string()) == std::string::npos,
+              "the answer does not say where this host keeps its files");
+  wait_for(2.0);
+  trial.check_others(*cell, account_of(watch.seen(), begun, now()), cell->placed());
+  return {};
+}
+
+}  // namespace
+
+FaultCases server_cases() {
+  return {
+      {"server-killed", "SIGKILL of the server and start again, with a state folder",
+       server_killed},
+      {"default-folders", "the same with the shipped configuration, after a walk", default_folders},
+      {"folder-not-writable", "the state folder cannot be made", folder_not_writable},
+      {"unread-log", "stderr is a full pipe that nobody reads, and a sensor dies", unread_log},
+      {"full-disk", "POST /recordings/ on a full disk", full_disk},
+  };
+}
+
+}  // namespace chorus::bench
