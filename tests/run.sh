@@ -1,7 +1,10 @@
 #!/usr/bin/env bash
 # Everything: installs what is missing, builds, runs all tests.  Ends on ctest's summary.
 #   tests/run.sh [ctest arguments, such as -R fusion/]
+#   tests/run.sh --sanitize address|thread [ctest arguments]
+#     the unit, integration and fusion-system tests instead, built with that sanitizer (presets asan and tsan)
 # CHORUS_JOBS=N limits the build (default: all cores, but no more than the memory can feed).
+# CHORUS_TARGETS="base.file_test ..." builds only these with --sanitize; then choose the same tests by -R.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -23,13 +26,40 @@ npm_packages() {
   cp "$1/package-lock.json" "$stamp"
 }
 
+sanitizer=""
+if [ "${1:-}" = --sanitize ]; then
+  case "${2:-}" in
+    address) preset=asan ;;
+    thread) preset=tsan ;;
+    *) echo "usage: tests/run.sh --sanitize address|thread [ctest arguments]" >&2; exit 2 ;;
+  esac
+  sanitizer=$2
+  shift 2
+fi
+
 launcher=()
 export CCACHE_SLOPPINESS=pch_defines,time_macros  # else it keeps nothing that reads a precompiled header
 command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
 jobs=${CHORUS_JOBS:-$(build_jobs)}
 
+# A finding ends the test that met it.  Everything linked dynamically is not instrumented, so the thread sanitizer
+# is told not to look into what it cannot see (tests/tsan.supp).
+run_sanitized() {
+  export ASAN_OPTIONS="detect_leaks=1:strict_string_checks=1:detect_stack_use_after_return=1"
+  export UBSAN_OPTIONS="print_stacktrace=1:halt_on_error=1"
+  export TSAN_OPTIONS="halt_on_error=1:second_deadlock_stack=1:suppressions=$PWD/tests/tsan.supp"
+  step "build ($preset, $jobs at a time)"
+  cmake --preset "$preset" "${launcher[@]}" --log-level=WARNING
+  local -a targets=()
+  read -ra targets <<<"${CHORUS_TARGETS:-all}"
+  cmake --build "build/$preset" -j "$jobs" --target "${targets[@]}"
+  step "tests under the $sanitizer sanitizer"
+  exec ctest --test-dir "build/$preset" --output-on-failure -j "$(nproc)" -L '^(unit|integration|fusion-system)$' "$@"
+}
+
 step "packages"
 deploy/install-packages.sh build tests
+[ -z "$sanitizer" ] || run_sanitized "$@"
 npm_packages tests
 npm_packages services/viewer
 
