@@ -55,8 +55,10 @@ void ClockFilter::add(const Exchange& exchange) {
     return;
   }
   const Duration held = exchange.their_sending - exchange.their_receipt;
-  const Duration delay = (exchange.received - exchange.sent) - held;
-  if (held < Duration{0} || delay < Duration{0} || delay / 2 > limits_.max_uncertainty) return;
+  const Duration round_trip = exchange.received - exchange.sent;
+  if (held < Duration{0} || round_trip < held) return;  // before anything can overflow
+  const Duration delay = round_trip - held;
+  if (delay / 2 > limits_.max_uncertainty) return;
   const Duration theirs_minus_ours = (exchange.their_receipt - exchange.sent) / 2 +
                                      (exchange.their_sending - exchange.received) / 2;
   const Sample sample{exchange.received, -theirs_minus_ours, delay / 2};

@@ -1,0 +1,117 @@
+// Any bytes as what a sensor answers, through the client that polls it: bytes on a connection, an
+// answer or an Error, a frame or a reason; and the same bytes as a stream of events.
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/http/asio.h"
+#include "common/http/client.h"
+#include "common/http/event_reader.h"
+#include "fusion-server/poll/answer.h"
+
+namespace {
+
+using namespace chorus;
+using http::net::ip::address_v4;
+
+void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+/// Answers the first request with these bytes and hangs up.
+class Sensor {
+ public:
+  Sensor(http::net::io_context& io, std::string_view answer)
+      : acceptor_(io), socket_(io), answer_(answer) {
+    const http::tcp::endpoint any(address_v4::loopback(), 0);
+    acceptor_.open(any.protocol());
+    acceptor_.set_option(http::net::socket_base::reuse_address(true));
+    acceptor_.bind(any);
+    acceptor_.listen();
+    acceptor_.async_accept(socket_, [this](http::error_code failed) {
+      if (!failed) hear();
+    });
+  }
+  [[nodiscard]] std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
+  void close() {
+    http::error_code ignored;
+    acceptor_.close(ignored);
+    socket_.close(ignored);
+  }
+
+ private:
+  void hear() {
+    socket_.async_read_some(
+        http::net::buffer(asked_), [this](http::error_code failed, std::size_t) {
+          if (failed) return close();
+          http::net::async_write(socket_, http::net::buffer(answer_),
+                                 [this](http::error_code, std::size_t) { close(); });
+        });
+  }
+
+  http::Acceptor acceptor_;
+  http::Socket socket_;
+  std::string_view answer_;
+  std::array<char, 4096> asked_{};
+};
+
+std::optional<http::ClientResponse> ask(std::string_view answer) {
+  http::net::io_context io{1};
+  Sensor sensor(io, answer);
+  http::AsyncClient client(io, "127.0.0.1", sensor.port(), {.max_body_bytes = 2u << 20});
+  std::optional<http::ClientResponse> out;
+  client.send({"GET", "/frame", {}, {}}, std::chrono::seconds(2),
+              [&](Result<http::ClientResponse> got) {
+                if (got) {
+                  out = std::move(*got);
+                } else {
+                  require(!got.error().message.empty());
+                }
+                client.close();
+                sensor.close();
+              });
+  io.run();
+  return out;
+}
+
+void check_answer(std::string_view bytes) {
+  const auto response = ask(bytes);
+  if (!response) return;
+  const SensorId sensor = SensorId::parse("s1").value();
+  const auto answer = poll::read_frame_answer(*response, sensor);
+  if (answer.frame) {
+    const auto frame = poll::place_in_time(*answer.frame, sensor, Timestamp{}, Duration{}, {});
+    require(frame.bodies.size() <= kMaxBodies);
+  }
+  (void)poll::read_floor_answer(*response);
+  (void)poll::exchange_of(*response);
+}
+
+/// However the stream is cut, the same events come out of it.
+void check_events(std::string_view bytes) {
+  constexpr std::size_t kMost = 2u << 20;
+  http::EventReader whole(kMost);
+  http::EventReader parts(kMost);
+  const auto at_once = whole.take(bytes);
+  std::vector<http::ServerEvent> one_by_one;
+  for (const char& each : bytes) {
+    auto events = parts.take({&each, 1});
+    if (!events) return require(!at_once.has_value());
+    one_by_one.insert(one_by_one.end(), events->begin(), events->end());
+  }
+  require(at_once.has_value() && *at_once == one_by_one);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes), size);
+  check_answer(text);
+  check_events(text);
+  return 0;
+}

@@ -1,0 +1,94 @@
+// Any bytes behind the handshake of a WebSocket, to a real server on loopback: it stays, and
+// answers the next request.  Frames are read by Boost.Beast, which is not cut so that it could be
+// fed without a stream; what is ours is what happens with them.
+//
+// The first line goes into the handshake, as one more field; the rest are frames.
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "common/http/live_document.h"
+#include "common/http/server.h"
+#include "tests/support/free_port.h"
+
+namespace {
+
+using namespace chorus;
+
+void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+http::Server& server() {
+  static const auto serving = [] {
+    auto document = std::make_shared<http::LiveDocument>();
+    document->publish(http::make_document("application/json", "{}", {.version = "1"}));
+    auto router = std::make_shared<http::Router>();
+    router->live("/frame", document);
+    auto made = std::make_unique<http::Server>(http::ServerConfig{}, router);
+    require(made->start().has_value());
+    return made;
+  }();
+  return *serving;
+}
+
+class Client {
+ public:
+  Client() : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    const sockaddr_in address = testing::loopback(server().port());
+    require(::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
+  }
+  ~Client() {
+    const linger at_once{1, 0};  // no port is left behind in TIME_WAIT
+    ::setsockopt(socket_, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+    ::close(socket_);
+  }
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  void say(std::string_view bytes) const {
+    (void)::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  }
+  [[nodiscard]] std::string hear(int patience_ms) const {
+    pollfd waiting{socket_, POLLIN, 0};
+    std::array<char, 4096> bytes{};
+    if (::poll(&waiting, 1, patience_ms) <= 0) return {};
+    const ssize_t got = ::recv(socket_, bytes.data(), bytes.size(), 0);
+    return {bytes.data(), got > 0 ? static_cast<std::size_t>(got) : 0};
+  }
+
+ private:
+  int socket_;
+};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  constexpr int kPatience = 2000;  // [ms]
+  constexpr int kSilence = 2;      // what has not come by then does not come [ms]
+  const std::string_view text(reinterpret_cast<const char*>(bytes), size);
+  const std::size_t line = std::min(text.find('\n'), text.size());
+  const Client client;
+  client.say(
+      "GET /frame HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+      "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
+      std::string(text.substr(0, line)) + (line > 0 ? "\r\n\r\n" : "\r\n"));
+  const std::string opened = client.hear(line > 0 ? kSilence : kPatience);
+  if (line == 0) require(opened.starts_with("HTTP/1.1 101 "));
+  client.say(text.substr(std::min(line + 1, text.size())));
+  while (!client.hear(kSilence).empty()) {
+  }
+  const Client next;
+  next.say("GET /frame HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
+  require(next.hear(kPatience).starts_with("HTTP/1.1 200 "));
+  return 0;
+}
