@@ -10,11 +10,13 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "common/record/session_outline.h"
 #include "common/time/clock.h"
 #include "fusion-server/client/recordings.h"
 #include "services/ctl/child_processes.h"
 #include "services/ctl/command.h"
 #include "services/ctl/replay_round.h"
+#include "services/ctl/text_file.h"
 
 namespace chorus::ctl {
 namespace {
@@ -27,6 +29,7 @@ struct ReplayArguments {
   int port = 8081;
   bool loop = false;
   double speed = 1.0;
+  std::string save_registration;
 };
 
 /// What one process plays.
@@ -35,10 +38,10 @@ struct Part {
   std::filesystem::path from;  ///< A file, or the folder of a recording with several.
 };
 
-Result<std::vector<Part>> parts_of(const record::Session& session) {
+Result<std::vector<Part>> parts_of(const std::vector<record::SensorStay>& stays) {
   std::vector<Part> parts;
-  for (const auto& [sensor, files] : session.files) {
-    if (files.empty()) continue;  // it saw nothing
+  for (const auto& stay : stays) {
+    const auto& files = stay.files;
     const auto folder = files.front().parent_path();
     const bool together = std::all_of(
         files.begin(), files.end(), [&](const auto& file) { return file.parent_path() == folder; });
@@ -46,7 +49,7 @@ Result<std::vector<Part>> parts_of(const record::Session& session) {
       return fail(ErrorCode::InvalidArgument, files.back().string(),
                   "is a part of a recording whose other files are in another folder.");
     }
-    parts.push_back({sensor, files.size() == 1 ? files.front() : folder});
+    parts.push_back({stay.about.sensor, files.size() == 1 ? files.front() : folder});
   }
   return parts;
 }
@@ -70,34 +73,70 @@ void share(const Round& round, Child& child) {
   }
 }
 
-Result<int> run_replay(const ReplayArguments& arguments) {
-  const auto files = client::find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
-  if (!files) return pass(files);
-  // Read now: a broken recording, or two of one sensor, should not start half a cell.
-  const auto session = client::read_recordings(*files, &std::cerr);
-  if (!session) return pass(session);
-  if (of_different_times(*session))
-    std::cerr
-        << "note: these recordings are of different times; each starts at its own beginning\n";
-  const auto parts = parts_of(*session);
-  if (!parts) return pass(parts);
-  if (arguments.port + static_cast<int>(parts->size()) - 1 > kLastPort)
-    return fail(ErrorCode::InvalidArgument, "--port", "leaves too few ports above it.");
+/// What there is to play; a broken recording, or two of one sensor, should not start half a cell.
+Result<std::vector<record::SensorStay>> stays_of(const std::vector<record::SessionLine>& lines) {
+  for (const auto& line : lines) {
+    for (const std::string& damage : line.damage) std::cerr << "note: " << damage << '\n';
+  }
+  auto stays = record::sensor_stays(lines);
+  if (stays && stays->empty())
+    return fail(ErrorCode::NotFound, "recordings",
+                "hold no frames of a sensor; were they recorded with --fused alone?");
+  return stays;
+}
+
+/// The sensors' places are part of a recording; who replays it need not find them again.
+Result<void> hand_on_registration(const std::vector<record::SessionLine>& lines,
+                                  const std::string& file) {
+  const auto recorded = record::last_registration(lines);
+  if (!recorded) return pass(recorded);
+  if (!*recorded) {
+    if (!file.empty())
+      std::cerr << "note: no registration was recorded to write to " << file << '\n';
+    return {};
+  }
+  if (file.empty()) {
+    std::cerr << "note: where the sensors stood was recorded too; --save-registration FILE, then "
+                 "chorus-fusion --set registration.file=FILE\n";
+    return {};
+  }
+  return write_text(file, **recorded);
+}
+
+Result<int> play(const std::vector<Part>& parts, const std::optional<Round>& round,
+                 const ReplayArguments& arguments) {
   const Timestamp epoch = std::chrono::ceil<std::chrono::seconds>(SystemClock().now() + kHeadStart);
   std::vector<Child> children;
-  const auto round = round_of(*session);
-  for (std::size_t i = 0; i < parts->size(); ++i) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
     const int port = arguments.port + static_cast<int>(i);
-    const Part& part = (*parts)[i];
-    children.push_back(sensor_process(part, port, arguments, epoch));
+    children.push_back(sensor_process(parts[i], port, arguments, epoch));
     if (round) share(*round, children.back());
-    std::cout << fmt::format("{} at http://127.0.0.1:{}/ from {}\n", part.sensor.str(), port,
-                             part.from.string())
+    std::cout << fmt::format("{} at http://127.0.0.1:{}/ from {}\n", parts[i].sensor.str(), port,
+                             parts[i].from.string())
               << std::flush;
   }
+  std::cout << fmt::format("playing {} sensors\n", parts.size()) << std::flush;
   const auto done = run_children(children);
   if (!done) return pass(done);
   return kExitOk;
+}
+
+Result<int> run_replay(const ReplayArguments& arguments) {
+  const auto files = client::find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
+  if (!files) return pass(files);
+  if (auto ok = may_write(arguments.save_registration, *files); !ok) return pass(ok);
+  const auto lines = record::session_lines(*files);
+  if (!lines) return pass(lines);
+  const auto stays = stays_of(*lines);
+  if (!stays) return pass(stays);
+  const RoundPlan plan = plan_round(*stays);
+  if (!plan.note.empty()) std::cerr << "note: " << plan.note << '\n';
+  const auto parts = parts_of(*stays);
+  if (!parts) return pass(parts);
+  if (arguments.port + static_cast<int>(parts->size()) - 1 > kLastPort)
+    return fail(ErrorCode::InvalidArgument, "--port", "leaves too few ports above it.");
+  if (auto ok = hand_on_registration(*lines, arguments.save_registration); !ok) return pass(ok);
+  return play(*parts, plan.round, arguments);
 }
 
 }  // namespace
@@ -112,6 +151,10 @@ Run add_replay(CLI::App& options) {
       ->check(CLI::Range(0.01, 100.0))
       ->capture_default_str();
   options.add_flag("--loop", arguments->loop, "Start over at the end");
+  options.add_option(
+      "--save-registration", arguments->save_registration,
+      "Write the registration of the recording to this file, for chorus-fusion --set "
+      "registration.file=FILE");
   return [arguments] { return run_replay(*arguments); };
 }
 

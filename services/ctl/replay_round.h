@@ -2,8 +2,10 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "common/record/session_reader.h"
+#include "common/record/session_outline.h"
 
 namespace chorus::ctl {
 
@@ -15,11 +17,13 @@ struct Round {
   bool operator==(const Round&) const = default;
 };
 
-/// None for one stream alone, for recordings that all note their set themselves (importers do), and
-/// for recordings of different times, which have no beginning in common.
-[[nodiscard]] std::optional<Round> round_of(const record::Session& session);
+struct RoundPlan {
+  /// None for one stream alone, for files of one import (they note their set themselves), and for
+  /// recordings whose times do not tell how they belong together.
+  std::optional<Round> round;
+  std::string note;  ///< Why recordings are not in step, for people.
+};
 
-/// Several streams, and no instant at which all of them were being recorded.
-[[nodiscard]] bool of_different_times(const record::Session& session);
+[[nodiscard]] RoundPlan plan_round(const std::vector<record::SensorStay>& stays);
 
 }  // namespace chorus::ctl

@@ -1,5 +1,6 @@
 #include "services/ctl/replay_round.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/support/builders.h"
@@ -9,58 +10,77 @@ namespace {
 
 using chorus::testing::kStart;
 using std::chrono::seconds;
+using ::testing::HasSubstr;
 
-record::FrameRecording stream(const char* sensor, Duration begin, Duration length) {
-  record::FrameRecording recording;
-  recording.sensor = chorus::testing::sensor_id(sensor);
-  for (const Duration at : {begin, begin + length}) {
-    SensorFrame frame;
-    frame.captured = kStart + at;
-    recording.frames.push_back(frame);
-  }
-  return recording;
+record::SensorStay stay(const char* sensor, Duration begin, Duration length) {
+  record::SensorStay one;
+  one.about.sensor = chorus::testing::sensor_id(sensor);
+  one.files = {std::string(sensor) + ".mcap"};
+  one.first = kStart + begin;
+  one.last = one.first + length;
+  return one;
+}
+
+/// As importers note it.
+record::SensorStay imported(const char* sensor, Duration begin, const std::string& time) {
+  auto one = stay(sensor, begin, seconds(10));
+  one.about.notes = {
+      {"set_origin", to_iso8601(one.first)}, {"set_period_ns", "10033000000"}, {"time", time}};
+  return one;
 }
 
 TEST(ReplayRound, RecordingsMadeByTheSensorsThemselvesShareTheirBeginning) {
-  record::Session session;  // of one sensor each: no cell
-  session.sensors = {stream("s1", seconds(3), seconds(10)), stream("s2", seconds(0), seconds(8))};
-  const auto round = round_of(session);
-  ASSERT_TRUE(round);
-  EXPECT_EQ(round->origin, kStart) << "s1 begins three seconds after s2, in the replay too";
-  EXPECT_GT(round->period, seconds(13));
-  EXPECT_LT(round->period, seconds(13) + std::chrono::milliseconds(100));
-  EXPECT_FALSE(of_different_times(session));
+  const auto plan =
+      plan_round({stay("s1", seconds(3), seconds(10)), stay("s2", seconds(0), seconds(8))});
+  ASSERT_TRUE(plan.round);
+  EXPECT_EQ(plan.round->origin, kStart) << "s1 begins three seconds after s2, in the replay too";
+  EXPECT_GT(plan.round->period, seconds(13));
+  EXPECT_LT(plan.round->period, seconds(13) + std::chrono::milliseconds(100));
+  EXPECT_EQ(plan.note, "");
 }
 
 TEST(ReplayRound, ACellSharesItsBeginningEvenWhenOneSensorIsLeft) {
-  record::Session session;
-  session.sensors = {stream("s1", seconds(3), seconds(10)), stream("s2", seconds(0), seconds(1))};
-  session.cell = {session.sensors[0].sensor, session.sensors[1].sensor};
-  ASSERT_TRUE(round_of(session));
-  EXPECT_EQ(round_of(session)->origin, kStart);
-  EXPECT_FALSE(of_different_times(session)) << "a sensor may have left before another came";
-  session.sensors.pop_back();
-  EXPECT_TRUE(round_of(session));
+  std::vector<record::SensorStay> cell{stay("s1", seconds(3), seconds(10)),
+                                       stay("s2", seconds(0), seconds(1))};
+  for (auto& one : cell) one.cell = true;
+  const auto plan = plan_round(cell);
+  ASSERT_TRUE(plan.round);
+  EXPECT_EQ(plan.round->origin, kStart);
+  EXPECT_EQ(plan.note, "") << "a sensor may have left before another came";
+  cell.pop_back();
+  EXPECT_TRUE(plan_round(cell).round);
 }
 
-TEST(ReplayRound, OneStreamAloneAndSetsThatSayItThemselvesNeedNone) {
-  record::Session session;
-  EXPECT_FALSE(round_of(session));
-  session.sensors = {stream("s1", seconds(3), seconds(10))};
-  EXPECT_FALSE(round_of(session));
-  session.sensors.push_back(stream("s2", seconds(0), seconds(8)));
-  session.sensors[0].notes["set_origin"] = to_iso8601(kStart);
-  EXPECT_TRUE(round_of(session)) << "one of them does not say it";
-  session.sensors[1].notes["set_origin_ns"] = "1";
-  EXPECT_FALSE(round_of(session));
+TEST(ReplayRound, OneStreamAloneAndFilesOfOneImportNeedNone) {
+  EXPECT_FALSE(plan_round({}).round);
+  EXPECT_FALSE(plan_round({stay("s1", seconds(3), seconds(10))}).round);
+  std::vector<record::SensorStay> both{imported("s1", seconds(0), "UTC as recorded"),
+                                       imported("s2", seconds(3), "UTC as recorded")};
+  both[1].about.notes["set_origin"] = both[0].about.notes["set_origin"];
+  EXPECT_FALSE(plan_round(both).round);
+  EXPECT_EQ(plan_round(both).note, "");
+}
+
+TEST(ReplayRound, SeparateImportsWithUtcKeepTheirCommonTime) {
+  const auto plan = plan_round({imported("s1", seconds(0), "UTC as recorded, .NET ticks"),
+                                imported("s2", seconds(8), "UTC as recorded, .NET ticks")});
+  ASSERT_TRUE(plan.round) << "s2 came eight seconds later, and says so";
+  EXPECT_EQ(plan.round->origin, kStart);
+  EXPECT_GE(plan.round->period, seconds(18));
+}
+
+TEST(ReplayRound, SeparateImportsWithoutUtcAreSaidToBeOutOfStep) {
+  const auto plan = plan_round({imported("s1", seconds(0), "UTC as recorded, .NET ticks"),
+                                imported("s2", seconds(1), "the file counts from its start")});
+  EXPECT_FALSE(plan.round);
+  EXPECT_THAT(plan.note, HasSubstr("the clocks of s2"));
 }
 
 TEST(ReplayRound, RecordingsOfDifferentTimesHaveNoneInCommon) {
-  record::Session session;
-  session.sensors = {stream("s1", seconds(0), seconds(10)),
-                     stream("s2", std::chrono::hours(24), seconds(10))};
-  EXPECT_FALSE(round_of(session)) << "nobody wants to wait a day for s2";
-  EXPECT_TRUE(of_different_times(session));
+  const auto plan = plan_round(
+      {stay("s1", seconds(0), seconds(10)), stay("s2", std::chrono::hours(24), seconds(10))});
+  EXPECT_FALSE(plan.round) << "nobody wants to wait a day for s2";
+  EXPECT_THAT(plan.note, HasSubstr("different times"));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/builders.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chorus::sensor_service {
 namespace {
@@ -39,12 +40,16 @@ struct Played {
   synthetic::HostClock host = {};
 
   void play(const record::FrameRecording& from, const ReplayOptions& options, std::size_t at_most) {
+    play(tape_of(from).value(), options, at_most);
+  }
+
+  void play(std::unique_ptr<ReplayTape> tape, const ReplayOptions& options, std::size_t at_most) {
     std::stop_source stop;
     const auto wait = [&](auto, Timestamp until) {
       clock->set(std::max(until, clock->now()));
       return !stop.stop_requested();
     };
-    auto device = make_replay(from, options, sensor_id("s1"), {clock, wait, host});
+    auto device = make_replay(std::move(tape), options, sensor_id("s1"), {clock, wait, host});
     ASSERT_TRUE(device) << to_string(device.error());
     result = (*device)->run(stop.get_token(), [&](Capture capture) {
       captures.push_back(std::move(capture));
@@ -84,6 +89,27 @@ TEST(Replay, AHostsClockStampsFramesButDoesNotMoveWhatWasSeen) {
     EXPECT_EQ(frame.received, wrong.host.host_time(right.captures[i].frame.received)) << i;
     EXPECT_EQ(frame.bodies.at(0).captured, frame.captured);
   }
+}
+
+TEST(Replay, PlaysAFileAsItPlaysMemory) {
+  const chorus::testing::TemporaryFolder folder;
+  const auto source = recording(100);
+  ASSERT_TRUE(record::write_frame_recording(folder / "cam01.mcap", source));
+  auto tape = open_tape(folder / "cam01.mcap", sensor_id("s1"));
+  ASSERT_TRUE(tape) << to_string(tape.error());
+  EXPECT_EQ((*tape)->span().frames, 100u);
+  EXPECT_EQ((*tape)->span().last, source.frames.back().captured);
+  Played from_file, from_memory;
+  from_file.play(std::move(*tape), {}, 250);
+  from_memory.play(source, {}, 250);
+  ASSERT_EQ(from_file.captures.size(), 250u);
+  for (std::size_t i = 0; i < 250; ++i) {
+    const SensorFrame& frame = from_file.captures[i].frame;
+    EXPECT_EQ(frame.sequence, from_memory.captures[i].frame.sequence);
+    EXPECT_EQ(frame.captured, from_memory.captures[i].frame.captured);
+    EXPECT_EQ(frame.floor->offset, 1.2);
+  }
+  EXPECT_FALSE(open_tape(folder / "none.mcap", sensor_id("s1")));
 }
 
 TEST(Replay, LoopsWithoutGapOrRepeatedTime) {
@@ -142,11 +168,11 @@ TEST(Replay, ProcessesWithOneEpochStayInStep) {
 TEST(Replay, AfterASleepItSkipsInsteadOfPouringOutThePast) {
   const auto clock = std::make_shared<FakeClock>(kStart);
   std::stop_source stop;
-  auto device =
-      make_replay(recording(30), {}, sensor_id("s1"), {clock, [&](auto, Timestamp until) {
-                                                         clock->set(std::max(until, clock->now()));
-                                                         return !stop.stop_requested();
-                                                       }});
+  auto device = make_replay(tape_of(recording(30)).value(), {}, sensor_id("s1"),
+                            {clock, [&](auto, Timestamp until) {
+                               clock->set(std::max(until, clock->now()));
+                               return !stop.stop_requested();
+                             }});
   ASSERT_TRUE(device);
   std::vector<std::uint64_t> sequences;
   (void)(*device)->run(stop.get_token(), [&](const Capture& capture) {
@@ -161,8 +187,8 @@ TEST(Replay, AfterASleepItSkipsInsteadOfPouringOutThePast) {
 TEST(Replay, DescribesItself) {
   auto source = recording(30);
   source.intrinsics = Intrinsics{.width = 1920};
-  const auto device = make_replay(source, {.recording = "/x/cam01.mcap"}, sensor_id("s1"),
-                                  {std::make_shared<FakeClock>(kStart), {}});
+  const auto device = make_replay(tape_of(source).value(), {.recording = "/x/cam01.mcap"},
+                                  sensor_id("s1"), {std::make_shared<FakeClock>(kStart), {}});
   const DeviceDescription description = (*device)->describe();
   EXPECT_EQ(description.kind, "replay");
   EXPECT_EQ(description.label, "replay of cam01.mcap (Kinect v2)");
@@ -171,10 +197,9 @@ TEST(Replay, DescribesItself) {
 }
 
 TEST(Replay, AnEmptyRecordingIsRefused) {
-  const auto device =
-      make_replay({}, {}, sensor_id("s1"), {std::make_shared<FakeClock>(kStart), {}});
-  ASSERT_FALSE(device);
-  EXPECT_THAT(device.error().message, ::testing::HasSubstr("no frames"));
+  const auto tape = tape_of({});
+  ASSERT_FALSE(tape);
+  EXPECT_THAT(tape.error().message, ::testing::HasSubstr("no frames"));
 }
 
 TEST(ReplayOptions, AreReadWithTheirRanges) {

@@ -46,31 +46,28 @@ std::optional<std::int64_t> noted_ns(const record::FrameRecording& recording,
   return ns >= 0 ? std::optional(ns) : std::nullopt;
 }
 
-Timestamp origin_of(const record::FrameRecording& recording, const ReplayOptions& options) {
+Timestamp origin_of(const ReplayTape& tape, const ReplayOptions& options) {
   if (options.origin) return *options.origin;
   for (const char* key : {"set_origin_ns", "set_origin"}) {
-    if (const auto ns = noted_ns(recording, key)) return from_unix_ns(*ns);
+    if (const auto ns = noted_ns(tape.about(), key)) return from_unix_ns(*ns);
   }
-  return recording.frames.empty() ? Timestamp{} : recording.frames.front().captured;
+  return tape.span().first;
 }
 
-Duration period_of(const record::FrameRecording& recording, const ReplayOptions& options,
-                   const std::vector<Timestamp>& captured) {
+Duration period_of(const ReplayTape& tape, const ReplayOptions& options) {
   if (options.period) return *options.period;
-  if (const auto ns = noted_ns(recording, "set_period_ns")) return Duration(*ns);
-  if (captured.empty()) return Duration::zero();
-  return natural_period(captured) + (captured.front() - origin_of(recording, options));
+  if (const auto ns = noted_ns(tape.about(), "set_period_ns")) return Duration(*ns);
+  const TapeSpan span = tape.span();
+  return natural_period(span) + (span.first - origin_of(tape, options));
 }
 
 class Replay final : public FrameSource {
  public:
-  Replay(record::FrameRecording recording, ReplayOptions options, SensorId sensor, ReplayClock time)
-      : recording_(std::move(recording)),
+  Replay(std::unique_ptr<ReplayTape> tape, ReplayOptions options, SensorId sensor, ReplayClock time)
+      : tape_(std::move(tape)),
         options_(std::move(options)),
         sensor_(std::move(sensor)),
-        time_(std::move(time)) {
-    for (const SensorFrame& frame : recording_.frames) captured_.push_back(frame.captured);
-  }
+        time_(std::move(time)) {}
 
   [[nodiscard]] DeviceDescription describe() const override;
   [[nodiscard]] Result<void> run(std::stop_token stop, const Sink& sink) override;
@@ -81,42 +78,41 @@ class Replay final : public FrameSource {
   [[nodiscard]] bool is_as_recorded() const {
     return !options_.epoch_at && options_.epoch == ReplayEpoch::AsRecorded;
   }
-  [[nodiscard]] Capture capture(const ReplaySchedule& schedule, const Turn& turn) const;
+  [[nodiscard]] Capture capture(const ReplaySchedule& schedule, const Turn& turn,
+                                SensorFrame frame) const;
 
-  record::FrameRecording recording_;
+  std::unique_ptr<ReplayTape> tape_;
   ReplayOptions options_;
   SensorId sensor_;
   ReplayClock time_;
-  std::vector<Timestamp> captured_;
 };
 
 DeviceDescription Replay::describe() const {
+  const record::FrameRecording& about = tape_->about();
+  const TapeSpan span = tape_->span();
   DeviceDescription device;
   device.kind = "replay";
   device.label = "replay of " + options_.recording.filename().string();
-  if (!recording_.device.empty()) device.label += " (" + recording_.device + ")";
-  if (recording_.intrinsics) device.depth_camera = *recording_.intrinsics;
-  if (captured_.size() > 1) {
-    const Duration step = natural_period(captured_) - (captured_.back() - captured_.front());
-    device.nominal_rate_hz = options_.speed / seconds(step);
-  }
+  if (!about.device.empty()) device.label += " (" + about.device + ")";
+  if (about.intrinsics) device.depth_camera = *about.intrinsics;
+  if (span.frames > 1) device.nominal_rate_hz = options_.speed / seconds(span.step);
   return device;
 }
 
 Result<ReplaySchedule> Replay::schedule(Timestamp start) const {
   ReplayTiming timing;
-  timing.origin = origin_of(recording_, options_);
-  timing.period = period_of(recording_, options_, captured_);
+  timing.origin = origin_of(*tape_, options_);
+  timing.period = period_of(*tape_, options_);
   timing.speed = options_.speed;
   timing.loop = options_.loop;
   timing.epoch = options_.epoch_at.value_or(start);
   if (is_as_recorded()) timing.epoch = timing.origin;
-  return ReplaySchedule::make(captured_, timing);
+  return ReplaySchedule::make(tape_->span(), timing);
 }
 
-Capture Replay::capture(const ReplaySchedule& schedule, const Turn& turn) const {
+Capture Replay::capture(const ReplaySchedule& schedule, const Turn& turn, SensorFrame frame) const {
   Capture out;
-  out.frame = recording_.frames[turn.frame];
+  out.frame = std::move(frame);
   out.frame.sensor = sensor_;
   out.frame.sequence = schedule.sequence(turn);
   const Timestamp due = schedule.due(turn);
@@ -125,27 +121,78 @@ Capture Replay::capture(const ReplaySchedule& schedule, const Turn& turn) const 
   for (BodyFrame& body : out.frame.bodies) body.captured += shift;
   out.frame.captured = shown;
   out.frame.received = time_.host.host_time(time_.world->now());
-  if (!out.frame.floor) out.frame.floor = recording_.floor;
+  if (!out.frame.floor) out.frame.floor = tape_->about().floor;
   return out;
 }
+
+/// Turn after turn of a tape, round after round.
+class Player {
+ public:
+  Player(ReplayTape& tape, const ReplaySchedule& plan) : tape_(tape), plan_(plan) {}
+
+  /// To the round in which something is due at `now` or soon after; never back.
+  void skip_to(Timestamp now) {
+    const std::int64_t round = plan_.round_before(now);
+    if (round <= turn_.round && begun_) return;
+    begin(std::max(round, turn_.round));
+  }
+
+  /// The next frame; none when all is over, or when a whole round has none.
+  Result<std::optional<SensorFrame>> next() {
+    for (int rewound = 0; rewound < 2; ++rewound) {
+      auto frame = tape_.next();
+      if (!frame) return frame;
+      if (*frame) {
+        turn_.captured = (*frame)->captured;
+        turn_.number = taken_++;
+        return frame;
+      }
+      if (plan_.over(turn_.round + 1)) return std::nullopt;
+      begin(turn_.round + 1);
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] const Turn& turn() const { return turn_; }
+
+ private:
+  void begin(std::int64_t round) {
+    tape_.rewind();
+    turn_ = {{}, 0, round};
+    taken_ = 0;
+    begun_ = true;
+  }
+
+  ReplayTape& tape_;
+  const ReplaySchedule& plan_;
+  Turn turn_;
+  std::uint64_t taken_ = 0;
+  bool begun_ = false;
+};
 
 Result<void> Replay::run(std::stop_token stop, const Sink& sink) {
   const Timestamp start = time_.world->now();
   const auto plan = schedule(start);
   if (!plan) return pass(plan);
   // Delivery runs on the clock as it is; "as recorded" frames are stamped in their own time.
-  const Duration ahead =
-      is_as_recorded() ? start - origin_of(recording_, options_) : Duration::zero();
-  for (Turn turn = plan->first_from(start - ahead); !plan->over(turn);) {
-    const Timestamp due = plan->due(turn) + ahead;
+  const Duration ahead = is_as_recorded() ? start - origin_of(*tape_, options_) : Duration::zero();
+  Player player(*tape_, *plan);
+  player.skip_to(start - ahead);
+  Timestamp not_before = start;
+  while (!stop.stop_requested()) {
+    auto frame = player.next();
+    if (!frame) return pass(frame);
+    if (!*frame) return {};
+    const Timestamp due = plan->due(player.turn()) + ahead;
+    if (due < not_before) continue;
     const Timestamp now = time_.world->now();
     if (now - due > kLatest) {
-      turn = plan->first_from(now - ahead);
+      not_before = now;
+      player.skip_to(now - ahead);
       continue;
     }
     if (!time_.wait(stop, due)) return {};
-    sink(capture(*plan, turn));
-    turn = plan->after(turn);
+    sink(capture(*plan, player.turn(), std::move(**frame)));
   }
   return {};
 }
@@ -182,7 +229,7 @@ ReplayOptions read_replay_options(ConfigReader& config) {
   return options;
 }
 
-Result<std::unique_ptr<FrameSource>> make_replay(record::FrameRecording recording,
+Result<std::unique_ptr<FrameSource>> make_replay(std::unique_ptr<ReplayTape> tape,
                                                  const ReplayOptions& options,
                                                  const SensorId& sensor, ReplayClock time) {
   if (!time.wait) {
@@ -190,7 +237,7 @@ Result<std::unique_ptr<FrameSource>> make_replay(record::FrameRecording recordin
       return wait_on(*clock, stop, until);
     };
   }
-  auto device = std::make_unique<Replay>(std::move(recording), options, sensor, std::move(time));
+  auto device = std::make_unique<Replay>(std::move(tape), options, sensor, std::move(time));
   if (const auto plan = device->schedule(Timestamp{}); !plan) return pass(plan);
   return device;
 }
@@ -202,12 +249,12 @@ Result<std::unique_ptr<FrameSource>> open_replay(ConfigReader& config, const Sen
     return fail(ErrorCode::InvalidArgument, "device.replay.recording",
                 "name the recording to replay, a .mcap file");
   }
-  auto recording = record::read_frame_recording(options.recording, {}, sensor);
-  if (!recording) return pass(recording);
-  for (const auto& [name, note] : recording->notes) {
+  auto tape = open_tape(options.recording, sensor);
+  if (!tape) return pass(tape);
+  for (const auto& [name, note] : (*tape)->about().notes) {
     if (name.starts_with("damage.")) log::warn("recording is damaged", {{"note", note}});
   }
-  return make_replay(std::move(*recording), options, sensor, {time.world, {}, time.host});
+  return make_replay(std::move(*tape), options, sensor, {time.world, {}, time.host});
 }
 
 }  // namespace chorus::sensor_service

@@ -7,11 +7,11 @@
 #include <optional>
 
 #include "common/base/config_reader.h"
-#include "common/record/frame_recording.h"
 #include "common/sensor/frame_source.h"
 #include "common/synthetic/host_clock.h"
 #include "common/time/clock.h"
 #include "services/sensor/device/host_time.h"
+#include "services/sensor/device/replay/replay_tape.h"
 
 namespace chorus::sensor_service {
 
@@ -46,7 +46,7 @@ struct ReplayClock {
 };
 
 /// The device; frames carry the id `sensor` whatever the recording says.
-[[nodiscard]] Result<std::unique_ptr<FrameSource>> make_replay(record::FrameRecording recording,
+[[nodiscard]] Result<std::unique_ptr<FrameSource>> make_replay(std::unique_ptr<ReplayTape> tape,
                                                                const ReplayOptions& options,
                                                                const SensorId& sensor,
                                                                ReplayClock time);

@@ -8,10 +8,9 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "common/base/result.h"
-#include "common/time/timestamp.h"
+#include "services/sensor/device/replay/replay_tape.h"
 
 namespace chorus::sensor_service {
 
@@ -25,7 +24,8 @@ struct ReplayTiming {
 
 /// One frame's turn: which frame of the recording, in which round.
 struct Turn {
-  std::size_t frame = 0;
+  Timestamp captured;
+  std::uint64_t number = 0;  ///< Within the recording, from 0.
   std::int64_t round = 0;
 
   auto operator<=>(const Turn&) const = default;
@@ -33,28 +33,28 @@ struct Turn {
 
 class ReplaySchedule {
  public:
-  /// `captured`: strictly increasing.  Refuses an empty recording, a speed that is not positive,
-  /// and a period that does not cover the recording.
-  [[nodiscard]] static Result<ReplaySchedule> make(std::vector<Timestamp> captured,
+  /// Refuses an empty recording, a speed that is not positive, and a period that does not cover the
+  /// recording.
+  [[nodiscard]] static Result<ReplaySchedule> make(const TapeSpan& span,
                                                    const ReplayTiming& timing);
 
   [[nodiscard]] Timestamp due(const Turn& turn) const;
-  /// The first turn that is not due before `now`; past the last frame when nothing is left to play.
-  [[nodiscard]] Turn first_from(Timestamp now) const;
-  [[nodiscard]] Turn after(const Turn& turn) const;
-  [[nodiscard]] bool over(const Turn& turn) const;
+  /// A round that holds, or precedes by one, the first frame that is not due before `now`.
+  [[nodiscard]] std::int64_t round_before(Timestamp now) const;
+  [[nodiscard]] bool over(std::int64_t round) const;
   /// Counts frames from the epoch on, from 1; gaps are frames that were not played.
   [[nodiscard]] std::uint64_t sequence(const Turn& turn) const;
 
  private:
-  ReplaySchedule(std::vector<Timestamp> captured, const ReplayTiming& timing)
-      : captured_(std::move(captured)), timing_(timing) {}
+  ReplaySchedule(const TapeSpan& span, const ReplayTiming& timing) : span_(span), timing_(timing) {}
 
-  std::vector<Timestamp> captured_;
+  TapeSpan span_;
   ReplayTiming timing_;
 };
 
-/// The length of one loop when nobody states it: first to last capture and one median step more.
-[[nodiscard]] Duration natural_period(const std::vector<Timestamp>& captured);
+/// The length of one loop when nobody states it: first to last capture and one usual step more.
+[[nodiscard]] inline Duration natural_period(const TapeSpan& span) {
+  return span.last - span.first + span.step;
+}
 
 }  // namespace chorus::sensor_service

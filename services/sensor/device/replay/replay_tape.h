@@ -1,0 +1,42 @@
+// What the device `replay` plays: a recording of one sensor, frame by frame, again and again.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "common/base/result.h"
+#include "common/record/frame_recording.h"
+
+namespace chorus::sensor_service {
+
+/// When the frames of a tape were captured.
+struct TapeSpan {
+  Timestamp first;
+  Timestamp last;
+  std::uint64_t frames = 0;  ///< At least one; some may be left out in playing.
+  Duration step{0};          ///< The usual time between two.
+};
+
+class ReplayTape {
+ public:
+  virtual ~ReplayTape() = default;
+
+  /// All but the frames.
+  [[nodiscard]] virtual const record::FrameRecording& about() const = 0;
+  [[nodiscard]] virtual TapeSpan span() const = 0;
+  /// Strictly rising in capture time; none at the end.
+  [[nodiscard]] virtual Result<std::optional<SensorFrame>> next() = 0;
+  virtual void rewind() = 0;
+};
+
+/// From memory.
+[[nodiscard]] Result<std::unique_ptr<ReplayTape>> tape_of(record::FrameRecording recording);
+
+/// From a file, or a folder of them: ready at once and read as it is played, however long it is.
+/// `which` of several sensors; a recording of one may be played under any name.
+[[nodiscard]] Result<std::unique_ptr<ReplayTape>> open_tape(const std::filesystem::path& path,
+                                                            const SensorId& which);
+
+}  // namespace chorus::sensor_service
