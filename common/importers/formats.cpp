@@ -82,12 +82,49 @@ Result<ImportedSet> import_cameras(const std::filesystem::path& folder,
 Result<ImportedSet> import_each(FileReader read, const std::vector<std::filesystem::path>& inputs,
                                 const ImportOptions& options) {
   ImportedSet set;
-  for (const auto& input : inputs) {
-    auto recording = read(input, options);
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    ImportOptions own = options;
+    if (!options.floors.empty()) own.floor = options.floors[i];
+    auto recording = read(inputs[i], own);
+    std::error_code ignored;
+    if (!recording && std::filesystem::file_size(inputs[i], ignored) == 0) {
+      set.empty.push_back(recording.error());
+      continue;
+    }
     if (!recording) return pass(recording);
     set.recordings.push_back(std::move(*recording));
   }
+  if (set.recordings.empty()) return tl::unexpected<Error>(set.empty.front());
   return set;
+}
+
+Duration boot_time_of(const record::FrameRecording& recording) {
+  constexpr std::int64_t kNanosecondsPerTick = 100;
+  return Duration(std::stoll(recording.notes.at(kBootTicksNote)) * kNanosecondsPerTick);
+}
+
+/// Counts of one sensor's clock: takes of one afternoon, not of hosts that were started on their
+/// own days.  Those that say nothing stay where they are.
+void keep_common_counter(std::vector<record::FrameRecording>& recordings) {
+  constexpr Duration kOneAfternoon = std::chrono::hours(6);
+  std::vector<record::FrameRecording*> counted;
+  for (auto& recording : recordings) {
+    if (recording.notes.contains(kBootTicksNote)) counted.push_back(&recording);
+  }
+  if (counted.size() < 2) return;
+  const auto [first, last] = std::ranges::minmax(
+      counted, {}, [](const auto* recording) { return boot_time_of(*recording); });
+  if (boot_time_of(*last) - boot_time_of(*first) > kOneAfternoon) return;
+  for (record::FrameRecording* recording : counted) {
+    const Duration later = boot_time_of(*recording) - boot_time_of(*first);
+    for (SensorFrame& frame : recording->frames) {
+      frame.captured += later;
+      frame.received += later;
+      for (BodyFrame& body : frame.bodies) body.captured += later;
+    }
+    recording->notes["time"] += fmt::format("; {:.3f} s after {}, taken for counts of one clock",
+                                            seconds(later), first->sensor.str());
+  }
 }
 
 Result<void> refuse_repeated_sensors(const std::vector<record::FrameRecording>& recordings) {
@@ -145,11 +182,16 @@ Result<ImportedSet> import_files(FileFormat format,
                 "takes one folder of camera views, or one file of motion, at a time.");
   if (options.sensor && inputs.size() != 1)
     return fail(ErrorCode::InvalidArgument, "import", "can name the sensor of one input only.");
+  if (!options.floors.empty() && (read.set != nullptr || options.floors.size() != inputs.size()))
+    return fail(ErrorCode::InvalidArgument, "import",
+                fmt::format("takes one floor for all, or one for each of the {} inputs, not {}.",
+                            inputs.size(), options.floors.size()));
   auto set = read.set != nullptr ? read.set(inputs.front(), options)
                                  : import_each(read.file, inputs, options);
   if (!set) return pass(set);
   if (const auto distinct = refuse_copies(set->recordings); !distinct) return pass(distinct);
   if (const auto named = refuse_repeated_sensors(set->recordings); !named) return pass(named);
+  keep_common_counter(set->recordings);
   note_set_times(set->recordings);
   return set;
 }

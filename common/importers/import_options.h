@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "common/base/result.h"
 #include "common/sensor/sensor_frame.h"
@@ -31,6 +32,8 @@ inline constexpr double kMaxCoordinate = 100.0;
 struct ImportOptions {
   std::optional<SensorId> sensor;   ///< Default: named after the file.
   std::optional<FloorPlane> floor;  ///< In sensor space, put into every frame.
+  /// Instead of `floor`, one for each of several inputs.
+  std::vector<FloorPlane> floors = {};
   Timestamp start = kDefaultStart;  ///< First frame, where the file has no UTC of its own.
   double metres_per_unit = 0.01;    ///< Of BVH, which does not say: centimetres by custom.
   ImportLimits limits;

@@ -56,6 +56,7 @@ TickClock start_clock(std::int64_t first_ticks, const ImportOptions& options,
     notes["time"] = fmt::format("UTC as recorded, {}", epoch->name);
     return {first_ticks, from_unix_ns((first_ticks - epoch->unix_epoch) * kNanosecondsPerTick)};
   }
+  notes[kBootTicksNote] = std::to_string(first_ticks);
   notes["time"] = fmt::format(
       "the file counts from the sensor's start (first row {} ticks of 100 ns), not UTC; moved to "
       "{}",

@@ -14,6 +14,9 @@
 
 namespace chorus::importers {
 
+/// Note of a file that counts from its sensor's start: the count of its first row [100 ns].
+inline constexpr const char* kBootTicksNote = "boot_ticks";
+
 [[nodiscard]] Result<record::FrameRecording> read_labanotation_csv(
     const std::filesystem::path& file, const ImportOptions& options = {});
 

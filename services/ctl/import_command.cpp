@@ -10,6 +10,7 @@
 #include "common/importers/formats.h"
 #include "common/record/frame_recording.h"
 #include "common/record/frame_schema.h"
+#include "common/record/recording_stream.h"
 #include "common/resource/frame_resource.h"
 #include "fusion-server/client/fused_frames.h"
 #include "fusion-server/wire/registration_file.h"
@@ -26,7 +27,7 @@ struct ImportArguments {
   std::string format;
   std::vector<std::string> inputs;
   std::string out;
-  std::string floor;
+  std::vector<std::string> floors;
   std::string start;
   std::string sensor;
   std::string unit = "cm";
@@ -95,12 +96,11 @@ Result<void> write_truth(const fs::path& file, const importers::ImportedSet& set
 }
 
 bool made_by_a_recorder(const fs::path& file) {
-  record::ReadLimits limits;
-  limits.wanted = [](std::string_view) { return false; };
-  const auto recording = record::read_recording(file, limits);
+  const auto recording = record::RecordingStream::open(file);
   if (!recording) return false;
-  const auto found = recording->metadata.find(std::string(record::kMetadataName));
-  return found != recording->metadata.end() && found->second.contains("recording");
+  const auto& metadata = recording->metadata();
+  const auto found = metadata.find(std::string(record::kMetadataName));
+  return found != metadata.end() && found->second.contains("recording");
 }
 
 /// An import can be made again, and may be replaced by a later one; what was recorded cannot.
@@ -150,6 +150,17 @@ void warn_of_strangers(const fs::path& folder, const std::vector<fs::path>& writ
   }
 }
 
+/// Damaged ends, and inputs that hold nothing: the rest was imported all the same.
+void tell_what_is_missing(const importers::ImportedSet& set) {
+  for (const auto& recording : set.recordings) {
+    const auto damage = recording.notes.find("damage.1");
+    if (damage != recording.notes.end())
+      std::cerr << fmt::format("note: {}: {}\n", recording.notes.at("origin"), damage->second);
+  }
+  for (const Error& error : set.empty)
+    std::cerr << fmt::format("chorus: {}; the other files were imported\n", to_string(error));
+}
+
 nlohmann::json summary_json(const importers::ImportedSet& set,
                             const std::vector<fs::path>& written) {
   nlohmann::json out{{"files", nlohmann::json::array()}, {"recordings", nlohmann::json::array()}};
@@ -187,7 +198,10 @@ void print_summary(const importers::ImportedSet& set, const std::vector<fs::path
 
 Result<int> run_import(const ImportArguments& arguments) {
   importers::ImportOptions options;  // the texts were checked while parsing
-  if (!arguments.floor.empty()) options.floor = importers::parse_floor(arguments.floor).value();
+  for (const std::string& floor : arguments.floors)
+    options.floors.push_back(importers::parse_floor(floor).value());
+  if (options.floors.size() == 1) options.floor = options.floors.front();
+  if (options.floors.size() == 1) options.floors.clear();
   if (!arguments.start.empty()) options.start = parse_iso8601(arguments.start).value();
   if (!arguments.sensor.empty()) options.sensor = SensorId::parse(arguments.sensor).value();
   options.metres_per_unit = arguments.unit == "m" ? 1.0 : 0.01;
@@ -198,12 +212,13 @@ Result<int> run_import(const ImportArguments& arguments) {
   const auto written = write_set(arguments.out, *set);
   if (!written) return pass(written);
   warn_of_strangers(arguments.out, *written);
+  tell_what_is_missing(*set);
   if (arguments.json) {
     std::cout << summary_json(*set, *written).dump(2) << '\n';
   } else {
     print_summary(*set, *written);
   }
-  return kExitOk;
+  return set->empty.empty() ? kExitOk : kExitFailed;
 }
 
 }  // namespace
@@ -220,8 +235,11 @@ Run add_import(CLI::App& options) {
   options.add_option("--out", arguments->out, "Folder for the recordings; made if absent")
       ->required();
   options
-      .add_option("--floor", arguments->floor,
-                  "Floor plane a,b,c,d in sensor space [m]: a x + b y + c z + d = 0")
+      .add_option("--floor", arguments->floors,
+                  "Floor plane a,b,c,d in sensor space [m]: a x + b y + c z + d = 0; for several "
+                  "files once for all, or once for each in their order")
+      ->take_all()
+      ->allow_extra_args(false)
       ->check(readable_by(importers::parse_floor));
   options
       .add_option("--start", arguments->start,

@@ -38,7 +38,7 @@ TEST(KeraalText, RefusesBadRowsNamingTheLine) {
     std::string text;
     const char* says;
   } const bad[] = {
-      {"cut off", row() + row().substr(0, 333), ":2: holds"},
+      {"cut off", row() + row().substr(0, 333) + "\n", ":2: holds"},
       {"26 joints", row("1 1 1 0 0 0 0 ", 26), "more than the 175"},
       {"nan", row("0 nan 1 0 0 0 0 "), ":1: value 2 (\"nan\")"},
       {"no quaternion", row("0 0 1 20 0 0 0 "), "value 4"},

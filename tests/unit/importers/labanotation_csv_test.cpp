@@ -92,7 +92,7 @@ TEST(LabanotationCsv, RefusesBadRowsNamingTheLine) {
   std::string not_finite = row(kBoot + kStep);
   not_finite.replace(not_finite.find("0.500000"), 8, "nan");
   const BadFile bad[] = {
-      {"truncated", good + row(kBoot + kStep).substr(0, 200), ":2: holds "},
+      {"truncated", good + row(kBoot + kStep).substr(0, 200) + "\n", ":2: holds "},
       {"too many", good + row(kBoot + kStep) + ",1", "more than the 101"},
       {"nan", good + not_finite, ":2: value 2 (\"nan\") is not finite"},
       {"millimetres", good + row(kBoot + kStep, 812.0), "are these metres"},
