@@ -4,9 +4,10 @@
 #   deploy/demo.sh                  until Ctrl-C
 #   deploy/demo.sh --seconds 60     stops by itself; exit code 0 only if the fused tracker delivered
 #   deploy/demo.sh --recording [DIR]  plays recordings instead of simulating: the *.mcap of DIR, with the
-#                                   extrinsics of DIR/registration.json if it is there and the settings of
-#                                   DIR/fusion.json if it is there; a folder of camera landmarks is imported
-#                                   first; without DIR, the four real cameras that travel with the tests
+#                                   extrinsics of DIR/registration.json if it is there, else those that were
+#                                   recorded, and the settings of DIR/fusion.json if it is there; a folder of
+#                                   camera landmarks is imported first; without DIR, the four real cameras
+#                                   that travel with the tests
 #   --register                      with --recording: find the extrinsics from the person alone
 #   --port N                        the fusion server's port (8080); the sensors take the ports after it
 #   --set PATH=VALUE                handed to chorus-fusion, any number of times
@@ -52,6 +53,7 @@ children=() sensor_processes=0
 # start NAME COMMAND...: in the background, logging to NAME.log, and dead when this script is.
 start() {
   local name=$1; shift
+  : > "$logs/$name.out"  # there for its readers before the process is
   setpriv --pdeathsig TERM "$@" > "$logs/$name.out" 2> "$logs/$name.log" &
   children+=($!)
 }
@@ -142,7 +144,6 @@ sensors=()  # as JSON objects for the fusion server
 add_sensor() { sensors+=("{\"id\":\"$1\",\"url\":\"$2\"}"); }
 
 start_simulated() {
-  need_free_ports $sensor_count
   local i
   for (( i = 0; i < sensor_count; ++i )); do
     local id="s$(( i + 1 ))" p=$(( port + 1 + i ))
@@ -162,10 +163,10 @@ start_replays() {
   fi
   local files=("$recording"/*.mcap)
   [[ -f "${files[0]}" ]] || fail "there is no *.mcap in $recording (chorus import makes them)"
-  need_free_ports ${#files[@]}
-  start replay "$bin/chorus" replay "$recording" --port $(( port + 1 )) --loop
+  start replay "$bin/chorus" replay "$recording" --port $(( port + 1 )) --loop \
+    --save-registration "$logs/registration.json"
   local deadline=$(( SECONDS + start_within_s ))
-  until (( $(grep -c ' at http' "$logs/replay.out") == ${#files[@]} )); do
+  until grep -q '^playing ' "$logs/replay.out"; do
     all_alive || { show_logs; fail "the replay ended"; }
     (( SECONDS < deadline )) || { show_logs; fail "the replay did not start within $start_within_s s"; }
     sleep 0.1
@@ -179,8 +180,10 @@ start_fusion() {
   local options=(--set "http.port=$port" --set "sensors=$list" --set "recording.folder=$logs/recordings")
   if [[ -n "$recording" ]]; then
     [[ ! -f "$recording/fusion.json" ]] || config=$recording/fusion.json
-    if [[ -z "$register" && -f "$recording/registration.json" ]]; then
-      options+=(--set "registration.file=$recording/registration.json" --set registration.auto=false)
+    local places=$recording/registration.json
+    [[ -f "$places" ]] || places=$logs/registration.json  # as recorded
+    if [[ -z "$register" && -f "$places" ]]; then
+      options+=(--set "registration.file=$places" --set registration.auto=false)
     fi
   fi
   start fusion "$bin/chorus-fusion" --config "$config" "${options[@]}" "${overrides[@]}"
@@ -191,7 +194,9 @@ start_fusion() {
 read_arguments "$@"
 logs=var/demo/$port
 mkdir -p "$logs"
-rm -f "$logs"/*.log "$logs"/*.out
+rm -f "$logs"/*.log "$logs"/*.out "$logs"/registration.json
+# How many sensors a recording has is known when it is played; they say themselves when a port is taken.
+if [[ -n "$recording" ]]; then need_free_ports 1; else need_free_ports $sensor_count; fi
 [[ -z "$build" ]] || build
 
 trap stop_all EXIT

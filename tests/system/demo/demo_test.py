@@ -1,12 +1,15 @@
 """deploy/demo.sh with the programs that were just built: delivers, says what is wrong, leaves nothing behind."""
 
+import json
 import os
 import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import time
 import unittest
+import urllib.request
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "support"))
@@ -66,6 +69,44 @@ class Demo(unittest.TestCase):
     def test_the_real_cameras_become_one_tracker(self):
         output = self.run_to_its_end("--seconds", "10", "--recording")
         self.assertIn("4 sensors", output)
+
+    def test_plays_what_chorus_record_wrote_in_its_place(self):
+        """One file of six sensors, with the registration that it was recorded with."""
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        process = demo(self.port)
+        base = f"http://127.0.0.1:{self.port}/"
+        deadline = time.monotonic() + START_WITHIN_S
+        while self.sensors_placed(base) < 2 and time.monotonic() < deadline:
+            time.sleep(0.5)
+        recorded = subprocess.run([BIN / "chorus", "record", base, "--out", Path(folder.name) / "walk.mcap",
+                                   "--seconds", "4"], capture_output=True, text=True)
+        os.killpg(process.pid, signal.SIGTERM)
+        process.communicate(timeout=START_WITHIN_S)
+        self.assertEqual(recorded.returncode, 0, recorded.stderr)
+        output = self.run_to_its_end("--seconds", "10", "--recording", folder.name)
+        self.assertIn("6 sensors", output)
+        self.assertIn("[  0.0 s] registration:", output)
+
+    @staticmethod
+    def sensors_placed(base):
+        request = urllib.request.Request(base + "registration", headers={"Accept": "application/json"})
+        try:
+            with urllib.request.urlopen(request, timeout=5) as answer:
+                return len(json.load(answer).get("sensors", {}))
+        except OSError:
+            return 0
+
+    def test_the_port_is_looked_at_before_anything_is_built(self):
+        with socket.socket() as occupant:
+            occupant.bind(("127.0.0.1", self.port))
+            occupant.listen()
+            process = subprocess.Popen(["deploy/demo.sh", "--port", str(self.port)], cwd=ROOT, text=True,
+                                       stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)
+            output, _ = process.communicate(timeout=START_WITHIN_S)
+        self.assertEqual(process.returncode, 1)
+        self.assertIn(f"port {self.port} is in use", output)
+        self.assertNotIn("== packages", output)
 
     def test_a_port_in_use_is_named(self):
         with socket.socket() as occupant:
