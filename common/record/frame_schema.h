@@ -15,6 +15,7 @@ inline constexpr std::string_view kFrameSchema = R"({
   "type": "object",
   "required": ["sequence", "capturedNanoseconds", "source", "space", "bodies"],
   "properties": {
+    "@type": {"const": "Frame", "description": "may be left out; never anything else"},
     "sequence": {"type": "integer", "minimum": 0},
     "captured": {"type": "string", "format": "date-time", "description": "UTC of capture"},
     "capturedNanoseconds": {"type": "string", "description": "the same, nanoseconds since the Unix epoch"},

@@ -92,6 +92,19 @@ TEST(FrameRoundTrip, TheJsonTemplateReaderTakesNothingTheParserRefuses) {
   }
 }
 
+TEST(FrameRoundTrip, JsonWrittenByHandNeedsNoType) {
+  const std::string text = write(json_frame(2), Format::Json);
+  const std::string_view type = ",\"@type\":\"Frame\"";
+  std::string without = text;
+  without.erase(without.find(type), type.size());
+  const auto read = read_frame(without, Format::Json);
+  ASSERT_TRUE(read) << to_string(read.error());
+  EXPECT_EQ(difference(*read, *read_frame(text, Format::Json)), "");
+  std::string other = text;
+  other.replace(other.find(type), type.size(), ",\"@type\":\"Floor\"");
+  EXPECT_FALSE(read_frame(other, Format::Json));
+}
+
 TEST(FrameRoundTrip, WhatOnlyLooksLikeJsonIsLeftToTheParser) {
   const std::string text = write(json_frame(8), Format::Json);
   const auto with = [&text](std::string_view from, std::string_view to) {
