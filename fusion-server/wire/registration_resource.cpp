@@ -16,6 +16,15 @@ constexpr std::array<std::pair<Verdict, std::string_view>, 4> kVerdicts{{
     {Verdict::Refused, "Refused"},
 }};
 
+/// Row by row; squares of 0.1 mm and of a hundredth of a degree, with two digits more.
+std::vector<Decimal> decimals_of(const Eigen::Matrix<double, 6, 6>& covariance) {
+  constexpr int kCovarianceDigits = 10;
+  std::vector<Decimal> values;
+  for (const double value : covariance.transpose().reshaped())
+    values.push_back({value, kCovarianceDigits});
+  return values;
+}
+
 Node sensor_node(const SensorId& id, const Extrinsics& place) {
   const Eigen::Vector3d p = place.world_from_sensor.translation();
   const Eigen::Quaterniond q(place.world_from_sensor.rotation());
@@ -34,6 +43,8 @@ Node sensor_node(const SensorId& id, const Extrinsics& place) {
   put("qw", q.w(), kRotationDigits);
   put("error", place.error, kPlaceDigits);
   node.properties.emplace_back("chain", names_of(place.chain));
+  if (!place.covariance.isZero(0.0))  // else nothing is known of it
+    node.properties.emplace_back("covariance", decimals_of(place.covariance));
   return node;
 }
 
@@ -92,8 +103,7 @@ Node registration_node(const Registration& registration, const SessionStatus& se
   }
   node.properties.emplace_back("session", session_node(session));
   std::vector<Node> sensors;
-  for (const auto& [id, place] : registration.sensors)
-    sensors.push_back(sensor_node(id, place));
+  for (const auto& [id, place] : registration.sensors) sensors.push_back(sensor_node(id, place));
   node.properties.emplace_back("sensors", std::move(sensors));
   std::vector<Node> edges;
   for (const PairwiseRegistration& edge : registration.edges) edges.push_back(edge_node(edge));

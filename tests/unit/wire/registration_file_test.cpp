@@ -68,6 +68,8 @@ TEST(RegistrationFile, ReadsASavedAnswerOfTheService) {
   ASSERT_TRUE(read) << to_string(read.error()) << text;
   for (const auto& [id, place] : example().sensors) {
     EXPECT_TRUE(read->sensors.at(id).world_from_sensor.isApprox(place.world_from_sensor, 1e-4));
+    EXPECT_TRUE(read->sensors.at(id).covariance.isApprox(place.covariance, 1e-4))
+        << "chorus record has no other source";
   }
 }
 
