@@ -51,7 +51,8 @@ void LivePoll::stop() {
 void LivePoll::ask() {
   http::ClientRequest request;
   request.target = options_.target;
-  request.headers = {{"Accept", options_.accept}};
+  request.headers = authorization();
+  request.headers.emplace_back("Accept", options_.accept);
   if (!etag_.empty()) {
     request.headers.emplace_back("If-None-Match", etag_);
     if (options_.every.count() == 0) request.headers.emplace_back("Prefer", kWait);

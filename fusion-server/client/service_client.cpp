@@ -8,10 +8,16 @@
 namespace chorus::client {
 namespace {
 
-/// Where the server wants a bearer token (writing from another host).
+/// Where the server wants a bearer token.
 constexpr const char* kTokenVariable = "CHORUS_TOKEN";
 
 }  // namespace
+
+std::vector<std::pair<std::string, std::string>> authorization() {
+  const char* token = std::getenv(kTokenVariable);
+  if (token == nullptr || *token == '\0') return {};
+  return {{"Authorization", std::string("Bearer ") + token}};
+}
 
 Error refusal_of(const http::ClientResponse& answer, const std::string& where) {
   const auto problem = nlohmann::json::parse(answer.body, nullptr, false);
@@ -55,8 +61,7 @@ Result<nlohmann::json> ServiceClient::ask(std::string_view method, std::string_v
   request.target = base_.target + std::string(path);
   request.headers = {{"Accept", "application/json"}};
   if (!body.empty()) request.headers.push_back({"Content-Type", "application/json"});
-  if (const char* token = std::getenv(kTokenVariable); token != nullptr)
-    request.headers.push_back({"Authorization", std::string("Bearer ") + token});
+  for (auto& header : authorization()) request.headers.push_back(std::move(header));
   request.body = std::move(body);
   const std::string where = fmt::format("http://{}:{}{}", base_.host, base_.port, request.target);
   const auto answer = http::fetch(base_, request);

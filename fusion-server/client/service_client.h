@@ -4,6 +4,8 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -16,6 +18,9 @@ inline constexpr int kFirstErrorStatus = 400;
 
 /// What a problem document says, or the bare status; `where` was asked.
 [[nodiscard]] Error refusal_of(const http::ClientResponse& answer, const std::string& where);
+
+/// The header that goes with every request: the bearer token in CHORUS_TOKEN, where one is set.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> authorization();
 
 inline constexpr const char* kDefaultServer = "http://127.0.0.1:8080/";
 

@@ -12,6 +12,7 @@
 #include "fusion-server/client/service_client.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
+#include "services/ctl/server_option.h"
 
 namespace chorus::ctl {
 namespace {
@@ -183,7 +184,7 @@ Result<int> run_record(const RecordArguments& arguments) {
 
 Run add_record(CLI::App& options) {
   const auto arguments = std::make_shared<RecordArguments>();
-  options.add_option("url", arguments->url, "A sensor or a fusion server")->capture_default_str();
+  add_server_option(options, arguments->url, "A sensor or a fusion server", "url,--url");
   options.add_option("--out", arguments->out, "The .mcap file to write; never one that exists")
       ->required();
   constexpr double kLongest = 7 * 24 * 3600.0;

@@ -12,6 +12,7 @@
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
 #include "services/ctl/registration_report.h"
+#include "services/ctl/server_option.h"
 
 namespace chorus::ctl {
 namespace {
@@ -90,7 +91,7 @@ Result<int> run_register(const RegisterArguments& arguments) {
 
 Run add_register(CLI::App& options) {
   const auto arguments = std::make_shared<RegisterArguments>();
-  options.add_option("--url", arguments->url, "The fusion server")->capture_default_str();
+  add_server_option(options, arguments->url, "The fusion server");
   options.add_option("--seconds", arguments->seconds, "Length of the walk")
       ->check(CLI::Range(rest::kShortestSession, rest::kLongestSession))
       ->capture_default_str();

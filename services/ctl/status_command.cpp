@@ -9,6 +9,7 @@
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
 #include "services/ctl/registration_report.h"
+#include "services/ctl/server_option.h"
 
 namespace chorus::ctl {
 namespace {
@@ -78,7 +79,7 @@ Result<int> run_status(const StatusArguments& arguments) {
 
 Run add_status(CLI::App& options) {
   const auto arguments = std::make_shared<StatusArguments>();
-  options.add_option("--url", arguments->url, "The fusion server")->capture_default_str();
+  add_server_option(options, arguments->url, "The fusion server");
   options.add_flag("--json", arguments->json, "Report as JSON");
   return [arguments] { return run_status(*arguments); };
 }

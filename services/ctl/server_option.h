@@ -1,0 +1,16 @@
+// How every command names the service it talks to: --url, else CHORUS_URL, else this machine.
+#pragma once
+
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace chorus::ctl {
+
+/// `names`: those of the option; "url,--url" takes it as an argument without a name, too.
+void add_server_option(CLI::App& app, std::string& url, const std::string& what,
+                       const std::string& names = "--url");
+
+}  // namespace chorus::ctl
