@@ -20,6 +20,7 @@ constexpr std::array kReasons{
     ReasonRow{202, "Accepted"},
     ReasonRow{204, "No Content"},
     ReasonRow{304, "Not Modified"},
+    ReasonRow{308, "Permanent Redirect"},
     ReasonRow{400, "Bad Request"},
     ReasonRow{401, "Unauthorized"},
     ReasonRow{403, "Forbidden"},

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::string_view kEventStream = "text/event-stream";
 constexpr int kMisdirected = 421;
+constexpr std::string_view kJsonSuffix = ".json";
 constexpr std::string_view kWaitApplied = "Preference-Applied: wait\r\n";
 
 bool is_head(const RequestHead& head) { return head.method == Method::Head; }
@@ -60,6 +61,41 @@ bool asks_by_query(const RequestHead& head, const Router::Entry& entry) {
   return query && query->contains(entry.query_key);
 }
 
+/// A name that ends in ".json" is worth a header to those who cannot send one.
+std::string_view accept_of(const RequestHead& head) {
+  return head.path.ends_with(kJsonSuffix) ? "application/json, */*;q=0.5" : head.accept;
+}
+
+/// What a path names, or would without ".json".
+Result<Router::Match> named(const Router& router, std::string_view path) {
+  auto match = router.match(path);
+  if (match || !path.ends_with(kJsonSuffix)) return match;
+  return router.match(path.substr(0, path.size() - kJsonSuffix.size()));
+}
+
+/// To the other spelling of a path, with a slash at its end or without, where that one is known.
+std::optional<Answer> redirected(const RequestHead& head, std::string_view path,
+                                 const Router& router) {
+  if (head.method != Method::Get && head.method != Method::Head) return std::nullopt;
+  const bool slash = path.ends_with('/');
+  const std::string other =
+      slash ? std::string(path.substr(0, path.size() - 1)) : std::string(path) + "/";
+  if (path.size() < 2 || !router.match(other)) return std::nullopt;
+  // Relative, so that it is right behind any proxy; as it was sent, so that nothing is decoded
+  // twice.
+  std::string_view last = head.path;
+  if (slash) last.remove_suffix(1);
+  last.remove_prefix(std::min(last.size(), last.rfind('/') + 1));
+  Answer answer;
+  constexpr int kPermanentRedirect = 308;
+  answer.status = kPermanentRedirect;
+  answer.extra = "Location: " + (slash ? "../" + std::string(last) : std::string(last) + "/");
+  if (!head.query.empty()) answer.extra.append("?").append(head.query);
+  answer.extra += "\r\n";
+  answer.own = "Content-Length: 0\r\n\r\n";
+  return answer;
+}
+
 }  // namespace
 
 Responder::Responder(const ServerConfig& config, std::shared_ptr<const Router> router)
@@ -94,8 +130,12 @@ Reaction Responder::react(const RequestHead& head, const Peer& peer) const {
   std::string storage;
   const auto path = decode_path(head.path, storage);
   if (!path) return Reaction::of(fault(path.error(), head, any_route_));
-  auto match = router_->match(*path);
-  if (!match) return Reaction::of(fault(match.error(), head, any_route_));
+  auto match = named(*router_, *path);
+  if (!match) {
+    auto elsewhere = redirected(head, *path, *router_);
+    if (elsewhere) elsewhere->route = any_route_;
+    return Reaction::of(elsewhere.value_or(fault(match.error(), head, any_route_)));
+  }
   switch (head.method) {
     case Method::Options:
       return options(route_lines_[match->entry->index], allowed_methods(*match->entry));
@@ -210,7 +250,7 @@ Answer Responder::represent(const DocumentPtr& document, const RequestHead& head
                  head, route);
   const auto profile = profile_of(head);
   if (!profile) return fault(profile.error(), head, route);
-  const auto chosen = document->choose(head.accept, *profile, coding_for(head.accept_encoding));
+  const auto chosen = document->choose(accept_of(head), *profile, coding_for(head.accept_encoding));
   if (!chosen && chosen.error().code == ErrorCode::NotAcceptable) {
     Problem problem = problem_of(chosen.error());
     problem.available = document->media_types(*profile);

@@ -15,6 +15,9 @@ class ResponderTest : public testing::Test {
   ResponderTest() {
     auto router = std::make_shared<Router>();
     router->live("/frame", frame_);
+    router->get("/list/", [](const Request&, const PathParams&) {
+      return Result<DocumentPtr>(make_document("text/plain", "list", {"1"}));
+    });
     router->action(Method::Post, "/do", [](const Request& request, const PathParams&) {
       return Result<ActionResult>(
           ActionResult{200, make_document("text/plain", std::string(request.body), {"1"})});
@@ -52,6 +55,30 @@ TEST_F(ResponderTest, ALongPollWaitsUntilTheTagChanges) {
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->status, 200);
   EXPECT_EQ(answer->extra, "Preference-Applied: wait\r\n");
+}
+
+TEST_F(ResponderTest, ANameThatEndsInJsonAsksForJson) {
+  frame_->publish(std::make_shared<const Document>(
+      std::vector<Variant>{{"text/turtle", [] { return std::string("turtle"); }},
+                           {"application/json", [] { return std::string("json"); }}},
+      DocumentOptions{"1"}));
+  EXPECT_EQ(react("GET /frame HTTP/1.1\r\nHost: x\r\n").answer.body, "turtle");
+  EXPECT_EQ(react("GET /frame.json HTTP/1.1\r\nHost: x\r\n").answer.body, "json");
+  const Reaction waiting = react(
+      "GET /frame.json HTTP/1.1\r\nHost: x\r\nPrefer: wait=9\r\nIf-None-Match: \"1-json\"\r\n");
+  ASSERT_EQ(waiting.kind, Reaction::Kind::Wait);
+  publish(2);
+  EXPECT_EQ(responder_->waited(*waiting.entry, head_)->status, 200);
+  EXPECT_EQ(react("GET /nothing.json HTTP/1.1\r\nHost: x\r\n").answer.status, 404);
+}
+
+TEST_F(ResponderTest, ThePathWithOrWithoutItsSlashLeadsToTheOther) {
+  const Reaction slash = react("GET /frame/?at=1 HTTP/1.1\r\nHost: x\r\n");
+  EXPECT_EQ(slash.answer.status, 308);
+  EXPECT_THAT(slash.answer.extra, HasSubstr("Location: ../frame?at=1\r\n"));
+  EXPECT_EQ(react("GET /list HTTP/1.1\r\nHost: x\r\n").answer.extra, "Location: list/\r\n");
+  EXPECT_EQ(react("GET // HTTP/1.1\r\nHost: x\r\n").answer.status, 404);
+  EXPECT_EQ(react("POST /frame/ HTTP/1.1\r\nHost: x\r\n").answer.status, 404);
 }
 
 TEST_F(ResponderTest, TheBodyOfTheHotPathIsTheDocumentsOwn) {
