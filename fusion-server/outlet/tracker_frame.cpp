@@ -57,68 +57,19 @@ const TrackerBody* in_slot(const TrackerFrame& frame, std::size_t slot) {
   return found == frame.bodies.end() ? nullptr : &*found;
 }
 
-void TrackerState::release_absent(const Snapshot& snapshot) {
+TrackerFrame TrackerState::advance(const Snapshot& snapshot) {
   std::set<PersonId> here;
   for (const FusedBody& body : snapshot.bodies) here.insert(body.id);
-  for (auto& seat : seats_) {
-    if (!seat) continue;
-    seat->absent = !here.contains(seat->person);
-    if (seat->absent && std::chrono::abs(snapshot.instant - seat->seen) > keep_slot_) seat.reset();
-  }
   std::erase_if(before_, [&](const auto& entry) { return !here.contains(entry.first); });
-}
-
-void TrackerState::seat_those_who_stood_in() {
-  for (std::size_t i = 0; i < seats_.size(); ++i) {
-    if (!seats_[i] || seats_[i]->waits_for == i) continue;
-    auto& awaited = seats_[seats_[i]->waits_for];
-    if (awaited && awaited->absent) continue;
-    const bool came_back = awaited.has_value();
-    if (came_back) {
-      seats_[i]->waits_for = i;
-    } else {
-      awaited = std::exchange(seats_[i], std::nullopt);
-    }
-  }
-}
-
-std::size_t TrackerState::slot_to_wait_for(std::size_t free) const {
-  for (std::size_t lower = 0; lower < free; ++lower) {
-    if (!seats_[lower] || !seats_[lower]->absent) continue;
-    const auto waiting = std::count_if(seats_.begin(), seats_.end(), [&](const auto& seat) {
-      return seat && seat->waits_for == lower;
-    });
-    const bool its_own = seats_[lower]->waits_for == lower;
-    if (waiting == (its_own ? 1 : 0)) return lower;
-  }
-  return free;
-}
-
-std::optional<std::size_t> TrackerState::slot_of(PersonId person, Timestamp instant) {
-  const auto found = std::find_if(seats_.begin(), seats_.end(),
-                                  [&](const auto& seat) { return seat && seat->person == person; });
-  if (found != seats_.end()) {
-    (*found)->seen = instant;
-    return static_cast<std::size_t>(found - seats_.begin());
-  }
-  const auto empty = std::find(seats_.begin(), seats_.end(), std::nullopt);
-  if (empty == seats_.end()) return std::nullopt;
-  const auto slot = static_cast<std::size_t>(empty - seats_.begin());
-  *empty = Seat{person, instant, false, slot_to_wait_for(slot)};
-  return slot;
-}
-
-TrackerFrame TrackerState::advance(const Snapshot& snapshot) {
-  release_absent(snapshot);
-  seat_those_who_stood_in();
+  seating_.begin(here, snapshot.instant);
   TrackerFrame frame;
   frame.sequence = snapshot.sequence;
   frame.instant = snapshot.instant;
-  frame.slots = seats_.size();
+  frame.slots = seating_.size();
   const Duration step = snapshot.instant - instant_;
   const bool continues = step > Duration{0} && step <= kLongestStep;
   for (const FusedBody& fused : snapshot.bodies) {
-    const auto slot = slot_of(fused.id, snapshot.instant);
+    const auto slot = seating_.slot_of(fused.id, snapshot.instant);
     if (!slot) continue;
     TrackerBody body = body_of(fused, *slot);
     const auto before = before_.find(fused.id);

@@ -10,14 +10,12 @@
 #include <vector>
 
 #include "fusion-server/flow.h"
+#include "fusion-server/outlet/seating.h"
 
 namespace chorus::outlet {
 
 /// Slots a configuration may ask for.
 inline constexpr int kMostSlots = 20;
-/// How long an absent person's slot stays free for it: as long as association looks out for it
-/// (associate::AssociationConfig::coast).
-inline constexpr Duration kKeepSlot = std::chrono::seconds(1);
 
 struct TrackerJoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
@@ -56,33 +54,15 @@ struct TrackerFrame {
 /// Gives persons their slots and joints their velocities, snapshot after snapshot.
 class TrackerState {
  public:
-  explicit TrackerState(std::size_t slots) : seats_(slots) {}
+  explicit TrackerState(std::size_t slots) : seating_(slots) {}
 
-  void keep_slots_for(Duration absence) { keep_slot_ = absence; }
+  void keep_slots_for(Duration absence) { seating_.keep_slots_for(absence); }
 
-  /// Persons beyond the last slot are left out (the oldest stay).  The slot of an absent one is
-  /// nobody's until it has been away for longer than it is kept; the instants tell.  Who came
-  /// meanwhile stands in a higher slot and then moves to that one: fusion may have given the same
-  /// person a new id, and a protocol with one slot would show nobody any more.  A repeated or older
-  /// instant gives zero velocities.
+  /// Persons beyond the last slot are left out.  A repeated or older instant gives zero velocities.
   [[nodiscard]] TrackerFrame advance(const Snapshot& snapshot);
 
  private:
-  void release_absent(const Snapshot& snapshot);
-  void seat_those_who_stood_in();
-  [[nodiscard]] std::size_t slot_to_wait_for(std::size_t free) const;
-  [[nodiscard]] std::optional<std::size_t> slot_of(PersonId person, Timestamp instant);
-
-  struct Seat {
-    PersonId person;
-    Timestamp seen;
-    bool absent = false;
-    /// Its own slot, or a lower one whose person was absent when this one came.
-    std::size_t waits_for = 0;
-  };
-
-  std::vector<std::optional<Seat>> seats_;  ///< By slot.
-  Duration keep_slot_ = kKeepSlot;
+  Seating seating_;
   std::map<PersonId, TrackerBody> before_;
   Timestamp instant_{};
 };
