@@ -106,6 +106,7 @@ struct FusedBody {
   Skeleton<WorldSpace> skeleton;
   std::array<double, kJointCount> variance{};             ///< Mean per-axis variance [m^2].
   std::array<std::uint64_t, kJointCount> contributors{};  ///< Bit i: Snapshot::sensors[i].
+  std::optional<std::size_t> slot;  ///< Its number in every output; none: not seated.
 };
 
 /// What one sensor did at this instant, for /sensors/ and the viewer.

@@ -27,9 +27,6 @@ class Sink {
   virtual void publish(std::shared_ptr<const Snapshot> snapshot) = 0;
   /// Any thread.
   [[nodiscard]] virtual SinkCounters counters() const { return {}; }
-  /// Of sinks that number persons: who is absent no longer than that finds its number free.  Any
-  /// thread.
-  virtual void keep_slots_for(Duration /*absence*/) {}
 };
 
 }  // namespace chorus

@@ -26,6 +26,7 @@ inline constexpr std::string_view kFrameSchema = R"({
       "required": ["bodyId", "joints"],
       "properties": {
         "bodyId": {"type": "integer"},
+        "slot": {"type": "integer", "minimum": 0, "description": "the person's number in every output of the tracker"},
         "captured": {"type": "string"},
         "capturedNanoseconds": {"type": "string"},
         "joints": {"type": "object", "description": "by Kinect v2 joint name", "additionalProperties": {

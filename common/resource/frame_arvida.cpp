@@ -68,6 +68,10 @@ class ArvidaFrame {
     put_body_name(body);
     pen_.put("> a skel:Skeleton ;\n  ch:bodyId ");
     pen_.put_integer(body.id);
+    if (body.slot) {
+      pen_.put(" ;\n  ch:slot ");
+      pen_.put_integer(*body.slot);
+    }
     std::string_view before = " ;\n  skel:skeletonJoint <";
     for (const std::string_view joint : kJointNames) {
       pen_.put(before);

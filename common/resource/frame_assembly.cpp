@@ -153,6 +153,10 @@ Result<BodyResource> read_body(const Facts& facts, const SubjectFacts& subject,
   BodyResource body;
   if (!subject.body_id) return refuse(subject, "bodyId", "is missing");
   body.id = *subject.body_id;
+  if (subject.slot && *subject.slot >= kMaxBodies) {
+    return refuse(subject, "slot", "is above " + std::to_string(kMaxBodies - 1));
+  }
+  if (subject.slot) body.slot = static_cast<std::size_t>(*subject.slot);
   const auto captured = time_of(subject);
   if (!captured) return pass(captured);
   body.captured = *captured;
@@ -241,11 +245,15 @@ Result<FrameResource> assemble(const Facts& facts) {
   auto frame = read_head(*root);
   if (!frame) return frame;
   std::set<std::uint64_t> ids;
+  std::set<std::size_t> slots;
   for (const std::size_t at : root->bodies) {
     auto body = read_body(facts, facts[at], frame->sensors);
     if (!body) return pass(body);
     if (!ids.insert(body->id).second) {
       return refuse(facts[at], "bodyId", "two bodies have the id " + std::to_string(body->id));
+    }
+    if (body->slot && !slots.insert(*body->slot).second) {
+      return refuse(facts[at], "slot", "two bodies have the slot " + std::to_string(*body->slot));
     }
     frame->bodies.push_back(*std::move(body));
   }

@@ -48,6 +48,7 @@ struct SubjectFacts {
   bool is_frame = false;
   std::optional<std::uint64_t> sequence;
   std::optional<std::uint64_t> body_id;
+  std::optional<std::uint64_t> slot;
   std::optional<Timestamp> captured;
   std::optional<std::int64_t> captured_ns;
   std::optional<std::string> source;

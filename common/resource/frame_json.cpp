@@ -85,6 +85,10 @@ class JsonFrame {
     }
     pen_.put(",\"bodyId\":");
     put_unsigned(body.id);
+    if (body.slot) {
+      pen_.put(",\"slot\":");
+      pen_.put_integer(*body.slot);
+    }
     put_times(body.captured);
   }
 

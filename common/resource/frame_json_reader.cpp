@@ -43,6 +43,7 @@ class Reading {
   void read_common(std::size_t at, const Json& object) {
     integer(at, object, "sequence", facts_[at].sequence, parse_unsigned);
     integer(at, object, "bodyId", facts_[at].body_id, parse_unsigned);
+    integer(at, object, "slot", facts_[at].slot, parse_unsigned);
     integer(at, object, "capturedNanoseconds", facts_[at].captured_ns, parse_signed);
     text(at, object, "source", facts_[at].source);
     named(at, object, "space", facts_[at].space, space_named);

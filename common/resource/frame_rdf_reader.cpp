@@ -28,6 +28,7 @@ enum class Property : std::uint8_t {
   Number,
   Sensor,
   Sequence,
+  Slot,
   Source,
   Space,
   State,
@@ -63,6 +64,7 @@ constexpr std::array kRows{
     Row{"rayZ", Property::Number, Number::RayZ},
     Row{"sensor", Property::Sensor},
     Row{"sequence", Property::Sequence},
+    Row{"slot", Property::Slot},
     Row{"source", Property::Source},
     Row{"space", Property::Space},
     Row{"state", Property::State},
@@ -148,6 +150,8 @@ class Collector {
         return store_number(facts_[at].numbers[static_cast<std::size_t>(row.number)], object);
       case Property::BodyId:
         return store_integer(facts_[at].body_id, object, parse_unsigned);
+      case Property::Slot:
+        return store_integer(facts_[at].slot, object, parse_unsigned);
       case Property::Sequence:
         return store_integer(facts_[at].sequence, object, parse_unsigned);
       case Property::CapturedNanoseconds:
@@ -163,9 +167,8 @@ class Collector {
       case Property::State:
         return store_named(facts_[at].state, object, state_named);
       case Property::Sensor:
-        return list_text(facts_[at].sensors, object);
       case Property::Contributor:
-        return list_text(facts_[at].contributors, object);
+        return list_text(at, row.property == Property::Sensor, object);
     }
     return {};
   }
@@ -219,7 +222,8 @@ class Collector {
     return set_once(property, *value) ? std::string_view() : kTwice;
   }
 
-  static std::string_view list_text(std::vector<std::string>& list, const TermView& object) {
+  std::string_view list_text(std::size_t at, bool sensors, const TermView& object) {
+    std::vector<std::string>& list = sensors ? facts_[at].sensors : facts_[at].contributors;
     constexpr std::size_t kMoreThanEnough = 65;  // one above the limit, which assemble() names
     if (object.kind != TermKind::Literal || !object.datatype.empty()) return "is no string";
     if (list.size() < kMoreThanEnough) add(list, std::string(object.value));

@@ -34,6 +34,7 @@ struct JointResource {
 
 struct BodyResource {
   std::uint64_t id = 0;
+  std::optional<std::size_t> slot;  ///< Fused: its number in every output, below kMaxBodies.
   Timestamp captured;
   std::array<JointResource, kJointCount> joints;
 };

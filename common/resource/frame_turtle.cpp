@@ -86,6 +86,10 @@ class TurtleFrame {
     put_living_name(body);
     pen_.put("> ;\n  ch:bodyId ");
     pen_.put_integer(body.id);
+    if (body.slot) {
+      pen_.put(" ;\n  ch:slot ");
+      pen_.put_integer(*body.slot);
+    }
     put_times(body.captured);
   }
 

@@ -21,6 +21,16 @@ bool plain(char c) {
 
 }  // namespace
 
+bool TemplateText::slot(const std::vector<BodyResource>& others, std::optional<std::size_t>& out) {
+  std::size_t slot = 0;
+  if (!integer(slot) || slot >= kMaxBodies) return false;
+  for (const BodyResource& other : others) {
+    if (other.slot == slot) return false;
+  }
+  out = slot;
+  return true;
+}
+
 bool TemplateText::decimal(double& out) {
   const bool negative = at_ < end_ && *at_ == '-';
   if (negative) ++at_;

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,6 +45,9 @@ class TemplateText {
     at_ = next;
     return true;
   }
+
+  /// A body's slot: below kMaxBodies, and that of none of `others`.
+  bool slot(const std::vector<BodyResource>& others, std::optional<std::size_t>& out);
 
   /// "-1.2345", at most kMaxCoordinate in size: the double nearest to it.
   bool decimal(double& out);

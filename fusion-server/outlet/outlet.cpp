@@ -16,8 +16,7 @@ OutletSink::OutletSink(std::unique_ptr<Outlet> outlet, OutletTiming timing)
     : outlet_(std::move(outlet)),
       timing_(std::move(timing)),
       waiting_(kWaiting),
-      trouble_("output " + std::string(outlet_->name()) + " failed", log::Level::Error),
-      keep_slot_(timing_.keep_slot) {
+      trouble_("output " + std::string(outlet_->name()) + " failed", log::Level::Error) {
   thread_ = std::jthread([this] { run(); });
 }
 
@@ -50,7 +49,6 @@ void OutletSink::run() {
 }
 
 void OutletSink::send(TrackerState& state, const Snapshot& snapshot) {
-  state.keep_slots_for(keep_slot_);
   TrackerFrame frame = state.advance(snapshot);
   if (timing_.latency == Latency::Predicted) {
     frame = predicted(std::move(frame), timing_.clock->now());

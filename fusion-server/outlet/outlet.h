@@ -39,7 +39,6 @@ struct OutletTiming {
   Latency latency = Latency::Exact;
   std::size_t slots = 6;  ///< Persons at most.
   std::shared_ptr<const Clock> clock;
-  Duration keep_slot = kKeepSlot;
 };
 
 /// Hands frames to the outlet on a thread of its own.  When the outlet is behind by two frames, the
@@ -53,7 +52,6 @@ class OutletSink final : public Sink {
   [[nodiscard]] std::string_view name() const override { return outlet_->name(); }
   void publish(std::shared_ptr<const Snapshot> snapshot) override;
   [[nodiscard]] SinkCounters counters() const override;
-  void keep_slots_for(Duration absence) override { keep_slot_ = absence; }
 
  private:
   void run();
@@ -63,7 +61,6 @@ class OutletSink final : public Sink {
   OutletTiming timing_;
   Handover<std::shared_ptr<const Snapshot>> waiting_;
   RateReport trouble_;
-  std::atomic<Duration> keep_slot_;
   std::atomic<std::uint64_t> sent_ = 0;
   std::atomic<std::uint64_t> failed_ = 0;
   std::jthread thread_;

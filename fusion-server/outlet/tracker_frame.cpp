@@ -61,17 +61,15 @@ TrackerFrame TrackerState::advance(const Snapshot& snapshot) {
   std::set<PersonId> here;
   for (const FusedBody& body : snapshot.bodies) here.insert(body.id);
   std::erase_if(before_, [&](const auto& entry) { return !here.contains(entry.first); });
-  seating_.begin(here, snapshot.instant);
   TrackerFrame frame;
   frame.sequence = snapshot.sequence;
   frame.instant = snapshot.instant;
-  frame.slots = seating_.size();
+  frame.slots = slots_;
   const Duration step = snapshot.instant - instant_;
   const bool continues = step > Duration{0} && step <= kLongestStep;
   for (const FusedBody& fused : snapshot.bodies) {
-    const auto slot = seating_.slot_of(fused.id, snapshot.instant);
-    if (!slot) continue;
-    TrackerBody body = body_of(fused, *slot);
+    if (!fused.slot || *fused.slot >= slots_) continue;
+    TrackerBody body = body_of(fused, *fused.slot);
     const auto before = before_.find(fused.id);
     if (continues && before != before_.end()) {
       for (std::size_t i = 0; i < kJointCount; ++i) {

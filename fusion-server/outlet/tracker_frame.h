@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "fusion-server/flow.h"
-#include "fusion-server/outlet/seating.h"
 
 namespace chorus::outlet {
 
@@ -29,7 +28,7 @@ struct TrackerJoint {
 };
 
 struct TrackerBody {
-  std::size_t slot = 0;  ///< 0 .. slots - 1; a person keeps it while fusion knows it.
+  std::size_t slot = 0;  ///< 0 .. slots - 1; as FusedBody has it.
   PersonId person;
   std::array<TrackerJoint, kJointCount> joints;
 
@@ -51,18 +50,17 @@ struct TrackerFrame {
 /// The body in a slot, or nullptr.
 [[nodiscard]] const TrackerBody* in_slot(const TrackerFrame& frame, std::size_t slot);
 
-/// Gives persons their slots and joints their velocities, snapshot after snapshot.
+/// Gives joints their velocities, snapshot after snapshot.
 class TrackerState {
  public:
-  explicit TrackerState(std::size_t slots) : seating_(slots) {}
+  explicit TrackerState(std::size_t slots) : slots_(slots) {}
 
-  void keep_slots_for(Duration absence) { seating_.keep_slots_for(absence); }
-
-  /// Persons beyond the last slot are left out.  A repeated or older instant gives zero velocities.
+  /// Persons without a slot, and those beyond the last, are left out.  A repeated or older instant
+  /// gives zero velocities.
   [[nodiscard]] TrackerFrame advance(const Snapshot& snapshot);
 
  private:
-  Seating seating_;
+  std::size_t slots_;
   std::map<PersonId, TrackerBody> before_;
   Timestamp instant_{};
 };

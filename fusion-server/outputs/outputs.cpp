@@ -1,5 +1,6 @@
 #include "fusion-server/outputs/outputs.h"
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -29,7 +30,6 @@ void for_each_output(Config& config, const Visitor& visit) {
 
 struct Opening {
   std::shared_ptr<const Clock> clock;
-  Duration keep_slot;
   std::vector<std::unique_ptr<Sink>> sinks;
   Result<void> outcome;
 };
@@ -48,8 +48,8 @@ void open_one(std::string_view key, const Setting& output, Opening& opening) {
     return;
   }
   opening.sinks.push_back(std::make_unique<outlet::OutletSink>(
-      std::move(*outlet), outlet::OutletTiming{output.common.latency, context.slots, context.clock,
-                                               opening.keep_slot}));
+      std::move(*outlet),
+      outlet::OutletTiming{output.common.latency, context.slots, context.clock}));
 }
 
 }  // namespace
@@ -68,14 +68,24 @@ void read_outputs(ConfigReader reader, OutputsConfig& out) {
 }
 
 Result<std::vector<std::unique_ptr<Sink>>> open_outputs(const OutputsConfig& config,
-                                                        const std::shared_ptr<const Clock>& clock,
-                                                        Duration keep_slot) {
-  Opening opening{clock, keep_slot, {}, {}};
+                                                        const std::shared_ptr<const Clock>& clock) {
+  Opening opening{clock, {}, {}};
   for_each_output(config, [&opening](std::string_view key, const auto& output) {
     open_one(key, output, opening);
   });
   if (!opening.outcome) return pass(opening.outcome);
   return std::move(opening.sinks);
+}
+
+std::size_t slots_of_all(const OutputsConfig& config) {
+  int smallest = outlet::kMostSlots;
+  bool any = false;
+  for_each_output(config, [&](std::string_view /*key*/, const auto& output) {
+    if (!output.common.enabled) return;
+    smallest = std::min(smallest, output.common.max_persons);
+    any = true;
+  });
+  return static_cast<std::size_t>(any ? smallest : OutputSetting{}.max_persons);
 }
 
 }  // namespace chorus::outputs

@@ -54,9 +54,11 @@ struct OutputsConfig {
 void read_outputs(ConfigReader reader, OutputsConfig& out);
 
 /// Opens what is enabled.  The first that cannot be opened is the error; its context begins with
-/// "outputs.NAME".  `keep_slot`: for how long of absence a person finds its slot free.
+/// "outputs.NAME".
 [[nodiscard]] Result<std::vector<std::unique_ptr<Sink>>> open_outputs(
-    const OutputsConfig& config, const std::shared_ptr<const Clock>& clock,
-    Duration keep_slot = outlet::kKeepSlot);
+    const OutputsConfig& config, const std::shared_ptr<const Clock>& clock);
+
+/// The smallest max_persons of those enabled: the slots that all of them show.
+[[nodiscard]] std::size_t slots_of_all(const OutputsConfig& config);
 
 }  // namespace chorus::outputs

@@ -147,7 +147,7 @@ Perceived perceive(const Inputs& in, const Histories& histories, const Registrat
   const auto views = views_in_world(aligned, registration);             // 5.2.2, 5.2.3
   auto grouped = associate::group(views, in.instant, memory.tracks, config.association);
   Perceived perceived;
-  perceived.memory = {std::move(grouped.tracks), memory.sides, memory.fusion};
+  perceived.memory = {std::move(grouped.tracks), memory.sides, memory.fusion, memory.seating};
   perceived.people = std::move(grouped.people);
   resolve_sides(perceived.people, in.instant, perceived.memory, config.sides);  // 5.2.2
   weigh(perceived.people, config.quality);                                      // 5.2.5
@@ -162,6 +162,7 @@ Step step(const Inputs& in, const Histories& histories, const Registration& regi
   Snapshot snapshot{in.sequence, in.instant, registered_sensors(registration), {}, {}};
   snapshot.bodies = seen.memory.fusion.fuse(seen.people, {in.instant, snapshot.sensors},
                                             config.fusion);  // 5.2.5
+  seen.memory.seating.seat(snapshot.bodies, in.instant, config.association.coast, config.seating);
   snapshot.reports = std::move(seen.reports);
   return {std::move(snapshot), std::move(seen.memory)};
 }

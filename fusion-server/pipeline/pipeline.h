@@ -11,6 +11,7 @@
 #include "fusion-server/flow.h"
 #include "fusion-server/fusion/fuse.h"
 #include "fusion-server/fusion/quality.h"
+#include "fusion-server/pipeline/seating.h"
 
 namespace chorus::pipeline {
 
@@ -20,6 +21,7 @@ struct PipelineConfig {
   associate::AssociationConfig association;
   facing::SidesConfig sides;
   fusion::FusionConfig fusion;
+  SeatingConfig seating;
 
   bool operator==(const PipelineConfig&) const = default;
 };
@@ -37,6 +39,7 @@ struct Memory {
   associate::Tracks tracks;
   facing::SidesMemory sides;
   fusion::Memory fusion;
+  Seating seating;
 };
 
 /// Everything before fusion: who is there at an instant, each with all views of them.

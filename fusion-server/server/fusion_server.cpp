@@ -32,6 +32,7 @@ core::CoreConfig core_config(const FusionSettings& settings) {
   core::CoreConfig core;
   core.output = live.output;
   core.pipeline = live.pipeline;
+  core.pipeline.seating.front = outputs::slots_of_all(settings.at_start.outputs);
   core.registration = live.registration;
   core.session = live.session;
   const bool places_are_given = !settings.at_start.registration_file.empty();
@@ -255,8 +256,7 @@ Result<void> FusionServer::start() {
   Impl& s = *impl_;
   auto registration = initial_registration(s.config);
   if (!registration) return pass(registration);
-  auto sinks = outputs::open_outputs(s.config.at_start.outputs, s.clock,
-                                     s.config.live.pipeline.association.coast);
+  auto sinks = outputs::open_outputs(s.config.at_start.outputs, s.clock);
   if (!sinks) return pass(sinks);
   s.sinks = std::move(*sinks);
   http::ServerConfig http = s.config.at_start.http;
@@ -282,7 +282,6 @@ void FusionServer::take(const LiveSettings& live) {
   }
   s.loop->ask(core_config(s.config));
   s.poller->poll(live.sensors);
-  for (const auto& sink : s.sinks) sink->keep_slots_for(live.pipeline.association.coast);
   s.http->set_bearer_token(live.bearer_token);
 }
 

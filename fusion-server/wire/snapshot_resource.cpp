@@ -15,6 +15,7 @@ BodyResource body_of(const FusedBody& body, Timestamp instant) {
   BodyResource out;
   out.id = body.id.value;
   out.captured = instant;
+  out.slot = body.slot;
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const Joint& joint = body.skeleton.joints[j];
     out.joints[j].position = joint.position;
@@ -75,6 +76,7 @@ FrameResource between(const FrameResource& a, const FrameResource& b, Timestamp 
     BodyResource& mixed = out.bodies.emplace_back();
     mixed.id = body.id;
     mixed.captured = instant;
+    mixed.slot = body.slot;
     for (std::size_t j = 0; j < kJointCount; ++j) {
       mixed.joints[j] = joint_between(body.joints[j], later->joints[j], s);
     }

@@ -33,6 +33,7 @@ std::shared_ptr<const Snapshot> six_people(std::uint64_t sequence) {
   for (int i = 0; i < 6; ++i) {
     FusedBody body;
     body.id = {static_cast<std::uint64_t>(i + 1)};
+    body.slot = static_cast<std::size_t>(i);
     body.skeleton =
         testing::standing_person({0.9 * i, 0, 0.01 * static_cast<double>(sequence % 100)}, 0.1 * i);
     snapshot->bodies.push_back(std::move(body));

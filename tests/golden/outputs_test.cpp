@@ -36,6 +36,7 @@ outlet::TrackerFrame golden_frame() {
   for (const resource::BodyResource& body : frame->bodies) {
     FusedBody& fused = snapshot.bodies.emplace_back();
     fused.id = {body.id};
+    fused.slot = body.slot;
     for (std::size_t i = 0; i < kJointCount; ++i) {
       const resource::JointResource& joint = body.joints[i];
       fused.skeleton.joints[i] = {joint.position, joint.orientation, joint.state};

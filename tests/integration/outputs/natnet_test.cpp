@@ -275,6 +275,7 @@ TEST(NatNetOutput, ServesWhatFusionMadeUnderItsConfiguration) {
   snapshot->sequence = 41;
   snapshot->instant = chorus::testing::kStart;
   snapshot->bodies.resize(1);
+  snapshot->bodies[0].slot = 0;
   snapshot->bodies[0].skeleton = chorus::testing::standing_person({1, 0, 2});
   sinks->front()->publish(snapshot);
   const std::string frame = client.next();

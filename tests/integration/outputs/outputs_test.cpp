@@ -24,6 +24,7 @@ std::shared_ptr<const Snapshot> somebody(std::uint64_t sequence) {
   s->sequence = sequence;
   s->instant = chorus::testing::kStart;
   s->bodies.resize(1);
+  s->bodies[0].slot = 0;
   s->bodies[0].skeleton = chorus::testing::standing_person({1, 0, 2});
   return s;
 }

@@ -53,6 +53,7 @@ outlet::TrackerFrame frame_of_somebody() {
   snapshot.sequence = 12;
   snapshot.instant = testing::kStart;
   snapshot.bodies.resize(1);
+  snapshot.bodies[0].slot = 0;
   snapshot.bodies[0].skeleton = testing::standing_person({0.3, 0, 0.6});
   outlet::TrackerState state(6);
   return state.advance(snapshot);

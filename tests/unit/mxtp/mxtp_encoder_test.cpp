@@ -50,6 +50,7 @@ outlet::TrackerFrame frame_of(const Skeleton<WorldSpace>& skeleton) {
   s.sequence = 0x1'0000'0007;  // more than the field holds
   s.instant = from_unix_ns(1'700'000'000'123'000'000);
   s.bodies.resize(1);
+  s.bodies[0].slot = 0;
   s.bodies[0].skeleton = skeleton;
   outlet::TrackerState state(3);
   return state.advance(s);
@@ -167,7 +168,7 @@ TEST(Mxtp, IsReadBackByOurOwnImportOfMvn) {
                            WristLeft, ShoulderRight, ElbowRight, WristRight, HipLeft, KneeLeft,
                            AnkleLeft, FootLeft, HipRight, KneeRight, AnkleRight, FootRight}) {
     EXPECT_THAT(motion->frames.at(0)[id].position, VectorNear(body[id].position, 1e-5))
-        << wire::name_of(id);
+        << name_of(id);
   }
 }
 

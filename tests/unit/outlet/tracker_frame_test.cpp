@@ -1,4 +1,5 @@
-// Slots stay with their persons; every joint gets an orientation; velocities come from what was.
+// Persons in the slots they are seated in; every joint gets an orientation; velocities come from
+// what was.
 #include "fusion-server/outlet/tracker_frame.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +19,14 @@ using testing::VectorNear;
 FusedBody person(std::uint64_t id, double x = 0.0) {
   FusedBody body;
   body.id = {id};
+  body.slot = 0;
   body.skeleton = testing::standing_person({x, 0, 0});
+  return body;
+}
+
+FusedBody seated(std::uint64_t id, std::size_t slot) {
+  FusedBody body = person(id);
+  body.slot = slot;
   return body;
 }
 
@@ -38,60 +46,20 @@ std::vector<std::pair<std::size_t, std::uint64_t>> slots(const TrackerFrame& fra
 
 using Slots = std::vector<std::pair<std::size_t, std::uint64_t>>;
 
-TEST(TrackerSlots, StayWithTheirPersonWhenAnotherLeaves) {
+TEST(TrackerSlots, AreThoseOfTheSnapshotInOrder) {
+  TrackerState state(4);
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(0), {seated(7, 3), seated(4, 1)}))),
+            (Slots{{1, 4}, {3, 7}}));
+  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(33), {seated(7, 0)}))), (Slots{{0, 7}}));
+}
+
+TEST(TrackerSlots, WhoHasNoneOrOneBeyondTheLastIsLeftOut) {
   TrackerState state(2);
-  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(0), {person(4), person(7)}))),
-            (Slots{{0, 4}, {1, 7}}));
-  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(33), {person(7)}))), (Slots{{1, 7}}));
-  // The newcomer takes the slot that is free by then; the third has none.
-  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(1033), {person(7), person(8), person(9)}))),
-            (Slots{{0, 8}, {1, 7}}));
-}
-
-TEST(TrackerSlots, AreFoundAgainAfterAnInstantWithoutAnybody) {
-  TrackerState state(4);
-  (void)state.advance(snapshot(milliseconds(0), {person(3)}));
-  (void)state.advance(snapshot(milliseconds(33), {person(2), person(3)}));
-  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(66), {}))), Slots{});
-  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(100), {person(2), person(3)}))),
-            (Slots{{0, 3}, {1, 2}}));
-}
-
-TEST(TrackerSlots, OfAHiddenPersonIsNotGivenToOneWhoEnters) {
-  TrackerState state(4);
-  (void)state.advance(snapshot(milliseconds(0), {person(1), person(2)}));
-  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(33), {person(2), person(4)}))),
-            (Slots{{1, 2}, {2, 4}}));
-  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(66), {person(1), person(2), person(4)}))),
-            (Slots{{0, 1}, {1, 2}, {2, 4}}));
-}
-
-TEST(TrackerSlots, GoToWhoCameMeanwhileWhenTheHiddenPersonStaysAway) {
-  TrackerState state(4);
-  (void)state.advance(snapshot(milliseconds(0), {person(1)}));
-  // The same person under a new id, then a second one.
-  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(33), {person(5), person(6)}))),
-            (Slots{{1, 5}, {2, 6}}));
-  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(1034), {person(5), person(6)}))),
-            (Slots{{0, 5}, {2, 6}}));
-}
-
-TEST(TrackerSlots, OfOneWhoCameBackAreNotWaitedForAnyLonger) {
-  TrackerState state(4);
-  (void)state.advance(snapshot(milliseconds(0), {person(1)}));
-  (void)state.advance(snapshot(milliseconds(33), {person(5)}));
-  (void)state.advance(snapshot(milliseconds(66), {person(1), person(5)}));
-  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(5000), {person(5)}))), (Slots{{1, 5}}));
-}
-
-TEST(TrackerSlots, AreKeptAsLongAsAskedToTheInstant) {
-  TrackerState state(1);
-  state.keep_slots_for(milliseconds(200));
-  (void)state.advance(snapshot(milliseconds(0), {person(1)}));
-  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(200), {person(2)}))), Slots{});
-  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(201), {person(2)}))), (Slots{{0, 2}}));
-  // A clock that is set back by more than that begins anew, as association does.
-  EXPECT_EQ(slots(state.advance(snapshot(milliseconds(-100), {person(3)}))), (Slots{{0, 3}}));
+  FusedBody unseated = person(5);
+  unseated.slot.reset();
+  EXPECT_EQ(slots(state.advance(
+                snapshot(milliseconds(0), {seated(4, 1), unseated, seated(6, 2), seated(7, 63)}))),
+            (Slots{{1, 4}}));
 }
 
 TEST(TrackerJoints, AnUnseenOneHangsAtTheNextTrackedOneTowardsThePelvis) {

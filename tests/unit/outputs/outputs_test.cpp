@@ -44,6 +44,14 @@ TEST(Outputs, AreSwitchedOnOneByOne) {
   EXPECT_EQ(sinks->front()->name(), "mxtp");
 }
 
+TEST(Outputs, ShareTheSlotsOfTheOneThatShowsFewest) {
+  EXPECT_EQ(slots_of_all(OutputsConfig{}), 6u) << "as a single output has by default";
+  const auto config = read(R"({"outputs": {"mxtp": {"enabled": true, "max_persons": 9},
+      "vmc": {"enabled": true, "max_persons": 8}, "vrpn": {"max_persons": 2}}})");
+  ASSERT_THAT(config, IsOk());
+  EXPECT_EQ(slots_of_all(*config), 8u) << "vrpn is off";
+}
+
 TEST(Outputs, NameAnUnknownProtocolAndABadTarget) {
   const auto unknown = read(R"({"outputs": {"mxpt": {"enabled": true}}})");
   ASSERT_FALSE(unknown);

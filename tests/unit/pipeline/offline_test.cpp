@@ -55,6 +55,14 @@ Registration published() {
   return registration;
 }
 
+TEST(FuseOffline, SeatsPeopleAsTheServerDoes) {
+  const auto fused = fuse_offline(walk({.noise = 0.02}), published(), {});
+  ASSERT_TRUE(fused) << fused.error().message;
+  for (const Snapshot& snapshot : fused->snapshots) {
+    for (const FusedBody& body : snapshot.bodies) EXPECT_EQ(body.slot, 0u);
+  }
+}
+
 TEST(FuseOffline, RegistersTheWalkAndBeatsASingleSensor) {
   const auto tracks = walk({.noise = 0.02});
   const auto fused = fuse_offline(tracks, std::nullopt, {});

@@ -79,6 +79,38 @@ TEST(Step, ThreePeopleSeenByTenSensorsAreThreePeople) {
   EXPECT_EQ(last.snapshot.bodies.size(), 3u);
 }
 
+TEST(Step, SeatsItsPeopleOnceForAllOutputs) {
+  const Step last = run(ring_histories({.people = 2}), ring_registration(6), 20);
+  ASSERT_EQ(last.snapshot.bodies.size(), 2u);
+  EXPECT_EQ(last.snapshot.bodies[0].slot, 0u);
+  EXPECT_EQ(last.snapshot.bodies[1].slot, 1u);
+  // Nobody is seen for half a second: whoever comes meanwhile does not get their slots.
+  Histories empty = ring_histories({.length = milliseconds(1)});
+  for (auto& [name, history] : empty) history = align::History();
+  const Timestamp later = last.snapshot.instant + milliseconds(500);
+  const Step gone =
+      step({later, later + milliseconds(80), 20}, empty, ring_registration(6), last.memory, {});
+  std::vector<FusedBody> newcomer(1);
+  newcomer[0].id = {99};
+  Seating seating = gone.memory.seating;
+  seating.seat(newcomer, later, std::chrono::seconds(1));
+  EXPECT_EQ(newcomer[0].slot, 2u);
+}
+
+TEST(Step, KeepsASlotAsLongAsAssociationLooksOut) {
+  PipelineConfig config;
+  config.association.coast = milliseconds(200);
+  const Step last = run(ring_histories({}), ring_registration(6), 10, config);
+  const Timestamp later = last.snapshot.instant + milliseconds(300);
+  const Step gone =
+      step({later, later + milliseconds(80), 10}, {}, ring_registration(6), last.memory, config);
+  std::vector<FusedBody> newcomer(1);
+  newcomer[0].id = {99};
+  Seating seating = gone.memory.seating;
+  seating.seat(newcomer, later, std::chrono::seconds(1));
+  EXPECT_EQ(newcomer[0].slot, 0u);
+}
+
 TEST(Step, FramesOfUnregisteredSensorsAreReportedButNotUsed) {
   Registration registration = ring_registration(6);
   registration.sensors.erase(sensor(2));

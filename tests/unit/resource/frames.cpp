@@ -151,6 +151,7 @@ FrameResource random_frame(std::uint64_t seed, const FrameKind& kind) {
   for (std::size_t b = 0; b < kind.bodies; ++b) {
     BodyResource body;
     body.id = b * 1'000 + dice.number(999);
+    if (kind.fused && b != 2) body.slot = kind.bodies - b;  // one has no seat
     if (b == 1) body.id = 72'057'594'037'928'018;  // as Kinect v2 numbers them: beyond a double
     body.captured =
         dice.chance(0.5) ? frame.captured : frame.captured - Duration(dice.number(30'000'000));
@@ -177,6 +178,7 @@ rdf::Graph expected_graph(const FrameResource& frame) {
     skeleton.type("Skeleton");
     skeleton.say("of", rdf::iri("skeletons/" + std::to_string(body.id)));
     skeleton.integer("bodyId", std::to_string(body.id));
+    if (body.slot) skeleton.integer("slot", std::to_string(*body.slot));
     skeleton.times(body.captured);
     for (std::size_t i = 0; i < kJointCount; ++i) {
       const std::string joint = iri + "-" + std::string(kJointNames[i]);
@@ -196,6 +198,7 @@ std::string difference(const FrameResource& a, const FrameResource& b) {
   if (a.bodies.size() != b.bodies.size()) return "number of bodies";
   for (std::size_t i = 0; i < a.bodies.size(); ++i) {
     if (a.bodies[i].id != b.bodies[i].id) return "body id";
+    if (a.bodies[i].slot != b.bodies[i].slot) return "slot";
     if (a.bodies[i].captured != b.bodies[i].captured) return "body captured";
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const std::string left = text_of(a.bodies[i].joints[j]);

@@ -20,6 +20,7 @@ Snapshot snapshot(std::uint64_t sequence, double x) {
   s.sensors = {sensor_id("s1"), sensor_id("s2")};
   FusedBody body;
   body.id = {7};
+  body.slot = 3;
   body.skeleton = testing::standing_person({x, 0, 0});
   body.variance.fill(1e-4);
   body.contributors.fill(0b11);
@@ -35,6 +36,7 @@ TEST(SnapshotResource, SaysWorldSpaceSensorsAndContributors) {
   EXPECT_EQ(frame.space, resource::SpaceKind::World);
   EXPECT_EQ(frame.sensors, (std::vector<std::string>{"s1", "s2"}));
   ASSERT_EQ(frame.bodies.size(), 1u);
+  EXPECT_EQ(frame.bodies[0].slot, 3u);
   const auto& neck = frame.bodies[0].joints[index_of(JointId::Neck)];
   EXPECT_EQ(neck.contributors, 0b11u);
   EXPECT_EQ(neck.variance, 1e-4);
@@ -48,6 +50,7 @@ TEST(SnapshotResource, IsValidInputForAnotherFusionServer) {
   const auto read = read_frame(write(frame, resource::Format::Turtle), resource::Format::Turtle);
   ASSERT_TRUE(read) << to_string(read.error());
   EXPECT_EQ(read->bodies.size(), 1u);
+  EXPECT_EQ(read->bodies[0].slot, 3u);
 }
 
 TEST(SnapshotResource, MoreBodiesThanAFrameMayHoldAreCut) {

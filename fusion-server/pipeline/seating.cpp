@@ -1,20 +1,23 @@
-#include "fusion-server/outlet/seating.h"
+#include "fusion-server/pipeline/seating.h"
 
 #include <algorithm>
 #include <utility>
 
-namespace chorus::outlet {
+namespace chorus::pipeline {
 
-void Seating::begin(const std::set<PersonId>& here, Timestamp instant) {
-  release_absent(here, instant);
+void Seating::seat(std::vector<FusedBody>& bodies, Timestamp instant, Duration keep,
+                   const SeatingConfig& config) {
+  release_absent(bodies, instant, keep);
   seat_those_who_stood_in();
+  move_up(config.front);
+  for (FusedBody& body : bodies) body.slot = slot_of(body.id, instant);
 }
 
-void Seating::release_absent(const std::set<PersonId>& here, Timestamp instant) {
+void Seating::release_absent(const std::vector<FusedBody>& here, Timestamp instant, Duration keep) {
   for (auto& seat : seats_) {
     if (!seat) continue;
-    seat->absent = !here.contains(seat->person);
-    if (seat->absent && std::chrono::abs(instant - seat->seen) > keep_slot_) seat.reset();
+    seat->absent = std::ranges::find(here, seat->person, &FusedBody::id) == here.end();
+    if (seat->absent && std::chrono::abs(instant - seat->seen) > keep) seat.reset();
   }
 }
 
@@ -29,6 +32,17 @@ void Seating::seat_those_who_stood_in() {
     } else {
       awaited = std::exchange(seats_[i], std::nullopt);
     }
+  }
+}
+
+void Seating::move_up(std::size_t front) {
+  std::size_t free = 0;
+  for (std::size_t i = front; i < seats_.size(); ++i) {
+    if (!seats_[i] || seats_[i]->absent) continue;
+    while (free < front && seats_[free]) ++free;
+    if (free == front) return;
+    seats_[i]->waits_for = std::min(seats_[i]->waits_for, free);
+    seats_[free] = std::exchange(seats_[i], std::nullopt);
   }
 }
 
@@ -52,10 +66,11 @@ std::optional<std::size_t> Seating::slot_of(PersonId person, Timestamp instant) 
     return static_cast<std::size_t>(found - seats_.begin());
   }
   const auto empty = std::find(seats_.begin(), seats_.end(), std::nullopt);
-  if (empty == seats_.end()) return std::nullopt;
   const auto slot = static_cast<std::size_t>(empty - seats_.begin());
-  *empty = Seat{person, instant, false, slot_to_wait_for(slot)};
+  if (slot == kMaxBodies) return std::nullopt;
+  if (empty == seats_.end()) seats_.emplace_back();
+  seats_[slot] = Seat{person, instant, false, slot_to_wait_for(slot)};
   return slot;
 }
 
-}  // namespace chorus::outlet
+}  // namespace chorus::pipeline
