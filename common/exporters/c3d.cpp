@@ -167,7 +167,7 @@ std::string parameters_of(const Take& take, std::size_t data_start) {
   parameters.group("ANALOG");
   parameters.add("USED", word(0));
   parameters.add("GEN_SCALE", real(1.0));
-  parameters.add("RATE", real(take.rate_hz));
+  parameters.add("RATE", real(0.0));  // of no samples; py-c3d compares it with the header's
   for (const std::string_view name : {"LABELS", "DESCRIPTIONS", "UNITS"})
     parameters.add(name, {-1, {0, 0}, {}});
   parameters.add("SCALE", {4, {0}, {}});

@@ -44,17 +44,17 @@ std::string trc_of(const Take& take, std::string_view file_name) {
     for (const std::string_view name : kJointNames)
       text.append("\t").append(prefix).append(name).append("\t\t");
   }
-  text += "\n\t";
+  text += "\t\n\t";
   for (std::size_t m = 1; m <= markers; ++m) {
     for (const char axis : {'X', 'Y', 'Z'})
       text.append("\t").append(1, axis).append(std::to_string(m));
   }
-  text += "\n\n";
+  text += "\t\n\n";
   for (std::size_t f = 0; f < take.frames; ++f) {
     text += std::to_string(f + 1) + "\t";
     append_fixed(text, static_cast<double>(f) / take.rate_hz, kTimeDigits);
     for (const PersonTrack& track : take.persons) append_pose(text, track.poses[f]);
-    text += "\n";
+    text += "\t\n";
   }
   return text;
 }

@@ -3,9 +3,13 @@
 #include <signal.h>
 #include <sys/ipc.h>
 #include <sys/shm.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstddef>
 #include <string>
 #include <system_error>
 
@@ -23,12 +27,27 @@ tl::unexpected<Error> refused(int key, const char* by) {
 
 bool alive(pid_t process) { return ::kill(process, 0) == 0 || errno != ESRCH; }
 
-/// Why the segment that is there cannot be replaced; empty: it can, a dead program of ours left it.
+/// A name that one process holds at a time and that its end frees: an abstract socket.  -1: another
+/// one holds it.
+int hold(int key) {
+  sockaddr_un name{};
+  name.sun_family = AF_UNIX;
+  const std::string text = "chorus-trackd-" + std::to_string(key);
+  std::copy(text.begin(), text.end(), name.sun_path + 1);  // the first byte stays zero
+  const auto bytes = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + text.size());
+  const int held = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (held < 0) return -1;
+  if (::bind(held, reinterpret_cast<const sockaddr*>(&name), bytes) == 0) return held;  // NOLINT
+  ::close(held);
+  return -1;
+}
+
+/// Why the segment that is there cannot be used; empty: it can, an earlier run of ours left it.
 std::string objection(const shmid_ds& there, std::size_t bytes) {
   if (there.shm_perm.uid != ::geteuid()) {
     return "it belongs to the user with id " + std::to_string(there.shm_perm.uid);
   }
-  if (alive(there.shm_cpid)) {
+  if (there.shm_cpid != ::getpid() && alive(there.shm_cpid)) {
     return "process " + std::to_string(there.shm_cpid) + " made it and still runs";
   }
   if (there.shm_segsz != bytes) {
@@ -37,42 +56,59 @@ std::string objection(const shmid_ds& there, std::size_t bytes) {
   return {};
 }
 
-Result<void> remove_left_over(int key, std::size_t bytes) {
+tl::unexpected<Error> in_the_way(int key, const std::string& why) {
+  return fail(ErrorCode::Conflict, named(key),
+              "there already: " + why + "; choose another key, or remove it with: ipcrm -M " +
+                  std::to_string(key));
+}
+
+/// The one that an earlier run left behind: readers that are attached to it stay with us.
+Result<int> left_over(int key, std::size_t bytes) {
   const int id = ::shmget(key, 0, 0);
   if (id < 0) return refused(key, "there already, and not to be looked at");
   shmid_ds there{};
   if (::shmctl(id, IPC_STAT, &there) != 0) return refused(key, "there already");
-  if (const std::string why = objection(there, bytes); !why.empty()) {
-    return fail(ErrorCode::Conflict, named(key),
-                "there already: " + why + "; choose another key, or remove it with: ipcrm -M " +
-                    std::to_string(key));
-  }
-  if (::shmctl(id, IPC_RMID, nullptr) != 0) return refused(key, "left over, not to be removed");
-  return {};
+  if (const std::string why = objection(there, bytes); !why.empty()) return in_the_way(key, why);
+  return id;
+}
+
+Result<int> new_or_left_over(int key, std::size_t bytes) {
+  const int id = ::shmget(key, bytes, IPC_CREAT | IPC_EXCL | kEverybody);
+  if (id >= 0) return id;
+  if (errno == EEXIST) return left_over(key, bytes);
+  return refused(key, "cannot be made");
+}
+
+bool has_readers(int id) {
+  shmid_ds there{};
+  return ::shmctl(id, IPC_STAT, &there) == 0 && there.shm_nattch > 0;
 }
 
 }  // namespace
 
 Result<SharedSegment> SharedSegment::create(int key, std::size_t bytes) {
-  int id = ::shmget(key, bytes, IPC_CREAT | IPC_EXCL | kEverybody);
-  if (id < 0 && errno == EEXIST) {
-    if (auto ok = remove_left_over(key, bytes); !ok) return pass(ok);
-    id = ::shmget(key, bytes, IPC_CREAT | IPC_EXCL | kEverybody);
-  }
-  if (id < 0) return refused(key, "cannot be made");
-  void* const place = ::shmat(id, nullptr, 0);
+  const int held = hold(key);
+  if (held < 0) return in_the_way(key, "another tracker uses it and still runs");
+  SharedSegment segment(held);
+  const auto id = new_or_left_over(key, bytes);
+  if (!id) return pass(id);
+  void* const place = ::shmat(*id, nullptr, 0);
   if (place == reinterpret_cast<void*>(-1)) {  // NOLINT: what shmat() says
     const auto error = refused(key, "cannot be attached");
-    ::shmctl(id, IPC_RMID, nullptr);
+    if (!has_readers(*id)) ::shmctl(*id, IPC_RMID, nullptr);
     return error;
   }
-  return SharedSegment(id, {static_cast<char*>(place), bytes});
+  segment.id_ = *id;
+  segment.bytes_ = {static_cast<char*>(place), bytes};
+  return segment;
 }
 
 SharedSegment::~SharedSegment() {
-  if (id_ < 0) return;
-  ::shmdt(bytes_.data());
-  ::shmctl(id_, IPC_RMID, nullptr);
+  if (id_ >= 0) {
+    ::shmdt(bytes_.data());
+    if (!has_readers(id_)) ::shmctl(id_, IPC_RMID, nullptr);
+  }
+  if (held_ >= 0) ::close(held_);
 }
 
 }  // namespace chorus::trackd

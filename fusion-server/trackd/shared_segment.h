@@ -10,22 +10,25 @@ namespace chorus::trackd {
 
 class SharedSegment {
  public:
-  /// Made anew, mode 0666, zero.  Conflict names the one that is there already: of another size, of
-  /// another user, or of a program that still runs.  One that a dead program of ours left behind is
-  /// removed.
+  /// Made anew, mode 0666, zero; or the one of this size that an earlier run of this user left,
+  /// with what stands in it: readers attached to that one stay with us.  Conflict names the one
+  /// that is in the way: of another size, of another user, or in use by a program that still runs.
   [[nodiscard]] static Result<SharedSegment> create(int key, std::size_t bytes);
 
   SharedSegment(SharedSegment&& other) noexcept
-      : id_(std::exchange(other.id_, -1)), bytes_(std::exchange(other.bytes_, {})) {}
+      : held_(std::exchange(other.held_, -1)),
+        id_(std::exchange(other.id_, -1)),
+        bytes_(std::exchange(other.bytes_, {})) {}
   SharedSegment& operator=(SharedSegment&&) = delete;
-  ~SharedSegment();  ///< Detaches and removes it; readers keep their view until they detach.
+  ~SharedSegment();  ///< Detaches, and removes it unless readers are attached.
 
   [[nodiscard]] std::span<char> bytes() const { return bytes_; }
 
  private:
-  SharedSegment(int id, std::span<char> bytes) : id_(id), bytes_(bytes) {}
+  explicit SharedSegment(int held) : held_(held) {}
 
-  int id_;
+  int held_;  ///< Says to other trackers that the key is in use.
+  int id_ = -1;
   std::span<char> bytes_;
 };
 

@@ -16,6 +16,9 @@ class TrackdOutlet final : public outlet::Outlet {
   TrackdOutlet(LengthUnit unit, SharedSegment tracker, SharedSegment controller)
       : unit_(unit), tracker_(std::move(tracker)), controller_(std::move(controller)) {}
 
+  /// Readers that stay attached see nobody instead of the last pose for ever.
+  ~TrackdOutlet() override { write_sensors({}, unit_, tracker_.bytes()); }
+
   [[nodiscard]] std::string_view name() const override { return "trackd"; }
   void send(const outlet::TrackerFrame& frame) override {
     write_sensors(frame, unit_, tracker_.bytes());

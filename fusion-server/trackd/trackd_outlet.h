@@ -1,4 +1,5 @@
-// The trackd segments in System V shared memory: made at start, removed at exit.
+// The trackd segments in System V shared memory: made at start, removed at exit
+// unless somebody is still attached: a restart finds such a reader again.
 //
 // Readers attach read-write, so everybody on this machine may write to them (0666): what is read
 // back is never believed.  There is no lock; the header's time is written last.
@@ -24,8 +25,8 @@ struct Settings {
 
 void read_settings(ConfigReader& reader, Settings& out);
 
-/// Conflict when a segment of that key is there already, unless it is one of our own size and user
-/// whose maker has died: that one is removed first.
+/// Conflict when a segment of that key is there already, unless an earlier run left it
+/// (SharedSegment::create).
 [[nodiscard]] Result<std::unique_ptr<outlet::Outlet>> open_outlet(
     const Settings& settings, const outlet::OutletContext& context);
 

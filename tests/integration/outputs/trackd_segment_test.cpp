@@ -39,6 +39,7 @@ class Reader {
     std::memcpy(&value, static_cast<const char*>(place_) + offset, sizeof value);
     return value;
   }
+  [[nodiscard]] bool sees_a_head() const { return at<std::int32_t>(sensor(0) + 32) == 1; }
   [[nodiscard]] std::size_t sensor(std::uint32_t i) const {
     return at<std::uint32_t>(8) + i * at<std::uint32_t>(12);
   }
@@ -127,12 +128,60 @@ TEST(TrackdSegment, OneOfAnotherSizeIsRefusedAndLeftAlone) {
   EXPECT_EQ(::shmctl(id, IPC_RMID, nullptr), 0);
 }
 
-TEST(TrackdSegment, OneThatACrashedServerLeftBehindIsReplaced) {
+TEST(TrackdSegment, OneThatACrashedServerLeftBehindIsUsed) {
   const Settings settings = settings_of_this_test();
   leave_behind(settings.tracker_key, 6028);
   const auto outlet = open_outlet(settings, {});
   ASSERT_THAT(outlet, IsOk());
   EXPECT_EQ(Reader(settings.tracker_key).at<std::uint32_t>(4), 150u);
+}
+
+TEST(TrackdSegment, AnAttachedReaderSeesTheEndAndTheRestart) {
+  const Settings settings = settings_of_this_test();
+  auto outlet = open_outlet(settings, {});
+  ASSERT_THAT(outlet, IsOk());
+  {
+    const Reader reader(settings.tracker_key);
+    (*outlet)->send(frame_of_somebody());
+    EXPECT_TRUE(reader.sees_a_head());
+    outlet->reset();
+    EXPECT_FALSE(reader.sees_a_head()) << "nobody is tracked any more";
+    EXPECT_FALSE(there(settings.controller_key)) << "nobody was attached to that one";
+    outlet = open_outlet(settings, {});
+    ASSERT_THAT(outlet, IsOk());
+    (*outlet)->send(frame_of_somebody());
+    EXPECT_TRUE(reader.sees_a_head()) << "the same segment";
+  }
+  outlet->reset();
+  EXPECT_FALSE(there(settings.tracker_key));
+}
+
+TEST(TrackdSegment, AnAttachedReaderSeesTheRestartAfterACrash) {
+  const Settings settings = settings_of_this_test();
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const auto crashed = open_outlet(settings, {});
+    if (crashed) (*crashed)->send(frame_of_somebody());
+    ::_exit(crashed ? 0 : 1);
+  }
+  int status = 1;
+  ::waitpid(child, &status, 0);
+  ASSERT_EQ(status, 0);
+  const Reader reader(settings.tracker_key);
+  ASSERT_TRUE(reader.sees_a_head());
+  const auto outlet = open_outlet(settings, {});
+  ASSERT_THAT(outlet, IsOk());
+  EXPECT_FALSE(reader.sees_a_head());
+  (*outlet)->send(frame_of_somebody());
+  EXPECT_TRUE(reader.sees_a_head());
+}
+
+TEST(TrackdSegment, OneTakenOverFromADeadRunIsNotTakenFromTheNewOne) {
+  const Settings settings = settings_of_this_test();
+  leave_behind(settings.tracker_key, 6028);
+  const auto first = open_outlet(settings, {});
+  ASSERT_THAT(first, IsOk());
+  EXPECT_THAT(open_outlet(settings, {}), FailsWith(ErrorCode::Conflict));
 }
 
 }  // namespace

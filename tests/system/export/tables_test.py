@@ -27,6 +27,7 @@ def read_c3d(data):
             dimensions = data[link + 4:link + 4 + data[link + 3]]
             values[f"{groups[group]}:{name}"] = (dimensions, data[link + 4 + data[link + 3]:])
         at = link + struct.unpack_from("<H", data, link)[0]
+    check_header(data, values)
     points, first, last = struct.unpack_from("<H", data, 2)[0], *struct.unpack_from("<HH", data, 6)
     (width, count), text = values["POINT:LABELS"]
     labels = [text[i * width:(i + 1) * width].decode().strip() for i in range(count)]
@@ -34,6 +35,29 @@ def read_c3d(data):
     frames = [[struct.unpack_from("<4f", data, begin + 16 * (f * points + p)) for p in range(points)]
               for f in range(last - first + 1)]
     return labels, struct.unpack_from("<f", data, 20)[0], frames
+
+
+def opensim_row(line, markers):
+    """The fields of a row as OpenSim cuts it: an empty one at its end does not count, and the number must be right."""
+    fields = line.split("\t")
+    fields = fields[:-1] if fields[-1] == "" else fields
+    assert len(fields) == 2 + 3 * markers, f"expected {2 + 3 * markers} fields, found {len(fields)}"
+    return fields
+
+
+def check_header(data, values):
+    """What py-c3d asserts of every file before it reads a point: header and parameters say the same."""
+    def number(name, form):
+        return struct.unpack_from(form, values[name][1])[0]
+    points, samples = struct.unpack_from("<HH", data, 2)
+    scale, = struct.unpack_from("<f", data, 12)
+    samples_a_channel, = struct.unpack_from("<H", data, 18)
+    rate, = struct.unpack_from("<f", data, 20)
+    assert points == number("POINT:USED", "<H"), "inconsistent point count"
+    assert scale == number("POINT:SCALE", "<f"), "inconsistent scale factor"
+    assert rate == number("POINT:RATE", "<f"), "inconsistent frame rate"
+    assert samples_a_channel == number("ANALOG:RATE", "<f") / rate, "inconsistent analog rate"
+    assert samples == number("ANALOG:USED", "<H") * samples_a_channel, "inconsistent analog count"
 
 
 class Export(unittest.TestCase):
@@ -74,11 +98,11 @@ class Export(unittest.TestCase):
 
     def test_trc_holds_the_same_in_millimetres(self):
         lines = self.export("trc").decode().split("\n")
-        names = lines[3].split("\t")[2::3]
+        names = lines[3].split("\t")[2:-1:3]
         self.assertEqual(len(names), 25)
         self.assertEqual(lines[2].split("\t")[2:5], [str(len(self.frames)), "25", "mm"])
         for index in range(len(self.frames)):
-            fields = lines[6 + index].split("\t")
+            fields = opensim_row(lines[6 + index], 25)
             self.assertAlmostEqual(float(fields[1]), index / 30, places=6)
             for name, xyz in zip(names, zip(fields[2::3], fields[3::3], fields[4::3])):
                 joint = self.joints(index)[name]

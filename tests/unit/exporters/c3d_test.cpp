@@ -110,6 +110,8 @@ TEST(C3dExport, HeaderAndParametersSayTheSame) {
   EXPECT_EQ(c3d.integer("POINT:USED"), 25u);
   EXPECT_EQ(c3d.header_word(3), 0u) << "no analog samples";
   EXPECT_EQ(c3d.integer("ANALOG:USED"), 0u);
+  EXPECT_EQ(c3d.header_word(10), 0u) << "nor in a channel";
+  EXPECT_EQ(c3d.real("ANALOG:RATE"), 0.0f);
   EXPECT_EQ(c3d.header_word(4), 1u);
   EXPECT_EQ(c3d.header_word(5), 2u);
   EXPECT_EQ(c3d.integer("POINT:FRAMES"), 2u);
