@@ -1,5 +1,4 @@
-// The frame in JSON and JSON-LD, from a template.  Linked: @context, typed joints, decimals as
-// strings.
+// The frame in JSON and JSON-LD, from a template.  Linked: @context, decimals as strings.
 #include <algorithm>
 
 #include "common/body/bones.h"
@@ -163,7 +162,7 @@ class JsonFrame {
       put_body_name(body);
       pen_.put(linked_ ? "-" : "#");
       pen_.put(kJointNames[i]);
-      pen_.put(linked_ ? "\",\"@type\":\"Joint\"," : "\",");
+      pen_.put("\",\"@type\":\"Joint\",");
       put_joint(writable(body.joints[i]), body.joints[i].contributors);
       pen_.put("}");
       before = ",\"";

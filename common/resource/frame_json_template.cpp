@@ -67,9 +67,12 @@ class JsonTemplate : TemplateText {
     for (std::size_t i = 0; i < kJointCount; ++i) {
       if (!text(i == 0 ? ",\"joints\":{\"" : ",\"") || !text(kJointNames[i]) ||
           !text("\":{\"@id\":\"") || !text(iri) || !text("#") || !text(kJointNames[i]) ||
-          !text("\",\"") || !joint(body.joints[i])) {
+          !text("\",\"")) {
         return false;
       }
+      // Recordings of earlier versions do not have the type.
+      if (text("@type\":") && !text("\"Joint\",\"")) return false;
+      if (!joint(body.joints[i])) return false;
     }
     return text("}}");
   }

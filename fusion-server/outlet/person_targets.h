@@ -1,0 +1,21 @@
+// Protocols that carry one person a stream: who goes where.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/base/config_reader.h"
+
+namespace chorus::outlet {
+
+struct PersonTargets {
+  int slot = 0;  ///< Whose person.
+  std::vector<std::string> targets;
+
+  bool operator==(const PersonTargets&) const = default;
+};
+
+/// The key "persons": a list of objects with the keys "slot" and "targets".
+void read_persons(ConfigReader& reader, std::vector<PersonTargets>& out);
+
+}  // namespace chorus::outlet
