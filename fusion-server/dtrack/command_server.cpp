@@ -51,6 +51,8 @@ struct CommandServer::Impl {
   /// Starts what must always be under way, as far as it is not.
   void ensure();
   void welcome(http::Socket socket);
+  /// Why one more of this host is not taken; empty: it is.
+  [[nodiscard]] std::string objection(const std::string& host) const;
   void read(const ConnectionPtr& connection);
   void obey(const ConnectionPtr& connection);
   void write(const ConnectionPtr& connection);
@@ -83,16 +85,30 @@ void CommandServer::Impl::ensure() {
   sweeping.ensure();
 }
 
+std::string CommandServer::Impl::objection(const std::string& host) const {
+  const auto of_host = std::ranges::count(
+      connections, host, [](const ConnectionPtr& connection) { return connection->host; });
+  const auto text = [](auto count, std::string_view of, std::string_view key) {
+    return "there are " + std::to_string(count) + " already" + std::string(of) +
+           ", as many as outputs.dtrack.command." + std::string(key) + " allows";
+  };
+  if (connections.size() >= static_cast<std::size_t>(options.max_connections)) {
+    return text(options.max_connections, "", "max_connections");
+  }
+  if (of_host >= options.max_connections_per_address) {
+    return text(of_host, " of " + host, "max_connections_per_address");
+  }
+  return {};
+}
+
 void CommandServer::Impl::welcome(http::Socket socket) {
   error_code error;
   const tcp::endpoint peer = socket.remote_endpoint(error);
   if (error) return;  // it has left; leaving here closes the socket
-  if (connections.size() >= static_cast<std::size_t>(options.max_connections)) {
-    return refuse("there are " + std::to_string(options.max_connections) +
-                  " already, as many as outputs.dtrack.command.max_connections allows");
-  }
+  const std::string host = peer.address().to_string();
+  if (const std::string why = objection(host); !why.empty()) return refuse(why);
   auto connection = std::make_shared<Connection>(std::move(socket), next_serial++);
-  connection->host = peer.address().to_string();
+  connection->host = host;
   connection->deadline = std::chrono::steady_clock::now() + options.first_word;
   connection->socket.set_option(tcp::no_delay(true), error);
   connection->socket.set_option(net::socket_base::keep_alive(true), error);

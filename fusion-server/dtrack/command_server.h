@@ -1,6 +1,6 @@
 // The TCP end of DTrack's command channel: a thread of its own, few connections, nobody trusted.
 //
-// Turned away, logged and counted as refused: connections beyond the limit, commands over 200
+// Turned away, logged and counted as refused: connections beyond a limit, commands over 200
 // bytes, clients that do not read their answers (4 kB wait at most), that say nothing known for ten
 // seconds, that are silent for longer than `idle`, and that send 64 commands nobody knows.
 #pragma once
@@ -19,7 +19,8 @@ namespace chorus::dtrack {
 struct CommandServerOptions {
   std::string address = "127.0.0.1";  ///< Numeric.
   int port = 50105;                   ///< 0: any.
-  int max_connections = 4;
+  int max_connections = 8;
+  int max_connections_per_address = 4;             ///< So that one host does not take all.
   Duration idle = std::chrono::hours(1);           ///< Clients are silent while they receive.
   Duration first_word = std::chrono::seconds(10);  ///< Until the first known command.
 

@@ -35,11 +35,16 @@ std::string_view active(const Conversation& /*conversation*/, Device& device) {
   return device.measuring ? "dtrack2 set status active mea" : "dtrack2 set status active none";
 }
 
-constexpr std::array<Command, 6> kCommands{{
+std::string_view configuration(const Conversation& /*conversation*/, Device& /*device*/) {
+  return "dtrack2 set config active_config standard";
+}
+
+constexpr std::array<Command, 7> kCommands{{
     {"dtrack2 get system access", true, false, access},
     {"dtrack2 tracking start", true, true, start},
     {"dtrack2 tracking stop", true, true, stop},
     {"dtrack2 get status active", true, false, active},
+    {"dtrack2 get config active_config", true, false, configuration},
     {"dtrack2 getmsg", true, false, ok},
     {"dtrack2 set ", false, true, ok},
 }};

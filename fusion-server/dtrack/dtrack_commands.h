@@ -4,6 +4,7 @@
 //   dtrack2 get system access          -> dtrack2 set system access full | none
 //   dtrack2 tracking start | stop      -> dtrack2 ok
 //   dtrack2 get status active          -> dtrack2 set status active mea | none
+//   dtrack2 get config active_config   -> dtrack2 set config active_config standard
 //   dtrack2 getmsg                     -> dtrack2 ok              (there are never messages)
 //   dtrack2 set ...                    -> dtrack2 ok              (and nothing changes)
 //   anything else                      -> dtrack2 err 1 "..."

@@ -69,6 +69,8 @@ void read_command(ConfigReader reader, Settings& out) {
   reader.read("address", out.command.address);
   reader.read("port", out.command.port, 0, kMostPort);
   reader.read("max_connections", out.command.max_connections, 1, kMostConnections);
+  reader.read("max_connections_per_address", out.command.max_connections_per_address, 1,
+              kMostConnections);
   reader.read_s("idle_s", out.command.idle, std::chrono::seconds(1), std::chrono::hours(24));
   reader.read("send_to_client", out.send_to_client);
 }

@@ -14,15 +14,14 @@ void read_settings(ConfigReader& reader, Settings& out) {
 
 Result<std::unique_ptr<outlet::Outlet>> open_outlet(const Settings& settings,
                                                     const outlet::OutletContext& /*context*/) {
-  return outlet::open_datagram_outlet("mxtp", settings.targets,
-                                      [](const outlet::TrackerFrame& frame) {
-                                        std::vector<std::vector<char>> datagrams;
-                                        for (const outlet::TrackerBody& body : frame.bodies) {
-                                          if (auto bytes = encode(frame, body); !bytes.empty())
-                                            datagrams.push_back(std::move(bytes));
-                                        }
-                                        return datagrams;
-                                      });
+  const auto all = [](const outlet::TrackerFrame& frame) {
+    outlet::Datagrams datagrams;
+    for (const outlet::TrackerBody& body : frame.bodies) {
+      if (auto bytes = encode(frame, body); !bytes.empty()) datagrams.push_back(std::move(bytes));
+    }
+    return datagrams;
+  };
+  return outlet::open_datagram_outlet("mxtp", {{settings.targets, all}});
 }
 
 }  // namespace chorus::mxtp

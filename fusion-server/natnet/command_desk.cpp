@@ -11,6 +11,9 @@ constexpr std::size_t kRateFrames = 31;
 constexpr std::string_view kUnknown = "nobody knows this request";
 constexpr std::string_view kTooMany =
     "there are as many clients already as outputs.natnet.max_clients allows";
+constexpr std::string_view kTooManyOfOne =
+    "its address has as many clients already as outputs.natnet.max_clients_per_address allows";
+constexpr std::size_t kMostKnocks = 4096;
 
 /// Requests with one answer; a text that ends in a comma stands for all that begin with it.
 struct Known {
@@ -31,6 +34,12 @@ bool matches(const Known& known, std::string_view text) {
   return known.text.ends_with(',') ? text.starts_with(known.text) : text == known.text;
 }
 
+std::size_t count_of(const std::map<Address, outlet::SteadyTime>& heard, std::uint32_t host) {
+  constexpr std::uint16_t kLastPort = 65535;
+  return static_cast<std::size_t>(
+      std::distance(heard.lower_bound({host, 0}), heard.upper_bound({host, kLastPort})));
+}
+
 }  // namespace
 
 CommandDesk::CommandDesk(DeskOptions options)
@@ -40,7 +49,7 @@ Reply CommandDesk::answer(std::span<const char> datagram, const Address& from, c
   const auto request = read_request(datagram);
   if (!request) return {{}, "malformed"};
   if (is_an_answer(request->message)) return {{}, "an answer to nothing we asked"};
-  if (!admit(*request, from, now.steady)) return {{}, kTooMany};
+  if (const auto why = admit(*request, from, now.steady); !why.empty()) return {{}, why};
   Reply reply = reply_to(*request, now);
   if (!allowance_.take(static_cast<double>(reply.bytes.size()), now.steady)) {
     return {{}, "too much is asked of us"};
@@ -48,20 +57,48 @@ Reply CommandDesk::answer(std::span<const char> datagram, const Address& from, c
   return reply;
 }
 
-/// True also for those who do not want frames.
-bool CommandDesk::admit(const Incoming& request, const Address& from, outlet::SteadyTime now) {
+std::string_view CommandDesk::objection(const Address& from) const {
+  if (heard_.size() >= options_.max_clients) return kTooMany;
+  if (count_of(heard_, from.host) >= options_.max_clients_per_address) return kTooManyOfOne;
+  return {};
+}
+
+void CommandDesk::knock(const Address& from, outlet::SteadyTime now) {
+  // A flood; who is real knocks again.
+  if (knocks_.size() >= kMostKnocks) knocks_.clear();
+  if (count_of(knocks_, from.host) >= options_.max_clients_per_address) {
+    knocks_.erase(knocks_.lower_bound({from.host, 0}));
+  }
+  knocks_[from] = now;
+}
+
+std::string_view CommandDesk::admit(const Incoming& request, const Address& from,
+                                    outlet::SteadyTime now) {
   expire(now);
-  if (request.message == Message::Disconnect) heard_.erase(from);
+  if (request.message == Message::Disconnect) {
+    heard_.erase(from);
+    knocks_.erase(from);
+    return {};
+  }
+  if (const auto known = heard_.find(from); known != heard_.end()) {
+    known->second = now;
+    return {};
+  }
   const bool asks_for_frames = request.message == Message::KeepAlive ||
                                (request.message == Message::Connect && !options_.info.multicast);
-  const auto known = heard_.find(from);
-  if (known != heard_.end()) {
-    known->second = now;
-  } else if (asks_for_frames) {
-    if (heard_.size() >= options_.max_clients) return false;
+  const auto knocked = knocks_.find(from);
+  const bool has_knocked =
+      knocked != knocks_.end() && now - knocked->second <= options_.client_timeout;
+  if (!asks_for_frames && !has_knocked) return {};
+  const std::string_view why = objection(from);
+  if (!why.empty()) return asks_for_frames ? why : std::string_view();
+  if (has_knocked) {
+    knocks_.erase(from);
     heard_.emplace(from, now);
+  } else {
+    knock(from, now);
   }
-  return true;
+  return {};
 }
 
 Reply CommandDesk::reply_to(const Incoming& request, const Now& now) const {
@@ -111,8 +148,11 @@ float CommandDesk::frame_rate() const {
 }
 
 void CommandDesk::expire(outlet::SteadyTime now) {
-  std::erase_if(heard_,
-                [&](const auto& each) { return now - each.second > options_.client_timeout; });
+  const auto silent = [&](const auto& each) { return now - each.second > options_.client_timeout; };
+  std::erase_if(heard_, silent);
+  if (now - tidied_ < options_.client_timeout) return;  // a flood must not cost us more
+  tidied_ = now;
+  std::erase_if(knocks_, silent);
 }
 
 std::vector<Address> CommandDesk::clients(outlet::SteadyTime now) {

@@ -70,6 +70,7 @@ void read_settings(ConfigReader& reader, Settings& out) {
   reader.read("data_port", out.data_port, 1, kMostPort);
   reader.read("multicast_hops", out.multicast_hops, 0, kMostHops);
   reader.read("max_clients", out.max_clients, 1, kMostClients);
+  reader.read("max_clients_per_address", out.max_clients_per_address, 1, kMostClients);
   reader.read_s("client_timeout_s", out.client_timeout, std::chrono::seconds(1),
                 std::chrono::hours(1));
   read_models(reader, out.models);
@@ -86,6 +87,7 @@ Result<std::unique_ptr<outlet::Outlet>> open_outlet(const Settings& settings,
   options.desk.info.group = group_of(settings.group).value_or(options.desk.info.group);
   options.desk.models = encode_models(context.slots, settings.models);
   options.desk.max_clients = static_cast<std::size_t>(settings.max_clients);
+  options.desk.max_clients_per_address = static_cast<std::size_t>(settings.max_clients_per_address);
   options.desk.client_timeout = settings.client_timeout;
   options.clock = context.clock;
   auto server = Server::start(std::move(options));

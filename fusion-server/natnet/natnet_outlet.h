@@ -21,6 +21,7 @@ struct Settings {
   int data_port = 1511;  ///< Of the group.
   int multicast_hops = 1;
   int max_clients = 16;
+  int max_clients_per_address = 4;
   Duration client_timeout = std::chrono::seconds(10);
   Models models;
 

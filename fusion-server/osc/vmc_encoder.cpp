@@ -73,4 +73,11 @@ std::vector<std::vector<char>> encode(const outlet::TrackerBody* body, const Con
   return out.all();
 }
 
+std::vector<std::vector<char>> encode_end() {
+  osc::Bundles out;
+  osc::Message ok("/VMC/Ext/OK");
+  out.add(ok.integer(0).integer(0).integer(kNormalMode).integer(0));
+  return out.all();
+}
+
 }  // namespace chorus::vmc

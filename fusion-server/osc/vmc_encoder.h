@@ -1,7 +1,8 @@
 // VMC protocol, performer to marionette: root and humanoid bones of one body (protocol.vmc.info).
 //
 // OSC bundles of at most 1400 bytes.  Unity's axes: left-handed, +y up, +z forward, metres.
-//   /VMC/Ext/OK        i loaded = 1, i calibration = 3 (done), i mode = 0, i tracking = 1 or 0
+//   /VMC/Ext/OK        i loaded = 1, i calibration = 3 (done), i mode = 0, i tracking = 1 or 0;
+//                      all zero at the end
 //   /VMC/Ext/T         f seconds
 //   /VMC/Ext/Root/Pos  s "root", identity: the world itself
 //   /VMC/Ext/Bone/Pos  s bone, f px py pz qx qy qz qw: in its parent's frame, rotations relative to
@@ -25,5 +26,8 @@ struct Content {
 /// One datagram each.  Without a body (nullptr): only that nobody is tracked.
 [[nodiscard]] std::vector<std::vector<char>> encode(const outlet::TrackerBody* body,
                                                     const Content& content);
+
+/// The last words: the model is not loaded any more, nothing is tracked.
+[[nodiscard]] std::vector<std::vector<char>> encode_end();
 
 }  // namespace chorus::vmc

@@ -1,6 +1,7 @@
 #include "fusion-server/osc/vmc_outlet.h"
 
 #include <optional>
+#include <utility>
 
 #include "common/base/duration.h"
 #include "fusion-server/osc/vmc_encoder.h"
@@ -9,22 +10,36 @@
 
 namespace chorus::vmc {
 
+namespace {
+
+outlet::DatagramStream stream_of(const outlet::PersonTargets& person, bool trackers) {
+  const auto slot = static_cast<std::size_t>(person.slot);
+  std::optional<Timestamp> first;
+  return {
+      person.targets,
+      [slot, trackers, first](const outlet::TrackerFrame& frame) mutable {
+        if (!first) first = frame.instant;
+        return encode(outlet::in_slot(frame, slot), {seconds(frame.instant - *first), trackers});
+      },
+      encode_end()};
+}
+
+}  // namespace
+
 void read_settings(ConfigReader& reader, Settings& out) {
   outlet::read_targets(reader, out.targets);
   reader.read("slot", out.slot, 0, outlet::kMostSlots - 1);
+  outlet::read_persons(reader, out.persons);
   reader.read("trackers", out.trackers);
 }
 
 Result<std::unique_ptr<outlet::Outlet>> open_outlet(const Settings& settings,
                                                     const outlet::OutletContext& /*context*/) {
-  const auto slot = static_cast<std::size_t>(settings.slot);
-  std::optional<Timestamp> first;
-  return outlet::open_datagram_outlet(
-      "vmc", settings.targets,
-      [slot, trackers = settings.trackers, first](const outlet::TrackerFrame& frame) mutable {
-        if (!first) first = frame.instant;
-        return encode(outlet::in_slot(frame, slot), {seconds(frame.instant - *first), trackers});
-      });
+  std::vector<outlet::DatagramStream> streams{
+      stream_of({settings.slot, settings.targets}, settings.trackers)};
+  for (const outlet::PersonTargets& person : settings.persons)
+    streams.push_back(stream_of(person, settings.trackers));
+  return outlet::open_datagram_outlet("vmc", std::move(streams));
 }
 
 }  // namespace chorus::vmc

@@ -1,4 +1,4 @@
-// Sends the person of one slot by VMC over UDP: a performer has one body.
+// Sends persons by VMC over UDP: a performer has one body, so each goes to targets of its own.
 #pragma once
 
 #include <memory>
@@ -8,13 +8,15 @@
 #include "common/base/config_reader.h"
 #include "common/base/result.h"
 #include "fusion-server/outlet/outlet.h"
+#include "fusion-server/outlet/person_targets.h"
 
 namespace chorus::vmc {
 
 struct Settings {
   std::vector<std::string> targets{"127.0.0.1:39539"};
-  int slot = 0;           ///< Whose person.
-  bool trackers = false;  ///< Also as /VMC/Ext/Tra/Pos.
+  int slot = 0;                                ///< Whose person.
+  std::vector<outlet::PersonTargets> persons;  ///< More.
+  bool trackers = false;                       ///< Also as /VMC/Ext/Tra/Pos.
 
   bool operator==(const Settings&) const = default;
 };

@@ -12,11 +12,19 @@
 
 namespace chorus::outlet {
 
+using Datagrams = std::vector<std::vector<char>>;
 /// Called with each frame in turn, always on the same thread.
-using DatagramEncoder = std::function<std::vector<std::vector<char>>(const TrackerFrame&)>;
+using DatagramEncoder = std::function<Datagrams(const TrackerFrame&)>;
+
+/// What goes to the same targets.
+struct DatagramStream {
+  std::vector<std::string> targets;
+  DatagramEncoder encode;
+  Datagrams last_words = {};  ///< Sent when the outlet ends.
+};
 
 /// `name` outlives the outlet; what is wrong with a target is named as DatagramSender does.
 [[nodiscard]] Result<std::unique_ptr<Outlet>> open_datagram_outlet(
-    std::string_view name, const std::vector<std::string>& targets, DatagramEncoder encode);
+    std::string_view name, std::vector<DatagramStream> streams);
 
 }  // namespace chorus::outlet

@@ -63,6 +63,10 @@ void read_outputs(ConfigReader reader, OutputsConfig& out) {
       if (output.protocol.slot >= output.common.max_persons) {
         child.complain("slot", "must be below max_persons; nobody has this slot");
       }
+      for (const outlet::PersonTargets& person : output.protocol.persons) {
+        if (person.slot < output.common.max_persons) continue;
+        child.complain("persons", "has a slot that is not below max_persons; nobody has it");
+      }
     }
   });
 }

@@ -36,6 +36,7 @@ void read_settings(ConfigReader& reader, Settings& out) {
   reader.read("port", out.port, 0, 65535);
   reader.read("joint_trackers", out.joint_trackers);
   reader.read("max_clients", out.max_clients, 1, kMostClients);
+  reader.read("max_clients_per_address", out.max_clients_per_address, 1, kMostClients);
 }
 
 Result<std::unique_ptr<outlet::Outlet>> open_outlet(const Settings& settings,
@@ -44,6 +45,7 @@ Result<std::unique_ptr<outlet::Outlet>> open_outlet(const Settings& settings,
   options.address = settings.address;
   options.port = static_cast<std::uint16_t>(settings.port);
   options.max_clients = static_cast<std::size_t>(settings.max_clients);
+  options.max_clients_per_address = static_cast<std::size_t>(settings.max_clients_per_address);
   options.clock = context.clock;
   auto outlet = std::make_unique<VrpnOutlet>(
       std::move(options), std::make_shared<const Trackers>(context.slots, settings.joint_trackers));

@@ -14,7 +14,8 @@ struct Settings {
   std::string address = "127.0.0.1";
   int port = 3883;  ///< 0: any.
   bool joint_trackers = true;
-  int max_clients = 64;
+  int max_clients = 128;
+  int max_clients_per_address = 64;
 
   bool operator==(const Settings&) const = default;
 };

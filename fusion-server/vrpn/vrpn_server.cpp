@@ -61,16 +61,12 @@ struct Server::Impl {
   void deliver();
   void stop();
   void turn_away(const std::string& reason);
-  [[nodiscard]] bool full() const {
-    return clients.size() + attempts.size() >= options.max_clients;
-  }
-  [[nodiscard]] std::string too_many() const {
-    return "there are " + std::to_string(options.max_clients) +
-           " already, as many as outputs.vrpn.max_clients allows";
-  }
+  /// Why one more of this address is not taken; empty: it is.
+  [[nodiscard]] std::string objection(const std::string& address) const;
 
   struct Client {
     std::shared_ptr<Connection> connection;
+    std::string address;
     std::optional<Asker> asker;
   };
 
@@ -126,8 +122,29 @@ void Server::Impl::ensure() {
   if (!receiving && !stopping) receive_request();
 }
 
+std::string Server::Impl::objection(const std::string& address) const {
+  const auto text = [](std::size_t count, std::string_view of, std::string_view key) {
+    return "there are " + std::to_string(count) + " already" + std::string(of) +
+           ", as many as outputs.vrpn." + std::string(key) + " allows";
+  };
+  if (clients.size() + attempts.size() >= options.max_clients) {
+    return text(options.max_clients, "", "max_clients");
+  }
+  const auto connected = std::ranges::count_if(
+      clients, [&](const auto& entry) { return entry.second.address == address; });
+  const auto under_way = std::ranges::count_if(
+      attempts, [&](const auto& attempt) { return attempt->asker.address == address; });
+  if (static_cast<std::size_t>(connected + under_way) < options.max_clients_per_address) return {};
+  return text(options.max_clients_per_address, " of " + address, "max_clients_per_address");
+}
+
 void Server::Impl::on_accepted(http::Socket socket) {
-  if (full()) return turn_away(too_many());
+  error_code gone;
+  const auto remote = socket.remote_endpoint(gone);
+  if (gone) return;
+  if (const std::string why = objection(text_of(remote.address())); !why.empty()) {
+    return turn_away(why);
+  }
   welcome(std::move(socket), std::nullopt);
 }
 
@@ -154,8 +171,8 @@ void Server::Impl::on_request(error_code failed, std::size_t size) {
 }
 
 void Server::Impl::answer_request(const tcp::endpoint& to) {
-  if (full()) return turn_away(too_many());
   const Asker asker{text_of(to.address()), to.port()};
+  if (const std::string why = objection(asker.address); !why.empty()) return turn_away(why);
   const auto verdict = gate.ask(asker, std::chrono::steady_clock::now());
   if (verdict == RequestGate::Verdict::Refused) turn_away("too many requests");
   if (verdict == RequestGate::Verdict::Connect) connect_back(to, asker);
@@ -192,13 +209,14 @@ void Server::Impl::welcome(http::Socket socket, const std::optional<Asker>& aske
     if (asker) gate.gone(*asker);
     return;
   }
-  Session session(trackers, {text_of(remote.address()), asker.has_value()});
+  const std::string address = text_of(remote.address());
+  Session session(trackers, {address, asker.has_value()});
   const ConnectionContext context{&datagrams, options.clock.get(), &counters, &turned_away,
                                   options.limits};
   auto connection =
       std::make_shared<Connection>(context, std::move(socket), std::move(session),
                                    [this](const Connection* closed) { forget(closed); });
-  clients.emplace(connection.get(), Client{connection, asker});
+  clients.emplace(connection.get(), Client{connection, address, asker});
   counters.clients = clients.size();
   connection->start();
 }

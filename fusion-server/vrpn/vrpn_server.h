@@ -15,7 +15,8 @@ namespace chorus::vrpn {
 struct ServerOptions {
   std::string address = "127.0.0.1";
   std::uint16_t port = 3883;  ///< TCP and UDP; 0: any that is free for both.
-  std::size_t max_clients = 64;
+  std::size_t max_clients = 128;
+  std::size_t max_clients_per_address = 64;  ///< So that one host does not take all.
   ClientLimits limits = {};
   std::shared_ptr<const Clock> clock;  ///< What pings are answered with.
 };

@@ -98,6 +98,7 @@ class NatNetReceiver final : public Receiver {
     constexpr int kPatienceMs = 5000;
     const bool answered = ::poll(sockets.data(), sockets.size(), kPatienceMs) > 0;
     (void)read();
+    say(kKeepAlive);  // frames go to who has written twice
     return answered;
   }
   void add_sockets(std::vector<pollfd>& out) const override { socket_.add_sockets(out); }

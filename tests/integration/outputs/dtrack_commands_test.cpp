@@ -88,6 +88,20 @@ TEST(DtrackCommandServer, ConnectionsBeyondTheLimitAreClosedAtOnce) {
   EXPECT_EQ(ask(first, "dtrack2 getmsg"), "dtrack2 ok\0"s);
 }
 
+TEST(DtrackCommandServer, OneHostDoesNotTakeAllPlaces) {
+  const auto server = server_with({.max_connections_per_address = 2});
+  RawClient first(server->port());
+  RawClient second(server->port());
+  (void)ask(first, "dtrack2 getmsg");
+  (void)ask(second, "dtrack2 getmsg");
+  RawClient third(server->port());
+  EXPECT_EQ(third.hear_all(), "");
+  EXPECT_TRUE(third.ended());
+  EXPECT_EQ(server->counters().refused, 1u);
+  RawClient another(server->port(), 0, "127.0.0.2");
+  EXPECT_EQ(ask(another, "dtrack2 getmsg"), "dtrack2 ok\0"s);
+}
+
 TEST(DtrackCommandServer, TenThousandConnectionsCostNobodyElseAnything) {
   const auto server = server_with();
   RawClient client(server->port());

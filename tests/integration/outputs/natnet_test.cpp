@@ -61,6 +61,13 @@ std::string ask(DatagramReceiver& client, const Server& server, const std::strin
   return client.next();
 }
 
+/// As a client does that wants frames; its second word has been read when this returns.
+std::string connect(DatagramReceiver& client, const Server& server) {
+  std::string info = ask(client, server, kConnect);
+  (void)ask(client, server, kModels);
+  return info;
+}
+
 void expect_alive(Server& server) {
   DatagramReceiver client;
   std::string heard;
@@ -112,6 +119,15 @@ TEST(NatNetServer, WhatIsThrownOverARequestIsNotTheEndOfRequests) {
   EXPECT_EQ(echoed, "\x0D\0\x10\0\1\2\3\4\5\6\7\0"s + "\xEF\xCD\xAB\x89\x67\x45\x23\x01"s);
 }
 
+TEST(NatNetServer, OneDatagramBringsNoMoreThanItsAnswer) {
+  const auto server = server_with(options());
+  DatagramReceiver victim;
+  EXPECT_EQ(ask(victim, *server, kConnect).size(), 283u);
+  for (int i = 0; i < 10; ++i) publish(*server, 'a');
+  EXPECT_EQ(victim.next(200), "");
+  EXPECT_EQ(server->counters().clients, 0u);
+}
+
 TEST(NatNetServer, WhoNeverConnectedGetsNothing) {
   const auto server = server_with(options());
   DatagramReceiver client;
@@ -126,8 +142,8 @@ TEST(NatNetServer, AClientThatFallsSilentIsForgotten) {
   const auto server = server_with(std::move(given));
   DatagramReceiver silent;
   DatagramReceiver alive;
-  EXPECT_EQ(ask(silent, *server, kConnect).size(), 283u);
-  EXPECT_EQ(ask(alive, *server, kConnect).size(), 283u);
+  EXPECT_EQ(connect(silent, *server).size(), 283u);
+  EXPECT_EQ(connect(alive, *server).size(), 283u);
   EXPECT_TRUE(wait_for([&] {
     alive.say(kKeepAlive, server->port());
     publish(*server, 'a');
@@ -161,7 +177,7 @@ TEST(NatNetServer, TheGroupHearsUsByTheAddressWeListenOn) {
 TEST(NatNetServer, TheLargestFrameArrives) {
   const auto server = server_with(options());
   DatagramReceiver client;
-  (void)ask(client, *server, kConnect);
+  (void)connect(client, *server);
   publish(*server, 'a', 40'000);
   EXPECT_EQ(client.next().size(), 40'004u);
   EXPECT_EQ(server->counters().failed, 0u);
@@ -172,8 +188,8 @@ TEST(NatNetServer, ClientsBeyondTheLimitAreTurnedAway) {
   given.desk.max_clients = 2;
   const auto server = server_with(std::move(given));
   std::vector<DatagramReceiver> clients(3);
-  EXPECT_EQ(ask(clients[0], *server, kConnect).size(), 283u);
-  EXPECT_EQ(ask(clients[1], *server, kConnect).size(), 283u);
+  EXPECT_EQ(connect(clients[0], *server).size(), 283u);
+  EXPECT_EQ(connect(clients[1], *server).size(), 283u);
   clients[2].say(kConnect, server->port());
   EXPECT_TRUE(wait_for([&] { return server->counters().refused == 1; }));
   EXPECT_EQ(clients[2].next(200), "");
@@ -184,7 +200,7 @@ TEST(NatNetServer, ClientsBeyondTheLimitAreTurnedAway) {
 TEST(NatNetServer, NoiseAndOversizeAreCountedAndFramesGoOn) {
   const auto server = server_with(options());
   DatagramReceiver client;
-  (void)ask(client, *server, kConnect);
+  (void)connect(client, *server);
   DatagramReceiver stranger;
   std::mt19937 noise(7);
   for (int i = 0; i < 5000; ++i) {
@@ -203,7 +219,7 @@ TEST(NatNetServer, NoiseAndOversizeAreCountedAndFramesGoOn) {
 TEST(NatNetServer, AFloodOfConnectionsLeavesTheClientItsFrames) {
   const auto server = server_with(options());
   DatagramReceiver client;
-  (void)ask(client, *server, kConnect);
+  (void)connect(client, *server);
   for (int i = 0; i < 400; ++i) {
     DatagramReceiver stranger;
     for (int k = 0; k < 25; ++k) stranger.say(k % 2 == 0 ? kConnect : kModels, server->port());
@@ -247,7 +263,7 @@ TEST(NatNetServer, EndsWhileClientsTalk) {
   auto server = server_with(options());
   const std::uint16_t port = server->port();
   DatagramReceiver client;
-  (void)ask(client, *server, kConnect);
+  (void)connect(client, *server);
   for (int i = 0; i < 100; ++i) client.say(kModels, server->port());
   publish(*server, 'a');
   server.reset();

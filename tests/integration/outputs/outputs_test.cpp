@@ -175,6 +175,70 @@ TEST(VmcOutput, SaysThatNobodyIsInAnEmptySlot) {
   EXPECT_EQ(messages.at(0).numbers.back(), 0.0);
 }
 
+TEST(VmcOutput, EndsWithALastOkThatNothingIsLoaded) {
+  DatagramReceiver receiver;
+  OutputsConfig config;
+  config.vmc.common.enabled = true;
+  config.vmc.protocol.targets = {receiver.target()};
+  auto sink = sink_of(config);
+  ASSERT_TRUE(sink);
+  sink->publish(somebody(1));
+  (void)receiver.next();
+  (void)receiver.next();
+  sink.reset();
+  const auto messages = outlet::testing::OscReader(receiver.next()).packet();
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_EQ(messages.at(0).address, "/VMC/Ext/OK");
+  EXPECT_EQ(messages.at(0).numbers, (std::vector<double>{0, 0, 0, 0}));
+}
+
+/// Two persons a metre apart, in slots 0 and 1.
+std::shared_ptr<const Snapshot> two_people() {
+  auto s = std::make_shared<Snapshot>(*somebody(1));
+  s->bodies.push_back(s->bodies[0]);
+  s->bodies[1].id = {2};
+  s->bodies[1].slot = 1;
+  s->bodies[1].skeleton = chorus::testing::standing_person({2, 0, 2});
+  return s;
+}
+
+TEST(VmcOutput, SendsEachPersonToTargetsOfItsOwn) {
+  DatagramReceiver first;
+  DatagramReceiver second;
+  OutputsConfig config;
+  config.vmc.common.enabled = true;
+  config.vmc.protocol.targets = {first.target()};
+  config.vmc.protocol.persons = {{1, {second.target()}}};
+  const auto sink = sink_of(config);
+  ASSERT_TRUE(sink);
+  sink->publish(two_people());
+  const auto hips_x = [](DatagramReceiver& receiver) {
+    for (const auto& message : outlet::testing::OscReader(receiver.next()).packet()) {
+      if (!message.texts.empty() && message.texts.at(0) == "Hips") return message.numbers.at(0);
+    }
+    return 0.0;
+  };
+  EXPECT_NEAR(hips_x(first), 1.0, 1e-6);
+  EXPECT_NEAR(hips_x(second), 2.0, 1e-6);
+}
+
+TEST(VrChatOutput, SendsEachPersonToTargetsOfItsOwn) {
+  DatagramReceiver first;
+  DatagramReceiver second;
+  OutputsConfig config;
+  config.vrchat.common.enabled = true;
+  config.vrchat.protocol.targets = {first.target()};
+  config.vrchat.protocol.persons = {{1, {second.target()}}};
+  const auto sink = sink_of(config);
+  ASSERT_TRUE(sink);
+  sink->publish(two_people());
+  const auto hip_x = [](DatagramReceiver& receiver) {
+    return outlet::testing::OscReader(receiver.next()).packet().at(0).numbers.at(0);
+  };
+  EXPECT_NEAR(hip_x(first), 1.0, 1e-6);
+  EXPECT_NEAR(hip_x(second), 2.0, 1e-6);
+}
+
 TEST(VrChatOutput, SendsOneMessageADatagram) {
   DatagramReceiver receiver;
   OutputsConfig config;

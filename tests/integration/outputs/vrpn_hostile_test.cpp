@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "tests/integration/http/raw_client.h"
+#include "tests/integration/outputs/datagram_receiver.h"
 
 namespace chorus::vrpn {
 namespace {
@@ -245,6 +246,30 @@ TEST_F(HostileVrpn, ClientsBeyondTheLimitAreTurnedAway) {
   VrpnClient next({"Body0"});
   ASSERT_TRUE(next.connect(server->port()));
   EXPECT_TRUE(wait_until([&] { return server->counters().clients == 20; }));
+}
+
+/// Three places for each address.
+class FairVrpn : public test::VrpnRig {
+ protected:
+  void SetUp() override {
+    ServerOptions options;
+    options.max_clients_per_address = 3;
+    serve(std::move(options));
+  }
+};
+
+TEST_F(FairVrpn, IdleConnectionsOfOneHostLeaveTheOthersTheirPlaces) {
+  std::vector<std::unique_ptr<RawClient>> idle;
+  for (int i = 0; i < 3; ++i) idle.push_back(std::make_unique<RawClient>(server->port()));
+  ASSERT_TRUE(wait_until([&] { return server->counters().clients == 3; }));
+  RawClient surplus(server->port());
+  EXPECT_EQ(surplus.hear_all(), "");
+  EXPECT_TRUE(surplus.ended());
+  outlet::testing::DatagramReceiver asking;
+  asking.say(std::string("127.0.0.1 33471\0", 16), server->port());
+  ASSERT_TRUE(wait_until([&] { return server->counters().refused >= 2; }));
+  RawClient other(server->port(), 0, "127.0.0.2");
+  EXPECT_EQ(other.hear_until("07.").substr(0, 6), "vrpn: ");
 }
 
 TEST_F(HostileVrpn, NoReplacedByteOfAGoodOpeningStopsTheServer) {

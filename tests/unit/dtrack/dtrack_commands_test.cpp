@@ -68,6 +68,8 @@ INSTANTIATE_TEST_SUITE_P(
         Said{"start_by_another", "dtrack2 tracking start", false, "dtrack2 err 2 "},
         Said{"stop", "dtrack2 tracking stop", true, "dtrack2 ok\0"s},
         Said{"status", "dtrack2 get status active", false, "dtrack2 set status active none\0"s},
+        Said{"configuration", "dtrack2 get config active_config", false,
+             "dtrack2 set config active_config standard\0"s},
         Said{"getmsg", "dtrack2 getmsg", true, "dtrack2 ok\0"s},
         Said{"output", "dtrack2 set output net ch01 udp 10.0.0.1 5000", true, "dtrack2 ok\0"s},
         Said{"set_by_another", "dtrack2 set output net ch01", false, "dtrack2 err 2 "},

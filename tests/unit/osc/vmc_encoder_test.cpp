@@ -149,6 +149,14 @@ TEST(Vmc, WithoutABodyOnlyTheStateIsSent) {
   }
 }
 
+TEST(Vmc, TheLastWordIsThatNothingIsLoaded) {
+  const auto messages = read_osc(encode_end());
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_EQ(messages.at(0).address, "/VMC/Ext/OK");
+  EXPECT_EQ(messages.at(0).types, "iiii");
+  EXPECT_EQ(messages.at(0).numbers, (std::vector<double>{0, 0, 0, 0}));
+}
+
 TEST(Vmc, TrackersArePosesInTheWorld) {
   const outlet::TrackerBody body = asymmetric_pose();
   EXPECT_TRUE(poses_at(read_osc(encode(&body, {})), "/VMC/Ext/Tra/Pos").empty());

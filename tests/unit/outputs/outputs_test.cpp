@@ -94,6 +94,26 @@ TEST(Outputs, ASlotThatNobodyHasIsRefused) {
   }
 }
 
+TEST(Outputs, MorePersonsHaveASlotAndTargetsEach) {
+  for (const char* name : {"vmc", "vrchat"}) {
+    const std::string head = std::string(R"({"outputs": {")") + name;
+    const auto config = read(head + R"(": {"persons": [{"slot": 2, "targets": ["10.0.0.1:9000"]},
+        {"slot": 0, "targets": ["10.0.0.2:9000", "10.0.0.3:9000"]}]}}})");
+    ASSERT_THAT(config, IsOk());
+    const auto& persons =
+        name == std::string("vmc") ? config->vmc.protocol.persons : config->vrchat.protocol.persons;
+    ASSERT_EQ(persons.size(), 2u);
+    EXPECT_EQ(persons[0].slot, 2);
+    EXPECT_EQ(persons[1].targets, (std::vector<std::string>{"10.0.0.2:9000", "10.0.0.3:9000"}));
+    for (const char* wrong : {R"({"slot": 6, "targets": ["10.0.0.1:9000"]})", R"({"slot": 1})",
+                              R"({"slot": 1, "targets": ["10.0.0.1"]})"}) {
+      const auto bad = read(head + R"(": {"persons": [)" + wrong + "]}}}");
+      ASSERT_FALSE(bad) << wrong;
+      EXPECT_NE(to_string(bad.error()).find("persons"), std::string::npos);
+    }
+  }
+}
+
 /// What is said of a configuration that can be read but not be opened.
 std::string opening_error(std::string_view text) {
   const auto config = read(text);
