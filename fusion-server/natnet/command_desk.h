@@ -18,6 +18,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/time/timestamp.h"
@@ -58,6 +59,9 @@ class CommandDesk {
   explicit CommandDesk(DeskOptions options);
 
   [[nodiscard]] Reply answer(std::span<const char> datagram, const Address& from, const Now& now);
+
+  /// The descriptions from now on: the whole message.
+  void describe(Bytes models) { options_.models = std::move(models); }
 
   /// The frame that is sent to those who ask for one.
   void newest(std::shared_ptr<const Bytes> frame, Timestamp instant);

@@ -15,6 +15,7 @@ constexpr std::uint32_t kSkeleton = 2;
 constexpr std::int32_t kNoParent = -1;
 constexpr std::uint32_t kNone = 0;
 constexpr std::int16_t kTracked = 1;
+constexpr std::int16_t kModelsChanged = 2;
 
 std::int32_t rigid_body_id(std::size_t slot, std::size_t joint) {
   return static_cast<std::int32_t>(kJointCount * slot + joint + 1);
@@ -100,20 +101,22 @@ void describe_rigid_bodies(Bytes& out, std::size_t slot) {
   }
 }
 
-void describe_skeleton(Bytes& out, std::size_t slot) {
+void describe_skeleton(Bytes& out, std::size_t slot, const BoneOffsets& offsets) {
   append(out, kSkeleton);
   append_text(out, body_name(slot));
   append(out, skeleton_id(slot));
   append(out, static_cast<std::uint32_t>(kBoneCount));
   std::int32_t id = 0;
-  for (const BoneDescription& bone : motive_bones()) {
+  for (BoneDescription bone : motive_bones()) {
+    bone.offset = offsets[static_cast<std::size_t>(id)];
     add_description(out, body_name(slot) + "_" + std::string(bone.name), ++id, bone);
   }
 }
 
 }  // namespace
 
-Bytes encode_frame(const outlet::TrackerFrame& frame, const Models& models, const Times& times) {
+Bytes encode_frame(const outlet::TrackerFrame& frame, const Models& models, const Times& times,
+                   bool models_changed) {
   Bytes out;
   append(out, static_cast<std::uint32_t>(frame.sequence & 0x7FFF'FFFFU));
   append(out, kNone);  // marker sets
@@ -125,18 +128,21 @@ Bytes encode_frame(const outlet::TrackerFrame& frame, const Models& models, cons
   append(out, kNone);  // force plates
   append(out, kNone);  // devices
   add_times(out, frame, times);
-  append(out, std::int16_t{0});  // not recorded, models as described, live
+  append(out, models_changed ? kModelsChanged : std::int16_t{0});  // neither recorded nor replayed
   append(out, std::uint32_t{0});
   return message_of(Message::Frame, out);
 }
 
-Bytes encode_models(std::size_t slots, const Models& models) {
+Bytes encode_models(std::size_t slots, const Models& models,
+                    const std::vector<BoneOffsets>& bones) {
   const std::size_t each = (models.rigid_bodies ? kJointCount : 0) + (models.skeletons ? 1 : 0);
   Bytes out;
   append(out, static_cast<std::uint32_t>(each * slots));
   for (std::size_t slot = 0; slot < slots; ++slot) {
     if (models.rigid_bodies) describe_rigid_bodies(out, slot);
-    if (models.skeletons) describe_skeleton(out, slot);
+    if (models.skeletons) {
+      describe_skeleton(out, slot, slot < bones.size() ? bones[slot] : adult_offsets());
+    }
   }
   return message_of(Message::Models, out);
 }

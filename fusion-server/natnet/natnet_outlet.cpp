@@ -1,5 +1,6 @@
 #include "fusion-server/natnet/natnet_outlet.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <utility>
@@ -19,29 +20,54 @@ std::optional<std::array<std::uint8_t, 4>> group_of(const std::string& text) {
   return address.to_bytes();
 }
 
+/// Frames that say that models have changed: some of them get lost.
+constexpr int kTellChange = 5;
+
 /// Encodes on the caller's thread, once for all clients.
 class NatNetOutlet final : public outlet::Outlet {
  public:
-  NatNetOutlet(Models models, std::unique_ptr<Server> server, std::shared_ptr<const Clock> clock)
+  NatNetOutlet(Models models, std::unique_ptr<Server> server, const outlet::OutletContext& context)
       : models_(models),
         server_(std::move(server)),
-        clock_(std::move(clock)),
-        start_(clock_->now()) {}
+        clock_(context.clock),
+        start_(clock_->now()),
+        lengths_(context.slots),
+        bones_(context.slots, adult_offsets()) {}
 
   [[nodiscard]] std::string_view name() const override { return "natnet"; }
   [[nodiscard]] SinkCounters counters() const override { return server_->counters(); }
   void send(const outlet::TrackerFrame& frame) override {
     const Timestamp now = clock_->now();
+    if (models_.skeletons) measure(frame);
+    const bool changed = std::exchange(tell_change_, std::max(0, tell_change_ - 1)) > 0;
     server_->publish(
-        std::make_shared<const Bytes>(encode_frame(frame, models_, {start_, now, now})),
+        std::make_shared<const Bytes>(encode_frame(frame, models_, {start_, now, now}, changed)),
         frame.instant);
   }
 
  private:
+  void measure(const outlet::TrackerFrame& frame) {
+    bool changed = false;
+    for (const outlet::TrackerBody& body : frame.bodies) {
+      if (!lengths_[body.slot].wants(body.person)) continue;
+      const auto skeleton = motive_skeleton(body, Coordinates::Local);
+      const auto found = skeleton ? lengths_[body.slot].add(body.person, *skeleton) : std::nullopt;
+      if (!found) continue;
+      bones_[body.slot] = *found;
+      changed = true;
+    }
+    if (!changed) return;
+    server_->describe(encode_models(bones_.size(), models_, bones_));
+    tell_change_ = kTellChange;
+  }
+
   Models models_;
   std::unique_ptr<Server> server_;
   std::shared_ptr<const Clock> clock_;
   Timestamp start_;
+  std::vector<BoneLengths> lengths_;  ///< By slot.
+  std::vector<BoneOffsets> bones_;    ///< By slot: as described.
+  int tell_change_ = 0;               ///< Frames that still say so.
 };
 
 void read_models(ConfigReader& reader, Models& out) {
@@ -93,7 +119,7 @@ Result<std::unique_ptr<outlet::Outlet>> open_outlet(const Settings& settings,
   auto server = Server::start(std::move(options));
   if (!server) return pass(server);
   log::info("NatNet serves", {{"address", settings.address}, {"port", (*server)->port()}});
-  return std::make_unique<NatNetOutlet>(settings.models, std::move(*server), context.clock);
+  return std::make_unique<NatNetOutlet>(settings.models, std::move(*server), context);
 }
 
 }  // namespace chorus::natnet

@@ -177,6 +177,12 @@ void Server::publish(std::shared_ptr<const Bytes> frame, Timestamp instant) {
   }
 }
 
+void Server::describe(Bytes models) {
+  net::post(impl_->io, [impl = impl_.get(), models = std::move(models)]() mutable {
+    impl->desk.describe(std::move(models));
+  });
+}
+
 SinkCounters Server::counters() const {
   SinkCounters counters;
   counters.dropped = impl_->dropped;

@@ -30,6 +30,8 @@ class Server {
   [[nodiscard]] std::uint16_t port() const;
   /// Sends a frame to all; one that is still waiting to be sent is dropped.  Any thread.
   void publish(std::shared_ptr<const Bytes> frame, Timestamp instant);
+  /// Describes the models so from now on.  Any thread.
+  void describe(Bytes models);
   /// Any thread; all but `frames`.
   [[nodiscard]] SinkCounters counters() const;
 

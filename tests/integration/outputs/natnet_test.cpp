@@ -301,5 +301,42 @@ TEST(NatNetOutput, ServesWhatFusionMadeUnderItsConfiguration) {
   EXPECT_TRUE(wait_for([&] { return sinks->front()->counters().frames == 1; }));
 }
 
+TEST(NatNetOutput, TellsThatBonesWereMeasuredAndDescribesThem) {
+  outputs::OutputsConfig config;
+  config.natnet.common.enabled = true;
+  config.natnet.protocol.command_port = outlet::testing::free_port();
+  auto sinks = outputs::open_outputs(config, std::make_shared<SystemClock>());
+  ASSERT_THAT(sinks, IsOk());
+  const auto port = static_cast<std::uint16_t>(config.natnet.protocol.command_port);
+  DatagramReceiver client;
+  client.say(kConnect, port);
+  EXPECT_EQ(client.next().size(), 283u);
+  client.say(kModels, port);
+  const std::string before = client.next();
+  auto giant = chorus::testing::standing_person({1, 0, 2});
+  for (Joint& joint : giant.joints) joint.position *= 1.2;
+  bool changed = false;
+  for (std::uint64_t i = 0; i < 1000 && !changed; ++i) {
+    auto snapshot = std::make_shared<Snapshot>();
+    snapshot->sequence = i;
+    snapshot->instant = chorus::testing::kStart + 33ms * i;
+    snapshot->bodies.resize(1);
+    snapshot->bodies[0].slot = 0;
+    snapshot->bodies[0].skeleton = giant;
+    sinks->front()->publish(snapshot);
+    const std::string frame = client.next();  // one at a time: none is dropped
+    ASSERT_EQ(frame.substr(0, 2), "\7\0"s);
+    changed = frame[frame.size() - 6] == 2;
+    EXPECT_TRUE(!changed || i + 1 >= BoneLengths::kFrames) << i;
+  }
+  EXPECT_TRUE(changed);
+  client.say(kModels, port);
+  std::string heard;
+  do heard = client.next();
+  while (heard.substr(0, 2) == "\7\0"s);
+  EXPECT_EQ(heard.size(), before.size());
+  EXPECT_NE(heard, before);
+}
+
 }  // namespace
 }  // namespace chorus::natnet

@@ -115,6 +115,14 @@ TEST(NatNetFrame, ABodyOfWhichNothingIsSeenIsFinite) {
   EXPECT_EQ(read.one<std::uint32_t>(), 0u);  // it faces nowhere: no skeleton
 }
 
+TEST(NatNetFrame, SaysThatModelsHaveChanged) {
+  const Bytes before = encode_frame(frame_of({}), {}, times());
+  const Bytes after = encode_frame(frame_of({}), {}, times(), true);
+  const std::size_t params = before.size() - 6;
+  EXPECT_EQ(number_at<std::uint16_t>(before, params), 0u);
+  EXPECT_EQ(number_at<std::uint16_t>(after, params), 2u) << "tracked models changed";
+}
+
 TEST(NatNetFrame, NobodyIsAFrameToo) {
   const Bytes bytes = encode_frame(frame_of({}), {}, times());
   EXPECT_EQ(bytes.size(), 4u + 8 * 4 + 8 + 8 + 24 + 2 + 4);
@@ -164,6 +172,27 @@ TEST(NatNetModels, DescribeEverySlotBeforehand) {
       EXPECT_LE(read.one<std::int32_t>(), static_cast<int>(i));  // parents come first
       read.vector();
       EXPECT_EQ(read.one<std::uint32_t>(), 0u);
+    }
+  }
+  EXPECT_TRUE(read.ended());
+}
+
+TEST(NatNetModels, HaveTheBonesThatWereMeasured) {
+  std::vector<BoneOffsets> bones(1, adult_offsets());
+  bones[0][1] = {0.25, 0.5, 0.75};
+  NatNetReader read(encode_models(2, {false, true, Coordinates::Local}, bones));
+  read.one<std::uint64_t>();
+  for (const Eigen::Vector3d& second :
+       {Eigen::Vector3d(0.25, 0.5, 0.75), Eigen::Vector3d(0, 0.083, 0)}) {
+    read.one<std::uint32_t>();
+    read.text();
+    read.one<std::uint64_t>();
+    for (std::size_t i = 0; i < kBoneCount; ++i) {
+      read.text();
+      read.one<std::uint64_t>();
+      const Eigen::Vector3d offset = read.vector();
+      if (i == 1) EXPECT_THAT(offset, VectorNear(second, kFloat));
+      read.one<std::uint32_t>();
     }
   }
   EXPECT_TRUE(read.ended());
