@@ -191,7 +191,9 @@ TEST(NatNetModels, HaveTheBonesThatWereMeasured) {
       read.text();
       read.one<std::uint64_t>();
       const Eigen::Vector3d offset = read.vector();
-      if (i == 1) EXPECT_THAT(offset, VectorNear(second, kFloat));
+      if (i == 1) {
+        EXPECT_THAT(offset, VectorNear(second, kFloat));
+      }
       read.one<std::uint32_t>();
     }
   }

@@ -35,7 +35,7 @@ TEST(Outputs, AreAllOffByDefault) {
 
 TEST(Outputs, AreSwitchedOnOneByOne) {
   const auto config = read(
-      R"({"outputs": {"mxtp": {"enabled": true, "latency": "outlet::predicted", "targets": ["127.0.0.1:9"]}}})");
+      R"({"outputs": {"mxtp": {"enabled": true, "latency": "predicted", "targets": ["127.0.0.1:9"]}}})");
   ASSERT_THAT(config, IsOk());
   EXPECT_EQ(config->mxtp.common.latency, outlet::Latency::Predicted);
   const auto sinks = open_outputs(*config, std::make_shared<SystemClock>());
