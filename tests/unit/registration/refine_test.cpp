@@ -96,6 +96,19 @@ TEST(Refine, TheCostCountsEachSensorsDepthForLess) {
   EXPECT_EQ(cost_of(pair, at, kDepth), 0.0);
 }
 
+/// The source looks along the target's z from elsewhere: its ray has to be turned with its place.
+TEST(Refine, TheSourcesDepthIsTakenWhereItLooks) {
+  Refined at;
+  at.target_from_source.linear() = about_y(deg(90)).toRotationMatrix();
+  at.weights = {1.0};
+  const Eigen::Vector3d x(0, 0, 3);
+  std::vector<Pair> pair{pair_at(x, at.target_from_source.inverse() * x)};
+  pair[0].x_in_target.z() += mm(10);
+  EXPECT_NEAR(cost_of(pair, at, kDepth), 1.0 / (kDepth * kDepth), 1e-12);
+  pair[0].x_in_target = x + Eigen::Vector3d(mm(10), 0, 0);
+  EXPECT_NEAR(cost_of(pair, at, kDepth), 1.0, 1e-12);
+}
+
 TEST(Refine, AFloorYieldsToAGoodWalkAndHoldsAgainstABadOne) {
   const Eigen::Isometry3d leaning = some_motion() * small_motion(unit6(0, deg(1)));
   const auto tilt_of = [](const Refined& found) {
