@@ -69,14 +69,22 @@ struct PairwiseRegistration {
 
 enum class Verdict { None, Provisional, Good, Refused };
 
+/// How far one sensor's place may be trusted.
+struct SensorVerdict {
+  Verdict verdict = Verdict::None;   ///< Refused: it has no place.
+  std::vector<std::string> reasons;  ///< Why not good, one sentence for a person each.
+};
+
 /// The sensors' places, replaced whole, persisted, versioned.
 struct Registration {
   std::uint64_t version = 0;
   Timestamp solved;
-  Verdict verdict = Verdict::None;
-  std::vector<std::string> reasons;  ///< Why not good, one sentence for a person each.
+  Verdict verdict = Verdict::None;   ///< Of the sensors that have a place, together.
+  std::vector<std::string> reasons;  ///< Why not good, and why sensors are missing.
   SensorId master;
   std::map<SensorId, Extrinsics> sensors;
+  /// Of each sensor that took part in a walk, with a place or without.
+  std::map<SensorId, SensorVerdict> verdicts;
   std::vector<PairwiseRegistration> edges;
 };
 

@@ -36,10 +36,20 @@ struct Work {
   std::map<SensorId, const WalkTrack*> tracks;
   std::vector<Refusal> refusals;
   Registration result;
-  bool doubtful = false;  ///< Something speaks against "good".
+  bool doubtful = false;  ///< Something speaks against all places.
 
   void doubt(std::string reason) {
     doubtful = true;
+    note(std::move(reason));
+  }
+  /// Speaks against the place of one sensor and leaves the others good.
+  void doubt(const SensorId& sensor, std::string reason) {
+    result.verdicts[sensor].reasons.push_back(reason);
+    note(std::move(reason));
+  }
+
+ private:
+  void note(std::string reason) {
     if (std::find(result.reasons.begin(), result.reasons.end(), reason) == result.reasons.end()) {
       result.reasons.push_back(std::move(reason));
     }
@@ -156,7 +166,8 @@ void place_sensors(Work& work) {
     place.covariance = shift * chain.covariance * shift.transpose();
     const bool is_master = sensor == work.result.master;
     if (const auto why = impossible(place.world_from_sensor); why && !is_master) {
-      work.doubt(fmt::format("sensor {} {}: its registration was refused", sensor.str(), *why));
+      work.doubt(sensor,
+                 fmt::format("sensor {} {}: its registration was refused", sensor.str(), *why));
     } else {
       work.result.sensors.emplace(sensor, std::move(place));
     }
@@ -191,13 +202,14 @@ void explain_unlinked(Work& work, const SensorId& sensor) {
     reasons = {fmt::format("sensor {} never saw the person together with any of {}", sensor.str(),
                            fmt::join(strangers, ", "))};
   }
-  for (std::string& reason : reasons) work.doubt(std::move(reason));
+  for (std::string& reason : reasons) work.doubt(sensor, std::move(reason));
 }
 
 void explain_floor(Work& work, const SensorId& sensor) {
   const FloorSight& floor = work.walkers.at(sensor).floor;
   if (!work.config.use_floor || floor.floor) return;
-  work.doubt(fmt::format("sensor {}: {}, so its pitch, roll and height come from the walk alone",
+  work.doubt(sensor,
+             fmt::format("sensor {}: {}, so its pitch, roll and height come from the walk alone",
                          sensor.str(), floor.objection));
 }
 
@@ -219,32 +231,34 @@ Duration duration_of(const Work& work) {
   return longest;
 }
 
-/// Edges that some chain walks over.
-std::vector<const PairwiseRegistration*> used_edges(const Work& work) {
-  std::set<std::pair<SensorId, SensorId>> hops;
-  for (const auto& [sensor, place] : work.result.sensors) {
-    for (std::size_t i = 1; i < place.chain.size(); ++i) {
-      hops.insert(std::minmax(place.chain[i - 1], place.chain[i]));
-    }
+const PairwiseRegistration* edge_between(const Work& work, const SensorId& a, const SensorId& b) {
+  const auto& edges = work.result.edges;
+  const auto found = std::find_if(edges.begin(), edges.end(), [&](const auto& edge) {
+    return std::minmax(edge.target, edge.source) == std::minmax(a, b);
+  });
+  return found == edges.end() ? nullptr : &*found;
+}
+
+/// The chain of a sensor leads over pairs that do not agree well.
+void judge_chain(Work& work, const SensorId& sensor, const std::vector<SensorId>& chain) {
+  for (std::size_t i = 1; i < chain.size(); ++i) {
+    const PairwiseRegistration* edge = edge_between(work, chain[i - 1], chain[i]);
+    if (edge == nullptr || edge->rms <= work.config.good_rms) continue;
+    work.doubt(
+        sensor,
+        fmt::format(
+            "sensors {} and {} differ by {:.3f} m rms along the walk; {:.3f} m would be good",
+            edge->target.str(), edge->source.str(), edge->rms, work.config.good_rms));
   }
-  std::vector<const PairwiseRegistration*> used;
-  for (const PairwiseRegistration& edge : work.result.edges) {
-    if (hops.contains(std::minmax(edge.target, edge.source))) used.push_back(&edge);
-  }
-  return used;
 }
 
 void judge_accuracy(Work& work) {
-  for (const PairwiseRegistration* edge : used_edges(work)) {
-    if (edge->rms <= work.config.good_rms) continue;
-    work.doubt(fmt::format(
-        "sensors {} and {} differ by {:.3f} m rms along the walk; {:.3f} m would be good",
-        edge->target.str(), edge->source.str(), edge->rms, work.config.good_rms));
-  }
+  for (const auto& [sensor, place] : work.result.sensors) judge_chain(work, sensor, place.chain);
   for (const auto& [sensor, place] : work.result.sensors) {
     const double radius = radius95(place);
     if (radius <= work.config.good_position) continue;
     work.doubt(
+        sensor,
         fmt::format("sensor {} is placed only to within {:.3f} m; walk longer or further out",
                     sensor.str(), radius));
   }
@@ -252,6 +266,21 @@ void judge_accuracy(Work& work) {
   if (walked < work.config.good_duration) {
     work.doubt(fmt::format("the walk lasted only {:.0f} s; {:.0f} s make a good registration",
                            seconds(walked), seconds(work.config.good_duration)));
+  }
+}
+
+/// Each sensor by what speaks against it; all together by those that have a place.
+void pass_sentence(Work& work) {
+  work.result.verdict = work.doubtful ? Verdict::Provisional : Verdict::Good;
+  for (const auto& [sensor, walker] : work.walkers) {
+    SensorVerdict& own = work.result.verdicts[sensor];
+    const bool doubtful = work.doubtful || !own.reasons.empty();
+    own.verdict = doubtful ? Verdict::Provisional : Verdict::Good;
+    if (!linked(work, sensor)) {
+      own.verdict = Verdict::Refused;
+    } else if (doubtful) {
+      work.result.verdict = Verdict::Provisional;
+    }
   }
 }
 
@@ -266,11 +295,13 @@ void judge(Work& work) {
   }
   const bool nothing_linked = sensors > 1 && work.result.sensors.size() < 2;
   if (nothing_linked) {
+    for (const auto& [sensor, walker] : work.walkers)
+      work.result.verdicts[sensor].verdict = Verdict::Refused;
     work.result.verdict = Verdict::Refused;
     return;
   }
   if (sensors > 1) judge_accuracy(work);
-  work.result.verdict = work.doubtful ? Verdict::Provisional : Verdict::Good;
+  pass_sentence(work);
 }
 
 }  // namespace

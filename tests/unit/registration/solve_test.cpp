@@ -109,14 +109,21 @@ TEST(Solve, NamesTheSensorsThatNeverSawThePersonTogether) {
   EXPECT_EQ(registration.sensors.size(), 1u);
 }
 
-TEST(Solve, AnUnlinkedSensorLeavesTheOthersProvisional) {
-  std::vector<WalkTrack> walk = ring(4, {});
+TEST(Solve, AnUnlinkedSensorIsRefusedAloneAndLeavesTheOthersGood) {
+  std::vector<WalkTrack> walk = ring(4, {.length = 25});
   for (SensorFrame& frame : walk[3].frames) frame.captured += std::chrono::hours(1);
   const Registration registration = solve(walk, kWalkStart, {});
-  EXPECT_EQ(registration.verdict, Verdict::Provisional);
+  EXPECT_EQ(registration.verdict, Verdict::Good);
   EXPECT_EQ(registration.sensors.size(), 3u);
-  EXPECT_THAT(registration.reasons,
-              Contains("sensor s3 never saw the person together with any of s0, s1, s2"));
+  const std::string reason = "sensor s3 never saw the person together with any of s0, s1, s2";
+  EXPECT_THAT(registration.reasons, Contains(reason));
+  ASSERT_EQ(registration.verdicts.size(), 4u);
+  EXPECT_EQ(registration.verdicts.at(sensor(3)).verdict, Verdict::Refused);
+  EXPECT_EQ(registration.verdicts.at(sensor(3)).reasons, std::vector{reason});
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(registration.verdicts.at(sensor(i)).verdict, Verdict::Good);
+    EXPECT_TRUE(registration.verdicts.at(sensor(i)).reasons.empty());
+  }
 }
 
 TEST(Solve, ShortWalksStayProvisionalAndSaySo) {
@@ -144,11 +151,13 @@ TEST(Solve, NothingSeenIsNoVerdict) {
 
 TEST(Solve, ImplausibleFloorsAreNamedAndNotUsed) {
   const FloorPlane table{Eigen::Vector3d::UnitY(), -0.8};  // 0.8 m above the real floor
-  std::vector<WalkTrack> walk = ring(3, {});
-  walk[1] = watch(1, ring_place(2 * std::numbers::pi / 3), {.floor_in_world = table});
+  std::vector<WalkTrack> walk = ring(3, {.length = 25});
+  walk[1] = watch(1, ring_place(2 * std::numbers::pi / 3), {.length = 25, .floor_in_world = table});
   const Registration registration = solve(walk, kWalkStart, {.master = sensor(0)});
   EXPECT_THAT(registration.reasons, Contains(HasSubstr("above the person's feet")));
   EXPECT_EQ(registration.verdict, Verdict::Provisional);
+  EXPECT_EQ(registration.verdicts.at(sensor(0)).verdict, Verdict::Good);
+  EXPECT_EQ(registration.verdicts.at(sensor(1)).verdict, Verdict::Provisional);
   EXPECT_LT(error_of(registration, 1, 3).position, mm(20));
 }
 
