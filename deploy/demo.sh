@@ -177,7 +177,7 @@ start_replays() {
 start_fusion() {
   local config=deploy/config/fusion.json list
   list=$(IFS=,; echo "[${sensors[*]}]")
-  local options=(--set "http.port=$port" --set "sensors=$list" --set "recording.folder=$logs/recordings")
+  local options=(--set "http.port=$port" --set "sensors=$list" --set "recording.folder=$logs/recordings" --set "state_dir=$logs/state")
   if [[ -n "$recording" ]]; then
     [[ ! -f "$recording/fusion.json" ]] || config=$recording/fusion.json
     local places=$recording/registration.json
@@ -195,6 +195,7 @@ read_arguments "$@"
 logs=var/demo/$port
 mkdir -p "$logs"
 rm -f "$logs"/*.log "$logs"/*.out "$logs"/registration.json
+rm -rf "$logs/state"  # each demo finds its places anew
 # How many sensors a recording has is known when it is played; they say themselves when a port is taken.
 if [[ -n "$recording" ]]; then need_free_ports 1; else need_free_ports $sensor_count; fi
 [[ -z "$build" ]] || build

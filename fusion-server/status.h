@@ -22,11 +22,11 @@ struct SensorStatus {
   bool streaming = false;       ///< Its frames come by event stream, not by polling.
   std::optional<Duration> age;  ///< Since the newest capture, by our clock; none: no frame yet.
   double rate_hz = 0.0;
-  std::size_t bodies = 0;
-  double weight = 0.0;
-  double share = 0.0;                    ///< Of all fused joints, those it contributed to, lately.
-  double share_afterwards = 0.0;         ///< The same with its late frames, as /frame?at= has it.
-  double awaited = 0.0;                  ///< Of all instants, those that waited for it to the last.
+  std::size_t bodies = 0;         ///< In its newest frame.
+  double weight = 0.0;            ///< Largest Otto weight of its views; only "otto" methods use it.
+  double share = 0.0;             ///< Of all fused joints, those it contributed to, lately.
+  double share_afterwards = 0.0;  ///< The same with its late frames, as /frame?at= has it.
+  double awaited = 0.0;           ///< Of all instants, those that waited for it to the last.
   std::optional<Duration> clock_offset;  ///< Ours minus theirs.
   std::optional<Duration> clock_uncertainty;
   bool clock_corrected = false;  ///< The offset is larger than its uncertainty, so it is applied.
@@ -38,13 +38,51 @@ struct SensorStatus {
   bool operator==(const SensorStatus&) const = default;
 };
 
+enum class SessionState {
+  Collecting,  ///< Watching somebody walk.
+  Solving,     ///< The walk is over; its last solve runs.
+  Done,        ///< Verdict and reasons are final.
+  Cancelled,
+};
+
+/// One registration session: its progress, then its outcome.
 struct SessionStatus {
-  bool collecting = false;
-  double elapsed = 0.0;              ///< [s]
+  std::uint64_t id = 0;  ///< Rises; never used twice.
+  SessionState state = SessionState::Done;
+  bool automatic = false;  ///< Started by itself.
+  Timestamp started;
+  double elapsed = 0.0;              ///< Walk seen so far [s].
   double target = 0.0;               ///< [s]
-  std::vector<std::string> reasons;  ///< What the last solve lacked, when it was not adopted.
+  Verdict verdict = Verdict::None;   ///< Of its last solve.
+  bool adopted = false;              ///< What it found came into use, and was not withdrawn.
+  std::vector<std::string> reasons;  ///< What the last solve lacked, and what became of it.
 
   bool operator==(const SessionStatus&) const = default;
+};
+
+[[nodiscard]] constexpr bool running(const SessionStatus& session) {
+  return session.state == SessionState::Collecting || session.state == SessionState::Solving;
+}
+
+/// Where the registration is kept over a restart.
+struct StorageStatus {
+  std::string folder;   ///< Empty: nowhere.
+  std::string trouble;  ///< Why the last attempt to store failed; empty: it did not.
+
+  bool operator==(const StorageStatus&) const = default;
+};
+
+[[nodiscard]] inline bool stored(const StorageStatus& storage) {
+  return !storage.folder.empty() && storage.trouble.empty();
+}
+
+/// How registering goes on, beside the registration in use.
+struct RegistrationProgress {
+  std::vector<SessionStatus> sessions;  ///< The last few, newest first.
+  std::uint64_t next_session = 1;       ///< Id of the next one.
+  std::vector<std::string> awaits;      ///< What is missing now, one sentence for a person each.
+  StorageStatus storage;
+  std::uint64_t commands = 0;  ///< How many commands of clients have taken effect.
 };
 
 struct Counters {
@@ -61,7 +99,7 @@ struct Counters {
 struct Status {
   std::vector<SensorStatus> sensors;
   Registration registration;
-  SessionStatus session;
+  RegistrationProgress progress;
   Counters counters;
 };
 

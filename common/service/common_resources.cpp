@@ -3,6 +3,8 @@
 #include <string_view>
 #include <utility>
 
+#include <nlohmann/json.hpp>
+
 #include "common/base/log_queue.h"
 #include "common/resource/clock_resource.h"
 #include "common/resource/node.h"
@@ -63,8 +65,13 @@ Result<DocumentPtr> health_document(const Health& health, Timestamp now) {
   if (!health.ready) return fail(ErrorCode::Unavailable, "health", health.reason);
   DocumentOptions options = fleeting(now);
   options.rdf_source = false;
-  std::vector<Variant> variants{{"application/json", [] { return "{\"status\":\"ok\"}\n"; }},
-                                {"text/plain", [] { return "ok\n"; }}};
+  nlohmann::json status{{"status", "ok"}};
+  if (!health.reason.empty()) status["warning"] = health.reason;
+  const std::string json =
+      status.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  const std::string text = health.reason.empty() ? "ok\n" : "ok, but " + health.reason + "\n";
+  std::vector<Variant> variants{{"application/json", [json] { return json; }},
+                                {"text/plain", [text] { return text; }}};
   return std::make_shared<const http::Document>(std::move(variants), std::move(options));
 }
 

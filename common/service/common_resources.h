@@ -14,7 +14,7 @@ namespace chorus::service {
 /// Health for a load balancer: 200 when ready, 503 with the reason when not.
 struct Health {
   bool ready = true;
-  std::string reason;
+  std::string reason;  ///< Why not ready; when ready, what people should look at all the same.
 };
 
 struct CommonResources {

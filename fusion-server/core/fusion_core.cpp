@@ -6,27 +6,26 @@
 namespace chorus::core {
 namespace {
 
-// A body seen within this time counts as "somebody is there".
-constexpr Duration kSeenLately = std::chrono::seconds(2);
+RegistrarConfig registrar_config(const CoreConfig& config) {
+  return {config.registration, config.session, config.sensors};
+}
 
 }  // namespace
 
 FusionCore::FusionCore(CoreConfig config, Registration registration)
     : config_(std::move(config)),
       schedule_(config_.output, config_.first_sequence),
-      registration_(std::move(registration)),
-      session_(config_.session),
-      hindsight_(config_.output.late_frames) {}
+      registrar_(registrar_config(config_), std::move(registration), config_.first_session),
+      hindsight_(config_.output.late_frames) {
+  memory_.tracks.next_id = config_.first_person;
+}
 
 void FusionCore::reconfigure(CoreConfig config) {
   const bool same_output = config.output == config_.output;
-  const bool same_session = config.session == config_.session;
   config_ = std::move(config);
   if (!same_output) schedule_.reconfigure(config_.output);
-  if (!same_session && !session_.collecting()) session_ = RegistrationSession(config_.session);
+  registrar_.reconfigure(registrar_config(config_));
   std::erase_if(histories_,
-                [&](const auto& entry) { return !config_.sensors.contains(entry.first); });
-  std::erase_if(saw_body_,
                 [&](const auto& entry) { return !config_.sensors.contains(entry.first); });
 }
 
@@ -40,21 +39,20 @@ void FusionCore::take(const SensorFrame& frame) {
     refusals.last = frame.received;
     return;
   }
-  if (!frame.bodies.empty()) saw_body_[frame.sensor] = frame.received;
-  session_.add(frame);
+  registrar_.take(frame);
 }
 
 std::optional<Snapshot> FusionCore::tick(Timestamp now) {
   if (idle(now) > Duration{0}) return std::nullopt;
   const Tick tick = schedule_.next(now);
   pipeline::Step step = pipeline::step({tick.instant, now, tick.sequence}, histories_,
-                                       registration_, memory_, config_.pipeline);
+                                       registration(), memory_, config_.pipeline);
   Answered answered{
       tick, std::exchange(memory_, std::move(step.memory)), {}, parts_of(step.snapshot)};
   reports_ = step.snapshot.reports;
   for (const SensorReport& report : reports_) {
     const bool spoke = report.basis == Basis::Exact || report.basis == Basis::Interpolated;
-    if (!spoke && registration_.sensors.contains(report.sensor))
+    if (!spoke && registration().sensors.contains(report.sensor))
       answered.without.push_back(report.sensor);
   }
   shares_.answered(step.snapshot, awaited_);
@@ -74,7 +72,7 @@ std::optional<Snapshot> FusionCore::amended(Timestamp now) {
   }
   const Tick& tick = answered->tick;
   pipeline::Step step = pipeline::step({tick.instant, now, tick.sequence}, histories_,
-                                       registration_, answered->before, config_.pipeline);
+                                       registration(), answered->before, config_.pipeline);
   shares_.settled(parts_of(step.snapshot));
   return std::move(step.snapshot);
 }
@@ -91,103 +89,33 @@ bool FusionCore::improves(const Answered& answered, Timestamp now) const {
 
 Duration FusionCore::idle(Timestamp now) {
   const Tick tick = schedule_.next(now);
-  auto awaited = pipeline::awaited({tick.instant, now, tick.sequence}, histories_, registration_,
+  auto awaited = pipeline::awaited({tick.instant, now, tick.sequence}, histories_, registration(),
                                    config_.pipeline);
   const bool ready = awaited.empty();
   if (!ready && now > tick.instant) awaited_ = std::move(awaited);
   return schedule_.wait(now, ready);
 }
 
-Result<void> FusionCore::start_session(Duration target) {
-  if (session_.collecting()) {
-    return fail(ErrorCode::Conflict, "registration",
-                "a session is running already; DELETE /registration cancels it");
-  }
-  session_.start(target);
-  ++session_number_;
-  session_reasons_.clear();
-  return {};
-}
-
 void FusionCore::forget() {
-  session_.cancel();
-  ++session_number_;
-  session_reasons_.clear();
-  const std::uint64_t version = registration_.version;
-  registration_ = Registration{};
-  registration_.version = version;
+  registrar_.forget();
   memory_.tracks.people.clear();  // the ids go on
   memory_.sides.clear();
   hindsight_.forget();
 }
 
-void FusionCore::start_by_itself(Timestamp now) {
-  if (!config_.session.automatic || session_.collecting()) return;
-  std::set<SensorId> seeing;
-  for (const auto& [sensor, when] : saw_body_) {
-    if (now - when <= kSeenLately) seeing.insert(sensor);
-  }
-  // One sensor alone has nobody to be registered with, unless it is the only one there is.
-  const bool enough = seeing.size() >= 2 || (seeing.size() == 1 && config_.sensors.size() == 1);
-  if (!enough || unplaced(registration_, seeing).empty()) return;
-  auto reasons = std::move(session_reasons_);  // why the last one failed stays readable meanwhile
-  if (start_session(config_.session.target)) session_reasons_ = std::move(reasons);
+Outcome FusionCore::solved(Solution solution, Timestamp now) {
+  const Outcome outcome = registrar_.solved(std::move(solution), now);
+  if (outcome != Outcome::Nothing)
+    hindsight_.forget();  // what was answered stands in another world
+  return outcome;
 }
 
-std::optional<SolveJob> FusionCore::due_job(Timestamp now) {
-  if (solving_) return std::nullopt;
-  start_by_itself(now);
-  const auto kind = session_.due();
-  if (!kind) return std::nullopt;
-  solving_ = true;
-  SolveJob job{session_number_, *kind, session_.walk(), config_.registration};
-  // The world must not jump from solve to solve: the master stays while it takes part.
-  const SensorId& master = registration_.master;
-  const bool walks = std::any_of(job.walk.begin(), job.walk.end(),
-                                 [&](const auto& track) { return track.sensor == master; });
-  if (!job.config.master && walks && registration_.sensors.contains(master)) {
-    job.config.master = master;
-  }
-  return job;
-}
-
-std::vector<std::string> FusionCore::shortfalls(const Registration& candidate) const {
-  std::vector<std::string> reasons = candidate.reasons;
-  for (const auto& [sensor, place] : registration_.sensors) {
-    if (!candidate.sensors.contains(sensor)) {
-      reasons.push_back("the registration in use places sensor " + sensor.str() +
-                        ", this walk does not; DELETE /registration first to give it up");
-    }
-  }
-  return reasons;
-}
-
-bool FusionCore::solved(Solution solution) {
-  solving_ = false;
-  if (solution.session != session_number_) return false;  // cancelled meanwhile
-  if (solution.kind == SolveKind::Final) session_.release();
-  // Places of sensors that are no longer configured do not bind the new registration.
-  std::erase_if(registration_.sensors,
-                [&](const auto& entry) { return !config_.sensors.contains(entry.first); });
-  if (!should_adopt(registration_, solution.registration, solution.kind)) {
-    session_reasons_ = shortfalls(solution.registration);
-    return false;
-  }
-  session_reasons_.clear();
-  const std::uint64_t version = registration_.version + 1;
-  hindsight_.forget();  // what was answered stands in another world
-  registration_ = std::move(solution.registration);
-  registration_.version = version;
-  return true;
-}
-
-SessionStatus FusionCore::session() const {
-  SessionStatus status;
-  status.collecting = session_.collecting();
-  status.elapsed = seconds(session_.elapsed());
-  status.target = seconds(session_.target());
-  status.reasons = session_reasons_;
-  return status;
+RegistrationProgress FusionCore::progress(Timestamp now) const {
+  RegistrationProgress progress;
+  progress.sessions = registrar_.sessions();
+  progress.next_session = registrar_.next_session();
+  progress.awaits = registrar_.awaits(now);
+  return progress;
 }
 
 std::uint64_t FusionCore::refused(const SensorId& sensor) const {

@@ -7,14 +7,13 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include "fusion-server/core/hindsight.h"
-#include "fusion-server/core/registration_session.h"
+#include "fusion-server/core/registrar.h"
 #include "fusion-server/core/tick_schedule.h"
 #include "fusion-server/pipeline/pipeline.h"
-#include "fusion-server/registration/registration.h"
 #include "fusion-server/status.h"
 
 namespace chorus::core {
@@ -26,20 +25,8 @@ struct CoreConfig {
   SessionConfig session;
   std::set<SensorId> sensors;  ///< Frames of others are ignored.
   std::uint64_t first_sequence = 1;
-};
-
-/// A solve for the worker thread.
-struct SolveJob {
-  std::uint64_t session = 0;
-  SolveKind kind = SolveKind::Provisional;
-  std::vector<registration::WalkTrack> walk;
-  registration::RegistrationConfig config;
-};
-
-struct Solution {
-  std::uint64_t session = 0;
-  SolveKind kind = SolveKind::Provisional;
-  Registration registration;
+  std::uint64_t first_session = 1;
+  std::uint64_t first_person = 1;
 };
 
 class FusionCore {
@@ -57,24 +44,34 @@ class FusionCore {
   /// How long nothing will come unless a frame arrives.
   [[nodiscard]] Duration idle(Timestamp now);
 
-  /// Starts a session; Conflict when one is running.
-  [[nodiscard]] Result<void> start_session(Duration target);
+  /// See Registrar.
+  [[nodiscard]] Result<std::uint64_t> start_session(Duration target, Timestamp now) {
+    return registrar_.start(target, now);
+  }
+  [[nodiscard]] Result<void> cancel_session(std::uint64_t session, Timestamp now) {
+    return registrar_.cancel(session, now);
+  }
   /// Cancels the session and forgets the registration.
   void forget();
+  [[nodiscard]] std::optional<SolveJob> due_job(Timestamp now) { return registrar_.due_job(now); }
+  Outcome solved(Solution solution, Timestamp now);
 
-  /// At most one job is out at a time; its solution comes back through solved().
-  [[nodiscard]] std::optional<SolveJob> due_job(Timestamp now);
-  /// True when the registration was replaced.
-  bool solved(Solution solution);
+  [[nodiscard]] const Registration& registration() const { return registrar_.registration(); }
+  /// All but storage and commands, which are not ours.
+  [[nodiscard]] RegistrationProgress progress(Timestamp now) const;
 
-  [[nodiscard]] const Registration& registration() const noexcept { return registration_; }
-  [[nodiscard]] SessionStatus session() const;
   [[nodiscard]] const std::vector<SensorReport>& reports() const noexcept { return reports_; }
+  /// Bodies in the sensor's newest frame, with a place or without.
+  [[nodiscard]] std::size_t bodies(const SensorId& sensor, Timestamp now) const {
+    return registrar_.sightings().bodies(sensor, now);
+  }
   [[nodiscard]] std::uint64_t refused(const SensorId& sensor) const;
   /// Frames of this sensor have been refused within the last seconds.
   [[nodiscard]] bool refuses(const SensorId& sensor, Timestamp now) const;
   [[nodiscard]] Share share(const SensorId& sensor) const { return shares_.of(sensor); }
   [[nodiscard]] std::uint64_t skipped() const noexcept { return schedule_.skipped(); }
+  /// No person has had this id or a higher one.
+  [[nodiscard]] std::uint64_t next_person() const noexcept { return memory_.tracks.next_id; }
 
  private:
   struct Refusals {
@@ -82,20 +79,13 @@ class FusionCore {
     Timestamp last;  ///< Receipt of the last refused frame.
   };
 
-  void start_by_itself(Timestamp now);
   [[nodiscard]] bool improves(const Answered& answered, Timestamp now) const;
-  [[nodiscard]] std::vector<std::string> shortfalls(const Registration& candidate) const;
 
   CoreConfig config_;
   TickSchedule schedule_;
   pipeline::Histories histories_;
   pipeline::Memory memory_;
-  Registration registration_;
-  RegistrationSession session_;
-  std::uint64_t session_number_ = 0;
-  bool solving_ = false;
-  std::vector<std::string> session_reasons_;
-  std::map<SensorId, Timestamp> saw_body_;  ///< By our clock.
+  Registrar registrar_;
   std::map<SensorId, Refusals> refused_;
   std::vector<SensorId> awaited_;  ///< When the pending instant was last asked about.
   Hindsight hindsight_;

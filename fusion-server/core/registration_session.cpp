@@ -1,29 +1,30 @@
 #include "fusion-server/core/registration_session.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace chorus::core {
 namespace {
 
-int rank(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::Good:
-      return 2;
-    case Verdict::Provisional:
-      return 1;
-    case Verdict::None:
-    case Verdict::Refused:
-      return 0;
-  }
-  return 0;
-}
-
-bool covers(const Registration& wider, const Registration& narrower) {
-  return std::all_of(narrower.sensors.begin(), narrower.sensors.end(),
-                     [&](const auto& entry) { return wider.sensors.contains(entry.first); });
-}
+constexpr std::size_t kChunk = 64;  // frames; about two seconds
+constexpr int kRest = 3;            // solving takes at most a third of the time
 
 }  // namespace
+
+std::vector<registration::WalkTrack> assembled(const SharedWalk& walk) {
+  std::vector<registration::WalkTrack> tracks;
+  tracks.reserve(walk.size());
+  for (const auto& [sensor, chunks] : walk) {
+    registration::WalkTrack track{sensor, {}};
+    std::size_t frames = 0;
+    for (const auto& chunk : chunks) frames += chunk->size();
+    track.frames.reserve(frames);
+    for (const auto& chunk : chunks)
+      track.frames.insert(track.frames.end(), chunk->begin(), chunk->end());
+    tracks.push_back(std::move(track));
+  }
+  return tracks;
+}
 
 void RegistrationSession::start(Duration target) {
   cancel();
@@ -35,8 +36,14 @@ void RegistrationSession::cancel() {
   collecting_ = false;
   elapsed_ = Duration{0};
   solved_at_ = Duration{0};
+  cost_ = Duration{0};
   last_seen_.reset();
   tracks_.clear();
+}
+
+void RegistrationSession::seal(Track& track) {
+  if (track.open) track.sealed.push_back(std::move(track.open));
+  track.open.reset();
 }
 
 void RegistrationSession::add(const SensorFrame& frame) {
@@ -47,49 +54,42 @@ void RegistrationSession::add(const SensorFrame& frame) {
     if (pause > Duration{0} && pause <= config_.max_pause) elapsed_ += pause;
   }
   last_seen_ = frame.received;
-  auto& track = tracks_[frame.sensor];
-  if (track.size() >= config_.max_frames) return;
-  if (track.empty() || frame.captured > track.back().captured) track.push_back(frame);
+  Track& track = tracks_[frame.sensor];
+  if (track.frames >= config_.max_frames) return;
+  if (track.frames > 0 && frame.captured <= track.last) return;
+  if (!track.open) {
+    track.open = std::make_shared<Chunk>();
+    track.open->reserve(kChunk);
+  }
+  track.open->push_back(frame);
+  track.last = frame.captured;
+  ++track.frames;
+  if (track.open->size() == kChunk) seal(track);
 }
 
 std::optional<SolveKind> RegistrationSession::due() {
   if (!collecting_) return std::nullopt;
-  if (elapsed_ >= target_) {
+  if (final_due()) {
     collecting_ = false;
     solved_at_ = elapsed_;
     return SolveKind::Final;
   }
   if (elapsed_ < config_.first_solve) return std::nullopt;
-  if (solved_at_ > Duration{0} && elapsed_ - solved_at_ < config_.solve_every) return std::nullopt;
+  const Duration rest = std::max(config_.solve_every, kRest * cost_);
+  if (solved_at_ > Duration{0} && elapsed_ - solved_at_ < rest) return std::nullopt;
   solved_at_ = elapsed_;
   return SolveKind::Provisional;
 }
 
-std::vector<registration::WalkTrack> RegistrationSession::walk() const {
-  std::vector<registration::WalkTrack> walk;
+SharedWalk RegistrationSession::walk() {
+  SharedWalk walk;
   walk.reserve(tracks_.size());
-  for (const auto& [sensor, frames] : tracks_) walk.push_back({sensor, frames});
-  return walk;
-}
-
-bool should_adopt(const Registration& current, const Registration& candidate, SolveKind kind) {
-  if (rank(candidate.verdict) == 0 || candidate.sensors.empty()) return false;
-  if (rank(current.verdict) == 0 || current.sensors.empty()) return true;
-  if (!covers(candidate, current)) return false;
-  const bool more_sensors = candidate.sensors.size() > current.sensors.size();
-  if (rank(candidate.verdict) < rank(current.verdict)) return more_sensors;
-  // A provisional solve in the middle of a walk does not push a good one aside; its end may.
-  const bool same_session_improves = rank(current.verdict) == rank(Verdict::Provisional);
-  return more_sensors || kind == SolveKind::Final || same_session_improves ||
-         rank(candidate.verdict) > rank(current.verdict);
-}
-
-std::set<SensorId> unplaced(const Registration& current, const std::set<SensorId>& seeing) {
-  std::set<SensorId> missing;
-  for (const SensorId& sensor : seeing) {
-    if (!current.sensors.contains(sensor)) missing.insert(sensor);
+  for (auto& [sensor, track] : tracks_) {
+    seal(track);
+    walk.push_back({sensor, track.sealed});
   }
-  return missing;
+  if (!collecting_) tracks_.clear();
+  return walk;
 }
 
 }  // namespace chorus::core

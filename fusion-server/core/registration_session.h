@@ -1,13 +1,13 @@
 // Watching somebody walk until the sensors' places can be solved (Otto 5.2.1).
 //
-// Without IO and without a clock: frames go in, at some point a solve is due, its result is weighed
-// against what we have.  The server runs the solving on a worker thread.
+// Without IO and without a clock: frames go in, at some point a solve is due.  The walk is kept in
+// chunks that are shared with whoever solves it, so that nothing is copied here.
 #pragma once
 
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <optional>
-#include <set>
 #include <vector>
 
 #include "fusion-server/flow.h"
@@ -29,6 +29,16 @@ struct SessionConfig {
 
 enum class SolveKind { Provisional, Final };
 
+/// What one sensor saw, in capture order; immutable.
+struct SharedTrack {
+  SensorId sensor;
+  std::vector<std::shared_ptr<const std::vector<SensorFrame>>> chunks;
+};
+using SharedWalk = std::vector<SharedTrack>;
+
+/// In one piece, as solvers want it: copies every frame.
+[[nodiscard]] std::vector<registration::WalkTrack> assembled(const SharedWalk& walk);
+
 class RegistrationSession {
  public:
   explicit RegistrationSession(SessionConfig config) : config_(config) {}
@@ -36,8 +46,8 @@ class RegistrationSession {
   /// Starts to collect; what was collected before is forgotten.
   void start(Duration target);
   void cancel();
-  /// Gives the collected frames back to memory; elapsed and target stay readable.
-  void release() { tracks_.clear(); }
+  /// How much walk is wanted from now on; what was collected stays.
+  void retarget(Duration target) { target_ = target; }
 
   /// Takes note of a frame; one without bodies only shows that nobody is there.
   void add(const SensorFrame& frame);
@@ -45,30 +55,34 @@ class RegistrationSession {
   /// At most one answer per step of walk: a solve that should run now on walk().  After Final the
   /// session is no longer collecting.
   [[nodiscard]] std::optional<SolveKind> due();
+  [[nodiscard]] bool final_due() const noexcept { return collecting_ && elapsed_ >= target_; }
+  /// How long the last solve took: the next provisional one waits three times as long.
+  void solved_in(Duration cost) { cost_ = cost; }
 
   [[nodiscard]] bool collecting() const noexcept { return collecting_; }
   [[nodiscard]] Duration elapsed() const noexcept { return elapsed_; }
   [[nodiscard]] Duration target() const noexcept { return target_; }
-  [[nodiscard]] std::vector<registration::WalkTrack> walk() const;
+  /// Shares what has been collected; after the end of collecting it hands it over.
+  [[nodiscard]] SharedWalk walk();
 
  private:
+  using Chunk = std::vector<SensorFrame>;
+  struct Track {
+    std::vector<std::shared_ptr<const Chunk>> sealed;
+    std::shared_ptr<Chunk> open;
+    std::size_t frames = 0;
+    Timestamp last;
+  };
+  static void seal(Track& track);
+
   SessionConfig config_;
   bool collecting_ = false;
   Duration target_{0};
   Duration elapsed_{0};
   Duration solved_at_{0};  ///< Elapsed time of the last solve.
+  Duration cost_{0};       ///< Of the last solve.
   std::optional<Timestamp> last_seen_;
-  std::map<SensorId, std::vector<SensorFrame>> tracks_;
+  std::map<SensorId, Track> tracks_;
 };
-
-/// Whether the candidate should replace what we have: never a refused one, never a worse verdict or
-/// a smaller circle of sensors.  `final` candidates of equal standing replace, so that a new walk
-/// counts.
-[[nodiscard]] bool should_adopt(const Registration& current, const Registration& candidate,
-                                SolveKind kind);
-
-/// The sensors among `seeing` (those that saw a body lately) that have no place.
-[[nodiscard]] std::set<SensorId> unplaced(const Registration& current,
-                                          const std::set<SensorId>& seeing);
 
 }  // namespace chorus::core

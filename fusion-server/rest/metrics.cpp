@@ -20,6 +20,8 @@ void add_sensor(service::MetricsText& out, const SensorStatus& s) {
               seconds(*s.clock_offset), labels);
   }
   out.gauge({"chorus_view_weight", "Largest weight of the sensor's views."}, s.weight, labels);
+  out.gauge({"chorus_sensor_share", "Fused joints of the last second the sensor contributed to."},
+            s.share, labels);
   out.counter({"chorus_frames_received_total", "Frames received from the sensor."},
               number(s.frames), labels);
   out.counter({"chorus_frames_missed_total", "Gaps in the sensor's own sequence."},
@@ -72,6 +74,9 @@ std::string metrics_text(const Status& status, const std::vector<std::unique_ptr
             number(status.registration.version));
   out.gauge({"chorus_registered_sensors", "Sensors with a place."},
             number(status.registration.sensors.size()));
+  out.gauge({"chorus_registration_stored",
+             "1 while the registration in use survives a restart; see /registration."},
+            stored(status.progress.storage) ? 1.0 : 0.0);
   for (const SensorStatus& sensor : status.sensors) add_sensor(out, sensor);
   for (const auto& sink : outputs) add_output(out, *sink);
   service::add_server(out, http);

@@ -47,34 +47,112 @@ RegistrationResources::RegistrationResources(RestContext context, RegistrationCo
       live_(std::make_shared<http::LiveDocument>()) {}
 
 void RegistrationResources::publish(const Registration& registration,
-                                    const SessionStatus& session) {
-  http::DocumentOptions options;
-  options.version = context_.instance + "-" + std::to_string(++version_);
-  resource::Place here;
-  here.path = "registration";
-  here.root = context_.root;
-  live_->publish(resource::document_of(wire::registration_node(registration, session),
-                                       std::move(options), here));
+                                    const RegistrationProgress& progress) {
+  const std::scoped_lock lock(mutex_);
+  if (progress.commands < asked_) return;  // from before what we have promised
+  registration_ = registration;
+  progress_ = progress;
+  show();
 }
 
-Result<http::ActionResult> RegistrationResources::post(const http::Request& request) const {
+void RegistrationResources::show() {
+  http::DocumentOptions options;
+  options.version = context_.instance + "-" + std::to_string(++version_);
+  live_->publish(resource::document_of(wire::registration_node(registration_, progress_),
+                                       std::move(options), place_of(context_, "registration")));
+}
+
+Result<http::ActionResult> RegistrationResources::post(const http::Request& request) {
   const auto target = parse_session_request(request.body, control_.default_target());
   if (!target) return pass(target);
-  if (auto started = control_.start(*target); !started) return pass(started);
-  return http::ActionResult{kAccepted, live_->current(), "/registration"};
+  const std::scoped_lock lock(mutex_);
+  if (!live_->current()) {
+    return fail(ErrorCode::Unavailable, "registration", "the server is starting; ask again");
+  }
+  auto& sessions = progress_.sessions;
+  const bool busy = !sessions.empty() && running(sessions.front());
+  if (busy && !sessions.front().automatic) {
+    return fail(ErrorCode::Conflict, "registration",
+                "a session is running already: GET " + wire::session_path(sessions.front().id) +
+                    " follows it, DELETE cancels it (chorus register --cancel)");
+  }
+  if (!busy) {
+    SessionStatus started;
+    started.id = progress_.next_session++;
+    started.state = SessionState::Collecting;
+    sessions.insert(sessions.begin(), std::move(started));
+  }
+  sessions.front().automatic = false;
+  sessions.front().target = seconds(*target);
+  const std::uint64_t id = sessions.front().id;
+  control_.start(*target, id, ++asked_);
+  show();
+  return http::ActionResult{kAccepted, live_->current(), wire::session_path(id)};
+}
+
+void RegistrationResources::end_newest() {
+  auto& sessions = progress_.sessions;
+  if (!sessions.empty() && running(sessions.front()))
+    sessions.front().state = SessionState::Cancelled;
+}
+
+http::ActionResult RegistrationResources::forget() {
+  const std::scoped_lock lock(mutex_);
+  end_newest();
+  const std::uint64_t version = registration_.version;
+  registration_ = Registration{};
+  registration_.version = version;
+  control_.forget(++asked_);
+  show();
+  return {kNoContent, nullptr, {}};
+}
+
+Result<SessionStatus> RegistrationResources::find(const std::string& id) const {
+  for (const SessionStatus& session : progress_.sessions) {
+    if (std::to_string(session.id) == id) return session;
+  }
+  return fail(ErrorCode::NotFound, "registration/sessions/" + id,
+              "no session of this id, or too long ago; /registration names the newest");
+}
+
+Result<http::ActionResult> RegistrationResources::cancel(const std::string& id) {
+  const std::scoped_lock lock(mutex_);
+  const auto session = find(id);
+  if (!session) return pass(session);
+  if (!running(*session))
+    return fail(ErrorCode::Conflict, "registration/sessions/" + id, "this session is over");
+  end_newest();
+  control_.cancel(session->id, ++asked_);
+  show();
+  return http::ActionResult{kNoContent, nullptr, {}};
+}
+
+Result<http::DocumentPtr> RegistrationResources::session(const std::string& id) const {
+  const std::scoped_lock lock(mutex_);
+  const auto session = find(id);
+  if (!session) return pass(session);
+  http::DocumentOptions options;
+  options.version = context_.instance + "-" + std::to_string(version_);
+  return resource::document_of(wire::session_node(*session, progress_.awaits), std::move(options),
+                               place_of(context_, "registration/sessions/" + id));
 }
 
 void RegistrationResources::add_routes(http::Router& router) {
+  using http::Method;
+  using http::PathParams;
+  using http::Request;
+  using Done = Result<http::ActionResult>;
+  const std::string one = "/registration/sessions/{id}";
   router.live("/registration", live_);
-  router.action(
-      http::Method::Post, "/registration",
-      [this](const http::Request& request, const http::PathParams&) { return post(request); });
-  router.action(
-      http::Method::Delete, "/registration",
-      [this](const http::Request&, const http::PathParams&) -> Result<http::ActionResult> {
-        if (auto forgotten = control_.forget(); !forgotten) return pass(forgotten);
-        return http::ActionResult{kNoContent, nullptr, {}};
-      });
+  router.get(one,
+             [this](const Request&, const PathParams& params) { return session(params.at("id")); });
+  router.action(Method::Post, "/registration",
+                [this](const Request& request, const PathParams&) { return post(request); });
+  router.action(Method::Delete, "/registration",
+                [this](const Request&, const PathParams&) -> Done { return forget(); });
+  router.action(Method::Delete, one, [this](const Request&, const PathParams& params) {
+    return cancel(params.at("id"));
+  });
 }
 
 }  // namespace chorus::rest

@@ -1,8 +1,11 @@
-// /registration over HTTP: GET shows, POST starts a session, DELETE forgets.
+// /registration and its sessions over HTTP: GET shows, POST starts a session, DELETE forgets all or
+// cancels one.
 #pragma once
 
 #include <functional>
 #include <memory>
+#include <mutex>
+#include <string>
 
 #include "common/http/router.h"
 #include "fusion-server/rest/frame_resources.h"
@@ -15,29 +18,41 @@ namespace chorus::rest {
 inline constexpr double kShortestSession = 8.0;
 inline constexpr double kLongestSession = 300.0;
 
-/// What the routes ask of whoever owns the registration.  Called on the server's thread; must only
-/// post.
+/// What the routes ask of whoever owns the registration; must only post.  `ticket` counts the
+/// wishes: RegistrationProgress::commands says which have been obeyed.
 struct RegistrationControl {
-  /// Conflict when a session is running.
-  std::function<Result<void>(Duration target)> start;
-  std::function<Result<void>()> forget;
+  std::function<void(Duration target, std::uint64_t session, std::uint64_t ticket)> start;
+  std::function<void(std::uint64_t session, std::uint64_t ticket)> cancel;
+  std::function<void(std::uint64_t ticket)> forget;
   /// How long a session collects when the request does not say.
   std::function<Duration()> default_target = [] { return std::chrono::seconds(30); };
 };
 
+/// Thread-safe.  What a client asked for is shown from its answer on: until the owner has obeyed,
+/// what is known of the outcome stands in, and older news is not shown any more.
 class RegistrationResources {
  public:
   RegistrationResources(RestContext context, RegistrationControl control);
 
-  void publish(const Registration& registration, const SessionStatus& session);
+  void publish(const Registration& registration, const RegistrationProgress& progress);
   void add_routes(http::Router& router);
 
  private:
-  [[nodiscard]] Result<http::ActionResult> post(const http::Request& request) const;
+  [[nodiscard]] Result<http::ActionResult> post(const http::Request& request);
+  [[nodiscard]] http::ActionResult forget();
+  [[nodiscard]] Result<http::ActionResult> cancel(const std::string& id);
+  [[nodiscard]] Result<http::DocumentPtr> session(const std::string& id) const;
+  [[nodiscard]] Result<SessionStatus> find(const std::string& id) const;
+  void show();
+  void end_newest();
 
   RestContext context_;
   RegistrationControl control_;
   std::shared_ptr<http::LiveDocument> live_;
+  mutable std::mutex mutex_;  ///< Guards what follows.
+  Registration registration_;
+  RegistrationProgress progress_;
+  std::uint64_t asked_ = 0;  ///< The last ticket.
   std::uint64_t version_ = 0;
 };
 

@@ -161,6 +161,7 @@ void read_registration(ConfigReader reader, FusionSettings& out) {
 Result<FusionSettings> read_fusion_settings(ConfigReader root) {
   FusionSettings settings;
   auto& [live, at_start] = settings;
+  at_start.state_dir = "auto";
   root.read("title", at_start.title);
   service::read_http(root.child("http"), at_start.http);
   live.bearer_token = std::exchange(at_start.http.bearer_token, {});

@@ -38,7 +38,7 @@ struct StartSettings {
   Duration history = std::chrono::seconds(10);  ///< How long /frames/{seq} and ?at= reach back.
   outputs::OutputsConfig outputs;
   std::string registration_file;  ///< Given extrinsics; empty: registered from a walk.
-  std::string state_dir;          ///< Where the registration survives a restart; empty: nowhere.
+  std::string state_dir;  ///< Where state survives a restart; "auto": the user's; empty: nowhere.
   service::RecordingConfig recording;
   std::string viewer_dir;  ///< Static files of /viewer/; empty: no viewer.
 

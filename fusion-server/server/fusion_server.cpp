@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "fusion-server/rest/sensor_resources.h"
 #include "fusion-server/server/pipeline_loop.h"
 #include "fusion-server/server/recording_tap.h"
+#include "fusion-server/server/state_folder.h"
 
 namespace chorus::server {
 namespace {
@@ -61,11 +63,12 @@ void report_fit(const Registration& registration, const std::vector<SensorId>& c
   }
 }
 
-Result<Registration> initial_registration(const FusionSettings& settings) {
+Result<Registration> initial_registration(const FusionSettings& settings,
+                                          const RegistrationStore& store) {
   const StartSettings& at_start = settings.at_start;
   if (!at_start.registration_file.empty())
     return load_registration_file(at_start.registration_file);
-  auto stored = RegistrationStore(at_start.state_dir).load();
+  auto stored = store.load();
   if (!stored) {
     log::error("stored registration not used", {{"reason", to_string(stored.error())}});
     return Registration{};
@@ -77,6 +80,13 @@ Result<Registration> initial_registration(const FusionSettings& settings) {
   return std::move(**stored);
 }
 
+std::uint64_t first_person(const RegistrationStore& store) {
+  const auto next = store.load_next_person();
+  if (next) return *next;
+  log::error("ids of people begin anew", {{"reason", to_string(next.error())}});
+  return 1;
+}
+
 service::Health health_of(const Status& status) {
   std::size_t live = 0;
   for (const SensorStatus& sensor : status.sensors) live += sensor.state == "live" ? 1 : 0;
@@ -84,7 +94,26 @@ service::Health health_of(const Status& status) {
   if (status.registration.sensors.empty()) {
     return {false, "the sensors are not registered yet; walk through the room, see /registration"};
   }
+  const StorageStatus& storage = status.progress.storage;
+  if (!storage.trouble.empty()) return {true, "the registration is not stored: " + storage.trouble};
   return {true, {}};
+}
+
+/// Says of each folder that cannot be used what is wrong with it; the tracker goes on without.
+std::string probe_folders(const StartSettings& config, const std::string& state_folder) {
+  const auto told = [](const char* what, const Result<void>& probe) {
+    if (!probe) log::error(what, {{"reason", to_string(probe.error())}});
+    return probe ? std::string() : to_string(probe.error());
+  };
+  if (!config.viewer_dir.empty()) told("viewer cannot be served", probe_viewer(config.viewer_dir));
+  if (!config.recording.folder.empty())
+    told("nothing can be recorded", probe_folder(config.recording.folder));
+  if (state_folder.empty()) {
+    log::warn("state_dir is empty: registration and ids of people are forgotten at the end");
+    return {};
+  }
+  log::info("state is kept", {{"folder", state_folder}});
+  return told("state cannot be kept", probe_folder(state_folder));
 }
 
 service::RecordingsOptions recordings_options(const StartSettings& config,
@@ -134,7 +163,6 @@ struct FusionServer::Impl {
   LoopOptions loop_options(Registration places);
   void start_polling();
   void take_status(const Status& next);
-  Result<void> start_session(Duration target);
   [[nodiscard]] Status status_now() const {
     const std::scoped_lock lock(mutex);
     return status;
@@ -145,8 +173,9 @@ struct FusionServer::Impl {
   rest::RestContext context;
   std::vector<std::unique_ptr<Sink>> sinks;  ///< Filled before the first request.
   mutable std::mutex mutex;
-  Status status;               ///< Guarded by mutex.
-  bool session_asked = false;  ///< Guarded by mutex: a start is on its way to the pipeline.
+  Status status;  ///< Guarded by mutex.
+  RegistrationStore store{""};
+  std::string store_trouble;
   std::optional<rest::FrameResources> frames;
   std::optional<rest::SensorResources> sensors;
   std::optional<rest::RegistrationResources> registration;
@@ -164,11 +193,13 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
     const std::scoped_lock lock(mutex);
     return config.live.session.target;
   };
-  control.start = [this](Duration target) { return start_session(target); };
-  control.forget = [this]() -> Result<void> {
-    loop->ask(Forget{});
-    return {};
+  control.start = [this](Duration target, std::uint64_t session, std::uint64_t ticket) {
+    loop->ask(StartSession{target, session, ticket});
   };
+  control.cancel = [this](std::uint64_t session, std::uint64_t ticket) {
+    loop->ask(CancelSession{session, ticket});
+  };
+  control.forget = [this](std::uint64_t ticket) { loop->ask(Forget{ticket}); };
   frames.emplace(context, ring_capacity(config));
   sensors.emplace(context, ids_of(config.live.sensors));
   registration.emplace(context, std::move(control));
@@ -189,24 +220,12 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   return router;
 }
 
-Result<void> FusionServer::Impl::start_session(Duration target) {
-  const std::scoped_lock lock(mutex);
-  if (status.session.collecting || session_asked) {
-    return fail(ErrorCode::Conflict, "registration",
-                "a session is running already; DELETE /registration cancels it");
-  }
-  session_asked = true;
-  loop->ask(StartSession{target});
-  return {};
-}
-
 void FusionServer::Impl::take_status(const Status& next) {
   sensors->publish(next.sensors);
-  registration->publish(next.registration, next.session);
+  registration->publish(next.registration, next.progress);
   tap->places(next.registration);
   const std::scoped_lock lock(mutex);
   status = next;
-  session_asked = false;
 }
 
 LoopOptions FusionServer::Impl::loop_options(Registration places) {
@@ -215,8 +234,12 @@ LoopOptions FusionServer::Impl::loop_options(Registration places) {
   // Sequences rise across restarts (no output is faster than 1 kHz), so that /frames/{seq} and
   // ETags of an earlier run are never taken for ours by a cache.
   options.core.first_sequence = static_cast<std::uint64_t>(to_unix_ns(clock->now()) / 1'000'000);
+  // So do ids of sessions (none is shorter than a second), so that nobody follows another run's.
+  options.core.first_session = static_cast<std::uint64_t>(to_unix_ns(clock->now()) / 1'000'000'000);
+  options.core.first_person = first_person(store);
   options.registration = std::move(places);
-  options.store = RegistrationStore(config.at_start.state_dir);
+  options.store = store;
+  options.store_trouble = store_trouble;
   options.clock = clock;
   options.sinks.push_back(&*frames);
   options.sinks.push_back(&*tap);
@@ -254,7 +277,12 @@ FusionServer::~FusionServer() { stop(); }
 
 Result<void> FusionServer::start() {
   Impl& s = *impl_;
-  auto registration = initial_registration(s.config);
+  const std::string folder =
+      state_folder(s.config.at_start.state_dir, s.config.at_start.http.port,
+                   [](const char* name) -> const char* { return std::getenv(name); });
+  s.store = RegistrationStore(folder);
+  s.store_trouble = probe_folders(s.config.at_start, folder);
+  auto registration = initial_registration(s.config, s.store);
   if (!registration) return pass(registration);
   auto sinks = outputs::open_outputs(s.config.at_start.outputs, s.clock);
   if (!sinks) return pass(sinks);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/base/log.h"
+#include "fusion-server/server/solver.h"
 #include "fusion-server/wire/registration_resource.h"
 
 namespace chorus::server {
@@ -37,24 +38,6 @@ std::string_view name_of(core::SolveKind kind) {
   return kind == core::SolveKind::Final ? "final" : "provisional";
 }
 
-/// Whatever a library throws over strange clouds, the worker lives and the session learns of it.
-Registration solution_of(const core::SolveJob& job, Timestamp now) {
-  try {
-    return registration::solve(job.walk, now, job.config);
-  } catch (const std::exception& thrown) {
-    Registration failed;
-    failed.verdict = Verdict::Refused;
-    failed.reasons = {std::string("the walk could not be solved: ") + thrown.what()};
-    return failed;
-  }
-}
-
-void save(const RegistrationStore& store, const Registration& registration) {
-  if (auto ok = store.save(registration); !ok) {
-    log::error("registration not stored", {{"reason", to_string(ok.error())}});
-  }
-}
-
 }  // namespace
 
 PipelineLoop::PipelineLoop(LoopOptions options)
@@ -63,7 +46,8 @@ PipelineLoop::PipelineLoop(LoopOptions options)
       frames_(kMostFrames),
       commands_(kMostCommands),
       solutions_(1),
-      age_(kAgeBounds) {}
+      age_(kAgeBounds),
+      keeper_(options_.store, options_.store_trouble) {}
 
 PipelineLoop::~PipelineLoop() {
   thread_.request_stop();
@@ -71,6 +55,7 @@ PipelineLoop::~PipelineLoop() {
 }
 
 void PipelineLoop::start() {
+  keeper_.people(worker_, core_.next_person());
   publish_status(options_.clock->now());
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
@@ -117,23 +102,44 @@ void PipelineLoop::gather(Duration idle) {
 }
 
 void PipelineLoop::obey(Command command) {
-  if (auto* start = std::get_if<StartSession>(&command)) {
-    // A refusal here lost a race that the route has checked before; the session that runs goes on.
-    if (core_.start_session(start->target)) {
-      log::info("registration session started", {{"seconds", seconds(start->target)}});
-    }
-  } else if (std::holds_alternative<Forget>(command)) {
-    core_.forget();
-    log::info("registration forgotten");
-    worker_.post([store = options_.store] {
-      if (auto ok = store.forget(); !ok) {
-        log::error("stored registration not forgotten", {{"reason", to_string(ok.error())}});
-      }
-    });
+  if (const auto* start = std::get_if<StartSession>(&command)) {
+    start_session(*start);
+  } else if (const auto* cancel = std::get_if<CancelSession>(&command)) {
+    cancel_session(*cancel);
+  } else if (const auto* wish = std::get_if<Forget>(&command)) {
+    forget(*wish);
   } else {
     core_.reconfigure(std::move(std::get<core::CoreConfig>(command)));
   }
   publish_status(options_.clock->now());
+}
+
+void PipelineLoop::start_session(const StartSession& wish) {
+  obeyed_ = wish.ticket;
+  const Timestamp now = options_.clock->now();
+  const auto progress = core_.progress(now);
+  // The one that ran by itself when the client asked may be over by now: then that is its answer.
+  const bool over =
+      wish.session < progress.next_session &&
+      !(running(progress.sessions.front()) && progress.sessions.front().id == wish.session);
+  if (over) return;
+  if (const auto started = core_.start_session(wish.target, now)) {
+    log::info("registration session started",
+              {{"session", *started}, {"seconds", seconds(wish.target)}});
+  }
+}
+
+void PipelineLoop::cancel_session(const CancelSession& wish) {
+  obeyed_ = wish.ticket;
+  if (!core_.cancel_session(wish.session, options_.clock->now())) return;
+  log::info("registration session cancelled", {{"session", wish.session}});
+}
+
+void PipelineLoop::forget(const Forget& wish) {
+  obeyed_ = wish.ticket;
+  core_.forget();
+  log::info("registration forgotten");
+  keeper_.forget(worker_);
 }
 
 void PipelineLoop::publish(Snapshot snapshot) {
@@ -144,33 +150,33 @@ void PipelineLoop::publish(Snapshot snapshot) {
 }
 
 void PipelineLoop::solve(core::SolveJob job) {
-  const bool was_collecting = core_.session().collecting;
-  if (job.kind == core::SolveKind::Provisional && was_collecting) {
-    log::debug("registration solving", {{"sensors", job.walk.size()}});
-  }
-  worker_.post([this, job = std::move(job)] {
-    solutions_.give({job.session, job.kind, solution_of(job, options_.clock->now())});
-  });
+  log::debug("registration solving", {{"solve", name_of(job.kind)}, {"sensors", job.walk.size()}});
+  worker_.post(
+      [this, job = std::move(job)] { solutions_.give(server::solve(job, options_.clock->now())); });
 }
 
 void PipelineLoop::take_solutions() {
   for (core::Solution& solution : solutions_.take(Duration{0})) {
     const core::SolveKind kind = solution.kind;
-    const bool adopted = core_.solved(std::move(solution));
+    const Timestamp moment = options_.clock->now();
+    const core::Outcome outcome = core_.solved(std::move(solution), moment);
     const Registration& now = core_.registration();
-    if (adopted) {
+    const auto sessions = core_.progress(moment).sessions;
+    if (outcome == core::Outcome::Adopted) {
       log::info("registration adopted", {{"version", now.version},
                                          {"solve", name_of(kind)},
                                          {"verdict", wire::name_of(now.verdict)},
                                          {"sensors", now.sensors.size()},
                                          {"reasons", joined(now.reasons)}});
-    } else if (kind == core::SolveKind::Final) {
-      log::warn("registration not adopted", {{"reasons", joined(core_.session().reasons)}});
+    } else if (kind == core::SolveKind::Final && !sessions.empty()) {
+      log::warn(outcome == core::Outcome::Withdrawn ? "registration withdrawn"
+                                                    : "registration not adopted",
+                {{"reasons", joined(sessions.front().reasons)}});
     }
-    if (kind == core::SolveKind::Final && !now.sensors.empty()) {
-      worker_.post([store = options_.store, now] { save(store, now); });
-    }
-    publish_status(options_.clock->now());
+    // What a session puts into use before its end is taken back if the end is refused.
+    if (outcome == core::Outcome::Adopted && kind == core::SolveKind::Final)
+      keeper_.keep(worker_, now);
+    publish_status(moment);
   }
 }
 
@@ -208,21 +214,22 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
   const auto own = std::find_if(reports.begin(), reports.end(), [&](const SensorReport& r) {
     return r.sensor == report.sensor.id;
   });
-  if (own != reports.end()) {
-    status.bodies = own->bodies;
-    status.weight = own->weight;
-  }
+  if (own != reports.end()) status.weight = own->weight;
+  status.bodies = core_.bodies(report.sensor.id, now);
   return status;
 }
 
 void PipelineLoop::publish_status(Timestamp now) {
   status_at_ = now;
+  keeper_.people(worker_, core_.next_person());
   Status status;
   for (const poll::PollReport& report : options_.poll_reports()) {
     status.sensors.push_back(status_of(report, now));
   }
   status.registration = core_.registration();
-  status.session = core_.session();
+  status.progress = core_.progress(now);
+  status.progress.storage = keeper_.status();
+  status.progress.commands = obeyed_;
   status.counters = counters_;
   status.counters.age = age_.snapshot();
   status.counters.jobs_failed = worker_.failed();

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <thread>
 #include <variant>
 #include <vector>
@@ -12,24 +13,33 @@
 #include "common/time/clock.h"
 #include "fusion-server/core/fusion_core.h"
 #include "fusion-server/poll/poller.h"
-#include "fusion-server/server/registration_store.h"
+#include "fusion-server/server/state_keeper.h"
 #include "fusion-server/server/worker.h"
 #include "fusion-server/sink.h"
 #include "fusion-server/status.h"
 
 namespace chorus::server {
 
-// What other threads may ask of the pipeline.
+// What other threads may ask of the pipeline.  Tickets rise; Status tells the last one obeyed.
 struct StartSession {
   Duration target{0};
+  std::uint64_t session = 0;  ///< The id that the client was told.
+  std::uint64_t ticket = 0;
 };
-struct Forget {};
-using Command = std::variant<StartSession, Forget, core::CoreConfig>;
+struct CancelSession {
+  std::uint64_t session = 0;
+  std::uint64_t ticket = 0;
+};
+struct Forget {
+  std::uint64_t ticket = 0;
+};
+using Command = std::variant<StartSession, CancelSession, Forget, core::CoreConfig>;
 
 struct LoopOptions {
   core::CoreConfig core;
   Registration registration;
   RegistrationStore store{""};
+  std::string store_trouble;  ///< Why the store's folder cannot be used; empty: it can.
   std::shared_ptr<const Clock> clock;
   std::vector<Sink*> sinks;  ///< Outlive the loop.
   /// Called a few times a second and whenever the registration has changed, on the pipeline's
@@ -57,6 +67,9 @@ class PipelineLoop {
   void turn();
   void gather(Duration idle);
   void obey(Command command);
+  void start_session(const StartSession& wish);
+  void cancel_session(const CancelSession& wish);
+  void forget(const Forget& wish);
   void publish(Snapshot snapshot);
   void solve(core::SolveJob job);
   void take_solutions();
@@ -72,6 +85,8 @@ class PipelineLoop {
   Histogram age_;  ///< Instant to publication [s].
   Timestamp status_at_{};
   std::chrono::steady_clock::time_point gathered_at_{};
+  std::uint64_t obeyed_ = 0;  ///< Ticket.
+  StateKeeper keeper_;
   RateReport trouble_{"pipeline step failed", log::Level::Error};
   Worker worker_;
   std::jthread thread_;

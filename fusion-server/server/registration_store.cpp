@@ -1,9 +1,12 @@
 #include "fusion-server/server/registration_store.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <system_error>
 #include <utility>
+
+#include <nlohmann/json.hpp>
 
 #include "common/base/file.h"
 #include "fusion-server/wire/registration_file.h"
@@ -14,10 +17,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kMostBytes = 16u << 20;
+constexpr std::uint64_t kMostPeople = 1ULL << 53U;  // what JSON readers can hold
 
 }  // namespace
 
 std::string RegistrationStore::path() const { return folder_ + "/registration.json"; }
+
+std::string RegistrationStore::people_path() const { return folder_ + "/people.json"; }
 
 Result<std::optional<Registration>> RegistrationStore::load() const {
   std::error_code ignored;
@@ -27,12 +33,34 @@ Result<std::optional<Registration>> RegistrationStore::load() const {
   return std::optional(std::move(*registration));
 }
 
-Result<void> RegistrationStore::save(const Registration& registration) const {
-  if (folder_.empty()) return {};
+Result<void> RegistrationStore::write(const std::string& file, const std::string& text) const {
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) return fail(ErrorCode::Io, folder_, "cannot be created: " + error.message());
-  return replace_file(path(), wire::write_registration(registration));
+  return replace_file(file, text);
+}
+
+Result<void> RegistrationStore::save(const Registration& registration) const {
+  if (folder_.empty()) return {};
+  return write(path(), wire::write_registration(registration));
+}
+
+Result<std::uint64_t> RegistrationStore::load_next_person() const {
+  std::error_code ignored;
+  if (folder_.empty() || !fs::exists(people_path(), ignored)) return 1;
+  const auto text = read_file(people_path(), kMostBytes);
+  if (!text) return pass(text);
+  const auto json = nlohmann::json::parse(*text, nullptr, false);
+  const auto next = json.is_object() ? json.find("nextPerson") : json.end();
+  const bool known = json.is_object() && next != json.end() && next->is_number_unsigned();
+  if (!known || next->get<std::uint64_t>() > kMostPeople)
+    return fail(ErrorCode::Malformed, people_path(), "{\"nextPerson\": NUMBER} is wanted");
+  return std::max<std::uint64_t>(1, next->get<std::uint64_t>());
+}
+
+Result<void> RegistrationStore::save_next_person(std::uint64_t next) const {
+  if (folder_.empty()) return {};
+  return write(people_path(), nlohmann::json{{"nextPerson", next}}.dump() + "\n");
 }
 
 Result<void> RegistrationStore::forget() const {

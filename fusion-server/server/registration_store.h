@@ -1,6 +1,8 @@
-// The registration that survives a restart: one file, replaced atomically.
+// What survives a restart: the registration and how far the ids of people have come, a file each,
+// replaced atomically.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -25,9 +27,17 @@ class RegistrationStore {
   /// undone.
   [[nodiscard]] Result<void> forget() const;
 
+  /// The first id of a person that no earlier run may have given; 1 when none is known.
+  [[nodiscard]] Result<std::uint64_t> load_next_person() const;
+  [[nodiscard]] Result<void> save_next_person(std::uint64_t next) const;
+
   [[nodiscard]] std::string path() const;
+  [[nodiscard]] const std::string& folder() const noexcept { return folder_; }
 
  private:
+  [[nodiscard]] std::string people_path() const;
+  [[nodiscard]] Result<void> write(const std::string& file, const std::string& text) const;
+
   std::string folder_;
 };
 

@@ -1,5 +1,6 @@
 #include "fusion-server/wire/registration_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -27,7 +28,14 @@ Error wrong(std::string where, std::string what) {
   return {ErrorCode::Malformed, "registration: " + std::move(where), std::move(what)};
 }
 
+json verdict_json(const SensorVerdict& own) {
+  return {{"verdict", name_of(own.verdict)}, {"reasons", own.reasons}};
+}
+
 json sensor_json(const SensorId& id, const Extrinsics& place) {
+  // The quaternion is for people and other programs; the matrix comes back to the bit.
+  json rotation = json::array();
+  for (const double value : place.world_from_sensor.linear().reshaped()) rotation.push_back(value);
   const Eigen::Vector3d p = place.world_from_sensor.translation();
   const Eigen::Quaterniond q(place.world_from_sensor.rotation());
   json covariance = json::array();
@@ -40,6 +48,7 @@ json sensor_json(const SensorId& id, const Extrinsics& place) {
           {"qy", q.y()},
           {"qz", q.z()},
           {"qw", q.w()},
+          {"rotation", std::move(rotation)},
           {"error", place.error},
           {"chain", names_of(place.chain)},
           {"covariance", std::move(covariance)}};
@@ -93,20 +102,52 @@ Result<std::vector<SensorId>> ids_of(const json& object, const std::string& wher
   return ids;
 }
 
-Result<void> read_covariance(const json& object, const std::string& where, Extrinsics& out) {
-  const auto it = object.find("covariance");
+/// Column by column into `out`, which stays as it is when there is no such key.
+template <class Matrix>
+Result<void> read_matrix(const json& object, const std::string& where, const char* key,
+                         Matrix& out) {
+  const auto it = object.find(key);
   if (it == object.end()) return {};
-  if (!it->is_array() || it->size() != static_cast<std::size_t>(out.covariance.size())) {
-    return tl::unexpected(wrong(where + ".covariance", "36 numbers are wanted"));
+  const auto wanted = static_cast<std::size_t>(out.size());
+  const bool numbers = it->is_array() && it->size() == wanted &&
+                       std::all_of(it->begin(), it->end(), [](const json& value) {
+                         return value.is_number() && std::isfinite(value.get<double>());
+                       });
+  if (!numbers) {
+    return tl::unexpected(
+        wrong(where + "." + key, std::to_string(wanted) + " finite numbers are wanted"));
   }
-  for (std::size_t i = 0; i < it->size(); ++i) {
-    const json& value = (*it)[i];
-    if (!value.is_number() || !std::isfinite(value.get<double>())) {
-      return tl::unexpected(wrong(where + ".covariance", "36 finite numbers are wanted"));
-    }
-    out.covariance.reshaped()(static_cast<Eigen::Index>(i)) = value.get<double>();
-  }
+  for (std::size_t i = 0; i < wanted; ++i)
+    out.reshaped()(static_cast<Eigen::Index>(i)) = (*it)[i].get<double>();
   return {};
+}
+
+/// Where there is a matrix beside the quaternion, it is the more exact of the two.
+Result<void> read_rotation(const json& object, const std::string& where, Eigen::Isometry3d& pose) {
+  Eigen::Matrix3d rotation = pose.linear();
+  if (auto ok = read_matrix(object, where, "rotation", rotation); !ok) return ok;
+  if ((rotation - pose.linear()).cwiseAbs().maxCoeff() > kMaxNormError) {
+    return tl::unexpected(wrong(where + ".rotation", "differs from qx qy qz qw"));
+  }
+  pose.linear() = rotation;
+  return {};
+}
+
+Result<SensorVerdict> verdict_of(const json& object, const std::string& where, Verdict fallback) {
+  SensorVerdict own{fallback, {}};
+  if (const auto it = object.find("verdict"); it != object.end()) {
+    const std::string word = it->is_string() ? it->get<std::string>() : "";
+    const auto known = verdict_named(word);
+    if (!known)
+      return tl::unexpected(wrong(where + ".verdict", "\"" + word + "\" is not a verdict"));
+    own.verdict = *known;
+  }
+  if (const auto it = object.find("reasons"); it != object.end() && it->is_array()) {
+    for (const json& reason : *it) {
+      if (reason.is_string()) own.reasons.push_back(reason.get<std::string>());
+    }
+  }
+  return own;
 }
 
 Result<Extrinsics> extrinsics_of(const json& object, const std::string& where) {
@@ -114,6 +155,7 @@ Result<Extrinsics> extrinsics_of(const json& object, const std::string& where) {
   Extrinsics out;
   auto pose = pose_of(object, where);
   if (!pose) return pass(pose);
+  if (auto ok = read_rotation(object, where, *pose); !ok) return pass(ok);
   out.world_from_sensor = *pose;
   auto chain = ids_of(object, where);
   if (!chain) return pass(chain);
@@ -121,7 +163,7 @@ Result<Extrinsics> extrinsics_of(const json& object, const std::string& where) {
   const auto error = number(object, where, "error", kMaxPlace, 0.0);
   if (!error) return pass(error);
   out.error = *error;
-  if (auto ok = read_covariance(object, where, out); !ok) return pass(ok);
+  if (auto ok = read_matrix(object, where, "covariance", out.covariance); !ok) return pass(ok);
   return out;
 }
 
@@ -165,6 +207,25 @@ Result<void> read_sensors(const json& root, Registration& out) {
   return {};
 }
 
+/// Verdicts per sensor, where the file has them; a file without believes its own for all.
+Result<void> read_verdicts(const json& root, const char* key, Verdict fallback, Registration& out) {
+  const auto it = root.find(key);
+  if (it == root.end() || !it->is_object()) return {};
+  if (it->size() > kMaxSensors) {
+    return tl::unexpected(
+        wrong(key, "at most " + std::to_string(kMaxSensors) + " sensors are possible"));
+  }
+  for (const auto& [name, object] : it->items()) {
+    auto id = SensorId::parse(name);
+    const std::string where = std::string(key) + "." + name;
+    if (!id) return tl::unexpected(wrong(where, id.error().message));
+    auto own = verdict_of(object, where, fallback);
+    if (!own) return pass(own);
+    out.verdicts.emplace(std::move(*id), std::move(*own));
+  }
+  return {};
+}
+
 Result<void> read_header(const json& root, Registration& out) {
   const auto version = number(root, "", "version", 1e15, 1.0);
   if (!version) return pass(version);
@@ -195,6 +256,8 @@ Result<Registration> registration_of(const json& root) {
   Registration out;
   if (auto ok = read_sensors(root, out); !ok) return pass(ok);
   if (auto ok = read_header(root, out); !ok) return pass(ok);
+  if (auto ok = read_verdicts(root, "sensors", out.verdict, out); !ok) return pass(ok);
+  if (auto ok = read_verdicts(root, "unplaced", Verdict::Refused, out); !ok) return pass(ok);
   if (const auto it = root.find("reasons"); it != root.end() && it->is_array()) {
     for (const json& reason : *it) {
       if (reason.is_string()) out.reasons.push_back(reason.get<std::string>());
@@ -214,7 +277,15 @@ Result<Registration> registration_of(const json& root) {
 
 std::string write_registration(const Registration& registration) {
   json sensors = json::object();
+  json unplaced = json::object();
   for (const auto& [id, place] : registration.sensors) sensors[id.str()] = sensor_json(id, place);
+  for (const auto& [id, own] : registration.verdicts) {
+    if (sensors.contains(id.str())) {
+      sensors[id.str()].update(verdict_json(own));
+    } else {
+      unplaced[id.str()] = verdict_json(own);
+    }
+  }
   json edges = json::array();
   for (const PairwiseRegistration& edge : registration.edges) {
     edges.push_back({{"target", edge.target.str()},
@@ -230,6 +301,7 @@ std::string write_registration(const Registration& registration) {
                   {"master", registration.master.str()},
                   {"solved", to_iso8601(registration.solved)},
                   {"sensors", std::move(sensors)},
+                  {"unplaced", std::move(unplaced)},
                   {"edges", std::move(edges)}};
   return root.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }

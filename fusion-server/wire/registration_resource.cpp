@@ -25,6 +25,11 @@ std::vector<Decimal> decimals_of(const Eigen::Matrix<double, 6, 6>& covariance) 
   return values;
 }
 
+void add_verdict(Node& node, const SensorVerdict& own) {
+  node.properties.emplace_back("verdict", std::string(name_of(own.verdict)));
+  node.properties.emplace_back("reasons", own.reasons);
+}
+
 Node sensor_node(const SensorId& id, const Extrinsics& place) {
   const Eigen::Vector3d p = place.world_from_sensor.translation();
   const Eigen::Quaterniond q(place.world_from_sensor.rotation());
@@ -59,14 +64,44 @@ Node edge_node(const PairwiseRegistration& edge) {
            {"inliers", static_cast<std::int64_t>(edge.inliers)}}};
 }
 
-Node session_node(const SessionStatus& session) {
+/// The session that runs, else the last one; "idle" says that none runs.
+Node newest_session(const RegistrationProgress& progress) {
   constexpr int kDigits = 1;
-  return {"_",
-          {"RegistrationSession"},
-          {{"state", std::string(session.collecting ? "collecting" : "idle")},
-           {"elapsedSeconds", Decimal{session.elapsed, kDigits}},
-           {"targetSeconds", Decimal{session.target, kDigits}},
-           {"reasons", session.reasons}}};
+  const SessionStatus session =
+      progress.sessions.empty() ? SessionStatus{} : progress.sessions.front();
+  Node node{"_", {"RegistrationSession"}, {}};
+  if (session.id != 0) {
+    node.properties.emplace_back("sessionId", static_cast<std::int64_t>(session.id));
+    node.properties.emplace_back("progress", resource::Ref{session_path(session.id)});
+  }
+  node.properties.emplace_back("state",
+                               std::string(running(session) ? name_of(session.state) : "idle"));
+  node.properties.emplace_back("elapsedSeconds", Decimal{session.elapsed, kDigits});
+  node.properties.emplace_back("targetSeconds", Decimal{session.target, kDigits});
+  node.properties.emplace_back("reasons", session.reasons);
+  return node;
+}
+
+void add_storage(Node& node, const StorageStatus& storage) {
+  node.properties.emplace_back("stored", stored(storage));
+  if (stored(storage)) return;
+  node.properties.emplace_back("storeProblem",
+                               storage.folder.empty()
+                                   ? std::string("state_dir is empty: the registration is "
+                                                 "forgotten when the server ends")
+                                   : storage.trouble);
+}
+
+/// Sensors that took part in a walk and have no place.
+std::vector<Node> unplaced_nodes(const Registration& registration) {
+  std::vector<Node> nodes;
+  for (const auto& [id, own] : registration.verdicts) {
+    if (registration.sensors.contains(id)) continue;
+    Node node{"sensors/" + id.str(), {"UnplacedSensor"}, {{"sensorId", id.str()}}};
+    add_verdict(node, own);
+    nodes.push_back(std::move(node));
+  }
+  return nodes;
 }
 
 }  // namespace
@@ -85,6 +120,24 @@ std::string_view name_of(Verdict verdict) noexcept {
   return "None";
 }
 
+std::string_view name_of(SessionState state) noexcept {
+  switch (state) {
+    case SessionState::Collecting:
+      return "collecting";
+    case SessionState::Solving:
+      return "solving";
+    case SessionState::Done:
+      return "done";
+    case SessionState::Cancelled:
+      return "cancelled";
+  }
+  return "done";
+}
+
+std::string session_path(std::uint64_t id) {
+  return "/registration/sessions/" + std::to_string(id);
+}
+
 std::optional<Verdict> verdict_named(std::string_view name) noexcept {
   for (const auto& [value, known] : kVerdicts) {
     if (known == name) return value;
@@ -92,19 +145,46 @@ std::optional<Verdict> verdict_named(std::string_view name) noexcept {
   return std::nullopt;
 }
 
-Node registration_node(const Registration& registration, const SessionStatus& session) {
+Node session_node(const SessionStatus& session, const std::vector<std::string>& awaits) {
+  constexpr int kDigits = 1;
+  Node node{"", {"RegistrationSession"}, {}};
+  auto& out = node.properties;
+  out.emplace_back("sessionId", static_cast<std::int64_t>(session.id));
+  out.emplace_back("state", std::string(name_of(session.state)));
+  out.emplace_back("automatic", session.automatic);
+  out.emplace_back("started", session.started);
+  out.emplace_back("elapsedSeconds", Decimal{session.elapsed, kDigits});
+  out.emplace_back("targetSeconds", Decimal{session.target, kDigits});
+  out.emplace_back("verdict", std::string(name_of(session.verdict)));
+  out.emplace_back("adopted", session.adopted);
+  out.emplace_back("reasons", session.reasons);
+  if (running(session)) out.emplace_back("awaits", awaits);
+  out.emplace_back("registration", resource::Ref{"/registration"});
+  return node;
+}
+
+Node registration_node(const Registration& registration, const RegistrationProgress& progress) {
   Node node{"", {"Registration"}, {}};
   node.properties.emplace_back("version", static_cast<std::int64_t>(registration.version));
   node.properties.emplace_back("verdict", std::string(name_of(registration.verdict)));
   node.properties.emplace_back("reasons", registration.reasons);
+  node.properties.emplace_back("awaits", progress.awaits);
   if (!registration.sensors.empty()) {
     node.properties.emplace_back("master", registration.master.str());
     node.properties.emplace_back("solved", registration.solved);
   }
-  node.properties.emplace_back("session", session_node(session));
+  add_storage(node, progress.storage);
+  node.properties.emplace_back("session", newest_session(progress));
   std::vector<Node> sensors;
-  for (const auto& [id, place] : registration.sensors) sensors.push_back(sensor_node(id, place));
+  for (const auto& [id, place] : registration.sensors) {
+    sensors.push_back(sensor_node(id, place));
+    const auto own = registration.verdicts.find(id);
+    add_verdict(sensors.back(), own != registration.verdicts.end()
+                                    ? own->second
+                                    : SensorVerdict{registration.verdict, {}});
+  }
   node.properties.emplace_back("sensors", std::move(sensors));
+  node.properties.emplace_back("unplaced", unplaced_nodes(registration));
   std::vector<Node> edges;
   for (const PairwiseRegistration& edge : registration.edges) edges.push_back(edge_node(edge));
   node.properties.emplace_back("edges", std::move(edges));

@@ -13,7 +13,18 @@
 namespace chorus::wire {
 
 [[nodiscard]] resource::Node registration_node(const Registration& registration,
-                                               const SessionStatus& session);
+                                               const RegistrationProgress& progress);
+
+/// /registration/sessions/{id}: how far it is, and what came of it.  `awaits` are shown while it
+/// runs.
+[[nodiscard]] resource::Node session_node(const SessionStatus& session,
+                                          const std::vector<std::string>& awaits);
+
+/// "collecting", "solving", "done", "cancelled".
+[[nodiscard]] std::string_view name_of(SessionState state) noexcept;
+
+/// Where to follow a session: "/registration/sessions/7".
+[[nodiscard]] std::string session_path(std::uint64_t id);
 
 [[nodiscard]] std::vector<std::string> names_of(const std::vector<SensorId>& sensors);
 

@@ -70,7 +70,7 @@ export function showSensors(all, colorOf) {
     cell(row, live ? number(sensor.share, 2) : '–');
   }
   showLines('errors', Object.entries(all)
-    .filter(([, sensor]) => sensor.lastError && sensor.state !== 'live')
+    .filter(([, sensor]) => sensor.lastError)
     .map(([id, sensor]) => `${id}: ${sensor.lastError}`));
 }
 

@@ -186,8 +186,8 @@ Result<LiveCell> start_cell(int sensors, int persons) {
       "chorus-fusion",
       {"--config", "deploy/config/fusion.json", "--set", "http.port=" + std::to_string(cell.port),
        "--set", "sensors=" + cell.sensors->settings(), "--set", "viewer_dir=", "--set",
-       "registration.file=" + places, "--set", "outputs.vrpn.enabled=true", "--set",
-       "outputs.vrpn.port=" + std::to_string(cell.vrpn_port)});
+       "state_dir=", "--set", "registration.file=" + places, "--set", "outputs.vrpn.enabled=true",
+       "--set", "outputs.vrpn.port=" + std::to_string(cell.vrpn_port)});
   if (!fusion) return pass(fusion);
   cell.fusion.push_back(std::move(*fusion));
   const auto begun = std::chrono::steady_clock::now();

@@ -74,8 +74,8 @@ Result<Rig> start_rig(const fs::path& folder) {
   auto fusion = ChildProcess::start(
       "chorus-fusion",
       {"--config", "deploy/config/fusion.json", "--set", "http.port=" + std::to_string(rig.port),
-       "--set", "sensors=" + list.dump(), "--set", "viewer_dir=", "--set", "registration.seconds=8",
-       "--set", "recording.folder=" + folder.string()});
+       "--set", "sensors=" + list.dump(), "--set", "viewer_dir=", "--set", "state_dir=", "--set",
+       "registration.seconds=8", "--set", "recording.folder=" + folder.string()});
   if (!fusion) return pass(fusion);
   rig.fusion.push_back(std::move(*fusion));
   return rig;

@@ -131,9 +131,10 @@ Result<Rig> start_rig(const SystemCase& asked) {
   }
   rig.port = testing::free_port();
   auto fusion = ChildProcess::start(
-      "chorus-fusion", {"--config", "deploy/config/fusion.json", "--set",
-                        "http.port=" + std::to_string(rig.port), "--set", "sensors=[" + list + "]",
-                        "--set", "viewer_dir=", "--set", "registration.seconds=20"});
+      "chorus-fusion",
+      {"--config", "deploy/config/fusion.json", "--set", "http.port=" + std::to_string(rig.port),
+       "--set", "sensors=[" + list + "]", "--set", "viewer_dir=", "--set", "state_dir=", "--set",
+       "registration.seconds=20"});
   if (!fusion) return pass(fusion);
   rig.fusion.push_back(std::move(*fusion));
   return rig;

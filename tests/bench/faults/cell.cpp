@@ -131,8 +131,12 @@ Result<void> Cell::start_sensor(int index) {
 }
 
 Result<void> Cell::start_fusion() {
-  Settings settings{"http.address=" + plan_.address, fmt::format("http.port={}", port_),
-                    "sensors=" + polled(), "viewer_dir=", "output.history_s=60"};
+  Settings settings{"http.address=" + plan_.address,
+                    fmt::format("http.port={}", port_),
+                    "sensors=" + polled(),
+                    "viewer_dir=",
+                    "state_dir=",
+                    "output.history_s=60"};
   const bool again = fusion_.has_value();
   if (plan_.stored) {
     if (!again) write_places();

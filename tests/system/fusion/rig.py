@@ -63,7 +63,11 @@ class Process:
 
     def __init__(self, name, *arguments):
         self.log = tempfile.NamedTemporaryFile("w+", suffix=f".{name}.log")
-        self.child = subprocess.Popen([str(BIN / name), *arguments], cwd=ROOT, stdout=self.log, stderr=self.log)
+        # State goes where no other run finds it, unless the test says where.
+        self.state = tempfile.TemporaryDirectory()
+        environment = {k: v for k, v in os.environ.items() if k != "STATE_DIRECTORY"}
+        self.child = subprocess.Popen([str(BIN / name), *arguments], cwd=ROOT, stdout=self.log, stderr=self.log,
+                                      env={**environment, "XDG_STATE_HOME": self.state.name})
 
     def text(self):
         return pathlib.Path(self.log.name).read_text()
@@ -81,6 +85,7 @@ class Process:
             self.child.kill()
         self.child.wait()
         self.log.close()
+        self.state.cleanup()
 
 
 class Rig(unittest.TestCase):

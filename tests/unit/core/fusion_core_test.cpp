@@ -50,6 +50,11 @@ SensorFrame sight(int sensor, Duration t) {
       {testing::body_seen_from(testing::ring_sensor(sensor, kSensors), person, captured)});
 }
 
+bool collecting(const FusionCore& core) {
+  const auto sessions = core.progress(kStart).sessions;
+  return !sessions.empty() && sessions.front().state == SessionState::Collecting;
+}
+
 struct Answers : std::vector<Snapshot> {
   Duration worst{0};  ///< Longest time from an instant to its answer.
 };
@@ -142,7 +147,7 @@ TEST(FusionCore, StrangersAndFramesThatGoBackAreRefused) {
 TEST(FusionCore, StartsASessionByItselfWhenSensorsHaveNoPlace) {
   FusionCore core(config(), {});
   EXPECT_FALSE(core.due_job(kStart));
-  EXPECT_FALSE(core.session().collecting);
+  EXPECT_FALSE(collecting(core));
   std::optional<SolveJob> job;
   Duration t{0};
   for (; !job && t < seconds(10); t += milliseconds(100)) {
@@ -153,11 +158,12 @@ TEST(FusionCore, StartsASessionByItselfWhenSensorsHaveNoPlace) {
   EXPECT_EQ(job->kind, SolveKind::Provisional);
   EXPECT_LT(t, seconds(8));
   EXPECT_EQ(job->walk.size(), 3u);
-  EXPECT_TRUE(core.session().collecting);
+  EXPECT_TRUE(collecting(core));
   // Only one job is out at a time.
   (void)run(core, t, seconds(4));
   EXPECT_FALSE(core.due_job(kStart + t + seconds(4)));
-  EXPECT_TRUE(core.solved({job->session, job->kind, ring(3, Verdict::Provisional)}));
+  EXPECT_EQ(core.solved({job->session, job->kind, ring(3, Verdict::Provisional)}, kStart + t),
+            Outcome::Adopted);
   EXPECT_EQ(core.registration().version, 1u);
   EXPECT_TRUE(core.due_job(kStart + t + seconds(4)));
 }
@@ -166,61 +172,29 @@ TEST(FusionCore, DoesNotStartWhenAllSensorsThatSeeHaveAPlaceOrWhenToldNotTo) {
   FusionCore placed(config(), ring());
   (void)run(placed, Duration{0}, seconds(2));
   EXPECT_FALSE(placed.due_job(kStart + seconds(2)));
-  EXPECT_FALSE(placed.session().collecting);
+  EXPECT_FALSE(collecting(placed));
 
   CoreConfig manual = config();
   manual.session.automatic = false;
   FusionCore waiting(manual, {});
   (void)run(waiting, Duration{0}, seconds(2));
   EXPECT_FALSE(waiting.due_job(kStart + seconds(2)));
-  EXPECT_FALSE(waiting.session().collecting);
+  EXPECT_FALSE(collecting(waiting));
 }
 
 TEST(FusionCore, ASensorAddedLaterStartsASessionAndKeepsTheOldPlaces) {
   FusionCore core(config(), ring(2));
   (void)run(core, Duration{0}, seconds(2));
   (void)core.due_job(kStart + seconds(2));
-  EXPECT_TRUE(core.session().collecting);
+  EXPECT_TRUE(collecting(core));
   EXPECT_EQ(core.registration().sensors.size(), 2u);
-}
-
-TEST(FusionCore, AFailingSessionLeavesTheRegistrationAndSaysWhy) {
-  FusionCore core(config(), ring());
-  ASSERT_TRUE(core.start_session(seconds(8)));
-  EXPECT_EQ(core.start_session(seconds(8)).error().code, ErrorCode::Conflict);
-  Registration refused;
-  refused.verdict = Verdict::Refused;
-  refused.reasons = {"sensors s2 and s3 never saw the person together"};
-  EXPECT_FALSE(core.solved({1, SolveKind::Final, refused}));
-  EXPECT_EQ(core.registration().verdict, Verdict::Good);
-  EXPECT_EQ(core.registration().version, 4u);
-  ASSERT_FALSE(core.session().reasons.empty());
-  EXPECT_EQ(core.session().reasons[0], "sensors s2 and s3 never saw the person together");
-}
-
-TEST(FusionCore, AWalkThatMissesASensorSaysWhatToDo) {
-  FusionCore core(config(), ring());
-  ASSERT_TRUE(core.start_session(seconds(8)));
-  EXPECT_FALSE(core.solved({1, SolveKind::Final, ring(2)}));
-  ASSERT_EQ(core.session().reasons.size(), 1u);
-  EXPECT_EQ(core.session().reasons[0],
-            "the registration in use places sensor s3, this walk does not; DELETE /registration "
-            "first to give it up");
-}
-
-TEST(FusionCore, ASolutionOfACancelledSessionIsIgnored) {
-  FusionCore core(config(), {});
-  ASSERT_TRUE(core.start_session(seconds(8)));
-  core.forget();
-  EXPECT_FALSE(core.solved({1, SolveKind::Final, ring()}));
-  EXPECT_TRUE(core.registration().sensors.empty());
 }
 
 TEST(FusionCore, TheMasterStaysWhileItTakesPartUnlessTheConfigNamesOne) {
   Registration placed = ring();
   placed.master = sensor_id("s2");
   FusionCore core(config(), placed);
-  ASSERT_TRUE(core.start_session(seconds(8)));
+  ASSERT_TRUE(core.start_session(seconds(8), kStart));
   (void)run(core, Duration{0}, seconds(7));
   const auto job = core.due_job(kStart + seconds(7));
   ASSERT_TRUE(job);
@@ -229,12 +203,12 @@ TEST(FusionCore, TheMasterStaysWhileItTakesPartUnlessTheConfigNamesOne) {
   CoreConfig chosen = config();
   chosen.registration.master = sensor_id("s3");
   FusionCore other(chosen, placed);
-  ASSERT_TRUE(other.start_session(seconds(8)));
+  ASSERT_TRUE(other.start_session(seconds(8), kStart));
   (void)run(other, Duration{0}, seconds(7));
   EXPECT_EQ(other.due_job(kStart + seconds(7))->config.master, sensor_id("s3"));
 
   FusionCore without(config(), placed);
-  ASSERT_TRUE(without.start_session(seconds(8)));
+  ASSERT_TRUE(without.start_session(seconds(8), kStart));
   (void)run(without, Duration{0}, seconds(7), 1);
   EXPECT_FALSE(without.due_job(kStart + seconds(7))->config.master);
 }
@@ -244,10 +218,33 @@ TEST(FusionCore, ASensorTakenOutOfTheConfigNoLongerBindsTheRegistration) {
   CoreConfig fewer = config();
   fewer.sensors.erase(sensor_id("s3"));
   core.reconfigure(fewer);
-  ASSERT_TRUE(core.start_session(seconds(8)));
-  EXPECT_TRUE(core.solved({1, SolveKind::Final, ring(2)}));
+  ASSERT_TRUE(core.start_session(seconds(8), kStart));
+  EXPECT_EQ(core.solved({1, SolveKind::Final, ring(2)}, kStart), Outcome::Adopted);
   EXPECT_EQ(core.registration().sensors.size(), 2u);
   EXPECT_EQ(core.registration().version, 5u);
+}
+
+TEST(FusionCore, CountsBodiesOfSensorsWithoutAPlace) {
+  FusionCore core(config(), ring(2));
+  (void)run(core, Duration{0}, seconds(2));
+  const Timestamp now = kStart + seconds(2);
+  for (int i = 0; i < kSensors; ++i) EXPECT_EQ(core.bodies(sensor_id(name(i)), now), 1u);
+  EXPECT_GT(core.share(sensor_id("s1")).in_time, 0.9);
+  EXPECT_EQ(core.share(sensor_id("s3")).in_time, 0.0);
+  // A sensor that falls silent has no body any more.
+  (void)run(core, seconds(2), seconds(3), 1);
+  EXPECT_EQ(core.bodies(sensor_id("s2"), kStart + seconds(5)), 0u);
+  EXPECT_EQ(core.bodies(sensor_id("s1"), kStart + seconds(5)), 1u);
+}
+
+TEST(FusionCore, IdsOfPeopleGoOnWhereAnEarlierRunEnded) {
+  CoreConfig later = config();
+  later.first_person = 4711;
+  FusionCore core(later, ring());
+  const auto snapshots = run(core, Duration{0}, seconds(2));
+  ASSERT_FALSE(snapshots.back().bodies.empty());
+  EXPECT_EQ(snapshots.back().bodies[0].id.value, 4711u);
+  EXPECT_EQ(core.next_person(), 4712u);
 }
 
 TEST(FusionCore, TheRateMayChangeWhileRunning) {

@@ -1,4 +1,4 @@
-// A walk is collected, solved in time, and never spoils what was good.
+// A walk is collected, shared with its solver, and solved in time.
 #include "fusion-server/core/registration_session.h"
 
 #include <gtest/gtest.h>
@@ -33,11 +33,10 @@ std::vector<SolveKind> walk(RegistrationSession& session, Duration from, Duratio
   return due;
 }
 
-Registration with(Verdict verdict, std::vector<const char*> sensors) {
-  Registration r;
-  r.verdict = verdict;
-  for (const char* s : sensors) r.sensors[id(s)] = Extrinsics{};
-  return r;
+std::size_t frames_of(const SharedTrack& track) {
+  std::size_t frames = 0;
+  for (const auto& chunk : track.chunks) frames += chunk->size();
+  return frames;
 }
 
 TEST(RegistrationSession, IsIdleUntilStarted) {
@@ -57,8 +56,9 @@ TEST(RegistrationSession, SolvesProvisionallyFromSixSecondsEveryTwoAndFinallyAtT
   EXPECT_EQ(due[2], SolveKind::Provisional);
   EXPECT_EQ(due[3], SolveKind::Final);
   EXPECT_FALSE(session.collecting());
-  ASSERT_EQ(session.walk().size(), 2u);
-  EXPECT_GT(session.walk()[0].frames.size(), 350u);
+  const SharedWalk whole = session.walk();
+  ASSERT_EQ(whole.size(), 2u);
+  EXPECT_GT(frames_of(whole[0]), 350u);
 }
 
 TEST(RegistrationSession, AnEmptyRoomIsNotAWalk) {
@@ -78,7 +78,7 @@ TEST(RegistrationSession, FramesThatGoBackAreLeftOut) {
   session.add(frame("s1", seconds(1)));
   session.add(frame("s1", milliseconds(500)));
   session.add(frame("s1", seconds(1)));
-  EXPECT_EQ(session.walk().front().frames.size(), 1u);
+  EXPECT_EQ(frames_of(session.walk().front()), 1u);
 }
 
 TEST(RegistrationSession, MemoryIsBounded) {
@@ -87,7 +87,7 @@ TEST(RegistrationSession, MemoryIsBounded) {
   RegistrationSession session(config);
   session.start(std::chrono::hours(1));
   (void)walk(session, seconds(0), seconds(5));
-  EXPECT_EQ(session.walk().front().frames.size(), 10u);
+  EXPECT_EQ(frames_of(session.walk().front()), 10u);
 }
 
 TEST(RegistrationSession, CancelForgetsAndStartBeginsAnew) {
@@ -102,49 +102,41 @@ TEST(RegistrationSession, CancelForgetsAndStartBeginsAnew) {
   EXPECT_EQ(session.target(), seconds(20));
 }
 
-TEST(Adoption, AFailingSessionNeverReplacesAnything) {
-  const Registration good = with(Verdict::Good, {"s1", "s2"});
-  for (const Verdict verdict : {Verdict::None, Verdict::Refused}) {
-    EXPECT_FALSE(should_adopt(good, with(verdict, {"s1", "s2", "s3"}), SolveKind::Final));
-    EXPECT_FALSE(should_adopt(Registration{}, with(verdict, {"s1"}), SolveKind::Final));
-  }
-  EXPECT_FALSE(should_adopt(Registration{}, with(Verdict::Good, {}), SolveKind::Final));
+TEST(RegistrationSession, TheWalkIsSharedAndNotCopied) {
+  RegistrationSession session({});
+  session.start(seconds(60));
+  (void)walk(session, seconds(0), seconds(8));
+  const SharedWalk first = session.walk();
+  (void)walk(session, seconds(8), seconds(2));
+  const SharedWalk second = session.walk();
+  ASSERT_EQ(first.size(), 2u);
+  for (std::size_t i = 0; i < first[0].chunks.size(); ++i)
+    EXPECT_EQ(first[0].chunks[i].get(), second[0].chunks[i].get());
+  EXPECT_GT(frames_of(second[0]), frames_of(first[0]));
+  const auto tracks = assembled(second);
+  ASSERT_EQ(tracks[0].frames.size(), frames_of(second[0]));
+  for (std::size_t i = 1; i < tracks[0].frames.size(); ++i)
+    EXPECT_LT(tracks[0].frames[i - 1].captured, tracks[0].frames[i].captured);
 }
 
-TEST(Adoption, AnythingUsableReplacesNothing) {
-  EXPECT_TRUE(should_adopt(Registration{}, with(Verdict::Provisional, {"s1", "s2"}),
-                           SolveKind::Provisional));
+TEST(RegistrationSession, TheWholeWalkIsHandedOverAtItsEnd) {
+  RegistrationSession session({});
+  session.start(seconds(8));
+  const auto due = walk(session, seconds(0), seconds(9));
+  ASSERT_EQ(due.back(), SolveKind::Final);
+  const SharedWalk last = session.walk();
+  EXPECT_GT(frames_of(last[0]), 230u);
+  EXPECT_EQ(last[0].chunks.front().use_count(), 1) << "nobody else keeps it in memory";
+  EXPECT_TRUE(session.walk().empty());
 }
 
-TEST(Adoption, ProvisionalNeverReplacesGoodUnlessItPlacesMoreSensors) {
-  const Registration good = with(Verdict::Good, {"s1", "s2"});
-  EXPECT_FALSE(should_adopt(good, with(Verdict::Provisional, {"s1", "s2"}), SolveKind::Final));
-  EXPECT_TRUE(should_adopt(good, with(Verdict::Provisional, {"s1", "s2", "s3"}), SolveKind::Final));
-}
-
-TEST(Adoption, ASmallerCircleIsNeverAdopted) {
-  const Registration three = with(Verdict::Provisional, {"s1", "s2", "s3"});
-  EXPECT_FALSE(should_adopt(three, with(Verdict::Good, {"s1", "s2"}), SolveKind::Final));
-  EXPECT_FALSE(should_adopt(three, with(Verdict::Good, {"s1", "s2", "s4"}), SolveKind::Final));
-}
-
-TEST(Adoption, AFinishedGoodWalkReplacesAnOlderGoodOneButNotHalfway) {
-  const Registration good = with(Verdict::Good, {"s1", "s2"});
-  EXPECT_TRUE(should_adopt(good, good, SolveKind::Final));
-  EXPECT_FALSE(should_adopt(good, good, SolveKind::Provisional));
-}
-
-TEST(Adoption, ProvisionalOnesFollowEachOtherDuringAWalk) {
-  const Registration provisional = with(Verdict::Provisional, {"s1", "s2"});
-  EXPECT_TRUE(should_adopt(provisional, provisional, SolveKind::Provisional));
-  EXPECT_TRUE(should_adopt(provisional, with(Verdict::Good, {"s1", "s2"}), SolveKind::Provisional));
-}
-
-TEST(Unplaced, NamesTheSensorsThatSeeButHaveNoPlace) {
-  const Registration r = with(Verdict::Good, {"s1", "s2"});
-  EXPECT_TRUE(unplaced(r, {id("s1"), id("s2")}).empty());
-  EXPECT_EQ(unplaced(r, {id("s1"), id("s3")}), std::set<SensorId>{id("s3")});
-  EXPECT_EQ(unplaced({}, {id("s1")}).size(), 1u);
+TEST(RegistrationSession, ASlowSolveRestsTwiceAsLongAsItWorked) {
+  RegistrationSession session({});
+  session.start(seconds(60));
+  EXPECT_EQ(walk(session, seconds(0), seconds(7)).size(), 1u);
+  session.solved_in(seconds(3));
+  EXPECT_TRUE(walk(session, seconds(7), milliseconds(7500)).empty());
+  EXPECT_EQ(walk(session, milliseconds(14500), seconds(1)).size(), 1u);  // 9 s after the first
 }
 
 }  // namespace

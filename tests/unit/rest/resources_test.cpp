@@ -1,6 +1,7 @@
 // The routes of the fusion server, asked without a socket.
 #include <gtest/gtest.h>
 
+#include "common/base/log.h"
 #include "common/http/route_table.h"
 #include "fusion-server/rest/frame_resources.h"
 #include "fusion-server/rest/metrics.h"
@@ -56,6 +57,7 @@ SensorStatus status(const char* name) {
   s.clock_offset = std::chrono::microseconds(150);
   s.clock_uncertainty = std::chrono::microseconds(90);
   s.clock_corrected = true;
+  s.share = 0.75;
   return s;
 }
 
@@ -106,6 +108,7 @@ TEST(SensorResources, ListsEverySensorAndRelaysItsFrame) {
   const auto list = body(ask(router, "/sensors/"), "application/json");
   EXPECT_NE(list.find("\"s2\""), std::string::npos);
   EXPECT_NE(list.find("\"clockOffsetMilliseconds\": 0.15"), std::string::npos);
+  EXPECT_NE(list.find("\"share\": 0.75"), std::string::npos) << list;
   EXPECT_TRUE(ask(router, "/sensors/s2"));
   EXPECT_EQ(ask(router, "/sensors/s3").error().code, ErrorCode::NotFound);
 
@@ -151,33 +154,123 @@ TEST(SessionRequest, IsSecondsOrNothing) {
   }
 }
 
-TEST(RegistrationResources, PostStartsAndDeleteForgets) {
-  Duration asked{0};
-  int forgotten = 0;
-  RegistrationControl control;
-  control.start = [&](Duration target) -> Result<void> {
-    if (asked > Duration{0}) return fail(ErrorCode::Conflict, "registration", "running");
-    asked = target;
-    return {};
-  };
-  control.forget = [&]() -> Result<void> {
-    ++forgotten;
-    return {};
-  };
-  http::Router router;
-  RegistrationResources resources({"run1"}, control);
-  resources.add_routes(router);
-  resources.publish({}, {});
-  const auto& actions = router.match("/registration")->entry->actions;
-  http::Request request;
-  request.body = R"({"seconds": 20})";
-  const auto started = actions.at(http::Method::Post)(request, {});
+/// A registrar that does what it is asked when the test lets it.
+class Registering : public ::testing::Test {
+ protected:
+  Registering() : resources_({"run1"}, control()) {
+    resources_.add_routes(router_);
+    progress_.next_session = 41;
+  }
+  RegistrationControl control() {
+    RegistrationControl c;
+    c.start = [this](Duration target, std::uint64_t session, std::uint64_t ticket) {
+      asked_ += "start " + std::to_string(session) + " for " + log::number_text(seconds(target)) +
+                " #" + std::to_string(ticket) + "; ";
+    };
+    c.cancel = [this](std::uint64_t session, std::uint64_t ticket) {
+      asked_ += "cancel " + std::to_string(session) + " #" + std::to_string(ticket) + "; ";
+    };
+    c.forget = [this](std::uint64_t ticket) {
+      asked_ += "forget #" + std::to_string(ticket) + "; ";
+    };
+    return c;
+  }
+  void publish() { resources_.publish(registration_, progress_); }
+  Result<http::ActionResult> act(http::Method method, const std::string& path,
+                                 std::string_view text = "") {
+    const auto match = router_.match(path);
+    http::Request request;
+    request.body = text;
+    return match->entry->actions.at(method)(request, match->params);
+  }
+  std::string shown(const std::string& path = "/registration") {
+    return body(ask(router_, path), "application/json");
+  }
+  SessionStatus& add_session(std::uint64_t id, SessionState state, bool automatic = false) {
+    SessionStatus session;
+    session.id = id;
+    session.state = state;
+    session.automatic = automatic;
+    progress_.sessions.insert(progress_.sessions.begin(), session);
+    progress_.next_session = id + 1;
+    return progress_.sessions.front();
+  }
+
+  std::string asked_;
+  http::Router router_;
+  RegistrationResources resources_;
+  Registration registration_;
+  RegistrationProgress progress_;
+};
+
+TEST_F(Registering, TheAnswerNamesASessionThatEverybodyCanReadAtOnce) {
+  add_session(40, SessionState::Done).verdict = Verdict::Good;
+  publish();
+  const auto started = act(http::Method::Post, "/registration", R"({"seconds": 20})");
   ASSERT_TRUE(started);
   EXPECT_EQ(started->status, 202);
-  EXPECT_EQ(asked, std::chrono::seconds(20));
-  EXPECT_EQ(actions.at(http::Method::Post)(request, {}).error().code, ErrorCode::Conflict);
-  EXPECT_EQ(actions.at(http::Method::Delete)(request, {})->status, 204);
-  EXPECT_EQ(forgotten, 1);
+  EXPECT_EQ(started->location, "/registration/sessions/41");
+  EXPECT_EQ(asked_, "start 41 for 20 #1; ");
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_NE(shown().find("\"state\": \"collecting\""), std::string::npos) << shown();
+    EXPECT_NE(shown().find("\"sessionId\": 41"), std::string::npos);
+    const std::string session = shown("/registration/sessions/41");
+    EXPECT_NE(session.find("\"collecting\""), std::string::npos) << session;
+    EXPECT_NE(session.find("\"verdict\": \"None\""), std::string::npos) << "not the old one's";
+    publish();  // news from before the wish was obeyed
+  }
+  EXPECT_NE(shown("/registration/sessions/40").find("\"Good\""), std::string::npos);
+  progress_.commands = 1;
+  add_session(41, SessionState::Done).verdict = Verdict::Refused;
+  publish();
+  EXPECT_NE(shown().find("\"idle\""), std::string::npos);
+  EXPECT_NE(shown("/registration/sessions/41").find("\"Refused\""), std::string::npos);
+  EXPECT_EQ(ask(router_, "/registration/sessions/99").error().code, ErrorCode::NotFound);
+}
+
+TEST_F(Registering, ASessionThatRunsByItselfIsTakenOverAndASecondClientIsRefused) {
+  add_session(40, SessionState::Collecting, true).elapsed = 5;
+  publish();
+  const auto started = act(http::Method::Post, "/registration");
+  ASSERT_TRUE(started);
+  EXPECT_EQ(started->location, "/registration/sessions/40");
+  EXPECT_EQ(asked_, "start 40 for 30 #1; ");
+  const auto second = act(http::Method::Post, "/registration");
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().code, ErrorCode::Conflict);
+  EXPECT_NE(second.error().message.find("/registration/sessions/40"), std::string::npos);
+}
+
+TEST_F(Registering, DeleteForgetsAndShowsItFromTheAnswerOn) {
+  registration_.sensors[sensor_id("s1")] = Extrinsics{};
+  registration_.verdict = Verdict::Good;
+  add_session(40, SessionState::Collecting);
+  publish();
+  EXPECT_EQ(act(http::Method::Delete, "/registration")->status, 204);
+  publish();
+  EXPECT_EQ(asked_, "forget #1; ");
+  EXPECT_EQ(shown().find("\"s1\""), std::string::npos) << shown();
+  EXPECT_NE(shown().find("\"verdict\": \"None\""), std::string::npos);
+  EXPECT_NE(shown("/registration/sessions/40").find("\"cancelled\""), std::string::npos);
+  // The next session is nobody's old one.
+  EXPECT_EQ(act(http::Method::Post, "/registration")->location, "/registration/sessions/41");
+}
+
+TEST_F(Registering, OnlyASessionThatRunsCanBeCancelled) {
+  add_session(40, SessionState::Done);
+  add_session(41, SessionState::Collecting);
+  publish();
+  EXPECT_EQ(act(http::Method::Delete, "/registration/sessions/40").error().code,
+            ErrorCode::Conflict);
+  EXPECT_EQ(act(http::Method::Delete, "/registration/sessions/9").error().code,
+            ErrorCode::NotFound);
+  EXPECT_EQ(act(http::Method::Delete, "/registration/sessions/41")->status, 204);
+  EXPECT_EQ(asked_, "cancel 41 #1; ");
+  EXPECT_NE(shown().find("\"idle\""), std::string::npos);
+}
+
+TEST_F(Registering, WhatIsAskedBeforeTheFirstNewsComesTooEarly) {
+  EXPECT_EQ(act(http::Method::Post, "/registration").error().code, ErrorCode::Unavailable);
 }
 
 TEST(Metrics, NameEverySensorAndEveryCounterOnce) {
@@ -188,6 +281,10 @@ TEST(Metrics, NameEverySensorAndEveryCounterOnce) {
   EXPECT_NE(text.find("chorus_fused_frames_total 42"), std::string::npos);
   EXPECT_NE(text.find("chorus_sensor_up{sensor=\"s2\"} 1"), std::string::npos);
   EXPECT_NE(text.find("chorus_frame_age_seconds{sensor=\"s1\"} 0.012"), std::string::npos);
+  EXPECT_NE(text.find("chorus_sensor_share{sensor=\"s1\"} 0.75"), std::string::npos);
+  EXPECT_NE(text.find("chorus_registration_stored 0"), std::string::npos);
+  all.progress.storage.folder = "/var/lib/chorus";
+  EXPECT_NE(metrics_text(all, {}, {}).find("chorus_registration_stored 1"), std::string::npos);
   const auto first = text.find("# TYPE chorus_sensor_up gauge");
   EXPECT_NE(first, std::string::npos);
   EXPECT_EQ(text.find("# TYPE chorus_sensor_up gauge", first + 1), std::string::npos);

@@ -3,11 +3,14 @@
 
 #include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include <gtest/gtest.h>
 
+#include "fusion-server/server/state_keeper.h"
 #include "tests/support/builders.h"
 
 namespace chorus::server {
@@ -88,6 +91,40 @@ TEST_F(Store, ForgettingMovesItAside) {
   EXPECT_FALSE(store.load()->has_value());
   EXPECT_TRUE(fs::exists(store.path() + ".old"));
   EXPECT_TRUE(store.forget());
+}
+
+TEST_F(Store, IdsOfPeopleBeginAtOneOnlyWhereNobodyHasBeen) {
+  const RegistrationStore store(folder_.string());
+  EXPECT_EQ(*store.load_next_person(), 1u);
+  ASSERT_TRUE(store.save_next_person(4711));
+  EXPECT_EQ(*store.load_next_person(), 4711u);
+  for (const char* wrong : {"", "[]", "{", R"({"nextPerson": -3})", R"({"nextPerson": "7"})",
+                            R"({"nextPerson": 18446744073709551615})", "{}"}) {
+    std::ofstream(folder_ / "people.json") << wrong;
+    EXPECT_FALSE(store.load_next_person()) << wrong;
+  }
+  EXPECT_EQ(*RegistrationStore("").load_next_person(), 1u);
+}
+
+TEST_F(Store, TheKeeperTellsWhatFailedUntilSomethingSucceeds) {
+  ::testing::internal::CaptureStderr();
+  std::ofstream(folder_.string()) << "a file where the folder should be";
+  StateKeeper keeper(RegistrationStore(folder_.string()), "");
+  EXPECT_TRUE(stored(keeper.status()));
+  const auto settled = [&](bool wanted) {
+    for (int i = 0; i < 2000 && stored(keeper.status()) != wanted; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return stored(keeper.status()) == wanted;
+  };
+  Worker worker;
+  keeper.keep(worker, registration(1));
+  EXPECT_TRUE(settled(false));
+  EXPECT_NE(keeper.status().trouble.find(folder_.string()), std::string::npos);
+  fs::remove(folder_);
+  keeper.people(worker, 7);
+  EXPECT_TRUE(settled(true));
+  EXPECT_GT(*RegistrationStore(folder_.string()).load_next_person(), 7u + 50u);
+  EXPECT_NE(::testing::internal::GetCapturedStderr().find("state not stored"), std::string::npos);
 }
 
 TEST_F(Store, AMissingFileOfGivenExtrinsicsIsAnError) {

@@ -2,6 +2,7 @@
 #include "fusion-server/wire/registration_file.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "fusion-server/wire/registration_resource.h"
 #include "tests/support/builders.h"
@@ -26,6 +27,9 @@ Registration example() {
     place.covariance = Eigen::Matrix<double, 6, 6>::Identity() * (1e-6 * (i + 1));
   }
   PairwiseRegistration edge;
+  r.verdicts[sensor_id("s1")] = {Verdict::Good, {}};
+  r.verdicts[sensor_id("s2")] = {Verdict::Provisional, {"the walk lasted only 6 s"}};
+  r.verdicts[sensor_id("s9")] = {Verdict::Refused, {"a coat stand"}};
   edge.target = sensor_id("s2");
   edge.source = sensor_id("s1");
   edge.rms = 0.02;
@@ -52,11 +56,16 @@ TEST(RegistrationFile, ReadsWhatItWrites) {
   ASSERT_EQ(read->sensors.size(), 3u);
   for (const auto& [id, place] : written.sensors) {
     const Extrinsics& again = read->sensors.at(id);
-    EXPECT_TRUE(again.world_from_sensor.isApprox(place.world_from_sensor, 1e-9));
-    EXPECT_TRUE(again.covariance.isApprox(place.covariance, 1e-9));
+    EXPECT_EQ(again.world_from_sensor.matrix(), place.world_from_sensor.matrix()) << "to the bit";
+    EXPECT_EQ(again.covariance, place.covariance);
     EXPECT_EQ(again.chain, place.chain);
     EXPECT_EQ(again.error, place.error);
   }
+  ASSERT_EQ(read->verdicts.size(), 4u);
+  EXPECT_EQ(read->verdicts.at(sensor_id("s1")).verdict, Verdict::Good);
+  EXPECT_EQ(read->verdicts.at(sensor_id("s2")).reasons, std::vector{written.reasons.front()});
+  EXPECT_EQ(read->verdicts.at(sensor_id("s3")).verdict, Verdict::Provisional) << "as all together";
+  EXPECT_EQ(read->verdicts.at(sensor_id("s9")).verdict, Verdict::Refused);
   ASSERT_EQ(read->edges.size(), 1u);
   EXPECT_EQ(read->edges[0].pairs, 640u);
   EXPECT_EQ(read->edges[0].inliers, 601u);
@@ -105,6 +114,12 @@ TEST(RegistrationFile, NamesWhatIsWrong) {
   EXPECT_NE(
       why(head + R"(3, "qx": 0, "qy": 0, "qz": 0, "qw": 1}}, "solved": "soon"})").find("solved"),
       std::string::npos);
+  const std::string turned = R"(3, "qx": 0, "qy": 0, "qz": 0, "qw": 1, "rotation": )";
+  EXPECT_NE(why(head + turned + "[0,1,0,-1,0,0,0,0,1]}}}").find("differs"), std::string::npos);
+  EXPECT_NE(why(head + turned + "[1,0,0,0,1,0,0,0]}}}").find("rotation"), std::string::npos);
+  EXPECT_NE(why(head + turned + "7}}}").find("rotation"), std::string::npos);
+  EXPECT_NE(why(head + R"(3, "qx": 0, "qy": 0, "qz": 0, "qw": 1, "verdict": 3}}})").find("verdict"),
+            std::string::npos);
   EXPECT_NE(why(head + R"(3, "qx": 0, "qy": 0, "qz": 0, "qw": 1, "covariance": [1]}}})")
                 .find("covariance"),
             std::string::npos);
@@ -119,19 +134,68 @@ TEST(RegistrationFile, EveryPrefixOfAFileIsRefusedAndNoneCrashes) {
 
 TEST(RegistrationNode, UsesOnlyDeclaredTermsAndNamesTheVerdict) {
   SessionStatus session;
-  session.collecting = true;
+  session.id = 12;
+  session.state = SessionState::Collecting;
   session.elapsed = 3;
   session.target = 30;
   session.reasons = {"why not"};
-  const auto node = registration_node(example(), session);
+  RegistrationProgress progress;
+  progress.sessions = {session};
+  progress.awaits = {"keep walking: 27 s more"};
+  progress.storage.folder = "/var/lib/chorus";
+  const auto node = registration_node(example(), progress);
   EXPECT_EQ(resource::undeclared_terms(node), std::vector<std::string>{});
   EXPECT_EQ(resource::undeclared_terms(registration_node({}, {})), std::vector<std::string>{});
-  const auto json = write(node, resource::Format::Json);
-  EXPECT_NE(json.find("\"Provisional\""), std::string::npos);
-  EXPECT_NE(json.find("\"collecting\""), std::string::npos);
+  EXPECT_EQ(resource::undeclared_terms(session_node(session, progress.awaits)),
+            std::vector<std::string>{});
+  const auto json = nlohmann::json::parse(write(node, resource::Format::Json));
+  EXPECT_EQ(json["verdict"], "Provisional");
+  EXPECT_EQ(json["session"]["state"], "collecting");
+  EXPECT_EQ(json["session"]["progress"], "/registration/sessions/12");
+  EXPECT_EQ(json["awaits"][0], "keep walking: 27 s more");
+  EXPECT_EQ(json["stored"], true);
+  EXPECT_EQ(json["sensors"]["s1"]["verdict"], "Good");
+  EXPECT_EQ(json["sensors"]["s3"]["verdict"], "Provisional");
+  EXPECT_EQ(json["unplaced"]["s9"]["reasons"][0], "a coat stand");
   const auto turtle = write(node, resource::Format::Turtle);
   EXPECT_NE(turtle.find("ch:sessionState \"collecting\""), std::string::npos) << turtle;
   EXPECT_NE(turtle.find("ch:verdict ch:Provisional"), std::string::npos);
+}
+
+TEST(RegistrationNode, SaysWhyItIsNotStoredAndIdleWhenNoSessionRuns) {
+  RegistrationProgress progress;
+  auto json =
+      nlohmann::json::parse(write(registration_node(example(), progress), resource::Format::Json));
+  EXPECT_EQ(json["stored"], false);
+  EXPECT_EQ(json["session"]["state"], "idle");
+  EXPECT_FALSE(json["session"].contains("sessionId"));
+  progress.storage = {"/nowhere", "/nowhere: read-only"};
+  progress.sessions.resize(1);
+  progress.sessions[0].id = 3;
+  json =
+      nlohmann::json::parse(write(registration_node(example(), progress), resource::Format::Json));
+  EXPECT_EQ(json["storeProblem"], "/nowhere: read-only");
+  EXPECT_EQ(json["session"]["state"], "idle");
+  EXPECT_EQ(json["session"]["sessionId"], 3);
+}
+
+TEST(SessionNode, TellsOutcomeAndStopsAwaitingWhenItIsOver) {
+  SessionStatus session;
+  session.id = 12;
+  session.state = SessionState::Done;
+  session.verdict = Verdict::Refused;
+  session.reasons = {"why not"};
+  const auto over =
+      nlohmann::json::parse(write(session_node(session, {"a"}), resource::Format::Json));
+  EXPECT_EQ(over["state"], "done");
+  EXPECT_EQ(over["verdict"], "Refused");
+  EXPECT_EQ(over["adopted"], false);
+  EXPECT_EQ(over["reasons"][0], "why not");
+  EXPECT_FALSE(over.contains("awaits"));
+  session.state = SessionState::Solving;
+  EXPECT_EQ(nlohmann::json::parse(
+                write(session_node(session, {"a"}), resource::Format::Json))["awaits"][0],
+            "a");
 }
 
 TEST(Verdicts, HaveNamesBothWays) {

@@ -1,0 +1,226 @@
+#include "fusion-server/core/adoption.h"
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/geometry/rigid_fit.h"
+
+namespace chorus::core {
+namespace {
+
+constexpr double kReach = 2.5;   // [m] sensor to walk: where its rotation matters
+constexpr double kMisfit = 0.3;  // [m] held sensors that differ by more have been moved
+
+int rank(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::Good:
+      return 2;
+    case Verdict::Provisional:
+      return 1;
+    case Verdict::None:
+    case Verdict::Refused:
+      return 0;
+  }
+  return 0;
+}
+
+bool usable(const Registration& registration) {
+  return rank(registration.verdict) > 0 && !registration.sensors.empty();
+}
+
+bool covers(const Registration& wider, const Registration& narrower) {
+  return std::all_of(narrower.sensors.begin(), narrower.sensors.end(),
+                     [&](const auto& entry) { return wider.sensors.contains(entry.first); });
+}
+
+bool stands_well(const Registration& registration, const SensorId& sensor) {
+  return verdict_of(registration, sensor) == Verdict::Good;
+}
+
+/// Sensors that the candidate adds, or places well where we do not.
+std::set<SensorId> newcomers(const Registration& current, const Registration& candidate,
+                             SolveKind kind) {
+  std::set<SensorId> found;
+  for (const auto& [sensor, place] : candidate.sensors) {
+    const bool good = stands_well(candidate, sensor);
+    const bool known = current.sensors.contains(sensor);
+    if (known ? good && !stands_well(current, sensor) : good || kind == SolveKind::Final)
+      found.insert(sensor);
+  }
+  return found;
+}
+
+/// The sensor itself, and points before, beside and above the walk as it sees it.
+void add_marks(const Eigen::Isometry3d& pose, std::vector<Eigen::Vector3d>& marks) {
+  const Eigen::Vector3d walk = kReach * Eigen::Vector3d::UnitZ();
+  for (const Eigen::Vector3d& mark : {Eigen::Vector3d(Eigen::Vector3d::Zero()), walk,
+                                      Eigen::Vector3d(walk + Eigen::Vector3d::UnitX()),
+                                      Eigen::Vector3d(walk + Eigen::Vector3d::UnitY())}) {
+    marks.push_back(pose * mark);
+  }
+}
+
+/// From the candidate's world to ours, by the sensors that both place and that stay.
+std::optional<Eigen::Isometry3d> between_worlds(const Registration& current,
+                                                const Registration& candidate,
+                                                const std::set<SensorId>& moving) {
+  std::vector<Eigen::Vector3d> ours;
+  std::vector<Eigen::Vector3d> theirs;
+  for (const auto& [sensor, place] : current.sensors) {
+    const auto other = candidate.sensors.find(sensor);
+    if (other == candidate.sensors.end() || moving.contains(sensor)) continue;
+    add_marks(place.world_from_sensor, ours);
+    add_marks(other->second.world_from_sensor, theirs);
+  }
+  const auto fit = fit_rigid(theirs, ours);
+  if (!fit || fit->rms > kMisfit) return std::nullopt;
+  return fit->target_from_source;
+}
+
+/// Chain and error from our master on, whatever master the candidate had.
+void lead_from_master(const Registration& current, Extrinsics& place) {
+  if (place.chain.empty() || place.chain.front() == current.master) return;
+  const auto known = current.sensors.find(place.chain.front());
+  if (known == current.sensors.end()) return;
+  std::vector<SensorId> chain = known->second.chain;
+  chain.insert(chain.end(), std::next(place.chain.begin()), place.chain.end());
+  place.chain = std::move(chain);
+  place.error += known->second.error;
+}
+
+Extrinsics moved(Extrinsics place, const Eigen::Isometry3d& world_from_candidate) {
+  place.world_from_sensor = world_from_candidate * place.world_from_sensor;
+  Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
+  turn.topLeftCorner<3, 3>() = world_from_candidate.linear();
+  turn.bottomRightCorner<3, 3>() = world_from_candidate.linear();
+  place.covariance = turn * place.covariance * turn.transpose();
+  return place;
+}
+
+void add_once(std::vector<std::string>& reasons, const std::vector<std::string>& more) {
+  for (const std::string& reason : more) {
+    if (std::find(reasons.begin(), reasons.end(), reason) == reasons.end())
+      reasons.push_back(reason);
+  }
+}
+
+/// Reasons of the candidate that speak of no sensor in particular.
+std::vector<std::string> common_reasons(const Registration& registration) {
+  std::vector<std::string> reasons = registration.reasons;
+  for (const auto& [sensor, own] : registration.verdicts) {
+    for (const std::string& reason : own.reasons) std::erase(reasons, reason);
+  }
+  return reasons;
+}
+
+/// Replaces what is known of one sensor's standing.
+void take_verdict(Registration& registration, const SensorId& sensor, SensorVerdict verdict) {
+  const auto shared = common_reasons(registration);
+  registration.verdicts[sensor] = std::move(verdict);
+  registration.reasons = shared;
+  for (const auto& [other, own] : registration.verdicts)
+    add_once(registration.reasons, own.reasons);
+}
+
+/// With what speaks against the whole walk, if that is why it is not good.
+SensorVerdict sentence_of(const Registration& candidate, const SensorId& sensor) {
+  SensorVerdict sentence{verdict_of(candidate, sensor), {}};
+  const auto own = candidate.verdicts.find(sensor);
+  if (own != candidate.verdicts.end()) sentence.reasons = own->second.reasons;
+  if (sentence.verdict != Verdict::Good) add_once(sentence.reasons, common_reasons(candidate));
+  return sentence;
+}
+
+Verdict least_of_placed(const Registration& registration) {
+  Verdict least = Verdict::Good;
+  for (const auto& [sensor, place] : registration.sensors) {
+    const Verdict own = verdict_of(registration, sensor);
+    if (rank(own) < rank(least)) least = own;
+  }
+  return least;
+}
+
+/// Registrations of before verdicts were per sensor, and given ones.
+void spell_out_verdicts(Registration& registration) {
+  for (const auto& [sensor, place] : registration.sensors)
+    registration.verdicts.try_emplace(sensor, SensorVerdict{registration.verdict, {}});
+}
+
+}  // namespace
+
+Verdict verdict_of(const Registration& registration, const SensorId& sensor) {
+  if (!registration.sensors.contains(sensor)) return Verdict::None;
+  const auto own = registration.verdicts.find(sensor);
+  return own == registration.verdicts.end() ? registration.verdict : own->second.verdict;
+}
+
+bool should_replace(const Registration& current, const Registration& candidate, SolveKind kind) {
+  if (!usable(candidate)) return false;
+  if (!usable(current)) return true;
+  if (!covers(candidate, current)) return false;
+  if (rank(candidate.verdict) != rank(current.verdict))
+    return rank(candidate.verdict) > rank(current.verdict);
+  // A provisional solve in the middle of a walk does not push a good one aside; its end may.
+  return kind == SolveKind::Final || current.verdict == Verdict::Provisional;
+}
+
+Result<Registration> extended(const Registration& current, const Registration& candidate,
+                              SolveKind kind) {
+  const std::set<SensorId> added = newcomers(current, candidate, kind);
+  if (!usable(current) || !usable(candidate) || added.empty())
+    return fail(ErrorCode::NotFound, "registration", "no sensor is better placed than before");
+  const auto world_from_candidate = between_worlds(current, candidate, added);
+  if (!world_from_candidate) {
+    return fail(ErrorCode::Conflict, "registration",
+                "the sensors that have a place do not stand as this walk shows them: if one was "
+                "moved, register all anew (chorus register --fresh)");
+  }
+  Registration wider = current;
+  wider.solved = candidate.solved;
+  spell_out_verdicts(wider);
+  for (const SensorId& sensor : added) {
+    Extrinsics place = moved(candidate.sensors.at(sensor), *world_from_candidate);
+    lead_from_master(current, place);
+    wider.sensors.insert_or_assign(sensor, std::move(place));
+    take_verdict(wider, sensor, sentence_of(candidate, sensor));
+  }
+  const auto touches = [&](const PairwiseRegistration& edge) {
+    return added.contains(edge.source) || added.contains(edge.target);
+  };
+  std::erase_if(wider.edges, touches);
+  std::copy_if(candidate.edges.begin(), candidate.edges.end(), std::back_inserter(wider.edges),
+               touches);
+  wider.verdict = least_of_placed(wider);
+  return wider;
+}
+
+Result<Registration> adopted(const Registration& current, const Registration& candidate,
+                             SolveKind kind, bool hold) {
+  const bool any_good =
+      usable(current) && std::any_of(current.sensors.begin(), current.sensors.end(),
+                                     [&](const auto& e) { return stands_well(current, e.first); });
+  const bool bound = hold && any_good;
+  if (!bound && should_replace(current, candidate, kind)) return candidate;
+  return extended(current, candidate, kind);
+}
+
+void note_refusals(Registration& current, const Registration& candidate) {
+  for (const auto& [sensor, own] : candidate.verdicts) {
+    if (own.verdict == Verdict::Refused && !current.sensors.contains(sensor))
+      take_verdict(current, sensor, own);
+  }
+}
+
+std::set<SensorId> unplaced(const Registration& current, const std::set<SensorId>& seeing) {
+  std::set<SensorId> missing;
+  for (const SensorId& sensor : seeing) {
+    if (!current.sensors.contains(sensor)) missing.insert(sensor);
+  }
+  return missing;
+}
+
+}  // namespace chorus::core

@@ -1,0 +1,108 @@
+#include "fusion-server/core/awaited.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace chorus::core {
+namespace {
+
+/// "sensor s1" or "sensors s1, s2 and s3".
+std::string named(const std::vector<SensorId>& sensors) {
+  std::string text = sensors.size() == 1 ? "sensor " : "sensors ";
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    if (i > 0) text += i + 1 == sensors.size() ? " and " : ", ";
+    text += sensors[i].str();
+  }
+  return text;
+}
+
+template <class Wanted>
+std::vector<SensorId> those(const Situation& s, Wanted wanted) {
+  std::vector<SensorId> found;
+  std::copy_if(s.sensors.begin(), s.sensors.end(), std::back_inserter(found), wanted);
+  return found;
+}
+
+/// Who is silent; true when nobody delivers, so that nothing else matters.
+bool say_silent(const Situation& s, std::vector<std::string>& out) {
+  const auto silent =
+      those(s, [&](const SensorId& sensor) { return !s.sightings.delivers(sensor, s.now); });
+  if (s.sensors.empty()) {
+    out.emplace_back("no sensors are configured: add them under \"sensors\" in the configuration");
+  } else if (silent.size() == s.sensors.size()) {
+    out.emplace_back(
+        "none of the sensors delivers frames: start them, see /sensors/ for the reasons");
+  } else if (!silent.empty()) {
+    out.push_back(named(silent) + (silent.size() == 1 ? " delivers" : " deliver") +
+                  " no frames: see /sensors/ for the reason");
+  }
+  return silent.size() == s.sensors.size();
+}
+
+/// What keeps a walk from being one; true when somebody walks in sight of enough sensors.
+bool say_walker(const Situation& s, std::vector<std::string>& out) {
+  const auto seeing =
+      those(s, [&](const SensorId& sensor) { return s.sightings.bodies(sensor, s.now) > 0; });
+  const auto crowded =
+      those(s, [&](const SensorId& sensor) { return s.sightings.bodies(sensor, s.now) > 1; });
+  const std::size_t enough = std::min<std::size_t>(2, s.sensors.size());
+  if (seeing.empty()) {
+    out.emplace_back(
+        "nobody is in sight: let one person walk through the room, where sensors see them "
+        "together");
+  } else if (seeing.size() < enough) {
+    out.push_back("only " + named(seeing) +
+                  " sees somebody: walk where at least two sensors see you together");
+  }
+  if (!crowded.empty()) {
+    out.push_back(named(crowded) + (crowded.size() == 1 ? " sees" : " see") +
+                  " more than one body: one person alone should walk");
+  }
+  return seeing.size() >= enough && crowded.size() < seeing.size();
+}
+
+void say_session(const Situation& s, bool walking, std::vector<std::string>& out) {
+  if (s.session->state == SessionState::Solving) {
+    out.emplace_back("the walk is over: its places are being solved");
+  } else if (walking) {
+    out.push_back(fmt::format("keep walking: {:.0f} s more",
+                              std::ceil(std::max(0.0, s.session->target - s.session->elapsed))));
+  }
+}
+
+void say_start(const Situation& s, bool walking, std::vector<std::string>& out) {
+  if (!s.automatic) {
+    out.emplace_back(
+        "sessions do not start by themselves: run chorus register (POST /registration)");
+  } else if (s.retry) {
+    out.push_back(
+        fmt::format("the next try by itself is in {:.0f} s; chorus register tries at once",
+                    std::ceil(seconds(*s.retry))));
+  } else if (walking) {
+    out.emplace_back("a session starts by itself");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> awaited(const Situation& s) {
+  std::vector<std::string> out;
+  const auto missing =
+      those(s, [&](const SensorId& sensor) { return !s.registration.sensors.contains(sensor); });
+  if (missing.empty() && s.session == nullptr && !s.sensors.empty()) return out;
+  if (!missing.empty() && !s.registration.sensors.empty()) {
+    out.push_back(named(missing) + (missing.size() == 1 ? " has" : " have") + " no place yet");
+  }
+  if (say_silent(s, out)) return out;
+  const bool walking = say_walker(s, out);
+  if (s.session != nullptr) {
+    say_session(s, walking, out);
+  } else {
+    say_start(s, walking, out);
+  }
+  return out;
+}
+
+}  // namespace chorus::core

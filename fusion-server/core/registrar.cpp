@@ -1,0 +1,275 @@
+#include "fusion-server/core/registrar.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "fusion-server/core/awaited.h"
+
+namespace chorus::core {
+namespace {
+
+constexpr std::size_t kSessionsKept = 8;
+/// A sensor that could not be placed starts no session by itself for this long, then twice as long.
+constexpr Duration kFirstRetry = std::chrono::seconds(30);
+constexpr int kMostDoublings = 5;  // 16 minutes
+/// After somebody has cancelled a session none starts by itself for this long.
+constexpr Duration kAfterCancel = std::chrono::seconds(60);
+
+void keep_configured(Registration& registration, const std::set<SensorId>& sensors) {
+  const auto gone = [&](const auto& entry) { return !sensors.contains(entry.first); };
+  std::erase_if(registration.sensors, gone);
+  std::erase_if(registration.verdicts, gone);
+}
+
+}  // namespace
+
+Registrar::Registrar(RegistrarConfig config, Registration registration, std::uint64_t first_session)
+    : config_(std::move(config)),
+      registration_(std::move(registration)),
+      session_(config_.session),
+      next_session_(first_session) {}
+
+void Registrar::reconfigure(RegistrarConfig config) {
+  const bool same_session = config.session == config_.session;
+  config_ = std::move(config);
+  if (!same_session && !session_.collecting()) session_ = RegistrationSession(config_.session);
+  sightings_.keep(config_.sensors);
+  std::erase_if(retries_, [&](const auto& e) { return !config_.sensors.contains(e.first); });
+}
+
+void Registrar::take(const SensorFrame& frame) {
+  sightings_.add(frame);
+  session_.add(frame);
+}
+
+void Registrar::begin(Duration target, bool automatic, Timestamp now) {
+  session_.start(target);
+  before_.reset();
+  SessionStatus status;
+  status.id = next_session_++;
+  status.state = SessionState::Collecting;
+  status.automatic = automatic;
+  status.started = now;
+  sessions_.push_front(std::move(status));
+  if (sessions_.size() > kSessionsKept) sessions_.pop_back();
+}
+
+Result<std::uint64_t> Registrar::start(Duration target, Timestamp now) {
+  if (sessions_.empty() || !running(sessions_.front())) {
+    begin(target, false, now);
+    return sessions_.front().id;
+  }
+  SessionStatus& current = sessions_.front();
+  if (!current.automatic) {
+    return fail(ErrorCode::Conflict, "registration",
+                fmt::format("session {0} is running already: follow /registration/sessions/{0}, or "
+                            "cancel it with DELETE (chorus register --cancel)",
+                            current.id));
+  }
+  current.automatic = false;
+  session_.retarget(target);
+  return current.id;
+}
+
+Result<void> Registrar::cancel(std::uint64_t session, Timestamp now) {
+  if (sessions_.empty() || !running(sessions_.front()) || sessions_.front().id != session)
+    return fail(ErrorCode::NotFound, "registration", "this session does not run");
+  if (take_back()) {
+    sessions_.front().reasons = {"cancelled; its provisional registration was withdrawn"};
+  } else {
+    sessions_.front().reasons = {"cancelled"};
+  }
+  end_session(SessionState::Cancelled);
+  not_before_ = now + kAfterCancel;
+  return {};
+}
+
+void Registrar::end_session(SessionState state) {
+  if (sessions_.empty() || !running(sessions_.front())) return;
+  SessionStatus& current = sessions_.front();
+  current.elapsed = seconds(session_.elapsed());
+  current.target = seconds(session_.target());
+  current.state = state;
+  session_.cancel();
+  before_.reset();
+  stop_solve_.request_stop();
+}
+
+void Registrar::forget() {
+  end_session(SessionState::Cancelled);
+  retries_.clear();
+  not_before_ = Timestamp{};
+  const std::uint64_t version = registration_.version;
+  registration_ = Registration{};
+  registration_.version = version;
+}
+
+bool Registrar::waits(const SensorId& sensor, Timestamp now) const {
+  const auto retry = retries_.find(sensor);
+  return !registration_.sensors.empty() && retry != retries_.end() &&
+         now < retry->second.not_before;
+}
+
+void Registrar::start_by_itself(Timestamp now) {
+  const bool busy = !sessions_.empty() && running(sessions_.front());
+  if (!config_.session.automatic || busy || now < not_before_) return;
+  const std::set<SensorId> seeing = sightings_.seeing(now);
+  // One sensor alone has nobody to be registered with, unless it is the only one there is.
+  const bool enough = seeing.size() >= 2 || (seeing.size() == 1 && config_.sensors.size() == 1);
+  std::set<SensorId> missing = unplaced(registration_, seeing);
+  std::erase_if(missing, [&](const SensorId& sensor) { return waits(sensor, now); });
+  if (enough && !missing.empty()) begin(config_.session.target, true, now);
+}
+
+std::optional<SolveJob> Registrar::due_job(Timestamp now) {
+  if (solving_) {
+    // Nobody wants to know any more how half of the walk looked.
+    if (solving_kind_ == SolveKind::Provisional && session_.final_due()) stop_solve_.request_stop();
+    return std::nullopt;
+  }
+  start_by_itself(now);
+  const auto kind = session_.due();
+  if (!kind) return std::nullopt;
+  solving_ = true;
+  solving_kind_ = *kind;
+  stop_solve_ = std::stop_source();
+  if (*kind == SolveKind::Final) sessions_.front().state = SessionState::Solving;
+  SolveJob job{sessions_.front().id, *kind, session_.walk(), config_.registration,
+               stop_solve_.get_token()};
+  // The world must not jump from solve to solve: the master stays while it takes part.
+  const SensorId& master = registration_.master;
+  const bool walks = std::any_of(job.walk.begin(), job.walk.end(),
+                                 [&](const SharedTrack& track) { return track.sensor == master; });
+  if (!job.config.master && walks && registration_.sensors.contains(master)) {
+    job.config.master = master;
+  }
+  return job;
+}
+
+void Registrar::replace(Registration next) {
+  const std::uint64_t version = registration_.version + 1;
+  registration_ = std::move(next);
+  registration_.version = version;
+}
+
+bool Registrar::take_back() {
+  if (!before_) return false;
+  replace(std::move(*before_));
+  before_.reset();
+  return true;
+}
+
+std::vector<std::string> Registrar::shortfalls(const Registration& candidate) const {
+  std::vector<std::string> reasons = candidate.reasons;
+  for (const auto& [sensor, place] : registration_.sensors) {
+    if (candidate.sensors.contains(sensor)) continue;
+    reasons.push_back(
+        fmt::format("the registration in use places sensor {}, this walk does not; "
+                    "chorus register --fresh (DELETE /registration) gives it up",
+                    sensor.str()));
+  }
+  return reasons;
+}
+
+Outcome Registrar::solved(Solution solution, Timestamp now) {
+  solving_ = false;
+  const bool wanted =
+      !sessions_.empty() && running(sessions_.front()) && sessions_.front().id == solution.session;
+  if (!wanted || solution.given_up) return Outcome::Nothing;
+  session_.solved_in(solution.cost);
+  // Places of sensors that are no longer configured do not bind the new registration.
+  keep_configured(registration_, config_.sensors);
+  if (before_) keep_configured(*before_, config_.sensors);
+  sessions_.front().verdict = solution.registration.verdict;
+  sessions_.front().reasons = solution.registration.reasons;
+  return solution.kind == SolveKind::Final ? settle_final(solution.registration, now)
+                                           : settle_provisional(solution.registration);
+}
+
+Outcome Registrar::settle_provisional(const Registration& candidate) {
+  SessionStatus& current = sessions_.front();
+  auto next = adopted(registration_, candidate, SolveKind::Provisional, current.automatic);
+  if (!next) return Outcome::Nothing;
+  if (!before_) before_ = registration_;
+  replace(std::move(*next));
+  current.adopted = true;
+  return Outcome::Adopted;
+}
+
+/// Weighed against what was there before the session: its own provisional ones do not count.
+Outcome Registrar::settle_final(const Registration& candidate, Timestamp now) {
+  SessionStatus& current = sessions_.front();
+  auto next =
+      adopted(before_ ? *before_ : registration_, candidate, SolveKind::Final, current.automatic);
+  current.adopted = next.has_value();
+  Outcome outcome = Outcome::Adopted;
+  if (next) {
+    replace(std::move(*next));
+  } else {
+    const bool withdrawn = take_back();
+    explain_refusal(candidate, next.error(), withdrawn);
+    outcome = withdrawn ? Outcome::Withdrawn : Outcome::Nothing;
+  }
+  note_refusals(registration_, candidate);
+  back_off(candidate, now);
+  end_session(SessionState::Done);
+  return outcome;
+}
+
+void Registrar::explain_refusal(const Registration& candidate, const Error& why, bool withdrawn) {
+  SessionStatus& current = sessions_.front();
+  const bool none = registration_.sensors.empty();
+  // One that started by itself was there for the sensors without a place only.
+  if (current.automatic && !none) current.verdict = Verdict::Refused;
+  current.reasons = shortfalls(candidate);
+  if (why.code == ErrorCode::Conflict) current.reasons.push_back(why.message);
+  if (!withdrawn) return;
+  current.reasons.push_back(
+      std::string("the provisional registration of this session was ") +
+      (none ? "withdrawn; there is none now" : "withdrawn; the one from before is in use again"));
+}
+
+void Registrar::back_off(const Registration& candidate, Timestamp now) {
+  for (const auto& [sensor, own] : candidate.verdicts) {
+    if (registration_.sensors.contains(sensor)) {
+      retries_.erase(sensor);
+      continue;
+    }
+    Retry& retry = retries_[sensor];
+    retry.not_before = now + kFirstRetry * (1 << std::min(retry.failures, kMostDoublings));
+    ++retry.failures;
+  }
+}
+
+std::vector<SessionStatus> Registrar::sessions() const {
+  std::vector<SessionStatus> all(sessions_.begin(), sessions_.end());
+  if (!all.empty() && running(all.front())) {
+    all.front().elapsed = seconds(session_.elapsed());
+    all.front().target = seconds(session_.target());
+  }
+  return all;
+}
+
+std::vector<std::string> Registrar::awaits(Timestamp now) const {
+  const auto all = sessions();
+  Situation situation{config_.sensors,           registration_, sightings_, nullptr,
+                      config_.session.automatic, std::nullopt,  now};
+  if (!all.empty() && running(all.front())) situation.session = &all.front();
+  situation.retry = retry_in(now);
+  return awaited(situation);
+}
+
+/// Until the first of the sensors that see somebody may start a session again.
+std::optional<Duration> Registrar::retry_in(Timestamp now) const {
+  std::optional<Timestamp> first;
+  for (const SensorId& sensor : unplaced(registration_, sightings_.seeing(now))) {
+    const Timestamp at = waits(sensor, now) ? retries_.at(sensor).not_before : now;
+    first = std::min(first.value_or(at), at);
+  }
+  const Timestamp next = std::max(first.value_or(now), not_before_);
+  return next > now ? std::optional(next - now) : std::nullopt;
+}
+
+}  // namespace chorus::core

@@ -1,0 +1,117 @@
+#include "fusion-server/server/solver.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "fusion-server/registration/pair_registration.h"
+
+namespace chorus::server {
+namespace {
+
+using registration::Walker;
+using registration::WalkTrack;
+
+/// Behind the pipeline and the network, which have deadlines.
+constexpr int kNiceness = 10;
+
+struct Pair {
+  const Walker* target;
+  const Walker* source;
+  std::optional<Result<PairwiseRegistration>> edge;
+};
+
+/// Calls work(i) for each i below `count`, on all cores; rethrows the first exception.
+template <class Work>
+void on_all_cores(std::size_t count, const Work& work) {
+  std::atomic<std::size_t> next = 0;
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto run = [&] {
+    try {
+      for (std::size_t i = next++; i < count; i = next++) work(i);
+    } catch (...) {
+      const std::scoped_lock lock(mutex);
+      if (!failure) failure = std::current_exception();
+      next = count;
+    }
+  };
+  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  {
+    std::vector<std::jthread> others;
+    for (std::size_t i = 1; i < std::min(cores, count); ++i) {
+      others.emplace_back([&] {
+        [[maybe_unused]] const int niceness = ::nice(kNiceness);  // of this thread alone
+        run();
+      });
+    }
+    run();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+std::vector<Pair> pairs_of(const std::map<SensorId, Walker>& walkers) {
+  std::vector<Pair> pairs;
+  for (auto target = walkers.begin(); target != walkers.end(); ++target) {
+    for (auto source = std::next(target); source != walkers.end(); ++source)
+      pairs.push_back({&target->second, &source->second, std::nullopt});
+  }
+  return pairs;
+}
+
+std::map<SensorId, Walker> walkers_of(const std::vector<WalkTrack>& walk,
+                                      const registration::RegistrationConfig& config) {
+  std::map<SensorId, Walker> walkers;
+  for (const WalkTrack& track : walk) {
+    if (!walkers.contains(track.sensor))
+      walkers.emplace(track.sensor, registration::walker_of(track, config));
+  }
+  return walkers;
+}
+
+Registration solve_pairs_first(const core::SolveJob& job, Timestamp now) {
+  const std::vector<WalkTrack> walk = core::assembled(job.walk);
+  const auto walkers = walkers_of(walk, job.config);
+  std::vector<Pair> pairs = pairs_of(walkers);
+  on_all_cores(pairs.size(), [&](std::size_t i) {
+    if (job.stop.stop_requested()) return;
+    pairs[i].edge = registration::register_walkers(*pairs[i].target, *pairs[i].source, job.config);
+  });
+  std::map<std::pair<SensorId, SensorId>, const Pair*> solved;
+  for (const Pair& pair : pairs)
+    solved[{pair.target->trail.sensor, pair.source->trail.sensor}] = &pair;
+  const registration::PairEstimator look_up = [&](const Walker& target, const Walker& source) {
+    const auto found = solved.find({target.trail.sensor, source.trail.sensor});
+    if (found != solved.end() && found->second->edge) return *found->second->edge;
+    return Result<PairwiseRegistration>(fail(ErrorCode::Unavailable, "registration", "given up"));
+  };
+  return registration::solve_with(look_up, walk, now, job.config);
+}
+
+}  // namespace
+
+core::Solution solve(const core::SolveJob& job, Timestamp now) {
+  core::Solution solution{job.session, job.kind, {}, Duration{0}, false};
+  const auto begun = std::chrono::steady_clock::now();
+  try {
+    solution.registration = solve_pairs_first(job, now);
+  } catch (const std::exception& thrown) {
+    solution.registration.verdict = Verdict::Refused;
+    solution.registration.reasons = {std::string("the walk could not be solved: ") + thrown.what()};
+  }
+  solution.cost = std::chrono::steady_clock::now() - begun;
+  solution.given_up = job.stop.stop_requested();
+  return solution;
+}
+
+}  // namespace chorus::server

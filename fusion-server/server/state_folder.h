@@ -1,0 +1,28 @@
+// Where a fusion server keeps what must survive a restart, and whether folders can be used at all.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "common/base/result.h"
+
+namespace chorus::server {
+
+/// The value of an environment variable; null when it is not set.
+using Environment = std::function<const char*(const char* name)>;
+
+/// `configured` as it is, unless it is "auto": then the first of $STATE_DIRECTORY (systemd's),
+/// $XDG_STATE_HOME/chorus/fusion-PORT and $HOME/.local/state/chorus/fusion-PORT; empty when there
+/// is none of them, or no port to tell this server from another (0: any).
+[[nodiscard]] std::string state_folder(std::string_view configured, std::uint16_t port,
+                                       const Environment& environment);
+
+/// Makes the folder if need be and writes a file into it; the error says what is wrong with it.
+[[nodiscard]] Result<void> probe_folder(const std::string& folder);
+
+/// The viewer's files are there, with what they need.
+[[nodiscard]] Result<void> probe_viewer(const std::string& folder);
+
+}  // namespace chorus::server

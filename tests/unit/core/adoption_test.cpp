@@ -1,0 +1,162 @@
+// A new solve never spoils what was good, and a new sensor moves none of the others.
+#include "fusion-server/core/adoption.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/builders.h"
+
+namespace chorus::core {
+namespace {
+
+SensorId id(const char* text) { return *SensorId::parse(text); }
+
+constexpr int kRing = 5;
+
+/// Sensors s1, s2, ... of the ring, in a world that `world_from_ring` moves.
+Registration ring(Verdict verdict, std::vector<int> members,
+                  const Eigen::Isometry3d& world_from_ring = Eigen::Isometry3d::Identity()) {
+  Registration r;
+  r.verdict = verdict;
+  for (const int i : members) {
+    const SensorId sensor = id(("s" + std::to_string(i)).c_str());
+    if (r.sensors.empty()) r.master = sensor;
+    r.sensors[sensor].world_from_sensor = world_from_ring * testing::ring_sensor(i - 1, kRing);
+    r.sensors[sensor].chain = {r.master, sensor};
+    r.verdicts[sensor] = {verdict, {}};
+  }
+  return r;
+}
+
+Eigen::Isometry3d elsewhere() {
+  Eigen::Isometry3d move = Eigen::Isometry3d::Identity();
+  move.linear() = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  move.translation() = Eigen::Vector3d(1.0, 0.02, -2.0);
+  return move;
+}
+
+TEST(Replacing, AFailingSolveNeverReplacesAnything) {
+  const Registration good = ring(Verdict::Good, {1, 2});
+  for (const Verdict verdict : {Verdict::None, Verdict::Refused}) {
+    EXPECT_FALSE(adopted(good, ring(verdict, {1, 2, 3}), SolveKind::Final, false));
+    EXPECT_FALSE(adopted({}, ring(verdict, {1}), SolveKind::Final, false));
+  }
+  EXPECT_FALSE(adopted({}, ring(Verdict::Good, {}), SolveKind::Final, false));
+}
+
+TEST(Replacing, AnythingUsableReplacesNothing) {
+  EXPECT_TRUE(should_replace({}, ring(Verdict::Provisional, {1, 2}), SolveKind::Provisional));
+}
+
+TEST(Replacing, NeverByASmallerCircle) {
+  const Registration three = ring(Verdict::Provisional, {1, 2, 3});
+  EXPECT_FALSE(should_replace(three, ring(Verdict::Good, {1, 2}), SolveKind::Final));
+  EXPECT_FALSE(should_replace(three, ring(Verdict::Good, {1, 2, 4}), SolveKind::Final));
+}
+
+TEST(Replacing, AFinishedGoodWalkReplacesAnOlderGoodOneButNotHalfway) {
+  const Registration good = ring(Verdict::Good, {1, 2});
+  EXPECT_TRUE(should_replace(good, good, SolveKind::Final));
+  EXPECT_FALSE(should_replace(good, good, SolveKind::Provisional));
+  EXPECT_FALSE(should_replace(good, ring(Verdict::Provisional, {1, 2}), SolveKind::Final));
+}
+
+TEST(Replacing, ProvisionalOnesFollowEachOtherDuringAWalk) {
+  const Registration provisional = ring(Verdict::Provisional, {1, 2});
+  EXPECT_TRUE(should_replace(provisional, provisional, SolveKind::Provisional));
+  EXPECT_TRUE(should_replace(provisional, ring(Verdict::Good, {1, 2}), SolveKind::Provisional));
+}
+
+TEST(Extending, HoldsThePlacedSensorsAndMovesTheNewOneIntoTheirWorld) {
+  const Registration current = ring(Verdict::Good, {1, 2, 3});
+  const Registration candidate = ring(Verdict::Good, {1, 2, 3, 4}, elsewhere());
+  const auto wider = adopted(current, candidate, SolveKind::Provisional, true);
+  ASSERT_TRUE(wider) << wider.error().message;
+  ASSERT_EQ(wider->sensors.size(), 4u);
+  for (const auto& [sensor, place] : current.sensors) {
+    EXPECT_EQ(wider->sensors.at(sensor).world_from_sensor.matrix(),
+              place.world_from_sensor.matrix());
+  }
+  EXPECT_TRUE(
+      wider->sensors.at(id("s4")).world_from_sensor.isApprox(testing::ring_sensor(3, kRing), 1e-9));
+  EXPECT_EQ(wider->verdict, Verdict::Good);
+  EXPECT_EQ(wider->master, current.master);
+  EXPECT_EQ(wider->sensors.at(id("s4")).chain.front(), current.master);
+}
+
+TEST(Extending, OneHeldSensorIsEnough) {
+  const auto wider = adopted(ring(Verdict::Good, {2}), ring(Verdict::Good, {2, 4}, elsewhere()),
+                             SolveKind::Final, true);
+  ASSERT_TRUE(wider) << wider.error().message;
+  EXPECT_TRUE(
+      wider->sensors.at(id("s4")).world_from_sensor.isApprox(testing::ring_sensor(3, kRing), 1e-9));
+}
+
+TEST(Extending, ANewcomerThatIsNotGoodWaitsForTheEndOfTheWalkAndSpoilsNobodysVerdict) {
+  const Registration current = ring(Verdict::Good, {1, 2});
+  Registration candidate = ring(Verdict::Provisional, {1, 2, 3});
+  candidate.reasons = {"the walk lasted only 8 s"};
+  EXPECT_EQ(adopted(current, candidate, SolveKind::Provisional, true).error().code,
+            ErrorCode::NotFound);
+  const auto wider = adopted(current, candidate, SolveKind::Final, true);
+  ASSERT_TRUE(wider);
+  EXPECT_EQ(verdict_of(*wider, id("s1")), Verdict::Good);
+  EXPECT_EQ(verdict_of(*wider, id("s2")), Verdict::Good);
+  EXPECT_EQ(verdict_of(*wider, id("s3")), Verdict::Provisional);
+  EXPECT_EQ(wider->verdicts.at(id("s3")).reasons, candidate.reasons);
+  EXPECT_EQ(wider->verdict, Verdict::Provisional);
+}
+
+TEST(Extending, GivenPlacesWithoutVerdictsAreHeldToo) {
+  Registration given = ring(Verdict::Good, {1, 2});
+  given.verdicts.clear();
+  const auto wider =
+      adopted(given, ring(Verdict::Good, {1, 2, 3}, elsewhere()), SolveKind::Final, true);
+  ASSERT_TRUE(wider);
+  EXPECT_EQ(wider->verdict, Verdict::Good);
+  EXPECT_EQ(wider->verdicts.size(), 3u);
+}
+
+TEST(Extending, SaysSoWhenThePlacedSensorsDoNotStandAsTheWalkShowsThem) {
+  Registration candidate = ring(Verdict::Good, {1, 2, 3});
+  candidate.sensors.at(id("s2")).world_from_sensor.translation().x() += 2.0;  // bumped
+  const auto wider = adopted(ring(Verdict::Good, {1, 2}), candidate, SolveKind::Final, true);
+  ASSERT_FALSE(wider);
+  EXPECT_EQ(wider.error().code, ErrorCode::Conflict);
+  EXPECT_NE(wider.error().message.find("--fresh"), std::string::npos);
+}
+
+TEST(Extending, AskedForByAPersonAGoodWalkReplacesAll) {
+  const Registration candidate = ring(Verdict::Good, {1, 2, 3}, elsewhere());
+  const auto next = adopted(ring(Verdict::Good, {1, 2}), candidate, SolveKind::Final, false);
+  ASSERT_TRUE(next);
+  EXPECT_EQ(next->sensors.at(id("s1")).world_from_sensor.matrix(),
+            candidate.sensors.at(id("s1")).world_from_sensor.matrix());
+}
+
+TEST(Refusals, AreToldOfSensorsWithoutAPlaceAndLeaveTheVerdict) {
+  Registration current = ring(Verdict::Good, {1, 2});
+  Registration candidate = ring(Verdict::Good, {1, 2});
+  candidate.verdicts[id("s5")] = {Verdict::Refused, {"s5 saw a coat stand"}};
+  candidate.verdicts[id("s1")] = {Verdict::Refused, {"not this time"}};
+  note_refusals(current, candidate);
+  note_refusals(current, candidate);
+  EXPECT_EQ(current.verdict, Verdict::Good);
+  EXPECT_EQ(current.reasons, std::vector<std::string>{"s5 saw a coat stand"});
+  EXPECT_EQ(verdict_of(current, id("s1")), Verdict::Good);
+  EXPECT_EQ(verdict_of(current, id("s5")), Verdict::None);
+  EXPECT_EQ(current.verdicts.at(id("s5")).verdict, Verdict::Refused);
+  // Placed later, the old refusal is gone.
+  const auto wider = adopted(current, ring(Verdict::Good, {1, 2, 5}), SolveKind::Final, true);
+  ASSERT_TRUE(wider);
+  EXPECT_TRUE(wider->reasons.empty());
+}
+
+TEST(Unplaced, NamesTheSensorsThatSeeButHaveNoPlace) {
+  const Registration r = ring(Verdict::Good, {1, 2});
+  EXPECT_TRUE(unplaced(r, {id("s1"), id("s2")}).empty());
+  EXPECT_EQ(unplaced(r, {id("s1"), id("s3")}), std::set<SensorId>{id("s3")});
+  EXPECT_EQ(unplaced({}, {id("s1")}).size(), 1u);
+}
+
+}  // namespace
+}  // namespace chorus::core

@@ -1,0 +1,102 @@
+// Whoever stands in the room is told what to do next, in each state that waits for something.
+#include "fusion-server/core/awaited.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/builders.h"
+
+namespace chorus::core {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::kStart;
+using testing::sensor_id;
+
+class Awaited : public ::testing::Test {
+ protected:
+  void see(const char* sensor, std::size_t bodies) {
+    SensorFrame frame = testing::sensor_frame(sensor, kStart, std::vector<BodyFrame>(bodies));
+    frame.received = kStart;
+    sightings_.add(frame);
+  }
+  void place(const char* sensor) { registration_.sensors[sensor_id(sensor)] = Extrinsics{}; }
+  std::vector<std::string> said() {
+    Situation s{sensors_, registration_, sightings_, nullptr, automatic_, retry_, kStart};
+    if (session_) s.session = &*session_;
+    return awaited(s);
+  }
+
+  std::set<SensorId> sensors_{sensor_id("s1"), sensor_id("s2"), sensor_id("s3")};
+  Registration registration_;
+  Sightings sightings_;
+  std::optional<SessionStatus> session_;
+  bool automatic_ = true;
+  std::optional<Duration> retry_;
+};
+
+TEST_F(Awaited, NoSensorsAndDeadSensors) {
+  EXPECT_THAT(said(), ElementsAre(HasSubstr("none of the sensors delivers frames")));
+  sensors_.clear();
+  EXPECT_THAT(said(), ElementsAre(HasSubstr("no sensors are configured")));
+}
+
+TEST_F(Awaited, NobodyThenOneSensorThenAWalk) {
+  see("s1", 0);
+  see("s2", 0);
+  EXPECT_THAT(said(), ElementsAre("sensor s3 delivers no frames: see /sensors/ for the reason",
+                                  HasSubstr("nobody is in sight")));
+  see("s3", 0);
+  see("s1", 1);
+  EXPECT_THAT(said(), ElementsAre(HasSubstr("only sensor s1 sees somebody")));
+  see("s2", 1);
+  EXPECT_THAT(said(), ElementsAre("a session starts by itself"));
+  automatic_ = false;
+  EXPECT_THAT(said(), ElementsAre(HasSubstr("run chorus register")));
+}
+
+TEST_F(Awaited, SeveralPeople) {
+  for (const char* sensor : {"s1", "s2", "s3"}) see(sensor, 2);
+  EXPECT_THAT(said(), ElementsAre(HasSubstr("sensors s1, s2 and s3 see more than one body")));
+}
+
+TEST_F(Awaited, TheRestOfTheWalkAndItsSolution) {
+  for (const char* sensor : {"s1", "s2", "s3"}) see(sensor, 1);
+  session_.emplace();
+  session_->state = SessionState::Collecting;
+  session_->elapsed = 12.4;
+  session_->target = 30;
+  EXPECT_THAT(said(), ElementsAre("keep walking: 18 s more"));
+  session_->state = SessionState::Solving;
+  EXPECT_THAT(said(), ElementsAre(HasSubstr("being solved")));
+}
+
+TEST_F(Awaited, NothingWhenAllHaveAPlaceAndTheMissingOneWhenOneHasNot) {
+  for (const char* sensor : {"s1", "s2", "s3"}) see(sensor, 1);
+  place("s1");
+  place("s2");
+  retry_ = std::chrono::milliseconds(29500);
+  EXPECT_THAT(said(), ElementsAre("sensor s3 has no place yet",
+                                  HasSubstr("the next try by itself is in 30 s")));
+  place("s3");
+  EXPECT_THAT(said(), IsEmpty());
+}
+
+TEST(Sightings, AreOfTheNewestFrameAndGrowOld) {
+  Sightings sightings;
+  SensorFrame frame = testing::sensor_frame("s1", kStart, std::vector<BodyFrame>(2));
+  frame.received = kStart;
+  sightings.add(frame);
+  EXPECT_EQ(sightings.bodies(sensor_id("s1"), kStart + std::chrono::seconds(1)), 2u);
+  EXPECT_EQ(sightings.bodies(sensor_id("s1"), kStart + std::chrono::seconds(3)), 0u);
+  EXPECT_FALSE(sightings.delivers(sensor_id("s1"), kStart + std::chrono::seconds(3)));
+  EXPECT_EQ(sightings.bodies(sensor_id("s2"), kStart), 0u);
+  EXPECT_EQ(sightings.seeing(kStart), std::set{sensor_id("s1")});
+  sightings.keep({});
+  EXPECT_TRUE(sightings.seeing(kStart).empty());
+}
+
+}  // namespace
+}  // namespace chorus::core

@@ -1,0 +1,256 @@
+// Sessions by number: who starts them, what they put into use, what they take back.
+#include "fusion-server/core/registrar.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/builders.h"
+
+namespace chorus::core {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using testing::kStart;
+using testing::sensor_id;
+
+constexpr int kSensors = 3;
+
+std::string name(int sensor) { return "s" + std::to_string(sensor + 1); }
+
+RegistrarConfig config() {
+  RegistrarConfig c;
+  for (int i = 0; i < kSensors; ++i) c.sensors.insert(sensor_id(name(i)));
+  return c;
+}
+
+Registration ring(int count = kSensors, Verdict verdict = Verdict::Good) {
+  Registration r;
+  r.verdict = verdict;
+  r.version = 4;
+  r.master = sensor_id("s1");
+  for (int i = 0; i < count; ++i) {
+    r.sensors[sensor_id(name(i))].world_from_sensor = testing::ring_sensor(i, kSensors);
+    r.verdicts[sensor_id(name(i))] = {verdict, {}};
+  }
+  return r;
+}
+
+Registration refused(const std::string& reason = "sensors s1 and s2 disagree") {
+  Registration r;
+  r.verdict = Verdict::Refused;
+  r.reasons = {reason};
+  for (int i = 0; i < kSensors; ++i) r.verdicts[sensor_id(name(i))] = {Verdict::Refused, {reason}};
+  return r;
+}
+
+/// What a coat stand does: all others stand well, the last one cannot be placed.
+Registration all_but_the_last() {
+  Registration r = ring(kSensors - 1);
+  const std::string reason = "sensor s3 saw nobody walk";
+  r.verdicts[sensor_id("s3")] = {Verdict::Refused, {reason}};
+  r.reasons = {reason};
+  return r;
+}
+
+class Sessions : public ::testing::Test {
+ protected:
+  void begin_with(Registration registration, std::uint64_t first = 7) {
+    registrar_.emplace(config(), std::move(registration), first);
+  }
+  Registrar& registrar() { return *registrar_; }
+
+  /// All sensors see one person for so long; the first job that is due on the way.
+  std::optional<SolveJob> walk(Duration length, int sensors = kSensors) {
+    for (const Timestamp end = now_ + length; now_ < end; now_ += milliseconds(33)) {
+      for (int i = 0; i < sensors; ++i) {
+        SensorFrame frame = testing::sensor_frame(name(i), now_, {BodyFrame{}});
+        frame.received = now_;
+        registrar().take(frame);
+      }
+      if (auto job = registrar().due_job(now_)) return job;
+    }
+    return std::nullopt;
+  }
+  Outcome answer(const SolveJob& job, Registration registration) {
+    return registrar().solved({job.session, job.kind, std::move(registration)}, now_);
+  }
+  SessionStatus newest() { return registrar().sessions().front(); }
+
+  std::optional<Registrar> registrar_;
+  Timestamp now_ = kStart;
+};
+
+TEST_F(Sessions, HaveANumberFromTheStartAndStayReadable) {
+  begin_with(ring());
+  const auto id = registrar().start(seconds(8), now_);
+  ASSERT_TRUE(id);
+  EXPECT_EQ(*id, 7u);
+  EXPECT_EQ(newest().state, SessionState::Collecting);
+  auto job = walk(seconds(20));
+  ASSERT_TRUE(job);
+  EXPECT_EQ(job->kind, SolveKind::Provisional);
+  EXPECT_EQ(answer(*job, ring()), Outcome::Nothing);  // half a walk does not replace a good one
+  job = walk(seconds(20));
+  ASSERT_EQ(job->kind, SolveKind::Final);
+  EXPECT_EQ(newest().state, SessionState::Solving);
+  EXPECT_EQ(answer(*job, ring()), Outcome::Adopted);
+  EXPECT_EQ(newest().state, SessionState::Done);
+  EXPECT_EQ(newest().verdict, Verdict::Good);
+  EXPECT_TRUE(newest().adopted);
+  EXPECT_NEAR(newest().elapsed, 8.0, 0.1);
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(*registrar().start(seconds(8), now_), 8u + static_cast<unsigned>(i));
+    ASSERT_TRUE(registrar().cancel(newest().id, now_));
+  }
+  EXPECT_EQ(registrar().sessions().size(), 8u);
+  EXPECT_EQ(newest().state, SessionState::Cancelled);
+  EXPECT_EQ(registrar().cancel(newest().id, now_).error().code, ErrorCode::NotFound);
+}
+
+TEST_F(Sessions, OneThatStartedByItselfBecomesTheClientsOwnAndAnotherClientsIsRefused) {
+  begin_with({});
+  ASSERT_FALSE(walk(seconds(3)));
+  ASSERT_TRUE(newest().automatic);
+  EXPECT_EQ(*registrar().start(seconds(60), now_), newest().id);
+  EXPECT_FALSE(newest().automatic);
+  EXPECT_EQ(newest().target, 60.0);
+  EXPECT_GT(newest().elapsed, 2.5) << "what was collected stays";
+  EXPECT_EQ(registrar().start(seconds(8), now_).error().code, ErrorCode::Conflict);
+}
+
+TEST_F(Sessions, AFailingOneLeavesTheRegistrationAndSaysWhy) {
+  begin_with(ring());
+  ASSERT_TRUE(registrar().start(seconds(8), now_));
+  EXPECT_EQ(registrar().solved({7, SolveKind::Final, refused()}, now_), Outcome::Nothing);
+  EXPECT_EQ(registrar().registration().verdict, Verdict::Good);
+  EXPECT_EQ(registrar().registration().version, 4u);
+  EXPECT_FALSE(newest().adopted);
+  EXPECT_EQ(newest().verdict, Verdict::Refused);
+  EXPECT_THAT(newest().reasons, Contains("sensors s1 and s2 disagree"));
+}
+
+TEST_F(Sessions, AWalkThatMissesASensorSaysWhatToDo) {
+  begin_with(ring());
+  ASSERT_TRUE(registrar().start(seconds(8), now_));
+  EXPECT_EQ(registrar().solved({7, SolveKind::Final, ring(2)}, now_), Outcome::Nothing);
+  EXPECT_THAT(newest().reasons,
+              Contains("the registration in use places sensor s3, this walk does not; chorus "
+                       "register --fresh (DELETE /registration) gives it up"));
+}
+
+TEST_F(Sessions, ARefusedEndTakesTheSessionsOwnProvisionalBackAndSaysSo) {
+  begin_with({});
+  ASSERT_TRUE(registrar().start(seconds(8), now_));
+  EXPECT_EQ(registrar().solved({7, SolveKind::Provisional, ring(3, Verdict::Provisional)}, now_),
+            Outcome::Adopted);
+  EXPECT_TRUE(newest().adopted);
+  const std::uint64_t version = registrar().registration().version;
+  EXPECT_EQ(registrar().solved({7, SolveKind::Final, refused()}, now_), Outcome::Withdrawn);
+  EXPECT_TRUE(registrar().registration().sensors.empty());
+  EXPECT_GT(registrar().registration().version, version) << "readers see that it changed";
+  EXPECT_THAT(registrar().registration().reasons, Contains("sensors s1 and s2 disagree"));
+  EXPECT_FALSE(newest().adopted);
+  EXPECT_THAT(newest().reasons, Contains(HasSubstr("withdrawn; there is none now")));
+}
+
+TEST_F(Sessions, TheOneFromBeforeIsInUseAgainWhenTheEndIsRefused) {
+  begin_with(ring(3, Verdict::Provisional));
+  ASSERT_TRUE(registrar().start(seconds(8), now_));
+  Registration moved = ring();
+  for (auto& [sensor, place] : moved.sensors) place.world_from_sensor.translation().x() += 1.0;
+  EXPECT_EQ(registrar().solved({7, SolveKind::Provisional, moved}, now_), Outcome::Adopted);
+  EXPECT_EQ(registrar().solved({7, SolveKind::Final, refused()}, now_), Outcome::Withdrawn);
+  EXPECT_EQ(registrar().registration().verdict, Verdict::Provisional);
+  EXPECT_EQ(registrar().registration().sensors.at(sensor_id("s1")).world_from_sensor.matrix(),
+            testing::ring_sensor(0, kSensors).matrix());
+  EXPECT_THAT(newest().reasons, Contains(HasSubstr("the one from before is in use again")));
+}
+
+TEST_F(Sessions, CancellingIsAsIfItHadNeverBeenAndNoneStartsByItselfForAWhile) {
+  begin_with({});
+  ASSERT_FALSE(walk(seconds(2)));
+  ASSERT_EQ(registrar().solved({7, SolveKind::Provisional, ring(3, Verdict::Provisional)}, now_),
+            Outcome::Adopted);
+  ASSERT_TRUE(registrar().cancel(7, now_));
+  EXPECT_TRUE(registrar().registration().sensors.empty());
+  EXPECT_EQ(registrar().solved({7, SolveKind::Final, ring()}, now_), Outcome::Nothing);
+  ASSERT_FALSE(walk(seconds(5)));
+  EXPECT_EQ(newest().state, SessionState::Cancelled);
+  EXPECT_THAT(registrar().awaits(now_), Contains(HasSubstr("the next try by itself is in")));
+  ASSERT_TRUE(walk(seconds(70)));
+  EXPECT_EQ(newest().id, 8u);
+}
+
+TEST_F(Sessions, ForgettingCancelsAndTheVersionGoesOn) {
+  begin_with(ring());
+  ASSERT_TRUE(registrar().start(seconds(8), now_));
+  registrar().forget();
+  EXPECT_EQ(newest().state, SessionState::Cancelled);
+  EXPECT_EQ(registrar().solved({7, SolveKind::Final, ring()}, now_), Outcome::Nothing);
+  EXPECT_TRUE(registrar().registration().sensors.empty());
+  EXPECT_EQ(registrar().registration().version, 4u);
+}
+
+TEST_F(Sessions, ASensorAddedLaterIsPlacedAndTheOthersStayGoodAllTheWay) {
+  begin_with(ring(2));
+  const Registration before = registrar().registration();
+  bool added = false;
+  for (int solves = 0; solves < 40 && !(added && newest().state == SessionState::Done); ++solves) {
+    const auto job = walk(seconds(10));
+    ASSERT_TRUE(job);
+    const bool long_enough = newest().elapsed > 20.0;
+    Registration candidate = ring(3, long_enough ? Verdict::Good : Verdict::Provisional);
+    added = answer(*job, candidate) == Outcome::Adopted || added;
+    EXPECT_EQ(registrar().registration().verdict, Verdict::Good);
+    for (const auto& [sensor, place] : before.sensors) {
+      EXPECT_EQ(registrar().registration().sensors.at(sensor).world_from_sensor.matrix(),
+                place.world_from_sensor.matrix());
+    }
+  }
+  EXPECT_EQ(registrar().registration().sensors.size(), 3u);
+  EXPECT_TRUE(newest().adopted);
+}
+
+TEST_F(Sessions, ACoatStandNeitherKeepsTheVerdictFromGoodNorStartsSessionAfterSession) {
+  begin_with({});
+  int finals = 0;
+  std::uint64_t version = 0;
+  for (const Timestamp end = kStart + std::chrono::minutes(10); now_ < end;) {
+    const auto job = walk(seconds(40));
+    if (!job) continue;
+    (void)answer(*job, all_but_the_last());
+    if (job->kind != SolveKind::Final) continue;
+    ++finals;
+    if (finals == 1) version = registrar().registration().version;
+    EXPECT_EQ(registrar().registration().verdict, Verdict::Good);
+  }
+  EXPECT_EQ(registrar().registration().version, version) << "and changes nothing any more";
+  EXPECT_LE(finals, 5);  // after 30, 60, 120, 240 s
+  EXPECT_GE(finals, 3);
+  EXPECT_THAT(registrar().registration().reasons, Contains("sensor s3 saw nobody walk"));
+  EXPECT_EQ(newest().verdict, Verdict::Refused);
+  EXPECT_THAT(registrar().awaits(now_), Contains("sensor s3 has no place yet"));
+}
+
+TEST_F(Sessions, NobodyWaitsForAProvisionalSolveAtTheEndOfTheWalk) {
+  begin_with(ring());
+  ASSERT_TRUE(registrar().start(seconds(8), now_));
+  const auto job = walk(seconds(10));
+  ASSERT_TRUE(job);
+  ASSERT_EQ(job->kind, SolveKind::Provisional);
+  EXPECT_FALSE(job->stop.stop_requested());
+  ASSERT_FALSE(walk(seconds(3)));  // still being solved when the walk is over
+  EXPECT_TRUE(job->stop.stop_requested());
+  Solution nothing{job->session, job->kind, {}};
+  nothing.given_up = true;
+  EXPECT_EQ(registrar().solved(std::move(nothing), now_), Outcome::Nothing);
+  const auto last = walk(seconds(1));
+  ASSERT_TRUE(last);
+  EXPECT_EQ(last->kind, SolveKind::Final);
+}
+
+}  // namespace
+}  // namespace chorus::core
