@@ -11,6 +11,7 @@
 #include "common/base/nearest.h"
 #include "common/base/version.h"
 #include "services/ctl/command.h"
+#include "services/ctl/console.h"
 
 namespace chorus::ctl {
 namespace {
@@ -30,13 +31,17 @@ constexpr std::array kCommands{
             "Examples:\n"
             "  chorus register                        walk through the room until it says so\n"
             "  chorus register --seconds 45 --fresh   forget what is known first\n"
+            "  chorus register --cancel               end the session that runs\n"
             "  chorus register --json | jq .verdict\n"
-            "Exit code 0: good or provisional; 1: refused, the reasons are printed.",
+            "A session that has started by itself is joined.  The verdict is this walk's own.\n"
+            "Exit code 0: good or provisional, and in use; 1: refused (the reasons are printed),\n"
+            "cancelled, nobody walked, or no server.",
             &add_register},
     Command{"status", "Shows the sensors, the registration and the fused bodies of a fusion server",
             "Examples:\n"
             "  chorus status\n"
-            "  chorus status --url http://127.0.0.1:8080/ --json | jq .sensors",
+            "  chorus status --url http://127.0.0.1:8080/ --json | jq .sensors\n"
+            "Exit code 0: at least one sensor is live; 1: none is, or no server.",
             &add_status},
     Command{"record", "Records a running sensor or fusion server into a file on this machine",
             "Examples:\n"
@@ -97,7 +102,8 @@ int run_added(const std::vector<Added>& all) {
     if (!each.options->parsed()) continue;
     const Result<int> code = each.run();
     if (code) return *code;
-    std::cerr << fmt::format("chorus {}: {}\n", each.options->get_name(), to_string(code.error()));
+    std::cerr << fmt::format("chorus {}: {}\n", each.options->get_name(),
+                             printable(to_string(code.error())));
     return kExitFailed;
   }
   return kExitUsage;

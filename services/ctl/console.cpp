@@ -13,9 +13,45 @@ namespace {
 
 constexpr int kBarWidth = 30;  // characters
 
+/// C0, DEL, and C1 as UTF-8 writes it: 0xC2 and then 0x80 to 0x9F.
+std::size_t control_at(std::string_view text, std::size_t i) {
+  const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
+  if (byte(i) < 0x20 || byte(i) == 0x7F) return 1;
+  const bool c1 =
+      byte(i) == 0xC2 && i + 1 < text.size() && byte(i + 1) >= 0x80 && byte(i + 1) < 0xA0;
+  return c1 ? 2 : 0;
+}
+
 }  // namespace
 
-std::string table(const std::vector<std::vector<std::string>>& rows) {
+std::string printable(std::string_view text) {
+  std::string plain;
+  plain.reserve(text.size());
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t control = control_at(text, i);
+    plain += control > 0 ? '?' : text[i];
+    i += control > 0 ? control : 1;
+  }
+  return plain;
+}
+
+std::vector<std::string> lines_at(const nlohmann::json& object, const char* key) {
+  std::vector<std::string> lines;
+  if (!object.is_object()) return lines;
+  const auto found = object.find(key);
+  if (found == object.end() || !found->is_array()) return lines;
+  for (const auto& line : *found) {
+    if (line.is_string()) lines.push_back(printable(line.get<std::string>()));
+  }
+  return lines;
+}
+
+std::string json_text(const nlohmann::json& value) { return value.dump(2, ' ', true) + "\n"; }
+
+std::string table(std::vector<std::vector<std::string>> rows) {
+  for (auto& row : rows) {
+    for (std::string& cell : row) cell = printable(cell);
+  }
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()), 0);
@@ -35,7 +71,8 @@ std::string shown(double value, int digits) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
 }
 
-void Progress::show(double fraction, std::string_view remark) {
+void Progress::show(double fraction, std::string_view said) {
+  const std::string remark = printable(said);
   const double part = std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0;
   const int percent = static_cast<int>(std::floor(part * 100.0));
   if (terminal_) {

@@ -7,10 +7,22 @@
 #include <string_view>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 namespace chorus::ctl {
 
+/// One line without control and escape characters, whatever somebody else wrote: they become "?".
+[[nodiscard]] std::string printable(std::string_view text);
+
+/// The strings of an array member, each printable; none where there is no such array.
+[[nodiscard]] std::vector<std::string> lines_at(const nlohmann::json& object, const char* key);
+
+/// Indented, with a newline; everything that is not ASCII escaped.
+[[nodiscard]] std::string json_text(const nlohmann::json& value);
+
 /// Columns aligned to their widest cell, two blanks between; the first row is the heading.
-[[nodiscard]] std::string table(const std::vector<std::vector<std::string>>& rows);
+/// Cells are printed as printable().
+[[nodiscard]] std::string table(std::vector<std::vector<std::string>> rows);
 
 /// "1.23", or "-" when the number is not finite.
 [[nodiscard]] std::string shown(double value, int digits);

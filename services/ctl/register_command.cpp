@@ -1,4 +1,5 @@
-// chorus register: starts a registration session and stays until its verdict.
+// chorus register: starts a registration session, or joins the one that runs, and stays until its
+// verdict.
 #include <chrono>
 #include <iostream>
 #include <memory>
@@ -17,6 +18,10 @@
 namespace chorus::ctl {
 namespace {
 
+using client::part_at;
+using client::ServiceClient;
+using client::text_at;
+
 constexpr std::chrono::milliseconds kAskEvery{250};
 /// The server counts only time in which somebody is seen; after this long without any, nobody will
 /// come.
@@ -26,65 +31,133 @@ struct RegisterArguments {
   std::string url = client::kDefaultServer;
   double seconds = 30.0;  // a walk through a room, as in the guide
   bool fresh = false;
+  bool cancel = false;
   bool json = false;
 };
 
-bool collecting(const nlohmann::json& registration) {
-  return client::text_at(client::part_at(registration, "session"), "state") == "collecting";
+/// Where the newest session of this /registration document is followed; NotFound when it names
+/// none.
+Result<std::string> session_of(const nlohmann::json& registration, const std::string& url) {
+  std::string path = text_at(part_at(registration, "session"), "progress", "");
+  if (path.starts_with('/')) return path;
+  return fail(ErrorCode::NotFound, url, "names no registration session. Is it an older server?");
 }
 
-/// Follows the session until it is idle again; every answer moves the bar.
-Result<nlohmann::json> follow(const client::ServiceClient& server, const std::string& url) {
+bool idle(const nlohmann::json& registration) {
+  return text_at(part_at(registration, "session"), "state", "idle") == "idle";
+}
+
+/// Starts a session; one that somebody else has started is joined.
+Result<std::string> start(const ServiceClient& server, const RegisterArguments& arguments) {
+  const auto started = server.post("/registration", {{"seconds", arguments.seconds}});
+  if (started) return session_of(*started, arguments.url);
+  if (started.error().code != ErrorCode::Conflict) return pass(started);
+  const auto registration = server.get("/registration");
+  if (!registration) return pass(registration);
+  if (idle(*registration)) return pass(started);  // refused for another reason, or over meanwhile
+  std::cerr << "a session is running already; this is its progress "
+               "(chorus register --cancel ends it)\n";
+  return session_of(*registration, arguments.url);
+}
+
+/// What is missing, told when it changes; how long is still to walk is the bar's business.
+class Advice {
+ public:
+  void tell(const nlohmann::json& session, Progress& progress) {
+    std::string next;
+    for (const std::string& line : lines_at(session, "awaits")) {
+      if (!line.starts_with("keep walking")) next += "  " + line + "\n";
+    }
+    if (next == told_) return;
+    told_ = next;
+    progress.finish();
+    std::cerr << next;
+  }
+
+ private:
+  std::string told_;
+};
+
+/// Follows one session to its end; every answer moves the bar.
+Result<nlohmann::json> follow(const ServiceClient& server, const std::string& path,
+                              const std::string& url) {
   Progress progress(std::cerr, on_terminal(), "walk through the room");
+  Advice advice;
   auto last_step = std::chrono::steady_clock::now();
   double last_elapsed = -1.0;
   while (std::chrono::steady_clock::now() - last_step < kPatience) {
-    const auto registration = server.get("/registration");
-    if (!registration || !collecting(*registration)) {
-      if (registration) progress.show(1.0, client::text_at(*registration, "verdict"));
+    const auto session = server.get(path);
+    if (!session) return pass(session);
+    const std::string state = text_at(*session, "state");
+    const std::string verdict = text_at(*session, "verdict");
+    if (state == "done" || state == "cancelled") {
+      progress.show(1.0, state == "done" ? verdict : state);
       progress.finish();
-      return registration;
+      return session;
     }
-    const auto& session = client::part_at(*registration, "session");
-    const double elapsed = client::number_at(session, "elapsedSeconds");
-    const double target = client::number_at(session, "targetSeconds");
+    const double elapsed = client::number_at(*session, "elapsedSeconds");
+    const double target = client::number_at(*session, "targetSeconds");
     if (elapsed > last_elapsed) last_step = std::chrono::steady_clock::now();
     last_elapsed = elapsed;
-    progress.show(elapsed / (target > 0.0 ? target : 1.0),
-                  client::text_at(*registration, "verdict"));
+    progress.show(elapsed / (target > 0.0 ? target : 1.0), state == "solving" ? state : verdict);
+    advice.tell(*session, progress);
     std::this_thread::sleep_for(kAskEvery);
   }
   progress.finish();
   return fail(ErrorCode::Timeout, url,
-              "no sensor has seen anybody for a minute; the session goes on.");
+              "no sensor has seen anybody for a minute; the session goes on (chorus register joins "
+              "it, chorus register --cancel ends it)");
 }
 
-/// What the walk lacked when its result was not taken; the registration is then the one from
-/// before.
-bool print_shortcomings(const nlohmann::json& registration) {
-  const auto& reasons = client::part_at(client::part_at(registration, "session"), "reasons");
-  if (reasons.empty()) return false;
-  std::cerr << "this walk was not good enough:\n";
-  for (const auto& reason : reasons) {
-    if (reason.is_string()) std::cerr << "  " << reason.get<std::string>() << '\n';
+/// The session's own verdict: what was in use before it does not count.
+int report(const nlohmann::json& session, const nlohmann::json& registration, bool json) {
+  const std::string verdict = text_at(session, "verdict");
+  const auto adopted = session.find("adopted");
+  const bool in_use = adopted != session.end() && adopted->is_boolean() && adopted->get<bool>();
+  const bool done = text_at(session, "state") == "done";
+  const bool good = done && in_use && (verdict == "Good" || verdict == "Provisional");
+  if (json) {
+    nlohmann::json whole = session;
+    whole["registration"] = registration;
+    std::cout << json_text(whole);
+  } else {
+    if (!good) {
+      std::cerr << (done ? "this walk was not good enough:\n" : "the session was cancelled:\n");
+      for (const std::string& reason : lines_at(session, "reasons"))
+        std::cerr << "  " << reason << '\n';
+    }
+    std::cout << registration_report(registration);
   }
-  return true;
+  return good ? kExitOk : kExitFailed;
+}
+
+Result<int> cancel(const ServiceClient& server, const RegisterArguments& arguments) {
+  const auto registration = server.get("/registration");
+  if (!registration) return pass(registration);
+  if (idle(*registration)) {
+    return fail(ErrorCode::NotFound, arguments.url, "no registration session runs");
+  }
+  const auto path = session_of(*registration, arguments.url);
+  if (!path) return pass(path);
+  if (const auto cancelled = server.remove(*path); !cancelled) return pass(cancelled);
+  std::cout << "cancelled; the registration is what it was before the session\n";
+  return kExitOk;
 }
 
 Result<int> run_register(const RegisterArguments& arguments) {
-  const auto server = client::ServiceClient::of(arguments.url);
+  const auto server = ServiceClient::of(arguments.url);
   if (!server) return pass(server);
+  if (arguments.cancel) return cancel(*server, arguments);
   if (arguments.fresh) {
     if (const auto forgotten = server->remove("/registration"); !forgotten) return pass(forgotten);
   }
-  const auto started = server->post("/registration", {{"seconds", arguments.seconds}});
-  if (!started) return pass(started);
-  const auto registration = follow(*server, arguments.url);
+  const auto path = start(*server, arguments);
+  if (!path) return pass(path);
+  const auto session = follow(*server, *path, arguments.url);
+  if (!session) return pass(session);
+  const auto registration = server->get("/registration");
   if (!registration) return pass(registration);
-  std::cout << (arguments.json ? registration->dump(2) + "\n" : registration_report(*registration));
-  if (print_shortcomings(*registration)) return kExitFailed;
-  const std::string verdict = client::text_at(*registration, "verdict");
-  return verdict == "Good" || verdict == "Provisional" ? kExitOk : kExitFailed;
+  return report(*session, *registration, arguments.json);
 }
 
 }  // namespace
@@ -95,7 +168,12 @@ Run add_register(CLI::App& options) {
   options.add_option("--seconds", arguments->seconds, "Length of the walk")
       ->check(CLI::Range(rest::kShortestSession, rest::kLongestSession))
       ->capture_default_str();
-  options.add_flag("--fresh", arguments->fresh, "Forget the registration there is before starting");
+  auto* fresh = options.add_flag("--fresh", arguments->fresh,
+                                 "Forget the registration there is before starting");
+  options
+      .add_flag("--cancel", arguments->cancel,
+                "End the session that runs; the registration is then what it was before")
+      ->excludes(fresh);
   options.add_flag("--json", arguments->json, "Report as JSON");
   return [arguments] { return run_register(*arguments); };
 }

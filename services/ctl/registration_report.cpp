@@ -32,22 +32,26 @@ std::string chain_shown(const nlohmann::json& sensor) {
 
 std::string registration_report(const nlohmann::json& registration) {
   std::string text =
-      fmt::format("registration: {}", client::text_at(registration, "verdict", "None"));
+      fmt::format("registration: {}", printable(client::text_at(registration, "verdict", "None")));
   const std::string master = client::text_at(registration, "master", "");
-  if (!master.empty()) text += fmt::format(", master {}", master);
+  if (!master.empty()) text += fmt::format(", master {}", printable(master));
   text += "\n";
-  for (const auto& reason : client::part_at(registration, "reasons")) {
-    if (reason.is_string()) text += "  " + reason.get<std::string>() + "\n";
-  }
+  for (const std::string& reason : lines_at(registration, "reasons")) text += "  " + reason + "\n";
+  for (const std::string& next : lines_at(registration, "awaits")) text += "  next: " + next + "\n";
+  const std::string problem = client::text_at(registration, "storeProblem", "");
+  if (!problem.empty()) text += "  not stored: " + printable(problem) + "\n";
   std::vector<std::vector<std::string>> rows{
-      {"sensor", "x [m]", "y [m]", "z [m]", "yaw [deg]", "error [mm]", "chain"}};
+      {"sensor", "verdict", "x [m]", "y [m]", "z [m]", "yaw [deg]", "error [mm]", "chain"}};
   for (const auto& [name, sensor] : client::part_at(registration, "sensors").items()) {
-    rows.push_back({name, shown(client::number_at(sensor, "x"), 3),
+    rows.push_back({name, client::text_at(sensor, "verdict"),
+                    shown(client::number_at(sensor, "x"), 3),
                     shown(client::number_at(sensor, "y"), 3),
                     shown(client::number_at(sensor, "z"), 3), yaw_shown(sensor),
                     shown(to_mm(client::number_at(sensor, "error")), 1), chain_shown(sensor)});
   }
-  if (rows.size() > 1) text += table(rows);
+  for (const auto& [name, sensor] : client::part_at(registration, "unplaced").items())
+    rows.push_back({name, client::text_at(sensor, "verdict"), "-", "-", "-", "-", "-", "-"});
+  if (rows.size() > 1) text += table(std::move(rows));
   return text;
 }
 

@@ -1,4 +1,5 @@
 // chorus status: sensors, registration and fused bodies of a fusion server, once.
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -21,27 +22,33 @@ struct StatusArguments {
 
 std::string sensors_report(const nlohmann::json& sensors) {
   std::vector<std::vector<std::string>> rows{
-      {"sensor", "state", "age [ms]", "rate [Hz]", "clock offset [ms]", "bodies", "weight", "url"}};
-  for (const auto& [name, sensor] : client::part_at(sensors, "sensors").items()) {
+      {"sensor", "state", "age [ms]", "rate [Hz]", "clock offset [ms]", "bodies", "share", "url"}};
+  for (const auto& [name, sensor] : sensors.items()) {
     rows.push_back({name, client::text_at(sensor, "state"),
                     shown(client::number_at(sensor, "ageMilliseconds"), 1),
                     shown(client::number_at(sensor, "rateHz"), 1),
                     shown(client::number_at(sensor, "clockOffsetMilliseconds"), 3),
                     shown(client::number_at(sensor, "bodies"), 0),
-                    shown(client::number_at(sensor, "weight"), 2), client::text_at(sensor, "url")});
+                    shown(client::number_at(sensor, "share"), 2), client::text_at(sensor, "url")});
   }
-  std::string text = rows.size() > 1 ? table(rows) : "no sensors are configured\n";
-  for (const auto& [name, sensor] : client::part_at(sensors, "sensors").items()) {
+  std::string text = rows.size() > 1 ? table(std::move(rows)) : "no sensors are configured\n";
+  for (const auto& [name, sensor] : sensors.items()) {
     const std::string error = client::text_at(sensor, "lastError", "");
-    if (!error.empty()) text += fmt::format("{}: {}\n", name, error);
+    if (!error.empty()) text += printable(name + ": " + error) + "\n";
   }
   return text;
+}
+
+bool any_live(const nlohmann::json& sensors) {
+  return std::any_of(sensors.begin(), sensors.end(), [](const nlohmann::json& sensor) {
+    return client::text_at(sensor, "state") == "live";
+  });
 }
 
 std::string bodies_report(const nlohmann::json& frame) {
   const auto& bodies = client::part_at(frame, "bodies");
   std::string text = fmt::format("fused bodies: {}, captured {}\n", bodies.size(),
-                                 client::text_at(frame, "captured"));
+                                 printable(client::text_at(frame, "captured")));
   for (const auto& body : bodies) {
     const auto& head = client::part_at(client::part_at(body, "joints"), "Head");
     text +=
@@ -62,17 +69,17 @@ Result<int> run_status(const StatusArguments& arguments) {
   // Before the first fused frame the server has none to give (503): that is a state, not a failure.
   const auto frame = server->get("/frame");
   const nlohmann::json shown_frame = frame ? *frame : nlohmann::json();
+  const nlohmann::json& polled = client::part_at(*sensors, "sensors");
+  const bool alive = any_live(polled);
   if (arguments.json) {
-    std::cout << nlohmann::json{{"sensors", client::part_at(*sensors, "sensors")},
-                                {"registration", *registration},
-                                {"frame", shown_frame}}
-                     .dump(2)
-              << '\n';
-    return kExitOk;
+    std::cout << json_text(
+        {{"sensors", polled}, {"registration", *registration}, {"frame", shown_frame}});
+  } else {
+    std::cout << sensors_report(polled) << registration_report(*registration)
+              << (frame ? bodies_report(shown_frame) : "no fused frame yet\n");
+    if (!alive) std::cerr << "no sensor is live\n";
   }
-  std::cout << sensors_report(*sensors) << registration_report(*registration)
-            << (frame ? bodies_report(shown_frame) : "no fused frame yet\n");
-  return kExitOk;
+  return alive ? kExitOk : kExitFailed;
 }
 
 }  // namespace

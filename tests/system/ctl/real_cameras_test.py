@@ -87,7 +87,7 @@ class RealCameras(unittest.TestCase):
     def fuse(self, *settings):
         sensors = json.dumps([{"id": name, "url": f"http://127.0.0.1:{self.port + 1 + i}/"}
                               for i, name in enumerate(NAMES)])
-        options = [f"http.port={self.port}", f"sensors={sensors}", "viewer_dir=\"\"", *settings]
+        options = [f"http.port={self.port}", f"sensors={sensors}", "viewer_dir=\"\"", "state_dir=\"\"", *settings]
         self.start("chorus-fusion", "--config", f"{CAMERAS}/fusion.json",
                    *[part for option in options for part in ("--set", option)])
 

@@ -23,6 +23,23 @@ TEST(Table, AlignsColumnsToTheirWidestCell) {
   EXPECT_EQ(table({}), "");
 }
 
+TEST(Printable, HasNoControlCharactersAndKeepsTheRest) {
+  EXPECT_EQ(printable("sensor s\xC3\xA4 \xE2\x80\xA6 1"), "sensor s\xC3\xA4 \xE2\x80\xA6 1");
+  EXPECT_EQ(printable("\x1b[31m\a\n\x7f\xC2\x9b"
+                      "0m"),
+            "?[31m????0m");
+  EXPECT_EQ(printable(std::string_view("\0\xC2", 2)), "?\xC2");
+  EXPECT_EQ(table({{"a\x1b[2J", "b\n"}}), "a?[2J  b?\n");
+}
+
+TEST(LinesAt, AreTheStringsOfAnArrayOnly) {
+  const auto json = nlohmann::json::parse(R"({"a": ["x", 3, "y\u001b"], "b": "z"})");
+  EXPECT_EQ(lines_at(json, "a"), (std::vector<std::string>{"x", "y?"}));
+  EXPECT_TRUE(lines_at(json, "b").empty());
+  EXPECT_TRUE(lines_at(json, "c").empty());
+  EXPECT_TRUE(lines_at(nlohmann::json(), "a").empty());
+}
+
 TEST(Shown, HasDigitsOrADash) {
   EXPECT_EQ(shown(1.005, 1), "1.0");
   EXPECT_EQ(shown(std::nan(""), 3), "-");
