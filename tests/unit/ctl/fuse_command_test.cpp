@@ -1,0 +1,148 @@
+// chorus fuse, from recordings to fused frames, without a process or a socket.
+#include <nlohmann/json.hpp>
+
+#include "tests/unit/ctl/program_run.h"
+
+namespace chorus::ctl {
+namespace {
+
+using chorus::testing::bytes_of;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using Json = nlohmann::json;
+
+/// Where the first body's head is, or where the frame says nobody is.
+std::optional<Eigen::Vector3d> head_of(const Json& frame) {
+  if (!frame.contains("bodies") || frame.at("bodies").empty()) return std::nullopt;
+  const Json& head = frame.at("bodies")[0].at("joints").at("Head");
+  if (!head.contains("x")) return std::nullopt;
+  return Eigen::Vector3d(head.at("x"), head.at("y"), head.at("z"));
+}
+
+TEST(FuseCommand, RegistersFromTheWalkAndFusesIt) {
+  const Cell cell;
+  const std::string out = cell.file("fused.ndjson");
+  const Outcome done = run_chorus({"fuse", cell.recordings(), "--out", out});
+  ASSERT_EQ(done.code, kExitOk) << done.error;
+  EXPECT_THAT(done.error, HasSubstr("registration: Provisional"));
+  EXPECT_THAT(done.error, HasSubstr("3 sensors, "));
+  EXPECT_EQ(done.out, "");
+  const auto lines = lines_of(bytes_of(out));
+  ASSERT_GT(lines.size(), 150u);
+  std::size_t with_head = 0;
+  for (const std::string& line : lines) {
+    const auto head = head_of(Json::parse(line));
+    if (!head) continue;
+    ++with_head;
+    EXPECT_NEAR(head->y(), 1.6, 0.15) << "on the floor, upright";
+    EXPECT_LT(head->norm(), 6.0);
+  }
+  EXPECT_GT(with_head, 140u);
+}
+
+TEST(FuseCommand, TheSameRecordingsGiveTheSameBytes) {
+  const Cell cell(3.0);
+  const Outcome first = run_chorus({"fuse", cell.recordings(), "--out", "-"});
+  const Outcome second = run_chorus({"fuse", cell.recordings(), "--out", "-"});
+  EXPECT_FALSE(first.out.empty());
+  EXPECT_EQ(first.out, second.out);
+  const std::string one = cell.file("one.mcap");
+  const std::string two = cell.file("two.mcap");
+  EXPECT_EQ(run_chorus({"fuse", cell.recordings(), "--out", one}).code, kExitOk);
+  EXPECT_EQ(run_chorus({"fuse", cell.recordings(), "--out", two}).code, kExitOk);
+  EXPECT_EQ(bytes_of(one), bytes_of(two));
+}
+
+TEST(FuseCommand, ASavedRegistrationStandsInForTheWalk) {
+  const Cell cell(4.0);
+  const std::string places = cell.file("places.json");
+  const Outcome walked = run_chorus(
+      {"fuse", cell.recordings(), "--out", "-", "--save-registration", places, "--json"});
+  ASSERT_EQ(walked.code, kExitOk) << walked.error;
+  const Json summary = Json::parse(walked.error);
+  EXPECT_EQ(summary.at("sensors"), 3);
+  EXPECT_EQ(summary.at("registration").at("sensors").size(), 3u);
+  EXPECT_GT(summary.at("framesWithBodies"), 0);
+  const Outcome again =
+      run_chorus({"fuse", cell.recordings(), "--out", "-", "--registration", places});
+  ASSERT_EQ(again.code, kExitOk) << again.error;
+  EXPECT_EQ(lines_of(again.out).size(), lines_of(walked.out).size());
+  const auto first = head_of(Json::parse(lines_of(walked.out).back()));
+  const auto second = head_of(Json::parse(lines_of(again.out).back()));
+  ASSERT_TRUE(first && second);
+  EXPECT_LT((*first - *second).norm(), 1e-3);
+}
+
+TEST(FuseCommand, TheMethodAndEveryOtherKeyCanBeChosen) {
+  const Cell cell(3.0);
+  for (const char* method : {"otto", "mean", "best-view"}) {
+    const Outcome done = run_chorus({"fuse", cell.recordings(), "--out", "-", "--method", method});
+    EXPECT_EQ(done.code, kExitOk) << method << done.error;
+  }
+  const Outcome slow =
+      run_chorus({"fuse", cell.recordings(), "--out", "-", "--set", "output.rate_hz=10"});
+  EXPECT_EQ(slow.code, kExitOk) << slow.error;
+  EXPECT_NEAR(static_cast<double>(lines_of(slow.out).size()), 30.0, 3.0);
+  const Outcome wrong =
+      run_chorus({"fuse", cell.recordings(), "--out", "-", "--set", "output.rate_hertz=10"});
+  EXPECT_EQ(wrong.code, kExitFailed);
+  EXPECT_THAT(wrong.error, HasSubstr("rate_hz"));
+  EXPECT_EQ(wrong.out, "");
+}
+
+TEST(FuseCommand, NeverWritesOverWhatItReadsOrOverARecording) {
+  const Cell cell(2.0);
+  const std::string input = cell.recordings() + "/s1.mcap";
+  const std::string before = bytes_of(input);
+  EXPECT_EQ(run_chorus({"fuse", cell.recordings(), "--out", input}).code, kExitFailed);
+  const std::string places = cell.file("places.json");
+  ASSERT_EQ(
+      run_chorus({"fuse", cell.recordings(), "--out", "-", "--save-registration", places}).code,
+      kExitOk);
+  const Outcome over =
+      run_chorus({"fuse", cell.recordings(), "--registration", places, "--out", places});
+  EXPECT_EQ(over.code, kExitFailed);
+  EXPECT_THAT(over.error, HasSubstr("would destroy it"));
+  EXPECT_EQ(bytes_of(input), before);
+  const std::string fused = cell.file("fused.mcap");
+  ASSERT_EQ(run_chorus({"fuse", cell.recordings(), "--out", fused}).code, kExitOk);
+  EXPECT_THAT(run_chorus({"fuse", cell.recordings(), "--out", fused}).error,
+              HasSubstr("never overwritten"));
+}
+
+TEST(FuseCommand, NamesWhatItCannotUse) {
+  const Cell cell(2.0);
+  const std::string nonsense = cell.file("nonsense.json");
+  std::ofstream(nonsense) << "{\"sensors\": 3";
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"fuse", cell.file("nothing"), "--out", "-"},
+           {"fuse", cell.recordings(), "--out", "-", "--registration", cell.file("none.json")},
+           {"fuse", cell.recordings(), "--out", "-", "--registration", nonsense},
+           {"fuse", cell.recordings(), "--out", "-", "--config", nonsense},
+           {"fuse", cell.recordings(), "--out", cell.file("no/such/folder.ndjson")}}) {
+    const Outcome done = run_chorus(words);
+    EXPECT_EQ(done.code, kExitFailed) << words.back();
+    EXPECT_THAT(done.error, HasSubstr("chorus"));
+    EXPECT_THAT(done.error, Not(HasSubstr("std::")));
+    EXPECT_EQ(done.out, "");
+  }
+}
+
+TEST(FuseCommand, SensorsThatSawNothingTogetherAreSaidToHave) {
+  const Cell cell(2.0);
+  auto later = walk_seen_by(1, 2.0);
+  for (SensorFrame& frame : later.frames) {
+    frame.captured += std::chrono::hours(1);
+    for (BodyFrame& body : frame.bodies) body.captured = frame.captured;
+  }
+  std::filesystem::create_directory(cell.file("apart"));
+  ASSERT_THAT(record::write_frame_recording(cell.file("apart/s1.mcap"), walk_seen_by(0, 2.0)),
+              chorus::testing::IsOk());
+  ASSERT_THAT(record::write_frame_recording(cell.file("apart/s2.mcap"), later),
+              chorus::testing::IsOk());
+  const Outcome done = run_chorus({"fuse", cell.file("apart"), "--out", cell.file("x.ndjson")});
+  EXPECT_THAT(done.error, HasSubstr("never saw the person together"));
+}
+
+}  // namespace
+}  // namespace chorus::ctl
