@@ -4,9 +4,20 @@
 #include <CLI/CLI.hpp>
 
 #include "common/service/config_source.h"
+#include "fusion-server/fusion/methods.h"
 #include "fusion-server/server/fusion_config.h"
 
 namespace chorus::ctl {
+
+namespace {
+
+std::vector<std::string> method_names() {
+  std::vector<std::string> names;
+  for (const fusion::MethodRow& row : fusion::methods()) names.emplace_back(row.name);
+  return names;
+}
+
+}  // namespace
 
 void add_offline_options(CLI::App& app, OfflineOptions& options) {
   app.add_option("--config", options.config, "The fusion server's configuration (its defaults)");
@@ -14,7 +25,7 @@ void add_offline_options(CLI::App& app, OfflineOptions& options) {
       ->take_all()
       ->allow_extra_args(false);
   app.add_option("--method", options.method, "How the views become one body")
-      ->check(CLI::IsMember({"otto", "mean", "best-view", "inverse-variance"}));
+      ->check(CLI::IsMember(method_names()));
   app.add_option("--joints", options.joints, "What registration goes by")
       ->check(CLI::IsMember({"neck", "core", "all"}));
 }
