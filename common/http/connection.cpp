@@ -292,8 +292,23 @@ void Connection::begin_wait() {
   state_ = State::Waiting;
   expire_in(reaction_.wait);
   count(core_.counters.long_polls_waiting);
+  wait_on();
+  if (state_ == State::Waiting) watch();
+}
+
+/// Waits for the next version, unless it has come since the last look: a publish wakes only those
+/// who wait.
+void Connection::wait_on() {
   core_.wait_for(reaction_.entry->index, shared_from_this());
-  watch();
+  auto answer = core_.responder.waited(*reaction_.entry, head_);
+  if (!answer) return;
+  core_.stop_waiting(reaction_.entry->index, this);
+  end_wait(std::move(*answer));
+}
+
+void Connection::end_wait(Answer answer) {
+  count(core_.counters.long_polls_waiting, static_cast<std::uint64_t>(-1));
+  send(std::move(answer));
 }
 
 /// Reads on while there is nothing to answer, to notice a client that leaves.  Not when more
@@ -306,9 +321,7 @@ void Connection::wake() {
   if (state_ == State::Closed) return;
   if (state_ == State::Waiting) {
     auto answer = core_.responder.waited(*reaction_.entry, head_);
-    if (!answer) return core_.wait_for(reaction_.entry->index, shared_from_this());
-    count(core_.counters.long_polls_waiting, static_cast<std::uint64_t>(-1));
-    return send(std::move(*answer));
+    return answer ? end_wait(std::move(*answer)) : wait_on();
   }
   core_.wait_for(reaction_.entry->index, shared_from_this());
   if (state_ == State::Streaming) push_event();

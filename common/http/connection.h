@@ -54,6 +54,8 @@ class Connection final : public Session {
   void next_request();
   void linger();
   void begin_wait();
+  void wait_on();
+  void end_wait(Answer answer);
   void watch();
   void begin_stream();
   void push_event();

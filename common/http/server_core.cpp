@@ -31,6 +31,7 @@ ServerCore::ServerCore(ServerConfig server_config, std::shared_ptr<const Router>
   const std::size_t entries = responder.router().entries().size();
   waiting.resize(entries);
   wake_posted = std::make_unique<std::atomic<bool>[]>(entries);
+  waiters = std::make_unique<std::atomic<std::size_t>[]>(entries);
 }
 
 Result<void> ServerCore::listen() {
@@ -70,7 +71,7 @@ void ServerCore::subscribe() {
 }
 
 void ServerCore::post_wake(std::size_t entry) {
-  if (wake_posted[entry].exchange(true)) return;
+  if (waiters[entry].load() == 0 || wake_posted[entry].exchange(true)) return;
   net::post(io, [this, entry] { wake(entry); });
 }
 
@@ -79,14 +80,17 @@ void ServerCore::wake(std::size_t entry) {
   std::vector<std::shared_ptr<Session>> woken;
   woken.swap(waiting[entry]);
   for (const auto& session : woken) session->wake();
+  waiters[entry].store(waiting[entry].size());
 }
 
 void ServerCore::wait_for(std::size_t entry, std::shared_ptr<Session> session) {
   waiting[entry].push_back(std::move(session));
+  waiters[entry].store(waiting[entry].size());
 }
 
 void ServerCore::stop_waiting(std::size_t entry, const Session* session) {
   std::erase_if(waiting[entry], [&](const auto& w) { return w.get() == session; });
+  waiters[entry].store(waiting[entry].size());
 }
 
 void ServerCore::forget(const Session* session) {

@@ -45,9 +45,11 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   [[nodiscard]] bool is_proxy(const net::ip::address& address) const;
   void sweep();
   void subscribe();
-  /// From any thread: wakes who waits for the entry, soon; many calls before that count as one.
+  /// From any thread: wakes who waits for the entry, soon; many calls before that count as one, and
+  /// where nobody waits this thread is left asleep.
   void post_wake(std::size_t entry);
   void wake(std::size_t entry);
+  /// Look at the document again afterwards: a publish that came before this has woken nobody.
   void wait_for(std::size_t entry, std::shared_ptr<Session> session);
   void stop_waiting(std::size_t entry, const Session* session);
   void forget(const Session* session);
@@ -70,6 +72,7 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   std::size_t most_connections = 0;             ///< limits.max_connections, or what there is.
   std::vector<std::vector<std::shared_ptr<Session>>> waiting;  ///< By entry.
   std::unique_ptr<std::atomic<bool>[]> wake_posted;            ///< By entry.
+  std::unique_ptr<std::atomic<std::size_t>[]> waiters;         ///< By entry: size of waiting.
 
  private:
   void fit_descriptors();
