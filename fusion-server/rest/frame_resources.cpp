@@ -75,7 +75,7 @@ Result<http::DocumentPtr> FrameResources::frame_of(const std::string& sequence) 
 }
 
 Result<http::DocumentPtr> FrameResources::skeletons() const {
-  const FramePtr frame = ring_.newest();
+  const resource::FramePtr frame = ring_.newest();
   if (!frame) return tl::unexpected(not_yet("skeletons/"));
   return resource::skeletons_document(*frame, place_of(context_, "skeletons/"),
                                       version_of(*frame, context_));
@@ -84,7 +84,7 @@ Result<http::DocumentPtr> FrameResources::skeletons() const {
 Result<http::DocumentPtr> FrameResources::skeleton(const std::string& id) const {
   const auto number = parse_number(id);
   if (!number) return pass(number);
-  const FramePtr frame = ring_.newest();
+  const resource::FramePtr frame = ring_.newest();
   if (!frame) return tl::unexpected(not_yet("skeletons/" + id));
   auto document = resource::skeleton_document(frame, *number, place_of(context_, "skeletons/" + id),
                                               version_of(*frame, context_));

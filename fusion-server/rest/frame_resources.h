@@ -7,7 +7,7 @@
 #include "common/http/router.h"
 #include "common/resource/frame_document.h"
 #include "common/resource/place.h"
-#include "fusion-server/rest/frame_ring.h"
+#include "common/service/frame_ring.h"
 #include "fusion-server/sink.h"
 
 namespace chorus::rest {
@@ -42,7 +42,7 @@ class FrameResources final : public Sink {
   [[nodiscard]] Result<http::DocumentPtr> skeletons() const;
   [[nodiscard]] Result<http::DocumentPtr> skeleton(const std::string& id) const;
   RestContext context_;
-  FrameRing ring_;
+  service::FrameRing ring_;
   std::shared_ptr<http::LiveDocument> live_;
 };
 

@@ -78,7 +78,7 @@ std::shared_ptr<http::LiveDocument> SensorResources::live_of(const SensorId& sen
   return live;
 }
 
-void SensorResources::relay(const SensorId& sensor, FramePtr frame) {
+void SensorResources::relay(const SensorId& sensor, resource::FramePtr frame) {
   const auto live = live_of(sensor);
   const std::string folder = "sensors/" + sensor.str() + "/";
   auto options = resource::latest_options(*frame, context_.instance);

@@ -25,7 +25,7 @@ class SensorResources {
 
   void publish(const std::vector<SensorStatus>& sensors);
   /// The frame as the sensor sent it: its own space, its own clock.
-  void relay(const SensorId& sensor, FramePtr frame);
+  void relay(const SensorId& sensor, resource::FramePtr frame);
   /// Its floor plane, in its own space; none: it has said nothing of one.
   void floor(const SensorId& sensor, const std::optional<FloorPlane>& floor);
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "common/geometry/rotation.h"
+#include "common/resource/frame_between.h"
 #include "tests/support/builders.h"
 
 namespace chorus::wire {
@@ -64,7 +65,7 @@ TEST(Between, InterpolatesPositionsAndTakesTheWorseState) {
   auto b = to_resource(snapshot(2, 0.1));
   b.bodies[0].joints[index_of(JointId::Head)].state = JointState::Inferred;
   b.bodies[0].joints[index_of(JointId::Neck)].variance = 4e-4;
-  const auto mid = between(a, b, a.captured + kFrameInterval / 4);
+  const auto mid = resource::between(a, b, a.captured + kFrameInterval / 4);
   EXPECT_EQ(mid.captured, a.captured + kFrameInterval / 4);
   const auto& neck = mid.bodies.at(0).joints[index_of(JointId::Neck)];
   EXPECT_NEAR(neck.position.x(), 0.025, 1e-6);
@@ -77,15 +78,15 @@ TEST(Between, LeavesOutBodiesThatOnlyOneOfThemHas) {
   const auto a = to_resource(snapshot(1, 0.0));
   auto b = to_resource(snapshot(2, 0.1));
   b.bodies[0].id = 8;
-  EXPECT_TRUE(between(a, b, a.captured + kFrameInterval / 2).bodies.empty());
+  EXPECT_TRUE(resource::between(a, b, a.captured + kFrameInterval / 2).bodies.empty());
 }
 
 TEST(Between, DoesNotMixFramesOfDifferentCirclesOrEqualTimes) {
   const auto a = to_resource(snapshot(1, 0.0));
   auto b = to_resource(snapshot(2, 0.1));
   b.sensors = {"s9"};
-  EXPECT_EQ(between(a, b, a.captured + kFrameInterval / 2).captured, a.captured);
-  EXPECT_EQ(between(a, a, a.captured).captured, a.captured);
+  EXPECT_EQ(resource::between(a, b, a.captured + kFrameInterval / 2).captured, a.captured);
+  EXPECT_EQ(resource::between(a, a, a.captured).captured, a.captured);
 }
 
 }  // namespace

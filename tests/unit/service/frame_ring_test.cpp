@@ -1,11 +1,11 @@
 // Recent frames by number and by instant.
-#include "fusion-server/rest/frame_ring.h"
+#include "common/service/frame_ring.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/builders.h"
 
-namespace chorus::rest {
+namespace chorus::service {
 namespace {
 
 using testing::kFrameInterval;
@@ -103,4 +103,4 @@ TEST(FrameRing, ABetterAnswerIsForWhoAsksByTimeAndNeverChangesAFrame) {
 }
 
 }  // namespace
-}  // namespace chorus::rest
+}  // namespace chorus::service

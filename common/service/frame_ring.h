@@ -10,7 +10,7 @@
 #include "common/base/result.h"
 #include "common/resource/frame_document.h"
 
-namespace chorus::rest {
+namespace chorus::service {
 
 using resource::FramePtr;
 
@@ -49,4 +49,4 @@ class FrameRing {
   std::uint64_t amendments_ = 0;
 };
 
-}  // namespace chorus::rest
+}  // namespace chorus::service

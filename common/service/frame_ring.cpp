@@ -1,11 +1,11 @@
-#include "fusion-server/rest/frame_ring.h"
+#include "common/service/frame_ring.h"
 
 #include <algorithm>
 #include <charconv>
 
-#include "fusion-server/wire/snapshot_resource.h"
+#include "common/resource/frame_between.h"
 
-namespace chorus::rest {
+namespace chorus::service {
 namespace {
 
 Result<Timestamp> parse_instant(const std::string& text) {
@@ -78,7 +78,7 @@ Result<FramePtr> FrameRing::at(const std::string& time) const {
                 "the oldest instant still here is " + to_iso8601(frames_.front().first->captured));
   }
   return std::make_shared<const resource::FrameResource>(
-      wire::between(*std::prev(after)->better, *after->better, *instant));
+      resource::between(*std::prev(after)->better, *after->better, *instant));
 }
 
 FramePtr FrameRing::newest() const {
@@ -86,4 +86,4 @@ FramePtr FrameRing::newest() const {
   return frames_.empty() ? nullptr : frames_.back().first;
 }
 
-}  // namespace chorus::rest
+}  // namespace chorus::service

@@ -1,0 +1,51 @@
+#include "common/resource/frame_between.h"
+
+#include <algorithm>
+
+#include "common/geometry/rotation.h"
+
+namespace chorus::resource {
+namespace {
+
+JointResource joint_between(const JointResource& a, const JointResource& b, double s) {
+  JointResource out;
+  out.state = std::min(a.state, b.state);
+  if (out.state == JointState::NotTracked || a.measurement != b.measurement) return {};
+  out.measurement = a.measurement;
+  out.position = (1.0 - s) * a.position + s * b.position;
+  if (out.measurement == Measurement::Ray) out.position.normalize();
+  if (is_unit(a.orientation) && is_unit(b.orientation)) {
+    out.orientation = lerp(a.orientation, b.orientation, s);
+  }
+  if (a.variance && b.variance) out.variance = std::max(*a.variance, *b.variance);
+  out.contributors = a.contributors | b.contributors;
+  out.covariance = between(a.covariance, b.covariance, s);
+  return out;
+}
+
+}  // namespace
+
+FrameResource between(const FrameResource& a, const FrameResource& b, Timestamp instant) {
+  const double span = seconds(b.captured - a.captured);
+  const double s = span > 0.0 ? std::clamp(seconds(instant - a.captured) / span, 0.0, 1.0) : 0.0;
+  // Contributor bits mean positions in `sensors`; they agree only while the circle is the same.
+  if (s == 0.0 || a.sensors != b.sensors) return a;
+  FrameResource out = a;
+  out.captured = instant;
+  out.bodies.clear();
+  for (const BodyResource& body : a.bodies) {
+    const auto later = std::find_if(b.bodies.begin(), b.bodies.end(),
+                                    [&](const BodyResource& other) { return other.id == body.id; });
+    if (later == b.bodies.end()) continue;
+    BodyResource& mixed = out.bodies.emplace_back();
+    mixed.id = body.id;
+    mixed.captured = instant;
+    mixed.slot = body.slot;
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      mixed.joints[j] = joint_between(body.joints[j], later->joints[j], s);
+    }
+  }
+  return out;
+}
+
+}  // namespace chorus::resource

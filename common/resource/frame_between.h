@@ -1,0 +1,14 @@
+// The frame at an instant for which there is none.
+#pragma once
+
+#include "common/resource/frame_resource.h"
+
+namespace chorus::resource {
+
+/// The frame at `instant` between two neighbours, a.captured <= instant <= b.captured: positions
+/// linear, orientations by LERP, the worse state, the larger variance, contributors of both.  Only
+/// bodies and joints that both have.
+[[nodiscard]] FrameResource between(const FrameResource& a, const FrameResource& b,
+                                    Timestamp instant);
+
+}  // namespace chorus::resource
