@@ -9,17 +9,18 @@ namespace {
 
 JointResource joint_between(const JointResource& a, const JointResource& b, double s) {
   JointResource out;
+  if (a.measurement != b.measurement) return out;  // a point and a ray: nothing in between
   out.state = std::min(a.state, b.state);
-  if (out.state == JointState::NotTracked || a.measurement != b.measurement) return {};
+  if (out.state == JointState::NotTracked) return out;
   out.measurement = a.measurement;
   out.position = (1.0 - s) * a.position + s * b.position;
   if (out.measurement == Measurement::Ray) out.position.normalize();
+  out.covariance = between(a.covariance, b.covariance, s);
   if (is_unit(a.orientation) && is_unit(b.orientation)) {
     out.orientation = lerp(a.orientation, b.orientation, s);
   }
   if (a.variance && b.variance) out.variance = std::max(*a.variance, *b.variance);
   out.contributors = a.contributors | b.contributors;
-  out.covariance = between(a.covariance, b.covariance, s);
   return out;
 }
 

@@ -11,8 +11,9 @@
 namespace chorus::resource {
 namespace {
 
-/// Nothing of an immutable frame ever changes: a year, as RFC 9111 caches take it.
-constexpr std::string_view kForever = "public, max-age=31536000, immutable";
+/// A frame never changes, but a restarted service may use its number again: caches may keep it for
+/// about as long as a service might, not for ever.
+constexpr std::string_view kImmutable = "public, max-age=60, immutable";
 constexpr std::string_view kArvida = "arvida";
 
 using Render = std::function<std::string(Format)>;
@@ -38,7 +39,7 @@ http::DocumentOptions latest_options(const FrameResource& frame, const std::stri
 
 http::DocumentOptions kept_options(const FrameResource& frame, const std::string& run) {
   http::DocumentOptions options = latest_options(frame, run);
-  options.cache_control = kForever;
+  options.cache_control = kImmutable;
   options.content_location.clear();
   options.captured.reset();  // the age of something kept says nothing
   return options;

@@ -19,7 +19,7 @@ using FramePtr = std::shared_ptr<const FrameResource>;
 /// What such documents answer with: version = sequence (and `run`, so that a restarted service's
 /// ETags differ).
 /// `/frame` is revalidated and names its immutable twin in Content-Location; `/frames/{seq}` is
-/// cached for ever.
+/// cached for a minute.
 [[nodiscard]] http::DocumentOptions latest_options(const FrameResource& frame,
                                                    const std::string& run = {});
 [[nodiscard]] http::DocumentOptions kept_options(const FrameResource& frame,

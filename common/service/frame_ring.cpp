@@ -1,21 +1,18 @@
 #include "common/service/frame_ring.h"
 
 #include <algorithm>
-#include <charconv>
 
+#include "common/base/parse.h"
 #include "common/resource/frame_between.h"
 
 namespace chorus::service {
 namespace {
 
 Result<Timestamp> parse_instant(const std::string& text) {
-  std::int64_t ns = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, ns);
-  if (error == std::errc{} && stop == end) return from_unix_ns(ns);
+  if (const auto ns = parse_number<std::int64_t>(text)) return from_unix_ns(*ns);
   auto parsed = parse_iso8601(text);
   if (parsed) return parsed;
-  return fail(ErrorCode::InvalidArgument, "at=" + text,
+  return fail(ErrorCode::InvalidArgument, "/frame?at=" + text,
               "give the instant as UTC, 2026-11-21T07:30:00.25Z, or in nanoseconds since 1970");
 }
 
@@ -24,8 +21,11 @@ Result<Timestamp> parse_instant(const std::string& text) {
 void FrameRing::push(FramePtr frame) {
   const std::scoped_lock lock(mutex_);
   if (!frames_.empty() && frame->captured <= frames_.back().first->captured) frames_.clear();
-  if (frames_.size() >= capacity_) frames_.pop_front();
+  const Timestamp oldest = frame->captured - history_.span;
   frames_.push_back({frame, frame});
+  while (frames_.size() > history_.most || frames_.front().first->captured <= oldest) {
+    frames_.pop_front();
+  }
 }
 
 void FrameRing::amend(FramePtr frame) {
@@ -43,20 +43,22 @@ std::uint64_t FrameRing::amendments() const {
   return amendments_;
 }
 
-Result<FramePtr> FrameRing::find(std::uint64_t sequence) const {
+Result<FramePtr> FrameRing::find(std::string_view sequence) const {
+  const std::string where = "/frames/" + std::string(sequence);
+  const auto wanted = parse_name_number(sequence);
+  if (!wanted) {
+    return fail(ErrorCode::NotFound, where, "a frame is named by its sequence number");
+  }
   const std::scoped_lock lock(mutex_);
   const auto it = std::lower_bound(
-      frames_.begin(), frames_.end(), sequence,
-      [](const Kept& kept, std::uint64_t wanted) { return kept.first->sequence < wanted; });
-  const std::string where = "frames/" + std::to_string(sequence);
+      frames_.begin(), frames_.end(), *wanted,
+      [](const Kept& kept, std::uint64_t number) { return kept.first->sequence < number; });
   if (it == frames_.end()) {
-    return fail(ErrorCode::NotFound, where,
-                "there has not been a frame of this sequence number yet");
+    return fail(ErrorCode::NotFound, where, "there is no such frame yet; /frame is the latest one");
   }
-  if (it->first->sequence == sequence) return it->first;
+  if (it->first->sequence == *wanted) return it->first;
   if (it != frames_.begin()) {
-    return fail(ErrorCode::NotFound, where,
-                "no frame has this sequence number; its instant was left out");
+    return fail(ErrorCode::NotFound, where, "no frame has this number; it was lost or left out");
   }
   return fail(ErrorCode::Gone, where,
               "the oldest frame still here is " + std::to_string(frames_.front().first->sequence));
@@ -70,11 +72,11 @@ Result<FramePtr> FrameRing::at(const std::string& time) const {
       frames_.begin(), frames_.end(), *instant,
       [](const Kept& kept, Timestamp wanted) { return kept.first->captured < wanted; });
   if (after == frames_.end()) {
-    return fail(ErrorCode::NotFound, "at=" + time, "this instant has not been fused yet");
+    return fail(ErrorCode::NotFound, "/frame?at=" + time, "there is no frame of this instant yet");
   }
   if (after->first->captured == *instant) return after->better;
   if (after == frames_.begin()) {
-    return fail(ErrorCode::Gone, "at=" + time,
+    return fail(ErrorCode::Gone, "/frame?at=" + time,
                 "the oldest instant still here is " + to_iso8601(frames_.front().first->captured));
   }
   return std::make_shared<const resource::FrameResource>(

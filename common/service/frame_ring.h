@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 
 #include "common/base/result.h"
 #include "common/resource/frame_document.h"
@@ -14,11 +15,19 @@ namespace chorus::service {
 
 using resource::FramePtr;
 
+/// How far /frames/{seq} and ?at= reach back.
+struct FrameHistory {
+  Duration span = std::chrono::seconds(3);
+  std::size_t most = 10'000;  ///< Frames, whatever their pace.
+
+  bool operator==(const FrameHistory&) const = default;
+};
+
 /// Thread-safe.  Frames are pushed in order of sequence and capture time; an older capture time
 /// (the clock was set back) empties the ring first.
 class FrameRing {
  public:
-  explicit FrameRing(std::size_t capacity) : capacity_(capacity) {}
+  explicit FrameRing(const FrameHistory& history) : history_(history) {}
 
   void push(FramePtr frame);
 
@@ -28,9 +37,10 @@ class FrameRing {
   /// How often that has happened.
   [[nodiscard]] std::uint64_t amendments() const;
 
-  /// Gone when it is older than all that are kept; NotFound when no frame has this number: not yet,
-  /// or never, because it was skipped.
-  [[nodiscard]] Result<FramePtr> find(std::uint64_t sequence) const;
+  /// By its number as it stands in a path.  Gone when it is older than all that are kept; NotFound
+  /// when no frame has this number: not yet, or never, because it was lost or left out, or it is
+  /// none.
+  [[nodiscard]] Result<FramePtr> find(std::string_view sequence) const;
 
   /// The frame for an instant (xsd:dateTime or nanoseconds since the epoch as integer),
   /// interpolated between its neighbours.
@@ -39,7 +49,7 @@ class FrameRing {
   [[nodiscard]] FramePtr newest() const;
 
  private:
-  const std::size_t capacity_;
+  const FrameHistory history_;
   mutable std::mutex mutex_;
   struct Kept {
     FramePtr first;   ///< As it was published.

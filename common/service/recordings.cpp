@@ -239,21 +239,21 @@ Result<http::DocumentPtr> Recordings::list(const http::Request& request) const {
   node.properties.emplace_back("recordings", std::move(members));
   http::DocumentOptions options;
   options.container = true;
-  options.version = options_.run + "-" + std::to_string(std::hash<std::string>{}(version));
+  options.version = options_.serving.run + "-" + std::to_string(std::hash<std::string>{}(version));
   options.headers = {{"Accept-Post", "application/json"}};
   if (more) {
     options.headers.emplace_back("Link", "<?after=" + reports.rbegin()->first + "&limit=" +
                                              std::to_string(page->limit) + ">; rel=\"next\"");
   }
   return resource::document_of(std::move(node), std::move(options),
-                               {"recordings/", {}, options_.root});
+                               options_.serving.place("recordings/"));
 }
 
 http::DocumentPtr Recordings::description(const RecordingReport& report) const {
   http::DocumentOptions options;
-  options.version = options_.run + "-" + version_of(report);
+  options.version = options_.serving.run + "-" + version_of(report);
   return resource::document_of(recording_node(report, ""), std::move(options),
-                               {"recordings/" + report.name, {}, options_.root});
+                               options_.serving.place("recordings/" + report.name));
 }
 
 Result<http::DocumentPtr> Recordings::one(const std::string& name) const {
@@ -286,7 +286,7 @@ Result<http::DocumentPtr> Recordings::file(const std::string& name, const std::s
   auto body = http::FileBody::open(fs::path(options_.config.folder) / name / file);
   if (!body) return pass(body);
   http::DocumentOptions options;
-  options.version = options_.run + "-" + file + "-" + std::to_string((*body)->size());
+  options.version = options_.serving.run + "-" + file + "-" + std::to_string((*body)->size());
   options.rdf_source = false;
   options.headers = {{"Content-Disposition", "attachment; filename=\"" + file + "\""}};
   options.file = std::move(*body);

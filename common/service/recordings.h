@@ -17,6 +17,7 @@
 #include "common/resource/node.h"
 #include "common/service/metrics.h"
 #include "common/service/recording_request.h"
+#include "common/service/serving.h"
 
 namespace chorus::service {
 
@@ -37,8 +38,7 @@ struct RecordingsOptions {
   RecordingConfig config;
   record::SessionHead head;  ///< Of every file.
   bool has_fused = false;    ///< A fusion server.
-  std::string run;           ///< In every ETag.
-  std::string root = "http://localhost/";
+  Serving serving;
   std::shared_ptr<const Clock> clock = std::make_shared<SystemClock>();
 };
 

@@ -41,8 +41,8 @@ Result<Duration> parse_session_request(std::string_view body, Duration fallback)
   return from_seconds(wanted);
 }
 
-RegistrationResources::RegistrationResources(RestContext context, RegistrationControl control)
-    : context_(std::move(context)),
+RegistrationResources::RegistrationResources(service::Serving serving, RegistrationControl control)
+    : serving_(std::move(serving)),
       control_(std::move(control)),
       live_(std::make_shared<http::LiveDocument>()) {}
 
@@ -57,9 +57,9 @@ void RegistrationResources::publish(const Registration& registration,
 
 void RegistrationResources::show() {
   http::DocumentOptions options;
-  options.version = context_.instance + "-" + std::to_string(++version_);
+  options.version = serving_.run + "-" + std::to_string(++version_);
   live_->publish(resource::document_of(wire::registration_node(registration_, progress_),
-                                       std::move(options), place_of(context_, "registration")));
+                                       std::move(options), serving_.place("registration")));
 }
 
 Result<http::ActionResult> RegistrationResources::post(const http::Request& request) {
@@ -132,9 +132,9 @@ Result<http::DocumentPtr> RegistrationResources::session(const std::string& id) 
   const auto session = find(id);
   if (!session) return pass(session);
   http::DocumentOptions options;
-  options.version = context_.instance + "-" + std::to_string(version_);
+  options.version = serving_.run + "-" + std::to_string(version_);
   return resource::document_of(wire::session_node(*session, progress_.awaits), std::move(options),
-                               place_of(context_, "registration/sessions/" + id));
+                               serving_.place("registration/sessions/" + id));
 }
 
 void RegistrationResources::add_routes(http::Router& router) {

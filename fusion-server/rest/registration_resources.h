@@ -8,7 +8,7 @@
 #include <string>
 
 #include "common/http/router.h"
-#include "fusion-server/rest/frame_resources.h"
+#include "common/service/serving.h"
 #include "fusion-server/status.h"
 
 namespace chorus::rest {
@@ -32,7 +32,7 @@ struct RegistrationControl {
 /// what is known of the outcome stands in, and older news is not shown any more.
 class RegistrationResources {
  public:
-  RegistrationResources(RestContext context, RegistrationControl control);
+  RegistrationResources(service::Serving serving, RegistrationControl control);
 
   void publish(const Registration& registration, const RegistrationProgress& progress);
   void add_routes(http::Router& router);
@@ -46,7 +46,7 @@ class RegistrationResources {
   void show();
   void end_newest();
 
-  RestContext context_;
+  service::Serving serving_;
   RegistrationControl control_;
   std::shared_ptr<http::LiveDocument> live_;
   mutable std::mutex mutex_;  ///< Guards what follows.

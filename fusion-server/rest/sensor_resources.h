@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "common/http/router.h"
+#include "common/resource/frame_document.h"
 #include "common/resource/node.h"
-#include "fusion-server/rest/frame_resources.h"
+#include "common/service/serving.h"
 #include "fusion-server/status.h"
 
 namespace chorus::rest {
@@ -21,7 +22,7 @@ namespace chorus::rest {
 class SensorResources {
  public:
   /// These get a live (long-poll) relay of their frames; sensors added later answer plain GETs.
-  SensorResources(RestContext context, const std::vector<SensorId>& sensors);
+  SensorResources(service::Serving serving, const std::vector<SensorId>& sensors);
 
   void publish(const std::vector<SensorStatus>& sensors);
   /// The frame as the sensor sent it: its own space, its own clock.
@@ -37,7 +38,7 @@ class SensorResources {
   [[nodiscard]] Result<http::DocumentPtr> frame_of(const std::string& id) const;
   [[nodiscard]] Result<http::DocumentPtr> floor_of(const std::string& id) const;
 
-  RestContext context_;
+  service::Serving serving_;
   std::shared_ptr<http::LiveDocument> list_;
   mutable std::mutex mutex_;
   std::vector<SensorStatus> sensors_;

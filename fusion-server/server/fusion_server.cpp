@@ -11,11 +11,11 @@
 
 #include "common/base/log.h"
 #include "common/service/common_resources.h"
-#include "fusion-server/rest/frame_resources.h"
+#include "fusion-server/rest/frame_sink.h"
 #include "fusion-server/rest/metrics.h"
 #include "fusion-server/rest/registration_resources.h"
-#include "fusion-server/rest/self_description.h"
 #include "fusion-server/rest/sensor_resources.h"
+#include "fusion-server/rest/tracker_description.h"
 #include "fusion-server/server/pipeline_loop.h"
 #include "fusion-server/server/recording_tap.h"
 #include "fusion-server/server/state_folder.h"
@@ -41,11 +41,6 @@ core::CoreConfig core_config(const FusionSettings& settings) {
   if (places_are_given) core.session.automatic = false;
   for (const poll::PolledSensor& sensor : live.sensors) core.sensors.insert(sensor.id);
   return core;
-}
-
-std::size_t ring_capacity(const FusionSettings& settings) {
-  const double frames = seconds(settings.at_start.history) * settings.live.output.rate_hz;
-  return static_cast<std::size_t>(frames) + 1;
 }
 
 /// Says which sensors the stored places do not fit.
@@ -117,14 +112,13 @@ std::string probe_folders(const StartSettings& config, const std::string& state_
 }
 
 service::RecordingsOptions recordings_options(const StartSettings& config,
-                                              const rest::RestContext& context,
+                                              const service::Serving& serving,
                                               std::shared_ptr<const Clock> clock) {
   service::RecordingsOptions options;
   options.config = config.recording;
   options.head.metadata["title"] = config.title;
   options.has_fused = true;
-  options.run = context.instance;
-  options.root = context.root;
+  options.serving = serving;
   options.clock = std::move(clock);
   return options;
 }
@@ -154,8 +148,8 @@ record::RawFrame raw_frame(const poll::PolledFrame& polled) {
 struct FusionServer::Impl {
   Impl(FusionSettings c, std::shared_ptr<const Clock> k)
       : config(std::move(c)), clock(std::move(k)) {
-    context.instance = fmt::format("{:x}", to_unix_ns(clock->now()) / 1'000'000);
-    context.root =
+    serving.run = fmt::format("{:x}", to_unix_ns(clock->now()) / 1'000'000);
+    serving.root =
         fmt::format("http://{}:{}/", config.at_start.http.address, config.at_start.http.port);
   }
 
@@ -170,13 +164,14 @@ struct FusionServer::Impl {
 
   FusionSettings config;  ///< The live part is guarded by mutex.
   std::shared_ptr<const Clock> clock;
-  rest::RestContext context;
+  service::Serving serving;
   std::vector<std::unique_ptr<Sink>> sinks;  ///< Filled before the first request.
   mutable std::mutex mutex;
   Status status;  ///< Guarded by mutex.
   RegistrationStore store{""};
   std::string store_trouble;
-  std::optional<rest::FrameResources> frames;
+  std::optional<service::FrameResources> frames;
+  std::optional<rest::FrameSink> frame_sink;
   std::optional<rest::SensorResources> sensors;
   std::optional<rest::RegistrationResources> registration;
   std::optional<service::Recordings> recordings;
@@ -200,16 +195,17 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
     loop->ask(CancelSession{session, ticket});
   };
   control.forget = [this](std::uint64_t ticket) { loop->ask(Forget{ticket}); };
-  frames.emplace(context, ring_capacity(config));
-  sensors.emplace(context, ids_of(config.live.sensors));
-  registration.emplace(context, std::move(control));
-  recordings.emplace(recordings_options(config.at_start, context, clock));
+  frames.emplace(serving, service::FrameHistory{config.at_start.history});
+  frame_sink.emplace(*frames);
+  sensors.emplace(serving, ids_of(config.live.sensors));
+  registration.emplace(serving, std::move(control));
+  recordings.emplace(recordings_options(config.at_start, serving, clock));
   tap.emplace(*recordings, clock);
   recordings->add_routes(*router);
   frames->add_routes(*router);
   sensors->add_routes(*router);
   registration->add_routes(*router);
-  rest::add_description_routes(*router, context, config.at_start.title, config.at_start.viewer_dir);
+  rest::add_description_routes(*router, serving, config.at_start.title, config.at_start.viewer_dir);
   service::CommonResources common;
   common.clock = clock;
   common.health = [this] { return health_of(status_now()); };
@@ -241,11 +237,11 @@ LoopOptions FusionServer::Impl::loop_options(Registration places) {
   options.store = store;
   options.store_trouble = store_trouble;
   options.clock = clock;
-  options.sinks.push_back(&*frames);
+  options.sinks.push_back(&*frame_sink);
   options.sinks.push_back(&*tap);
   for (const auto& sink : sinks) options.sinks.push_back(sink.get());
   options.on_status = [this](const Status& next) { take_status(next); };
-  options.on_amended = [this](const Snapshot& snapshot) { frames->amend(snapshot); };
+  options.on_amended = [this](const Snapshot& snapshot) { frame_sink->amend(snapshot); };
   options.poll_reports = [this] {
     return poller ? poller->reports() : std::vector<poll::PollReport>{};
   };

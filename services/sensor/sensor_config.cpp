@@ -7,7 +7,6 @@
 namespace chorus::sensor_service {
 namespace {
 
-constexpr int kMostFrames = 10'000;  // five minutes, 100 MB
 constexpr std::string_view kDefaultId = "s1";
 
 void read_id(ConfigReader& root, SensorId& out) {
@@ -20,12 +19,6 @@ void read_id(ConfigReader& root, SensorId& out) {
   }
 }
 
-void read_frames_kept(ConfigReader& root, std::size_t& out) {
-  int frames = static_cast<int>(out);
-  root.read("frames_kept", frames, 1, kMostFrames);
-  out = static_cast<std::size_t>(frames);
-}
-
 }  // namespace
 
 Result<SensorSettings> read_sensor_settings(ConfigReader root) {
@@ -35,7 +28,7 @@ Result<SensorSettings> read_sensor_settings(ConfigReader root) {
   service::read_http(root.child("http"), at_start.http);
   live.bearer_token = std::exchange(at_start.http.bearer_token, {});
   root.read("images", live.images);
-  read_frames_kept(root, at_start.frames_kept);
+  root.read_s("history_s", at_start.history, std::chrono::seconds(1), std::chrono::seconds(120));
   read_clock_errors(root.child("clock"), at_start.clock);
   service::read_log(root.child("log"), live.log);
   service::read_recording(root.child("recording"), at_start.recording);

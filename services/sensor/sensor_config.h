@@ -1,7 +1,6 @@
 // deploy/config/sensor.json as a struct of two parts.
 #pragma once
 
-#include <cstddef>
 #include <string>
 
 #include "common/base/config_reader.h"
@@ -26,8 +25,8 @@ struct LiveSettings {
 /// What waits for the next start.
 struct StartSettings {
   SensorId id;
-  http::ServerConfig http = {.port = 8081};  ///< Without its token.
-  std::size_t frames_kept = 90;
+  http::ServerConfig http = {.port = 8081};    ///< Without its token.
+  Duration history = std::chrono::seconds(3);  ///< How long /frames/{seq} and ?at= reach back.
   ClockErrors clock;  ///< Of a simulated host; a real one's is as NTP keeps it.
   service::RecordingConfig recording;
   DeviceChoice device;

@@ -27,7 +27,7 @@ ServiceOptions service_options(const Setup& setup) {
   ServiceOptions options;
   options.id = setup.settings.at_start.id;
   options.device = setup.device->describe();
-  options.frames_kept = setup.settings.at_start.frames_kept;
+  options.history.span = at_start.history;
   options.images = setup.settings.live.images;
   options.serving.run = run_name();
   options.serving.root =
@@ -43,8 +43,7 @@ service::RecordingsOptions recordings_options(const Setup& setup, const ServiceO
   service::RecordingsOptions options;
   options.config = setup.settings.at_start.recording;
   options.head = {record::metadata_of(about), true};
-  options.run = service.serving.run;
-  options.root = service.serving.root;
+  options.serving = service.serving;
   options.clock = setup.clock;
   return options;
 }

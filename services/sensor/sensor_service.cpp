@@ -4,8 +4,6 @@
 #include <unordered_set>
 #include <utility>
 
-#include "services/sensor/self_description.h"
-
 namespace chorus::sensor_service {
 
 using http::PathParams;
@@ -21,7 +19,7 @@ constexpr Duration kLongestRepeat = std::chrono::seconds(1);
 
 SensorService::SensorService(ServiceOptions options)
     : options_(std::move(options)),
-      recent_(options_.frames_kept),
+      frames_(options_.serving, options_.history),
       images_(options_.images, options_.steady_now) {}
 
 /// Why a frame cannot be true; empty when it can.  Called with the mutex held.
@@ -83,7 +81,6 @@ void SensorService::publish(Capture capture) {
   }
   const SightPtr now = see(std::move(capture), before.get());
   const std::uint64_t sequence = now->frame->sequence;
-  recent_.add(sequence, numbered_frame(*now, options_.serving));
   {
     const std::lock_guard lock(mutex_);
     counters_.captured += 1;
@@ -92,7 +89,7 @@ void SensorService::publish(Capture capture) {
     sight_ = now;
     last_capture_ = options_.steady_now();
   }
-  live_->publish(latest_frame(*now, options_.serving));
+  frames_.publish(now->frame);
   if (options_.record) options_.record(*now);
   images_.offer(now);
 }
@@ -127,8 +124,31 @@ Result<SightPtr> SensorService::sight() const {
   return sight_;
 }
 
+service::Self self_of(const ServiceOptions& options, bool with_images) {
+  service::Self self;
+  self.title = "Sensor " + options.id.str();
+  self.description = "One body-tracking sensor: " + options.device.label + ".";
+  self.type = "Sensor";
+  self.facts = {{"sensorId", options.id.str()},
+                {"deviceKind", options.device.kind},
+                {"deviceLabel", options.device.label},
+                {"nominalRateHz", resource::Decimal{options.device.nominal_rate_hz, 2}}};
+  self.resources = {{"frame", "frame", "the latest frame: all bodies with their joints, live"},
+                    {"skeletons/", "skeletons", "the bodies in the latest frame, one by one"},
+                    {"floor-plane", "floorPlane", "where the floor is"}};
+  if (!with_images) return self;
+  self.resources.insert(
+      self.resources.end(),
+      {{"images/", "", "the camera images and their intrinsics"},
+       {"images/color", "colorImage", "the latest colour image, JPEG"},
+       {"images/depth", "depthImage", "the latest depth image, 16-bit PNG in millimetres"}});
+  return self;
+}
+
 SensorService::Answer SensorService::self() const {
-  return self_document({options_.id, options_.device, images_.allowed()}, options_.serving);
+  const bool images = images_.allowed();
+  return service::self_document(self_of(options_, images), options_.serving,
+                                images ? "images" : "plain");
 }
 
 SensorService::Answer SensorService::image(std::shared_ptr<const LazyImage> Sight::*which) {
@@ -153,18 +173,8 @@ void SensorService::add_image_routes(http::Router& router) {
 }
 
 void SensorService::add_routes(http::Router& router) {
-  router.live("/frame", live_);
+  frames_.add_routes(router);
   router.get("/", [this](const Request&, const PathParams&) { return self(); });
-  router.get("/frames/{seq}", [this](const Request&, const PathParams& path) {
-    return recent_.find(path.at("seq"));
-  });
-  router.get("/skeletons/", [this](const Request&, const PathParams&) -> Answer {
-    return sight().map([&](const SightPtr& now) { return skeleton_list(*now, options_.serving); });
-  });
-  router.get("/skeletons/{id}", [this](const Request&, const PathParams& path) -> Answer {
-    return sight().and_then(
-        [&](const SightPtr& now) { return skeleton(*now, path.at("id"), options_.serving); });
-  });
   router.get("/floor-plane", [this](const Request&, const PathParams&) -> Answer {
     return sight().and_then(
         [&](const SightPtr& now) { return floor_plane(*now, options_.serving); });

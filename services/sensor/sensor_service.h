@@ -11,12 +11,12 @@
 #include <string>
 
 #include "common/base/rate_report.h"
-#include "common/http/live_document.h"
 #include "common/http/router.h"
 #include "common/sensor/frame_source.h"
 #include "common/service/common_resources.h"
+#include "common/service/frame_resources.h"
+#include "common/service/self_description.h"
 #include "services/sensor/image_desk.h"
-#include "services/sensor/recent_frames.h"
 #include "services/sensor/sight.h"
 
 namespace chorus::sensor_service {
@@ -24,10 +24,10 @@ namespace chorus::sensor_service {
 struct ServiceOptions {
   SensorId id;
   DeviceDescription device;
-  std::size_t frames_kept = 90;  ///< For /frames/{seq}: three seconds at 30 Hz.
-  bool images = false;           ///< They show people: off unless somebody wants them.
+  service::FrameHistory history;
+  bool images = false;  ///< They show people: off unless somebody wants them.
   Duration stall_after = std::chrono::seconds(2);  ///< Without a capture for so long: not ready.
-  Serving serving;
+  service::Serving serving;
   std::function<void(const Sight&)> record = {};  ///< Told of each sight; must return at once.
   SteadyNow steady_now = [] { return std::chrono::steady_clock::now(); };
 };
@@ -40,6 +40,9 @@ struct ServiceCounters {
   std::uint64_t bodies = 0;    ///< In the latest frame.
   double age_s = 0.0;          ///< Since the latest capture arrived; 0 before the first.
 };
+
+/// `/` of a sensor.
+[[nodiscard]] service::Self self_of(const ServiceOptions& options, bool with_images);
 
 class SensorService {
  public:
@@ -77,8 +80,7 @@ class SensorService {
   void add_image_routes(http::Router& router);
 
   const ServiceOptions options_;
-  const std::shared_ptr<http::LiveDocument> live_ = std::make_shared<http::LiveDocument>();
-  RecentFrames recent_;
+  service::FrameResources frames_;
   RateReport refused_{"capture refused"};
   RateReport failures_{"a capture or its images failed", log::Level::Error};
   ImageDesk images_;

@@ -1,11 +1,9 @@
 #include "services/sensor/sight.h"
 
-#include <charconv>
 #include <utility>
 #include <vector>
 
 #include "common/resource/floor_plane_resource.h"
-#include "common/resource/frame_document.h"
 #include "common/resource/image_resource.h"
 #include "common/resource/node.h"
 
@@ -18,19 +16,14 @@ using http::DocumentPtr;
 using resource::Format;
 using resource::FrameResource;
 using resource::Node;
-using resource::Place;
 using resource::Ref;
-
-// A frame never changes, but a restarted service uses its number again: caches may keep it for
-// about as long as the service itself might, not for ever.
-constexpr std::string_view kImmutable = "public, max-age=60, immutable";
 
 std::shared_ptr<const LazyImage> lazy(std::function<Result<CameraImage>()> encode) {
   return encode ? std::make_shared<const LazyImage>(std::move(encode)) : nullptr;
 }
 
 /// Of everything that changes with each frame.
-DocumentOptions options_of(const Sight& sight, const Serving& serving) {
+DocumentOptions options_of(const Sight& sight, const service::Serving& serving) {
   DocumentOptions options;
   options.version = std::to_string(sight.frame->sequence) + "." + serving.run;
   options.captured = sight.frame->captured;
@@ -54,12 +47,6 @@ Node image_list_node(const Sight& sight) {
   return list;
 }
 
-std::string bodies_in(const FrameResource& frame) {
-  std::string ids;
-  for (const auto& body : frame.bodies) ids += (ids.empty() ? "" : ", ") + std::to_string(body.id);
-  return ids.empty() ? "no body is in sight" : "in sight are only the bodies " + ids;
-}
-
 }  // namespace
 
 SightPtr see(Capture capture, const Sight* before) {
@@ -75,39 +62,7 @@ SightPtr see(Capture capture, const Sight* before) {
   return sight;
 }
 
-DocumentPtr latest_frame(const Sight& sight, const Serving& serving) {
-  return resource::frame_document(sight.frame, {.path = "frame", .root = serving.root},
-                                  resource::latest_options(*sight.frame, serving.run));
-}
-
-DocumentPtr numbered_frame(const Sight& sight, const Serving& serving) {
-  DocumentOptions options = resource::kept_options(*sight.frame, serving.run);
-  options.cache_control = kImmutable;
-  const Place place{.path = "frames/" + std::to_string(sight.frame->sequence),
-                    .root = serving.root};
-  return resource::frame_document(sight.frame, place, std::move(options));
-}
-
-DocumentPtr skeleton_list(const Sight& sight, const Serving& serving) {
-  return resource::skeletons_document(*sight.frame, {.path = "skeletons/", .root = serving.root},
-                                      options_of(sight, serving));
-}
-
-Result<DocumentPtr> skeleton(const Sight& sight, const std::string& id, const Serving& serving) {
-  std::uint64_t wanted = 0;
-  const auto [end, error] = std::from_chars(id.data(), id.data() + id.size(), wanted);
-  const bool number = error == std::errc{} && end == id.data() + id.size();
-  if (number && id == std::to_string(wanted)) {
-    const Place place{.path = "skeletons/" + id, .root = serving.root};
-    if (auto found =
-            resource::skeleton_document(sight.frame, wanted, place, options_of(sight, serving))) {
-      return found;
-    }
-  }
-  return fail(ErrorCode::NotFound, "/skeletons/" + id, bodies_in(*sight.frame));
-}
-
-Result<DocumentPtr> floor_plane(const Sight& sight, const Serving& serving) {
+Result<DocumentPtr> floor_plane(const Sight& sight, const service::Serving& serving) {
   if (!sight.floor) {
     return fail(ErrorCode::NotFound, "/floor-plane",
                 "this sensor does not know where the floor is");
@@ -115,26 +70,25 @@ Result<DocumentPtr> floor_plane(const Sight& sight, const Serving& serving) {
   DocumentOptions options;
   options.version = std::to_string(sight.floor_version) + "." + serving.run;
   return resource::document_of(resource::floor_plane_node(*sight.floor, sight.frame->space),
-                               std::move(options), {.path = "floor-plane", .root = serving.root});
+                               std::move(options), serving.place("floor-plane"));
 }
 
-DocumentPtr image_list(const Sight& sight, const Serving& serving) {
+DocumentPtr image_list(const Sight& sight, const service::Serving& serving) {
   const auto shared = std::make_shared<const Sight>(sight);
   DocumentOptions options = options_of(sight, serving);
   options.container = true;
   std::vector<http::Variant> variants;
   for (const Format format : resource::kFormats) {
-    variants.push_back(
-        {std::string(resource::media_type(format)), [shared, format, root = serving.root] {
-           return resource::write(image_list_node(*shared), format,
-                                  {.path = "images/", .root = root});
-         }});
+    variants.push_back({std::string(resource::media_type(format)),
+                        [shared, format, here = serving.place("images/")] {
+                          return resource::write(image_list_node(*shared), format, here);
+                        }});
   }
   return std::make_shared<const http::Document>(std::move(variants), std::move(options));
 }
 
 Result<DocumentPtr> image_document(const LazyImage& image, std::uint64_t sequence,
-                                   const Serving& serving) {
+                                   const service::Serving& serving) {
   const auto& encoded = image.get();
   if (!encoded) return pass(encoded);
   DocumentOptions options;

@@ -15,7 +15,7 @@ class Resources(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = temporary_folder()
         cls.recording = make_recording(cls.folder.name)
-        cls.sensor = Sensor("--id", "s9", "--recording", cls.recording, "--set", "frames_kept=20")
+        cls.sensor = Sensor("--id", "s9", "--recording", cls.recording, "--set", "history_s=1")
         cls.sensor.wait_for("/frame", 200)
 
     @classmethod
@@ -92,7 +92,7 @@ class Resources(unittest.TestCase):
         self.assertEqual(location, f"frames/{kept.json['sequence']}")
         self.assertIn("immutable", kept.headers["Cache-Control"])
         self.assertEqual(self.get("/frames/99999999").status, 404)
-        self.sensor.wait_for("/frames/1", 410)  # twenty are kept
+        self.sensor.wait_for("/frames/1", 410)  # one second is kept
 
     def test_refusals_are_problem_documents_that_help(self):
         for path, status, hint in (("/nothing", 404, ""), ("/skeletons/8", 404, "7"),

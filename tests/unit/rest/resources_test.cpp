@@ -3,11 +3,11 @@
 
 #include "common/base/log.h"
 #include "common/http/route_table.h"
-#include "fusion-server/rest/frame_resources.h"
+#include "fusion-server/rest/frame_sink.h"
 #include "fusion-server/rest/metrics.h"
 #include "fusion-server/rest/registration_resources.h"
-#include "fusion-server/rest/self_description.h"
 #include "fusion-server/rest/sensor_resources.h"
+#include "fusion-server/rest/tracker_description.h"
 #include "tests/support/builders.h"
 
 namespace chorus::rest {
@@ -61,41 +61,15 @@ SensorStatus status(const char* name) {
   return s;
 }
 
-TEST(FrameResources, FramesByNumberAndInstantAndBodiesByName) {
+TEST(FrameSink, SnapshotsBecomeFrames) {
   http::Router router;
-  FrameResources frames({"run1"}, 100);
+  service::FrameResources frames({"run1"}, {});
   frames.add_routes(router);
-  EXPECT_EQ(ask(router, "/skeletons/").error().code, ErrorCode::Unavailable);
-  for (std::uint64_t i = 1; i <= 3; ++i) frames.publish(snapshot(i));
-
-  EXPECT_NE(body(ask(router, "/frame"), "text/turtle").find("<frame> a ch:Frame"),
+  FrameSink sink(frames);
+  for (std::uint64_t i = 1; i <= 3; ++i) sink.publish(snapshot(i));
+  EXPECT_NE(body(ask(router, "/frame"), "text/turtle").find("<frames/3> a ch:Frame"),
             std::string::npos);
-  EXPECT_NE(body(ask(router, "/frames/2"), "application/json").find("\"sequence\""),
-            std::string::npos);
-  EXPECT_EQ(ask(router, "/frames/9").error().code, ErrorCode::NotFound);
-  EXPECT_EQ(ask(router, "/frames/two").error().code, ErrorCode::NotFound);
-  const auto between =
-      ask(router, "/frame", {{"at", to_iso8601(kStart + testing::kFrameInterval * 3 / 2)}});
-  EXPECT_TRUE(between);
-  EXPECT_EQ(ask(router, "/frame", {{"at", "noon"}}).error().code, ErrorCode::InvalidArgument);
-
-  EXPECT_NE(body(ask(router, "/skeletons/"), "text/turtle").find("ldp:contains <7>"),
-            std::string::npos);
-  EXPECT_NE(body(ask(router, "/skeletons/7"), "text/turtle").find("#Head>"), std::string::npos);
-  EXPECT_EQ(ask(router, "/skeletons/8").error().code, ErrorCode::NotFound);
-}
-
-TEST(FrameResources, EtagsDifferFromRunToRunAndFromFrameToFrame) {
-  const auto tag = [](const char* run, std::uint64_t sequence) {
-    http::Router router;
-    FrameResources frames({run}, 100);
-    frames.add_routes(router);
-    frames.publish(snapshot(sequence));
-    return (*(*ask(router, "/frame"))->choose("text/turtle"))->etag;
-  };
-  EXPECT_EQ(tag("a", 1), tag("a", 1));
-  EXPECT_NE(tag("a", 1), tag("b", 1));
-  EXPECT_NE(tag("a", 1), tag("a", 2));
+  EXPECT_NE(body(ask(router, "/skeletons/7"), "text/turtle").find("-Head>"), std::string::npos);
 }
 
 TEST(SensorResources, ListsEverySensorAndRelaysItsFrame) {
@@ -123,11 +97,14 @@ TEST(SensorResources, ListsEverySensorAndRelaysItsFrame) {
 }
 
 TEST(SelfDescription, LeadsToEverythingAndUsesOnlyDeclaredTerms) {
-  EXPECT_EQ(resource::undeclared_terms(service_node("x", true)), std::vector<std::string>{});
-  const auto page = landing_page("<script>", true);
+  EXPECT_EQ(resource::undeclared_terms(service::self_node(self_of("x", true))),
+            std::vector<std::string>{});
+  const auto page = service::self_page(self_of("<script>", true));
   EXPECT_EQ(page.find("<script>"), std::string::npos);
-  EXPECT_NE(page.find("viewer/"), std::string::npos);
-  EXPECT_EQ(landing_page("x", false).find("viewer/"), std::string::npos);
+  for (const char* path : {"viewer/", "frame", "sensors/", "registration", "recordings/", "ns"}) {
+    EXPECT_NE(page.find("<a href=\"" + std::string(path) + "\">"), std::string::npos) << path;
+  }
+  EXPECT_EQ(service::self_page(self_of("x", false)).find("viewer/"), std::string::npos);
 }
 
 TEST(SelfDescription, BrowsersGetThePageOthersTurtle) {

@@ -49,7 +49,7 @@ TEST(SensorConfig, TheCommentedFileSaysTheDefaults) {
 TEST(SensorConfig, EveryKeyIsRead) {
   const auto settings = settings_with(
       {"id=cam-2", "http.address=0.0.0.0", "http.port=9000", "http.bearer_token=secret",
-       "http.allowed_origin=http://a", "images=true", "frames_kept=7", "clock.offset_ms=-250",
+       "http.allowed_origin=http://a", "images=true", "history_s=7", "clock.offset_ms=-250",
        "clock.drift_ppm=50", "clock.step_ms=-2000", "clock.step_after_s=30", "log.level=warn",
        "log.format=json"});
   const auto& [live, at_start] = settings;
@@ -57,7 +57,7 @@ TEST(SensorConfig, EveryKeyIsRead) {
   EXPECT_EQ(at_start.http, (http::ServerConfig{"0.0.0.0", 9000, "", "http://a"}));
   EXPECT_EQ(live.bearer_token, "secret");
   EXPECT_TRUE(live.images);
-  EXPECT_EQ(at_start.frames_kept, 7u);
+  EXPECT_EQ(at_start.history, std::chrono::seconds(7));
   EXPECT_EQ(at_start.clock, (ClockErrors{std::chrono::milliseconds(-250), 50e-6,
                                          std::chrono::seconds(-2), std::chrono::seconds(30)}));
   EXPECT_EQ(live.log, (service::LogConfig{log::Level::Warn, log::Format::Json}));
@@ -65,9 +65,9 @@ TEST(SensorConfig, EveryKeyIsRead) {
 
 TEST(SensorConfig, AllMistakesComeTogether) {
   const std::string text =
-      refusal({"id=a b", "http.port=-1", "frames_kept=0", "log.level=loud", "device.kind=usb",
+      refusal({"id=a b", "http.port=-1", "history_s=0", "log.level=loud", "device.kind=usb",
                "device.simulated.ring.count=0", "device.replay.speeed=1"});
-  for (const char* key : {"id", "http.port", "frames_kept", "log.level", "device.kind",
+  for (const char* key : {"id", "http.port", "history_s", "log.level", "device.kind",
                           "device.simulated.ring.count", "did you mean 'speed'"}) {
     EXPECT_THAT(text, HasSubstr(key));
   }

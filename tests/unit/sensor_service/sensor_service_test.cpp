@@ -6,13 +6,14 @@
 #include <nlohmann/json.hpp>
 
 #include "common/resource/node.h"
-#include "services/sensor/self_description.h"
 #include "tests/support/builders.h"
-#include "tests/unit/sensor_service/served.h"
+#include "tests/support/served.h"
 
 namespace chorus::sensor_service {
 namespace {
 
+using chorus::testing::Answer;
+using chorus::testing::get;
 using chorus::testing::kFrameInterval;
 using chorus::testing::kStart;
 using ::testing::HasSubstr;
@@ -26,7 +27,7 @@ class SensorServiceTest : public ::testing::Test {
     ServiceOptions out;
     out.id = chorus::testing::sensor_id("s1");
     out.device = {"simulated", "a <test> device", {}, 30.0};
-    out.frames_kept = 5;
+    out.history.span = kFrameInterval * 5;
     out.serving.run = "0a0b0c";
     out.steady_now = [now] { return *now; };
     return out;
@@ -90,7 +91,7 @@ TEST_F(SensorServiceTest, ACaptureIsTheFrame) {
 TEST_F(SensorServiceTest, FramesAreKeptThenGoneAndNeverBeforeTheyAre) {
   for (int i = 0; i < 8; ++i) service_.on_capture(capture(i));
   EXPECT_EQ(get(router_, "/frames/3").status, 410);
-  EXPECT_THAT(get(router_, "/frames/3").body, HasSubstr("oldest one kept is 4"));
+  EXPECT_THAT(get(router_, "/frames/3").body, HasSubstr("still here is 4"));
   for (int i = 4; i <= 8; ++i) {
     EXPECT_EQ(json("/frames/" + std::to_string(i))["sequence"], i);
   }
@@ -293,15 +294,15 @@ TEST_F(SensorServiceTest, ItSaysWhatItIsToMachinesAndPeople) {
     EXPECT_THAT(self["contains"].dump(), HasSubstr(path));
   }
   const Answer page = get(router_, "/", "text/html,application/xhtml+xml,*/*;q=0.8");
-  EXPECT_EQ(page.type, "text/html");
+  EXPECT_EQ(page.type, "text/html; charset=utf-8");
   EXPECT_THAT(page.body, HasSubstr("a &lt;test&gt; device"));
   EXPECT_THAT(page.body, Not(HasSubstr("<test>")));
   EXPECT_EQ(get(router_, "/", "").type, "text/turtle");
 }
 
 TEST_F(SensorServiceTest, EveryWordOfItsDocumentsIsDeclared) {
-  const Self self{chorus::testing::sensor_id("s1"), {}, true};
-  EXPECT_THAT(resource::undeclared_terms(self_node(self)), ::testing::IsEmpty());
+  const auto node = service::self_node(self_of(options(&now_), true));
+  EXPECT_THAT(resource::undeclared_terms(node), ::testing::IsEmpty());
 }
 
 }  // namespace

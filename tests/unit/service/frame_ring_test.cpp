@@ -11,6 +11,8 @@ namespace {
 using testing::kFrameInterval;
 using testing::kStart;
 
+const FrameHistory kTenFrames{kFrameInterval * 10};
+
 FramePtr frame(std::uint64_t sequence) {
   auto f = std::make_shared<resource::FrameResource>();
   f->sequence = sequence;
@@ -23,35 +25,50 @@ FramePtr frame(std::uint64_t sequence) {
 }
 
 struct Filled : FrameRing {
-  Filled(std::uint64_t from, std::uint64_t to) : FrameRing(10) {
+  Filled(std::uint64_t from, std::uint64_t to) : FrameRing(kTenFrames) {
     for (auto i = from; i <= to; ++i) push(frame(i));
   }
 };
 
 TEST(FrameRing, IsEmptyAtFirst) {
-  const FrameRing ring(10);
+  const FrameRing ring(kTenFrames);
   EXPECT_EQ(ring.newest(), nullptr);
-  EXPECT_EQ(ring.find(1).error().code, ErrorCode::NotFound);
+  EXPECT_EQ(ring.find("1").error().code, ErrorCode::NotFound);
   EXPECT_EQ(ring.at(to_iso8601(kStart)).error().code, ErrorCode::NotFound);
 }
 
 TEST(FrameRing, KnowsWhatIsHereWhatIsGoneAndWhatIsNotYet) {
   const Filled ring(1, 25);
-  EXPECT_EQ((*ring.find(16))->sequence, 16u);
-  EXPECT_EQ((*ring.find(25))->sequence, 25u);
-  EXPECT_EQ(ring.find(15).error().code, ErrorCode::Gone);
-  EXPECT_EQ(ring.find(26).error().code, ErrorCode::NotFound);
+  EXPECT_EQ((*ring.find("16"))->sequence, 16u);
+  EXPECT_EQ((*ring.find("25"))->sequence, 25u);
+  EXPECT_EQ(ring.find("15").error().code, ErrorCode::Gone);
+  EXPECT_EQ(ring.find("26").error().code, ErrorCode::NotFound);
+}
+
+TEST(FrameRing, AFrameHasOneNameOnly) {
+  const Filled ring(1, 10);
+  for (const char* name :
+       {"", "07", "+7", " 7", "7 ", "-7", "7.0", "x", "99999999999999999999999"}) {
+    EXPECT_EQ(ring.find(name).error().code, ErrorCode::NotFound) << name;
+  }
+}
+
+TEST(FrameRing, IsBoundedByNumberToo) {
+  FrameRing ring({std::chrono::hours(1), 3});
+  for (std::uint64_t i = 1; i <= 5; ++i) ring.push(frame(i));
+  EXPECT_EQ(ring.find("2").error().code, ErrorCode::Gone);
+  EXPECT_EQ((*ring.find("3"))->sequence, 3u);
 }
 
 TEST(FrameRing, ASkippedSequenceHasNeverBeen) {
-  FrameRing ring(10);
+  FrameRing ring(kTenFrames);
   ring.push(frame(2));
   ring.push(frame(5));
-  const auto skipped = ring.find(3);
+  const auto skipped = ring.find("3");
   ASSERT_FALSE(skipped);
   EXPECT_EQ(skipped.error().code, ErrorCode::NotFound);
   EXPECT_EQ(skipped.error().message.find("oldest"), std::string::npos);
-  const auto evicted = ring.find(1);
+  const auto evicted = ring.find("1");
   ASSERT_FALSE(evicted);
   EXPECT_EQ(evicted.error().code, ErrorCode::Gone);
   EXPECT_NE(evicted.error().message.find("still here is 2"), std::string::npos);
@@ -84,7 +101,7 @@ TEST(FrameRing, AClockSetBackEmptiesIt) {
   earlier->captured = kStart - std::chrono::hours(1);
   ring.push(earlier);
   EXPECT_EQ(ring.newest()->sequence, 11u);
-  EXPECT_EQ(ring.find(10).error().code, ErrorCode::Gone);
+  EXPECT_EQ(ring.find("10").error().code, ErrorCode::Gone);
 }
 
 TEST(FrameRing, ABetterAnswerIsForWhoAsksByTimeAndNeverChangesAFrame) {
@@ -95,7 +112,7 @@ TEST(FrameRing, ABetterAnswerIsForWhoAsksByTimeAndNeverChangesAFrame) {
   EXPECT_EQ(ring.amendments(), 1u);
   const auto by_time = ring.at(to_iso8601(frame(3)->captured));
   EXPECT_DOUBLE_EQ((*by_time)->bodies[0].joints[0].position.x(), 30.0);
-  EXPECT_DOUBLE_EQ((*ring.find(3))->bodies[0].joints[0].position.x(), 3.0);
+  EXPECT_DOUBLE_EQ((*ring.find("3"))->bodies[0].joints[0].position.x(), 3.0);
   const auto between = ring.at(to_iso8601(frame(3)->captured + kFrameInterval / 2));
   EXPECT_NEAR((*between)->bodies[0].joints[0].position.x(), 17.0, 0.01);
   ring.amend(frame(77));  // not here

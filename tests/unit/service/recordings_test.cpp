@@ -27,7 +27,7 @@ RecordingsOptions options_in(const std::string& folder) {
   options.config.folder = folder;
   options.config.limits.min_free_bytes = 0;
   options.has_fused = true;
-  options.run = "run";
+  options.serving.run = "run";
   return options;
 }
 

@@ -6,7 +6,7 @@
 #include "common/http/route_table.h"
 #include "common/http/router.h"
 
-namespace chorus::sensor_service {
+namespace chorus::testing {
 
 struct Answer {
   int status = 0;  ///< As the server would say it.
@@ -16,9 +16,19 @@ struct Answer {
   std::string body;  ///< Of a refusal: its message.
 };
 
-inline Result<http::DocumentPtr> document_at(const http::Router& router, const std::string& path) {
+/// `path` may end in ?key=value.
+inline Result<http::DocumentPtr> document_at(const http::Router& router, const std::string& whole) {
+  const std::size_t mark = whole.find('?');
+  const std::string path = whole.substr(0, mark);
   const auto match = router.match(path);
   if (!match) return pass(match);
+  if (mark != std::string::npos) {
+    http::Request request;
+    request.path = path;
+    const std::size_t equals = whole.find('=', mark);
+    request.query[whole.substr(mark + 1, equals - mark - 1)] = whole.substr(equals + 1);
+    return match->entry->by_query(request, match->params);
+  }
   if (match->entry->live) {
     const auto now = match->entry->live->current();
     if (!now) return fail(ErrorCode::Unavailable, path, "nothing yet");
@@ -39,4 +49,4 @@ inline Answer get(const http::Router& router, const std::string& path,
           std::string((*rendered)->body())};
 }
 
-}  // namespace chorus::sensor_service
+}  // namespace chorus::testing

@@ -1,0 +1,23 @@
+// How this run of a service names itself in all its documents.
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "common/resource/place.h"
+
+namespace chorus::service {
+
+struct Serving {
+  /// In every ETag: a validator of an earlier run never fits a document of this one.
+  std::string run;
+  std::string root = "http://localhost/";  ///< Absolute IRI of `/`, for N-Triples.
+
+  /// Where a document stands: "sensors/s1/frame", and what precedes the names in it
+  /// ("sensors/s1/").
+  [[nodiscard]] resource::Place place(std::string path, std::string names = {}) const {
+    return {std::move(path), std::move(names), root};
+  }
+};
+
+}  // namespace chorus::service

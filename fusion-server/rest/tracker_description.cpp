@@ -1,0 +1,44 @@
+#include "fusion-server/rest/tracker_description.h"
+
+#include <utility>
+
+#include "common/resource/floor_plane_resource.h"
+
+namespace chorus::rest {
+namespace {
+
+http::DocumentPtr floor_document(const service::Serving& serving) {
+  http::DocumentOptions options;
+  options.version = serving.run;
+  return resource::document_of(resource::floor_plane_node(FloorPlane{}, resource::SpaceKind::World),
+                               std::move(options), serving.place("floor-plane"));
+}
+
+}  // namespace
+
+service::Self self_of(const std::string& title, bool with_viewer) {
+  service::Self self;
+  self.title = title;
+  self.description = "Many body-tracking sensors, fused into one virtual tracker.";
+  self.type = "Tracker";
+  if (with_viewer) self.resources.push_back({"viewer/", "viewer", "all of it, to look at"});
+  self.resources.insert(self.resources.end(),
+                        {{"frame", "frame", "the latest frame: all bodies with their joints, live"},
+                         {"skeletons/", "skeletons", "the bodies in the latest frame, one by one"},
+                         {"floor-plane", "floorPlane", "where the floor is"},
+                         {"sensors/", "sensorList", "state, age and clock of every sensor"},
+                         {"registration", "registration", "where the sensors stand"}});
+  return self;
+}
+
+void add_description_routes(http::Router& router, const service::Serving& serving,
+                            const std::string& title, const std::string& viewer_dir) {
+  const auto root = service::self_document(self_of(title, !viewer_dir.empty()), serving, "1");
+  const auto floor = floor_document(serving);
+  router.get("/", [root](const http::Request&, const http::PathParams&) { return root; });
+  router.get("/floor-plane",
+             [floor](const http::Request&, const http::PathParams&) { return floor; });
+  if (!viewer_dir.empty()) router.files("/viewer/", viewer_dir);
+}
+
+}  // namespace chorus::rest

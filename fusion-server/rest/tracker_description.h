@@ -1,0 +1,17 @@
+// `/` of a fusion server, and the floor of its world.
+#pragma once
+
+#include <string>
+
+#include "common/http/router.h"
+#include "common/service/self_description.h"
+
+namespace chorus::rest {
+
+[[nodiscard]] service::Self self_of(const std::string& title, bool with_viewer);
+
+/// /, /floor-plane (world: y = 0), and /viewer/ when there is a folder for it.
+void add_description_routes(http::Router& router, const service::Serving& serving,
+                            const std::string& title, const std::string& viewer_dir);
+
+}  // namespace chorus::rest
