@@ -1,6 +1,5 @@
 #include "common/base/config_reader.h"
 
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -11,6 +10,7 @@
 
 #include "common/base/log.h"
 #include "common/base/nearest.h"
+#include "common/base/parse.h"
 #include "common/base/units.h"
 
 namespace chorus {
@@ -92,11 +92,8 @@ std::string range_text(double least, double most) {
 
 /// A non-negative array index, or nothing.
 std::optional<std::size_t> index_in(std::string_view part) {
-  std::size_t index = 0;
-  const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
-  if (error != std::errc{} || end != part.data() + part.size()) return std::nullopt;
-  if (index >= kMaxArrayLength) return std::nullopt;
-  return index;
+  const auto index = parse_number<std::size_t>(part);
+  return index && *index < kMaxArrayLength ? index : std::nullopt;
 }
 
 /// The place a --set path names, made when it is not there; null when a value stands in the way.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -12,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "common/base/parse.h"
 #include "common/importers/text_rows.h"
 #include "common/motion/bvh.h"
 #include "common/motion/c3d.h"
@@ -43,12 +43,7 @@ std::string list_of(const std::vector<std::string>& labels) {
 /// "P10" -> 10: what our own export calls a person.
 std::optional<std::uint64_t> person_named(std::string_view name) {
   if (!name.starts_with('P')) return std::nullopt;
-  name.remove_prefix(1);
-  std::uint64_t id = 0;
-  const char* last = name.data() + name.size();
-  const auto [end, error] = std::from_chars(name.data(), last, id);
-  if (error != std::errc{} || end != last) return std::nullopt;
-  return id;
+  return parse_number<std::uint64_t>(name.substr(1));
 }
 
 /// The ids in the names, if all have one of their own; else 1, 2, ... in the order of the file.

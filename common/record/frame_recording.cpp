@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "common/base/parse.h"
 #include "common/record/floor_message.h"
 #include "common/record/frame_schema.h"
 #include "common/record/session_reader.h"
@@ -32,11 +33,8 @@ std::string text_of(double value) {
 std::optional<double> number_at(const Strings& values, const std::string& key) {
   const auto found = values.find(key);
   if (found == values.end()) return std::nullopt;
-  double value = 0.0;
-  const char* last = found->second.data() + found->second.size();
-  const auto [end, error] = std::from_chars(found->second.data(), last, value);
-  if (error != std::errc{} || end != last || !std::isfinite(value)) return std::nullopt;
-  return value;
+  const auto value = parse_number<double>(found->second);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 std::string text_at(const Strings& values, const std::string& key) {

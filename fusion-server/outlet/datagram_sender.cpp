@@ -1,10 +1,10 @@
 #include "fusion-server/outlet/datagram_sender.h"
 
 #include <array>
-#include <charconv>
 #include <optional>
 #include <utility>
 
+#include "common/base/parse.h"
 #include "common/http/asio.h"
 
 namespace chorus::outlet {
@@ -40,13 +40,10 @@ Result<Target> parse_target(std::string_view text) {
   std::string_view host = text.substr(0, colon);
   const std::string_view digits = text.substr(colon + 1);
   if (host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
-  int port = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
-  if (error != std::errc{} || end != digits.data() + digits.size() || port < 1 || port > 65535) {
-    return bad_target(text, "the port must be 1 to 65535");
-  }
+  const auto port = parse_number<int>(digits);
+  if (!port || *port < 1 || *port > 65535) return bad_target(text, "the port must be 1 to 65535");
   if (host.empty()) return bad_target(text, "the host is missing");
-  return Target{std::string(host), static_cast<std::uint16_t>(port)};
+  return Target{std::string(host), static_cast<std::uint16_t>(*port)};
 }
 
 void read_targets(ConfigReader& reader, std::vector<std::string>& out) {

@@ -1,12 +1,12 @@
 #include "services/sensor/device/replay/replay.h"
 
 #include <algorithm>
-#include <charconv>
 #include <condition_variable>
 #include <mutex>
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/base/parse.h"
 #include "services/sensor/device/replay/replay_schedule.h"
 
 namespace chorus::sensor_service {
@@ -36,14 +36,11 @@ std::optional<std::int64_t> noted_ns(const record::FrameRecording& recording,
                                      const std::string& key) {
   const auto note = recording.notes.find(key);
   if (note == recording.notes.end()) return std::nullopt;
-  const std::string& text = note->second;
-  std::int64_t ns = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), ns);
-  if (error != std::errc{} || end != text.data() + text.size()) {
-    const auto instant = parse_iso8601(text);
-    ns = instant ? to_unix_ns(*instant) : -1;
+  auto ns = parse_number<std::int64_t>(note->second);
+  if (!ns) {
+    if (const auto instant = parse_iso8601(note->second)) ns = to_unix_ns(*instant);
   }
-  return ns >= 0 ? std::optional(ns) : std::nullopt;
+  return ns && *ns >= 0 ? ns : std::nullopt;
 }
 
 Timestamp origin_of(const ReplayTape& tape, const ReplayOptions& options) {
