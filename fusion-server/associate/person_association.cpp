@@ -14,6 +14,7 @@
 namespace chorus::associate {
 namespace {
 
+constexpr std::size_t kMostTracks = 256;  // four times what a frame holds
 constexpr double kVelocityBlend = 0.2;  // share of the newest difference; smooths 30 Hz to ~0.15 s
 constexpr double kFastest = 4.0;  // [m/s] a sprint; keeps one wild view from throwing the track
 
@@ -197,6 +198,16 @@ void merge_doubles(std::vector<Candidate>& candidates, const AssociationConfig& 
   }
 }
 
+/// As many as a frame holds: liars must not push out whom several sensors see.
+void keep_the_best(std::vector<Person>& people) {
+  if (people.size() <= kMaxBodies) return;
+  std::stable_partition(people.begin(), people.end(),
+                        [](const Person& person) { return person.views.size() > 1; });
+  people.erase(people.begin() + kMaxBodies, people.end());
+  std::sort(people.begin(), people.end(),
+            [](const Person& a, const Person& b) { return a.id < b.id; });
+}
+
 Grouping publish(std::vector<Candidate> candidates, std::uint64_t next_id,
                  const AssociationConfig& config) {
   Grouping grouping;
@@ -208,6 +219,7 @@ Grouping publish(std::vector<Candidate> candidates, std::uint64_t next_id,
     for (Sight& sight : candidate.sights) person.views.push_back(std::move(sight.view));
     grouping.people.push_back(std::move(person));
   }
+  keep_the_best(grouping.people);
   return grouping;
 }
 
@@ -219,6 +231,7 @@ Grouping group(std::vector<SensorView> views, Timestamp instant, const Tracks& t
   std::vector<Sight> leftovers = match(sights_of(std::move(views)), candidates, config.gate);
   std::uint64_t next_id = std::max<std::uint64_t>(tracks.next_id, 1);
   for (auto& members : cluster(std::move(leftovers), config.cluster)) {
+    if (candidates.size() >= kMostTracks) break;
     Candidate fresh;
     fresh.track.id = PersonId{next_id++};
     fresh.sights = std::move(members);

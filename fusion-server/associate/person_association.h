@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "fusion-server/associate/plausible.h"
 #include "fusion-server/flow.h"
 
 namespace chorus::associate {
@@ -21,6 +22,7 @@ struct AssociationConfig {
   Duration coast = std::chrono::seconds(1);  ///< How long a track survives without any view.
   int merge_frames =
       15;  ///< Instants two confirmed tracks share a spot, but no sensor, before they merge.
+  BodyLimits bodies;
 
   bool operator==(const AssociationConfig&) const = default;
 };
@@ -41,7 +43,9 @@ struct Tracks {
 };
 
 struct Grouping {
-  std::vector<Person> people;  ///< Confirmed ones with at least one view, in id order.
+  /// Confirmed ones with at least one view, in id order; at most as many as a frame holds, and then
+  /// those that several sensors see.
+  std::vector<Person> people;
   Tracks tracks;
 };
 

@@ -10,6 +10,15 @@ RegistrarConfig registrar_config(const CoreConfig& config) {
   return {config.registration, config.session, config.sensors};
 }
 
+constexpr std::string_view kOutOfOrder =
+    "a frame was captured before the one it follows, and is refused: the clock of the sensor's "
+    "host "
+    "was set back, or it numbers its frames wrongly";
+constexpr std::string_view kFuture =
+    "a frame was captured in the future, and is refused: set the clock of the sensor's host";
+constexpr std::string_view kFrozen =
+    "a body is left out: its coordinates are repeated to the last digit under new stamps";
+
 }  // namespace
 
 FusionCore::FusionCore(CoreConfig config, Registration registration)
@@ -29,17 +38,34 @@ void FusionCore::reconfigure(CoreConfig config) {
                 [&](const auto& entry) { return !config_.sensors.contains(entry.first); });
 }
 
-void FusionCore::take(const SensorFrame& frame) {
+void FusionCore::take(SensorFrame frame) {
   if (!config_.sensors.contains(frame.sensor)) return;
+  sift(frame);
   const align::PushVerdict verdict = histories_[frame.sensor].push(frame);
   if (verdict == align::PushVerdict::Duplicate) return;
   if (verdict == align::PushVerdict::Backwards || verdict == align::PushVerdict::Future) {
-    Refusals& refusals = refused_[frame.sensor];
-    ++refusals.count;
-    refusals.last = frame.received;
-    return;
+    ++refused_[frame.sensor].count;
+    return refuse(frame, verdict == align::PushVerdict::Future ? kFuture : kOutOfOrder);
   }
   registrar_.take(frame);
+}
+
+/// Takes out what is no body of a person; the others of the frame stay.
+void FusionCore::sift(SensorFrame& frame) {
+  const associate::BodyLimits& limits = config_.pipeline.association.bodies;
+  std::string_view why;
+  std::erase_if(frame.bodies, [&](const BodyFrame& body) {
+    const std::string_view reason = associate::implausible(body.skeleton, limits);
+    if (!reason.empty()) why = reason;
+    return !reason.empty();
+  });
+  if (frozen_[frame.sensor].remove_from(frame, limits) > 0) why = kFrozen;
+  if (!why.empty()) refuse(frame, why);
+}
+
+void FusionCore::refuse(const SensorFrame& frame, std::string_view why) {
+  refused_[frame.sensor].last = frame.received;
+  refused_[frame.sensor].why = why;
 }
 
 std::optional<Snapshot> FusionCore::tick(Timestamp now) {
@@ -123,9 +149,10 @@ std::uint64_t FusionCore::refused(const SensorId& sensor) const {
   return it == refused_.end() ? 0 : it->second.count;
 }
 
-bool FusionCore::refuses(const SensorId& sensor, Timestamp now) const {
+std::string FusionCore::complaint(const SensorId& sensor, Timestamp now) const {
   const auto it = refused_.find(sensor);
-  return it != refused_.end() && now - it->second.last < kSeenLately;
+  const bool lately = it != refused_.end() && now - it->second.last < kSeenLately;
+  return lately ? std::string(it->second.why) : std::string();
 }
 
 }  // namespace chorus::core

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "fusion-server/associate/plausible.h"
 #include "fusion-server/core/hindsight.h"
 #include "fusion-server/core/registrar.h"
 #include "fusion-server/core/tick_schedule.h"
@@ -34,7 +35,7 @@ class FusionCore {
   FusionCore(CoreConfig config, Registration registration);
 
   void reconfigure(CoreConfig config);
-  void take(const SensorFrame& frame);
+  void take(SensorFrame frame);
 
   /// The next snapshot when its time has come.
   [[nodiscard]] std::optional<Snapshot> tick(Timestamp now);
@@ -66,8 +67,8 @@ class FusionCore {
     return registrar_.sightings().bodies(sensor, now);
   }
   [[nodiscard]] std::uint64_t refused(const SensorId& sensor) const;
-  /// Frames of this sensor have been refused within the last seconds.
-  [[nodiscard]] bool refuses(const SensorId& sensor, Timestamp now) const;
+  /// What of this sensor has been refused within the last seconds, and why; empty: nothing.
+  [[nodiscard]] std::string complaint(const SensorId& sensor, Timestamp now) const;
   [[nodiscard]] Share share(const SensorId& sensor) const { return shares_.of(sensor); }
   [[nodiscard]] std::uint64_t skipped() const noexcept { return schedule_.skipped(); }
   /// No person has had this id or a higher one.
@@ -76,9 +77,12 @@ class FusionCore {
  private:
   struct Refusals {
     std::uint64_t count = 0;
-    Timestamp last;  ///< Receipt of the last refused frame.
+    Timestamp last;  ///< Receipt of the last frame with something to refuse.
+    std::string_view why;
   };
 
+  void refuse(const SensorFrame& frame, std::string_view why);
+  void sift(SensorFrame& frame);
   [[nodiscard]] bool improves(const Answered& answered, Timestamp now) const;
 
   CoreConfig config_;
@@ -87,6 +91,7 @@ class FusionCore {
   pipeline::Memory memory_;
   Registrar registrar_;
   std::map<SensorId, Refusals> refused_;
+  std::map<SensorId, associate::FrozenBodies> frozen_;
   std::vector<SensorId> awaited_;  ///< When the pending instant was last asked about.
   Hindsight hindsight_;
   Shares shares_;

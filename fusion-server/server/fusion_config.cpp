@@ -90,6 +90,7 @@ void read_association(ConfigReader reader, associate::AssociationConfig& out) {
   reader.read("confirm_frames", out.confirm_frames, 1, 1000);
   reader.read_s("coast_s", out.coast, seconds(0), seconds(60));
   reader.read("merge_frames", out.merge_frames, 1, 1000);
+  reader.read("max_range_m", out.bodies.max_range, 1.0, 1000.0);
 }
 
 void read_fusion(ConfigReader reader, fusion::FusionConfig& out) {

@@ -20,11 +20,6 @@ constexpr Duration kStatusInterval = std::chrono::milliseconds(200);
 constexpr Duration kAfterFailure = std::chrono::milliseconds(10);
 constexpr Duration kStale = std::chrono::milliseconds(1500);
 
-constexpr std::string_view kOutOfOrder =
-    "a frame was captured before the one it follows, and is refused: the clock of the sensor's "
-    "host "
-    "was set back, or it numbers its frames wrongly";
-
 /// Around one frame interval, the alignment delay, and what nobody should see [s].
 const std::vector<double> kAgeBounds{0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.08, 0.1, 0.15, 0.2, 0.5};
 
@@ -96,9 +91,9 @@ void PipelineLoop::gather(Duration idle) {
     std::this_thread::sleep_for(pause);
     idle -= pause;
   }
-  const std::vector<SensorFrame> frames = frames_.take(idle);
+  std::vector<SensorFrame> frames = frames_.take(idle);
   if (!frames.empty()) gathered_at_ = std::chrono::steady_clock::now();
-  for (const SensorFrame& frame : frames) core_.take(frame);
+  for (SensorFrame& frame : frames) core_.take(std::move(frame));
 }
 
 void PipelineLoop::obey(Command command) {
@@ -188,9 +183,8 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
   const bool silent = report.state == poll::SensorState::Live && status.age && *status.age > kStale;
   status.state = poll::name_of(silent ? poll::SensorState::Lost : report.state);
   status.last_error = report.last_error;
-  if (status.last_error.empty() && core_.refuses(report.sensor.id, now)) {
-    status.last_error = std::string(kOutOfOrder);
-  } else if (status.last_error.empty() && silent) {
+  if (status.last_error.empty()) status.last_error = core_.complaint(report.sensor.id, now);
+  if (status.last_error.empty() && silent) {
     status.last_error =
         "its newest frame was captured " + log::number_text(seconds(*status.age)) +
         " s ago by our clock; it delivers nothing, or the clock of its host is wrong";
@@ -219,12 +213,24 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
   return status;
 }
 
+/// Says once what the pipeline refuses of a sensor that is live; the poller tells the rest.
+void PipelineLoop::complain(const SensorStatus& sensor) {
+  std::string& told = told_[sensor.id];
+  const bool news = sensor.state == "live" && !sensor.last_error.empty();
+  if (news && sensor.last_error != told) {
+    log::warn("sensor frames left out",
+              {{"sensor", sensor.id.str()}, {"reason", sensor.last_error}});
+  }
+  if (news) told = sensor.last_error;
+}
+
 void PipelineLoop::publish_status(Timestamp now) {
   status_at_ = now;
   keeper_.people(worker_, core_.next_person());
   Status status;
   for (const poll::PollReport& report : options_.poll_reports()) {
     status.sensors.push_back(status_of(report, now));
+    complain(status.sensors.back());
   }
   status.registration = core_.registration();
   status.progress = core_.progress(now);

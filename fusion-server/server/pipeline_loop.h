@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <thread>
@@ -74,6 +75,7 @@ class PipelineLoop {
   void solve(core::SolveJob job);
   void take_solutions();
   void publish_status(Timestamp now);
+  void complain(const SensorStatus& sensor);
   [[nodiscard]] SensorStatus status_of(const poll::PollReport& report, Timestamp now) const;
 
   LoopOptions options_;
@@ -81,6 +83,7 @@ class PipelineLoop {
   Handover<SensorFrame> frames_;
   Handover<Command> commands_;
   Handover<core::Solution> solutions_;
+  std::map<SensorId, std::string> told_;  ///< The last complaint in the log.
   Counters counters_;
   Histogram age_;  ///< Instant to publication [s].
   Timestamp status_at_{};

@@ -156,5 +156,20 @@ TEST(GroupProperty, TheOrderOfViewsDoesNotMatter) {
                                  [](const auto& a, const auto& b) { return a.body < b.body; }));
 }
 
+TEST(Group, LiarsDoNotFillTheRoom) {
+  Room room;
+  std::vector<SensorView> views;
+  for (std::uint64_t i = 0; i < 64; ++i) {
+    views.push_back(view(1, 100 + 5.0 * static_cast<double>(i), 0, i + 1));
+    views.push_back(view(2, 5.0 * static_cast<double>(i), 500, i + 1));
+  }
+  for (const SensorView& honest : {view(3, 0, 0), view(4, 0, 0)}) views.push_back(honest);
+  const auto people = room.see_often(views, 3);
+  EXPECT_EQ(people.size(), 64u);
+  EXPECT_TRUE(std::any_of(people.begin(), people.end(),
+                          [](const Person& person) { return person.views.size() == 2; }));
+  EXPECT_LE(room.tracks.people.size(), 256u);
+}
+
 }  // namespace
 }  // namespace chorus::associate

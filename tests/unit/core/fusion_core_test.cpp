@@ -351,12 +351,33 @@ TEST(FusionCore, WithoutLateFramesNothingIsAmended) {
 TEST(FusionCore, SaysForAWhileThatFramesAreRefused) {
   FusionCore core(config(), ring());
   (void)run(core, Duration{0}, milliseconds(500));
-  EXPECT_FALSE(core.refuses(sensor_id("s1"), kStart + milliseconds(500)));
+  EXPECT_EQ(core.complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
   SensorFrame back = sight(0, milliseconds(300));
-  back.sequence = ~std::uint64_t{0};
+  back.sequence = ~std::uint64_t{0};  // a later one of the sensor's
   core.take(back);
-  EXPECT_TRUE(core.refuses(sensor_id("s1"), kStart + milliseconds(500)));
-  EXPECT_FALSE(core.refuses(sensor_id("s1"), kStart + seconds(4)));
+  EXPECT_NE(core.complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
+  EXPECT_EQ(core.complaint(sensor_id("s1"), kStart + seconds(4)), "");
+}
+
+TEST(FusionCore, BodiesThatNobodyHasAreLeftOutByName) {
+  FusionCore core(config(), ring());
+  for (int i = 0; i < 60; ++i) {
+    const Duration t = milliseconds(33 * i);
+    for (int sensor = 0; sensor < kSensors; ++sensor) {
+      SensorFrame frame = sight(sensor, t);
+      if (sensor == 0) {
+        BodyFrame far = frame.bodies[0];
+        far.id = BodyId{99};
+        for (Joint& joint : far.skeleton.joints) joint.position.z() += 9999.9;
+        frame.bodies.push_back(far);
+      }
+      core.take(frame);
+    }
+    while (const auto snapshot = core.tick(kStart + t)) EXPECT_LE(snapshot->bodies.size(), 1u);
+  }
+  EXPECT_NE(core.complaint(sensor_id("s1"), kStart + seconds(2)).find("max_range_m"),
+            std::string::npos);
+  EXPECT_EQ(core.complaint(sensor_id("s2"), kStart + seconds(2)), "");
 }
 
 }  // namespace
