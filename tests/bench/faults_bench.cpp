@@ -58,6 +58,9 @@ void run_and_tell(Report& report, const FaultCase& asked) {
   const char* outcome = !trial.left_out.empty() ? "left out" : holds(trial) ? "survived" : "BROKEN";
   std::cerr << fmt::format("{:<24} {:<8} {:5.1f} s  {}\n", asked.name, outcome, took.count(),
                            asked.summary);
+  for (const Trial::Check& each : trial.checks) {
+    if (!each.holds) std::cerr << "    " << each.sentence << '\n';
+  }
 }
 
 }  // namespace

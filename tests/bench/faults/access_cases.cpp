@@ -183,10 +183,12 @@ Result<void> guessed_tokens(Trial& trial) {
 FaultCases access_cases() {
   return {
       {"proxy-same-host", "nginx in front that forwards no header", same_host_proxy},
-      {"token-loopback", "a token is set: it is wanted from this host too", token_on_loopback},
+      {"token-loopback", "a token is set: it is wanted from this host too", token_on_loopback,
+       true},
       {"foreign-page", "a web page of another origin reads", foreign_page},
-      {"foreign-host-name", "a name that DNS points at loopback", foreign_host_name},
-      {"foreign-websocket", "a web page of another origin opens a WebSocket", foreign_websocket},
+      {"foreign-host-name", "a name that DNS points at loopback", foreign_host_name, true},
+      {"foreign-websocket", "a web page of another origin opens a WebSocket", foreign_websocket,
+       true},
       {"guessed-tokens", "another host tries tokens as fast as it can", guessed_tokens},
   };
 }

@@ -223,9 +223,9 @@ Result<void> server_first(Trial& trial) {
 FaultCases sensor_cases() {
   return {
       {"sensor-killed", "SIGKILL of one of three, back after 3 s", sensor_killed},
-      {"sensor-stopped", "SIGSTOP of one of three for 4 s", sensor_stopped, true},
+      {"sensor-stopped", "SIGSTOP of one of three for 4 s", sensor_stopped},
       {"sensor-frozen", "one stops in the middle of an answer for 4 s", frozen_mid_answer},
-      {"sensor-garbage", "one more answers with noise", garbage, true},
+      {"sensor-garbage", "one more answers with noise", garbage},
       {"sensor-silent", "one more accepts connections and never answers", never_answers},
       {"big-frame", "one more sends a sound frame and 270 000 subjects of no meaning", big_frame},
       {"hour-ahead", "one more stamps its frames an hour ahead", hour_ahead},
