@@ -31,7 +31,7 @@ class Sessions(Rig):
 
     def test_everybody_follows_one_session_from_the_answer_on(self):
         fusion = self.start(**{"registration.auto": "false"})
-        self.assertIn("run chorus register", " ".join(self.registration(fusion)["awaits"]))
+        wait_for("it says what to do", lambda: "run chorus register" in " ".join(self.registration(fusion)["awaits"]))
         status, headers, body = send("POST", fusion.url + "registration", b'{"seconds": 8}')
         self.assertEqual(status, 202)
         path = headers["Location"]
