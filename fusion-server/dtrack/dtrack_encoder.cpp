@@ -75,8 +75,7 @@ void add_times(std::string& out, Timestamp instant, Duration latency) {
   using std::chrono::duration_cast;
   using std::chrono::microseconds;
   const auto since_epoch = duration_cast<microseconds>(instant.time_since_epoch());
-  const auto seconds_and_rest = [&out](microseconds time, std::string_view between,
-                                       auto pad) {
+  const auto seconds_and_rest = [&out](microseconds time, std::string_view between, auto pad) {
     add(out, static_cast<std::uint64_t>(time / std::chrono::seconds(1)));
     out += between;
     const auto rest = std::to_string((time % std::chrono::seconds(1)).count());
