@@ -101,7 +101,7 @@ class Program(Rig):
         self.processes.append(fusion)
         url = f"http://127.0.0.1:{port}/"
         wait_for("it answers", lambda: get(url + "frame")[0] in (200, 503))
-        self.assertIn("fusion server ready", [json.loads(line)["event"] for line in fusion.text().splitlines()])
+        wait_for("it says so", lambda: "fusion server ready" in [json.loads(line)["event"] for line in fusion.text().splitlines()])
 
         def allowed(token):
             headers = {"Authorization": f"Bearer {token}"}
