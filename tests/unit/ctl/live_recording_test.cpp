@@ -19,6 +19,8 @@ namespace {
 using chorus::testing::IsOk;
 using chorus::testing::kFrameInterval;
 using chorus::testing::kStart;
+using client::LiveRecording;
+using client::LiveRecordingOptions;
 using ::testing::HasSubstr;
 
 std::string frame_of(const std::string& source, int sequence) {

@@ -34,7 +34,8 @@ TEST(Osc, NumbersAreBigEndian) {
 
 TEST(Osc, NothingThatIsNotANumberIsSent) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto read = testing::OscReader(Message("/m").real(nan).real(1e300).bytes()).packet();
+  const auto read =
+      outlet::testing::OscReader(Message("/m").real(nan).real(1e300).bytes()).packet();
   EXPECT_EQ(read.at(0).numbers, (std::vector<double>{0, 0}));
 }
 
@@ -51,7 +52,7 @@ TEST(Osc, ABundleIsNoLongerThanItsLimitAndNothingIsLost) {
     EXPECT_LE(bundle.size(), 100u);
     EXPECT_GT(bundle.size(), 60u);
   }
-  for (const auto& message : testing::read_osc(bundles.all())) {
+  for (const auto& message : outlet::testing::read_osc(bundles.all())) {
     seen.push_back(message.numbers.at(0));
   }
   ASSERT_EQ(seen.size(), 20u);
