@@ -79,7 +79,7 @@ void Cell::take_ports() {
     sensor_ports_.push_back(testing::free_port());
     sensors_.emplace_back();
     if (const auto it = plan_.links.find(i); it != plan_.links.end())
-      links_[i] = std::make_unique<Link>(sensor_ports_.back(), it->second,
+      links_[i] = std::make_unique<Pump>(sensor_ports_.back(), it->second,
                                          static_cast<std::uint32_t>(i + 1));
   }
 }

@@ -60,7 +60,7 @@ class Cell {
   [[nodiscard]] ChildProcess& sensor(int index) {
     return *sensors_.at(static_cast<std::size_t>(index));
   }
-  [[nodiscard]] Link& link(int index) { return *links_.at(index); }
+  [[nodiscard]] Pump& link(int index) { return *links_.at(index); }
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] std::uint16_t sensor_port(int index) const {
     return sensor_ports_.at(static_cast<std::size_t>(index));
@@ -86,7 +86,7 @@ class Cell {
   ScratchFolder folder_;  // goes last
   std::uint16_t port_ = 0;
   std::vector<std::uint16_t> sensor_ports_;
-  std::map<int, std::unique_ptr<Link>> links_;
+  std::map<int, std::unique_ptr<Pump>> links_;
   std::vector<std::optional<ChildProcess>> sensors_;
   std::optional<ChildProcess> fusion_;
 };

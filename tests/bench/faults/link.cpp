@@ -211,7 +211,7 @@ double time_under_way(const LinkModel& link, std::size_t bytes, std::mt19937& ra
   return out + longest;
 }
 
-struct Link::Impl {
+struct Pump::Impl {
   Impl(std::uint16_t to, const LinkModel& first, std::uint32_t seed)
       : model(first),
         random(seed),
@@ -257,28 +257,28 @@ struct Link::Impl {
   std::jthread thread;
 };
 
-Link::Link(std::uint16_t target, const LinkModel& model, std::uint32_t seed)
+Pump::Pump(std::uint16_t target, const LinkModel& model, std::uint32_t seed)
     : impl_(std::make_unique<Impl>(target, model, seed)) {
   impl_->accept();
   impl_->thread = std::jthread([impl = impl_.get()] { impl->io.run(); });
 }
 
-Link::~Link() {
+Pump::~Pump() {
   http::net::post(impl_->io, [impl = impl_.get()] { impl->stop(); });
 }
 
-std::uint16_t Link::port() const { return impl_->acceptor.local_endpoint().port(); }
+std::uint16_t Pump::port() const { return impl_->acceptor.local_endpoint().port(); }
 
-void Link::become(const LinkModel& model) {
+void Pump::become(const LinkModel& model) {
   http::net::post(impl_->io, [impl = impl_.get(), model] { impl->model = model; });
 }
 
-void Link::freeze(bool frozen) {
+void Pump::freeze(bool frozen) {
   impl_->switches.frozen = frozen;
   if (!frozen) impl_->switches.passes = -1;
 }
 
-void Link::freeze_after(std::size_t bytes) {
+void Pump::freeze_after(std::size_t bytes) {
   impl_->switches.passes = static_cast<std::int64_t>(bytes);
 }
 

@@ -28,12 +28,12 @@ struct LinkModel {
 [[nodiscard]] double time_under_way(const LinkModel& link, std::size_t bytes, std::mt19937& random);
 
 /// Listens on a port of its own and hands every connection on to 127.0.0.1:`target`.
-class Link {
+class Pump {
  public:
-  Link(std::uint16_t target, const LinkModel& model, std::uint32_t seed = 1);
-  ~Link();  ///< Cuts all connections.
-  Link(const Link&) = delete;
-  Link& operator=(const Link&) = delete;
+  Pump(std::uint16_t target, const LinkModel& model, std::uint32_t seed = 1);
+  ~Pump();  ///< Cuts all connections.
+  Pump(const Pump&) = delete;
+  Pump& operator=(const Pump&) = delete;
 
   [[nodiscard]] std::uint16_t port() const;
   /// From the next message on.
