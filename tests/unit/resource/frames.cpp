@@ -151,7 +151,7 @@ FrameResource random_frame(std::uint64_t seed, const FrameKind& kind) {
   for (std::size_t b = 0; b < kind.bodies; ++b) {
     BodyResource body;
     body.id = b * 1'000 + dice.number(999);
-    if (kind.fused && b != 2) body.slot = kind.bodies - b;  // one has no seat
+    if (kind.fused && b != 2) body.slot = kind.bodies - 1 - b;  // one has no seat
     if (b == 1) body.id = 72'057'594'037'928'018;  // as Kinect v2 numbers them: beyond a double
     body.captured =
         dice.chance(0.5) ? frame.captured : frame.captured - Duration(dice.number(30'000'000));
