@@ -169,7 +169,11 @@ class Outputs(Rig):
             self.check_trackd(self.joints_of(fusion, self.full_sequence(fusion, low, 31)), sensors)
             time.sleep(0.05)
         fusion.stop()
-        self.assertEqual(libc.shmget(key, 0, 0), -1)
+        self.addCleanup(libc.shmctl, segment, 0, None)  # IPC_RMID
+        self.assertEqual(libc.shmget(key + 1, 0, 0), -1, "nobody is attached to the controller's")
+        sensors = trackd_sensors(ctypes.string_at(place, 28 + 50 * 40))
+        self.assertEqual({sensor[4] for sensor in sensors}, {0}, "who stays attached sees nobody")
+        self.assertEqual(libc.shmget(key, 0, 0), segment, "and is found again by the next run")
         libc.shmdt(ctypes.c_void_p(place))
 
     def check_trackd(self, joints, sensors):
