@@ -61,9 +61,11 @@ bool asks_by_query(const RequestHead& head, const Router::Entry& entry) {
   return query && query->contains(entry.query_key);
 }
 
-/// A name that ends in ".json" is worth a header to those who cannot send one.
-std::string_view accept_of(const RequestHead& head) {
-  return head.path.ends_with(kJsonSuffix) ? "application/json, */*;q=0.5" : head.accept;
+/// A name that ends in ".json" is worth a header to those who cannot send one; not where the
+/// resource itself is called so.
+std::string_view accept_of(const RequestHead& head, const Router& router) {
+  const bool added = head.path.ends_with(kJsonSuffix) && !router.match(head.path);
+  return added ? "application/json, */*;q=0.5" : head.accept;
 }
 
 /// What a path names, or would without ".json".
@@ -250,7 +252,7 @@ Answer Responder::represent(const DocumentPtr& document, const RequestHead& head
                  head, route);
   const auto profile = profile_of(head);
   if (!profile) return fault(profile.error(), head, route);
-  const auto chosen = document->choose(accept_of(head), *profile, coding_for(head.accept_encoding));
+  const auto chosen = document->choose(accept_of(head, *router_), *profile, coding_for(head.accept_encoding));
   if (!chosen && chosen.error().code == ErrorCode::NotAcceptable) {
     Problem problem = problem_of(chosen.error());
     problem.available = document->media_types(*profile);

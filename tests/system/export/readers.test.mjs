@@ -94,7 +94,7 @@ test("the Khronos validator has nothing to say, of one person and of two", async
   exported("gltf", "one.glb");
   const two = fused.map((frame) => {
     const other = structuredClone(frame.bodies[0]);
-    Object.assign(other, { bodyId: 7, "@id": "skeletons/7" });
+    Object.assign(other, { bodyId: 7, slot: 1, "@id": "skeletons/7" });
     for (const [name, joint] of Object.entries(other.joints)) {
       joint["@id"] = `skeletons/7#${name}`;
       if ("x" in joint) joint.x += 1.5;

@@ -161,20 +161,19 @@ TEST(TurtleWriter, AnErrorNamesTheTermAndKeepsItShort) {
 
 TEST(ResolveIri, FollowsTheExamplesOfRfc3986) {
   const std::string base = "http://a/b/c/d;p?q";
-  const std::vector<std::pair<std::string, std::string>> examples{
-      {"g:h", "g:h"},
-      {"g", "http://a/b/c/g"},
-      {"./g", "http://a/b/c/g"},
-      {"g/", "http://a/b/c/g/"},
-      {"/g", "http://a/g"},
-      {"//g", "http://g"},
-      {"?y", "http://a/b/c/d;p?y"},
-      {"g?y", "http://a/b/c/g?y"},
-      {"#s", "http://a/b/c/d;p?q#s"},
-      {"./../g", "http://a/b/g"},
-      {"", "http://a/b/c/d;p?q"},
-      {"../../g", "http://a/g"},
-      {"../g", "http://a/b/g"}};
+  const std::vector<std::pair<std::string, std::string>> examples{{"g:h", "g:h"},
+                                                                  {"g", "http://a/b/c/g"},
+                                                                  {"./g", "http://a/b/c/g"},
+                                                                  {"g/", "http://a/b/c/g/"},
+                                                                  {"/g", "http://a/g"},
+                                                                  {"//g", "http://g"},
+                                                                  {"?y", "http://a/b/c/d;p?y"},
+                                                                  {"g?y", "http://a/b/c/g?y"},
+                                                                  {"#s", "http://a/b/c/d;p?q#s"},
+                                                                  {"./../g", "http://a/b/g"},
+                                                                  {"", "http://a/b/c/d;p?q"},
+                                                                  {"../../g", "http://a/g"},
+                                                                  {"../g", "http://a/b/g"}};
   for (const auto& [reference, expected] : examples) {
     EXPECT_EQ(resolve_iri(reference, base), expected) << reference;
   }
