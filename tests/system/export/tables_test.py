@@ -168,7 +168,7 @@ class Export(unittest.TestCase):
 
     def test_what_goes_wrong_says_what_to_do(self):
         for source, words in [
-                (self.at / "rec", ["cam01 in its own space", "chorus fuse"]),
+                (self.at / "rec", ["is of sensor cam0", "in its own space", "chorus fuse"]),
                 (self.at / "nothing", ["no such file"]),
                 (CAMERAS + "/fusion.json", ["fusion.json:1"]),
                 ("http://127.0.0.1:1/", ["is chorus-fusion running there?"])]:

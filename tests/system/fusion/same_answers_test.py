@@ -36,7 +36,7 @@ REQUESTS = [
     ("/frame", 200), ("/frame?profile=nonsense", 404), ("/frame?at=noon", 400), ("/frame?at=", 400),
     ("/frame?at={instant}", 200), ("/frame?at={later}", 404), ("/frame?at=1970-01-02T00:00:00Z", 410),
     ("/frames/{recent}", 200), ("/frames/0{recent}", 404), ("/frames/1", 410), ("/frames/{later}", 404),
-    ("/frames/x", 404), ("/frames/", 404), ("/skeletons/", 200), ("/skeletons", 404), ("/skeletons/{body}", 200),
+    ("/frames/x", 404), ("/frames/", 404), ("/skeletons/", 200), ("/skeletons", 308), ("/skeletons/{body}", 200),
     ("/skeletons/00{body}", 404), ("/skeletons/x", 404), ("/skeletons/{later}", 404),
     ("/floor-plane", 200), ("/", 200), ("/clock", 200), ("/healthz", 200), ("/recordings/", 200),
     ("/recordings/none", 404), ("/ns", 200), ("/nothing", 404),

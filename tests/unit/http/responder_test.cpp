@@ -62,23 +62,23 @@ TEST_F(ResponderTest, ANameThatEndsInJsonAsksForJson) {
       std::vector<Variant>{{"text/turtle", [] { return std::string("turtle"); }},
                            {"application/json", [] { return std::string("json"); }}},
       DocumentOptions{"1"}));
-  EXPECT_EQ(react("GET /frame HTTP/1.1\r\nHost: x\r\n").answer.body, "turtle");
-  EXPECT_EQ(react("GET /frame.json HTTP/1.1\r\nHost: x\r\n").answer.body, "json");
+  EXPECT_EQ(react("GET /frame HTTP/1.1\r\nHost: localhost\r\n").answer.body, "turtle");
+  EXPECT_EQ(react("GET /frame.json HTTP/1.1\r\nHost: localhost\r\n").answer.body, "json");
   const Reaction waiting = react(
-      "GET /frame.json HTTP/1.1\r\nHost: x\r\nPrefer: wait=9\r\nIf-None-Match: \"1-json\"\r\n");
+      "GET /frame.json HTTP/1.1\r\nHost: localhost\r\nPrefer: wait=9\r\nIf-None-Match: \"1-json\"\r\n");
   ASSERT_EQ(waiting.kind, Reaction::Kind::Wait);
   publish(2);
   EXPECT_EQ(responder_->waited(*waiting.entry, head_)->status, 200);
-  EXPECT_EQ(react("GET /nothing.json HTTP/1.1\r\nHost: x\r\n").answer.status, 404);
+  EXPECT_EQ(react("GET /nothing.json HTTP/1.1\r\nHost: localhost\r\n").answer.status, 404);
 }
 
 TEST_F(ResponderTest, ThePathWithOrWithoutItsSlashLeadsToTheOther) {
-  const Reaction slash = react("GET /frame/?at=1 HTTP/1.1\r\nHost: x\r\n");
+  const Reaction slash = react("GET /frame/?at=1 HTTP/1.1\r\nHost: localhost\r\n");
   EXPECT_EQ(slash.answer.status, 308);
   EXPECT_THAT(slash.answer.extra, HasSubstr("Location: ../frame?at=1\r\n"));
-  EXPECT_EQ(react("GET /list HTTP/1.1\r\nHost: x\r\n").answer.extra, "Location: list/\r\n");
-  EXPECT_EQ(react("GET // HTTP/1.1\r\nHost: x\r\n").answer.status, 404);
-  EXPECT_EQ(react("POST /frame/ HTTP/1.1\r\nHost: x\r\n").answer.status, 404);
+  EXPECT_EQ(react("GET /list HTTP/1.1\r\nHost: localhost\r\n").answer.extra, "Location: list/\r\n");
+  EXPECT_EQ(react("GET // HTTP/1.1\r\nHost: localhost\r\n").answer.status, 404);
+  EXPECT_EQ(react("POST /frame/ HTTP/1.1\r\nHost: localhost\r\n").answer.status, 404);
 }
 
 TEST_F(ResponderTest, TheBodyOfTheHotPathIsTheDocumentsOwn) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "common/base/log_queue.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chorus::service {
@@ -89,6 +90,7 @@ TEST(ProgramShell, ReadsTheFileAgainOnHangUpAndGoesOnWhenItIsWrong) {
   program.on_reload = [&] { write(R"({"wrod": "b"})"); };
   ::testing::internal::CaptureStderr();
   EXPECT_EQ(run(program, {"--config", path.c_str(), "--log-format", "json"}), kExitStopped);
+  ASSERT_TRUE(log::flush(std::chrono::seconds(5)));
   const std::string log = ::testing::internal::GetCapturedStderr();
   EXPECT_THAT(log, HasSubstr(R"("configuration reloaded")"));
   EXPECT_THAT(log, HasSubstr("configuration not reloaded, the old one stays"));
@@ -117,6 +119,7 @@ TEST(ProgramShell, WhatIsThrownEndsItWithAReason) {
   program.throws = true;
   ::testing::internal::CaptureStderr();
   EXPECT_EQ(run(program, {}), kExitFailed);
+  ASSERT_TRUE(log::flush(std::chrono::seconds(5)));
   EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("out of luck"));
 }
 
