@@ -252,7 +252,8 @@ Answer Responder::represent(const DocumentPtr& document, const RequestHead& head
                  head, route);
   const auto profile = profile_of(head);
   if (!profile) return fault(profile.error(), head, route);
-  const auto chosen = document->choose(accept_of(head, *router_), *profile, coding_for(head.accept_encoding));
+  const auto chosen =
+      document->choose(accept_of(head, *router_), *profile, coding_for(head.accept_encoding));
   if (!chosen && chosen.error().code == ErrorCode::NotAcceptable) {
     Problem problem = problem_of(chosen.error());
     problem.available = document->media_types(*profile);

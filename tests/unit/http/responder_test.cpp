@@ -65,7 +65,8 @@ TEST_F(ResponderTest, ANameThatEndsInJsonAsksForJson) {
   EXPECT_EQ(react("GET /frame HTTP/1.1\r\nHost: localhost\r\n").answer.body, "turtle");
   EXPECT_EQ(react("GET /frame.json HTTP/1.1\r\nHost: localhost\r\n").answer.body, "json");
   const Reaction waiting = react(
-      "GET /frame.json HTTP/1.1\r\nHost: localhost\r\nPrefer: wait=9\r\nIf-None-Match: \"1-json\"\r\n");
+      "GET /frame.json HTTP/1.1\r\nHost: localhost\r\nPrefer: wait=9\r\nIf-None-Match: "
+      "\"1-json\"\r\n");
   ASSERT_EQ(waiting.kind, Reaction::Kind::Wait);
   publish(2);
   EXPECT_EQ(responder_->waited(*waiting.entry, head_)->status, 200);
