@@ -19,26 +19,20 @@
 
 namespace chorus {
 
-/// How an answer for an instant came about.
+/// How the answer for an instant was obtained.
 enum class Basis {
   Exact,         ///< A capture at that very instant.
   Interpolated,  ///< Between two captures.
   Pending,       ///< Not yet: a later capture may still arrive.  Ask again.
-  Lost,  ///< Never: the sensor has passed the instant without seeing it, or the gap is too wide.
-};
-
-template <class T>
-struct Aligned {
-  std::optional<T> value;
-  Basis basis = Basis::Lost;
+  Lost,  ///< Never: the sensor passed the instant without seeing it, or the gap is too wide.
 };
 
 /// One sensor's bodies, moved to the common instant.
 struct AlignedSensor {
   SensorId sensor;
   Basis basis = Basis::Lost;
-  std::vector<BodyFrame>
-      bodies;  ///< `captured` is the common instant; empty unless Exact/Interpolated.
+  /// `captured` is the common instant; empty unless Exact/Interpolated.
+  std::vector<BodyFrame> bodies;
   std::optional<FloorPlane> floor;
 };
 
@@ -52,7 +46,8 @@ struct Extrinsics {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
-/// One overlapping pair: client seen from master side.  An edge; never silently inverted.
+/// One overlapping pair: the client as seen from the master's side.  An edge; never silently
+/// inverted.
 struct PairwiseRegistration {
   SensorId target;
   SensorId source;
@@ -72,7 +67,7 @@ enum class Verdict { None, Provisional, Good, Refused };
 /// How far one sensor's place may be trusted.
 struct SensorVerdict {
   Verdict verdict = Verdict::None;   ///< Refused: it has no place.
-  std::vector<std::string> reasons;  ///< Why not good, one sentence for a person each.
+  std::vector<std::string> reasons;  ///< Why not good, one sentence for people each.
 };
 
 /// The sensors' places, replaced whole, persisted, versioned.
@@ -83,19 +78,19 @@ struct Registration {
   std::vector<std::string> reasons;  ///< Why not good, and why sensors are missing.
   SensorId master;
   std::map<SensorId, Extrinsics> sensors;
-  /// Of each sensor that took part in a walk, with a place or without.
+  /// For each sensor that took part in a walk, with a place or without.
   std::map<SensorId, SensorVerdict> verdicts;
   std::vector<PairwiseRegistration> edges;
 };
 
-/// One sensor's sight of one person at the common instant, with all that fusion wants to know of
-/// it.
+/// One sensor's sight of one person at the common instant, with everything that fusion needs to
+/// know about it.
 struct SensorView {
   SensorId sensor;
   BodyId body;
   Basis basis = Basis::Exact;
-  double distance =
-      std::numeric_limits<double>::quiet_NaN();               ///< Sensor to neck [m]; NaN: unknown.
+  /// Sensor to neck [m]; NaN: unknown.
+  double distance = std::numeric_limits<double>::quiet_NaN();
   double facing = std::numeric_limits<double>::quiet_NaN();   ///< Otto Eq. (2) phi [rad].
   double bearing = std::numeric_limits<double>::quiet_NaN();  ///< Otto Eq. (3) alpha [rad].
   double weight = 0.0;                            ///< Product of Eqs. (1)-(3), in [0, 1].

@@ -9,10 +9,10 @@
 
 namespace chorus {
 
-/// What /metrics tells of one output; each but `clients` only grows.
+/// Counters of one output for /metrics; each but `clients` only grows.
 struct SinkCounters {
   std::uint64_t frames = 0;   ///< Handed to the protocol.
-  std::uint64_t dropped = 0;  ///< Left out because the output did not keep up: always the oldest.
+  std::uint64_t dropped = 0;  ///< Left out because the output did not keep up; always the oldest.
   std::uint64_t failed = 0;   ///< Sends that the operating system refused, frames that broke.
   std::uint64_t refused = 0;  ///< Clients or messages turned away: malformed, or over a limit.
   std::uint64_t clients = 0;  ///< Connected now.

@@ -1,4 +1,4 @@
-// What the fusion server knows of itself besides the fused bodies: its sensors and its
+// What the fusion server knows about itself besides the fused bodies: its sensors and its
 // registration.
 //
 // A value, replaced whole a few times a second; readers hold a shared_ptr to a constant one.
@@ -24,15 +24,15 @@ struct SensorStatus {
   double rate_hz = 0.0;
   std::size_t bodies = 0;         ///< In its newest frame.
   double weight = 0.0;            ///< Largest Otto weight of its views; only "otto" methods use it.
-  double share = 0.0;             ///< Of all fused joints, those it contributed to, lately.
+  double share = 0.0;             ///< Share of all fused joints that it contributed to, lately.
   double share_afterwards = 0.0;  ///< The same with its late frames, as /frame?at= has it.
-  double awaited = 0.0;           ///< Of all instants, those that waited for it to the last.
+  double awaited = 0.0;           ///< Share of all instants that waited for it to the last.
   std::optional<Duration> clock_offset;  ///< Ours minus theirs.
   std::optional<Duration> clock_uncertainty;
   bool clock_corrected = false;  ///< The offset is larger than its uncertainty, so it is applied.
   std::uint64_t frames = 0;      ///< Delivered since start.
   std::uint64_t missed = 0;      ///< Gaps in the sensor's own sequence that were not filled.
-  std::uint64_t refused = 0;     ///< Frames that went back in time, or of quite another time.
+  std::uint64_t refused = 0;     ///< Frames that went back in time or had an implausible time.
   std::uint64_t failures = 0;    ///< Requests without a usable answer.
 
   bool operator==(const SensorStatus&) const = default;
@@ -47,15 +47,16 @@ enum class SessionState {
 
 /// One registration session: its progress, then its outcome.
 struct SessionStatus {
-  std::uint64_t id = 0;  ///< Rises; never used twice.
+  std::uint64_t id = 0;  ///< Rises; never reused.
   SessionState state = SessionState::Done;
   bool automatic = false;  ///< Started by itself.
   Timestamp started;
-  double elapsed = 0.0;              ///< Walk seen so far [s].
-  double target = 0.0;               ///< [s]
-  Verdict verdict = Verdict::None;   ///< Of its last solve.
-  bool adopted = false;              ///< What it found came into use, and was not withdrawn.
-  std::vector<std::string> reasons;  ///< What the last solve lacked, and what became of it.
+  double elapsed = 0.0;             ///< Walk seen so far [s].
+  double target = 0.0;              ///< [s]
+  Verdict verdict = Verdict::None;  ///< Of its last solve.
+  bool adopted = false;             ///< What it found is in use, or was, and was not withdrawn.
+  /// What the last solve lacked, and what happened to its result.
+  std::vector<std::string> reasons;
 
   bool operator==(const SessionStatus&) const = default;
 };
@@ -64,7 +65,7 @@ struct SessionStatus {
   return session.state == SessionState::Collecting || session.state == SessionState::Solving;
 }
 
-/// Where the registration is kept over a restart.
+/// Where the registration is stored across restarts.
 struct StorageStatus {
   std::string folder;   ///< Empty: nowhere.
   std::string trouble;  ///< Why the last attempt to store failed; empty: it did not.
@@ -76,11 +77,11 @@ struct StorageStatus {
   return !storage.folder.empty() && storage.trouble.empty();
 }
 
-/// How registering goes on, beside the registration in use.
+/// The progress of registering, beside the registration in use.
 struct RegistrationProgress {
   std::vector<SessionStatus> sessions;  ///< The last few, newest first.
   std::uint64_t next_session = 1;       ///< Id of the next one.
-  std::vector<std::string> awaits;      ///< What is missing now, one sentence for a person each.
+  std::vector<std::string> awaits;      ///< What is missing now, one sentence for people each.
   StorageStatus storage;
   std::uint64_t commands = 0;  ///< How many commands of clients have taken effect.
 };

@@ -4,10 +4,10 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <stdexcept>
 
 #include <nlohmann/json.hpp>
 
+#include "common/base/json.h"
 #include "common/base/log.h"
 #include "common/base/nearest.h"
 #include "common/base/parse.h"
@@ -18,55 +18,14 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMaxConfigBytes = 1024 * 1024;
-constexpr int kMaxNesting = 16;
-constexpr std::size_t kMaxArrayLength = 4096;  ///< Also what an index of --set may reach.
-constexpr std::size_t kShownCharacters = 80;   ///< Of a foreign text in our messages.
+constexpr JsonLimits kLimits{.bytes = 1024 * 1024, .nesting = 16, .comments = true};
+constexpr std::size_t kMaxArrayLength = 4096;  ///< Also the largest index of --set.
+constexpr std::size_t kShownCharacters = 80;   ///< Of a foreign text quoted in our messages.
 constexpr double kMillisecondsPerSecond = 1e3;
 
-/// What the parser callback throws; never leaves this file.
-struct Refusal : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-/// Refuses what the DOM would silently swallow: a key given twice, and nesting without bound.
-class StructureGuard {
- public:
-  bool operator()(int depth, json::parse_event_t event, const json& parsed) {
-    using Event = json::parse_event_t;
-    if (event == Event::object_start || event == Event::array_start) {
-      if (depth >= kMaxNesting) throw Refusal("nested deeper than " + std::to_string(kMaxNesting));
-      keys_.emplace_back();
-    } else if (event == Event::object_end || event == Event::array_end) {
-      keys_.pop_back();
-    } else if (event == Event::key && !keys_.back().insert(parsed.get<std::string>()).second) {
-      throw Refusal("the key '" + parsed.get<std::string>() + "' is given twice");
-    }
-    return true;
-  }
-
- private:
-  std::vector<std::set<std::string>> keys_;
-};
-
-/// "[json.exception.parse_error.101] parse error at line 1..." without its first part.
-std::string readable(const json::exception& error) {
-  const std::string_view what = error.what();
-  const std::size_t end = what.find("] ");
-  return std::string(end == std::string_view::npos ? what : what.substr(end + 2));
-}
-
-/// Throws Refusal and json::exception.
-json parse_guarded(std::string_view text) {
-  constexpr bool kExceptions = true;
-  constexpr bool kComments = true;
-  StructureGuard guard;
-  return json::parse(
-      text.begin(), text.end(),
-      [&guard](int depth, json::parse_event_t event, const json& parsed) {
-        return guard(depth, event, parsed);
-      },
-      kExceptions, kComments);
+/// What is wrong with a text, with the key that is given twice.
+std::string reason_of(const Error& error) {
+  return error.context.empty() ? error.message : "'" + error.context + "': " + error.message;
 }
 
 std::string shown(std::string_view text) {
@@ -96,7 +55,7 @@ std::optional<std::size_t> index_in(std::string_view part) {
   return index && *index < kMaxArrayLength ? index : std::nullopt;
 }
 
-/// The place a --set path names, made when it is not there; null when a value stands in the way.
+/// The place that a --set path names, created if missing; null when a value is in the way.
 json* place_at(json& root, std::string_view path) {
   json* at = &root;
   int depth = 0;
@@ -104,7 +63,7 @@ json* place_at(json& root, std::string_view path) {
     const std::size_t dot = path.find('.');
     const std::string_view part = path.substr(0, dot);
     const std::optional<std::size_t> index = index_in(part);
-    if (part.empty() || ++depth > kMaxNesting) return nullptr;
+    if (part.empty() || ++depth > kLimits.nesting) return nullptr;
     if (at->is_null()) *at = index ? json::array() : json::object();
     if (at->is_array() && index && *index <= at->size()) {
       if (*index == at->size()) at->push_back(nullptr);
@@ -125,7 +84,7 @@ struct ConfigReader::Node {
   std::string path;  ///< "sensors.0"; empty at the root
   std::shared_ptr<std::vector<std::string>> problems;
   std::string origin;                        ///< Root only.
-  std::set<std::string, std::less<>> known;  ///< Every key that was asked for.
+  std::set<std::string, std::less<>> known;  ///< Every key that has been asked for.
   std::map<std::string, std::shared_ptr<Node>> children;
 
   /// The value at a key, which becomes known; null when it is absent.
@@ -168,19 +127,15 @@ struct ConfigReader::Node {
 };
 
 Result<ConfigReader> ConfigReader::parse(std::string_view text, std::string_view origin) {
-  if (text.size() > kMaxConfigBytes) {
+  if (text.size() > kLimits.bytes) {
     return fail(ErrorCode::TooLarge, std::string(origin), "a config file has at most 1 MiB");
   }
+  auto value = parse_json(text, kLimits);
+  if (!value) return fail(ErrorCode::Malformed, std::string(origin), reason_of(value.error()));
   auto node = std::make_shared<Node>();
   node->origin = origin;
   node->problems = std::make_shared<std::vector<std::string>>();
-  try {
-    node->value = parse_guarded(text);
-  } catch (const json::exception& error) {
-    return fail(ErrorCode::Malformed, std::string(origin), readable(error));
-  } catch (const Refusal& error) {
-    return fail(ErrorCode::Malformed, std::string(origin), error.what());
-  }
+  node->value = std::move(*value);
   if (!node->value.is_object()) {
     return fail(ErrorCode::Malformed, std::string(origin), "must be one JSON object: { ... }");
   }
@@ -194,18 +149,13 @@ Result<void> ConfigReader::set(std::string_view assignment) {
     return fail(ErrorCode::InvalidArgument, context, "write it as path=value, such as port=8082");
   }
   const std::string_view text = assignment.substr(equals + 1);
-  json value;
-  try {
-    value = parse_guarded(text);
-  } catch (const json::exception& error) {
+  auto parsed = parse_json(text, kLimits);
+  if (!parsed) {
     // 127.0.0.1 or a path is a text without quotes; a broken list or object is a mistake.
-    if (!text.empty() && std::string_view("[{\"").find(text.front()) != std::string_view::npos) {
-      return fail(ErrorCode::Malformed, context, readable(error));
-    }
-    value = std::string(text);
-  } catch (const Refusal& error) {
-    return fail(ErrorCode::Malformed, context, error.what());
+    if (!text.empty() && std::string_view("[{\"").find(text.front()) != std::string_view::npos)
+      return fail(ErrorCode::Malformed, context, reason_of(parsed.error()));
   }
+  json value = parsed ? std::move(*parsed) : json(std::string(text));
   json* place = place_at(node_->value, assignment.substr(0, equals));
   if (place == nullptr) {
     return fail(ErrorCode::InvalidArgument, context,

@@ -7,6 +7,9 @@ namespace chorus {
 
 using Duration = std::chrono::nanoseconds;
 
+/// An instant of the steady clock, for time-outs.  UTC is Timestamp (common/time).
+using SteadyTime = std::chrono::steady_clock::time_point;
+
 /// Seconds as a double, for formulas and reports.
 [[nodiscard]] constexpr double seconds(Duration d) noexcept {
   return std::chrono::duration<double>(d).count();

@@ -1,8 +1,7 @@
 // Why something expected did not happen.
 //
 // An Error says what (code), where (context: a URI, a config key path, a joint, a file and line)
-// and what to change (message, a full sentence for a person).  HTTP status is a total function of
-// the code.
+// and what to change (message, a full sentence for a person).  Every code maps to one HTTP status.
 #pragma once
 
 #include <string>

@@ -14,12 +14,13 @@ namespace chorus {
 [[nodiscard]] Result<std::string> read_file(const std::filesystem::path& path,
                                             std::uintmax_t max_bytes);
 
-/// Afterwards, and after a crash or a power cut too, the old text is there or the new one, whole:
-/// it is written beside, synced and renamed.  What is no plain file (a pipe, /dev/null) is written
-/// to as it is.
+/// Even after a crash or a power cut the file holds the whole old text or the whole new one: the
+/// new one is written to a second file, synced and renamed.  A pipe or a device (/dev/null) is
+/// written to directly.
 [[nodiscard]] Result<void> replace_file(const std::filesystem::path& path, std::string_view text);
 
-/// What was made or renamed in a folder outlives a power cut; best effort.  "" is the current one.
+/// Syncs a folder, so that files made or renamed in it survive a power cut; best effort.  "": the
+/// current folder.
 void sync_folder(const std::filesystem::path& folder);
 
 }  // namespace chorus

@@ -1,7 +1,7 @@
-// Hand-over between two threads that never makes the giver wait.
+// A queue between two threads whose producer never waits.
 //
-// Bounded; when it is full the oldest element is dropped and counted.  The taker sees what is
-// newest and knows what it missed.
+// Bounded: when it is full, the oldest element is dropped and counted.  The consumer gets the
+// newest ones and knows how many it missed.
 #pragma once
 
 #include <chrono>
@@ -32,7 +32,7 @@ class Handover {
     arrived_.notify_one();
   }
 
-  /// Everything that is there, oldest first; waits for the first at most `patience`.
+  /// All elements, oldest first; waits at most `patience` for the first one.
   [[nodiscard]] std::vector<T> take(std::chrono::nanoseconds patience) {
     std::unique_lock lock(mutex_);
     arrived_.wait_for(lock, patience, [this] { return !values_.empty() || closed_; });
@@ -42,7 +42,7 @@ class Handover {
     return taken;
   }
 
-  /// Wakes the taker; what is given from now on is ignored.
+  /// Wakes the consumer; elements given from now on are ignored.
   void close() {
     {
       const std::scoped_lock lock(mutex_);

@@ -11,9 +11,9 @@ namespace chorus {
 /// How often values fell below each bound.  Any thread may observe.
 class Histogram {
  public:
-  /// Upper bounds, ascending and finite; one more without bound is added.
+  /// Upper bounds, ascending and finite; a last bucket without a bound is added.
   explicit Histogram(std::vector<double> bounds);
-  /// Not a number is not counted.
+  /// NaN is not counted.
   void observe(double value);
 
   struct Snapshot {

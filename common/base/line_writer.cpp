@@ -20,9 +20,9 @@
 namespace chorus {
 namespace {
 
-constexpr int kLookMs = 1000;  // A stuck writer looks that often whether it is still wanted.
+constexpr int kLookMs = 1000;  // A stuck writer checks this often whether it is still needed.
 
-/// Blocks all signals for the thread that is being made: they are for the program's own.
+/// Blocks all signals for the thread being created: they are for the program's own threads.
 class SignalsBlocked {
  public:
   SignalsBlocked() {
@@ -45,25 +45,33 @@ struct LineWriter::State {
 
   void run();
   bool write_out(std::string_view bytes);
-  void write_batch(const std::vector<std::string>& batch);
+  void write_line(const std::string& text);
+  void tell(std::uint64_t missing);
+
+  struct Line {
+    std::string text;
+    std::uint64_t missing_before = 0;  ///< Lines dropped between the one before and this one.
+  };
 
   const LineWriterOptions options;
   std::mutex mutex;
   std::condition_variable changed;
-  std::vector<std::string> waiting;    ///< Guarded by mutex.
-  std::uint64_t told = 0;              ///< Of `dropped`; the writer's thread's.
+  std::vector<Line> waiting;           ///< Guarded by mutex.
+  std::uint64_t missing_last = 0;      ///< Dropped since the last of `waiting`; guarded by mutex.
+  std::uint64_t untold = 0;            ///< Missing, but not told yet; the writer's thread's.
   std::atomic<std::size_t> bytes = 0;  ///< Waiting or being written.
   std::atomic<std::uint64_t> dropped = 0;
-  std::atomic<std::uint64_t> progress = 0;  ///< Pieces that the reader has taken, or lost for good.
+  /// Pieces that the reader has taken, or that are lost for good.
+  std::atomic<std::uint64_t> progress = 0;
   std::atomic<bool> ended = false;
 };
 
-/// False when the reader is gone, or nobody waits for the writer any more.
+/// False when the reader is gone, or nobody needs the writer any more.
 bool LineWriter::State::write_out(std::string_view rest) {
   while (!rest.empty() && !ended) {
     pollfd ready{options.descriptor, POLLOUT, 0};
     if (::poll(&ready, 1, kLookMs) <= 0 || ended) continue;
-    // Not more than a pipe takes at once, so that a piece never waits for the reader.
+    // No more than a pipe takes at once, so that one piece never waits for the reader.
     const ssize_t taken =
         ::write(options.descriptor, rest.data(), std::min<std::size_t>(rest.size(), PIPE_BUF));
     if (taken < 0 && (errno == EINTR || errno == EAGAIN)) continue;
@@ -74,27 +82,35 @@ bool LineWriter::State::write_out(std::string_view rest) {
   return rest.empty();
 }
 
-void LineWriter::State::write_batch(const std::vector<std::string>& batch) {
-  for (const std::string& line : batch) {
-    if (!write_out(line)) ++dropped;
-    bytes -= line.size();
-    ++progress;
+void LineWriter::State::write_line(const std::string& text) {
+  if (!write_out(text)) {
+    ++dropped;
+    ++untold;
   }
+  bytes -= text.size();
+  ++progress;
+}
+
+void LineWriter::State::tell(std::uint64_t missing) {
+  untold += missing;
+  if (untold > 0 && options.gap && write_out(options.gap(untold))) untold = 0;
 }
 
 void LineWriter::State::run() {
-  std::vector<std::string> batch;
+  std::vector<Line> batch;
   std::unique_lock lock(mutex);
   while (true) {
-    changed.wait(lock, [&] { return !waiting.empty() || ended; });
+    changed.wait(lock, [&] { return !waiting.empty() || missing_last > 0 || ended; });
     if (ended && waiting.empty()) return;
     batch.clear();
     batch.swap(waiting);
+    const std::uint64_t missing_behind = std::exchange(missing_last, 0);
     lock.unlock();
-    write_batch(batch);
-    // What was dropped came after the lines that were waiting, and before those to come.
-    const std::uint64_t missing = dropped - told;
-    if (missing > 0 && options.gap && write_out(options.gap(missing))) told += missing;
+    for (const Line& line : batch) {
+      tell(line.missing_before);
+      write_line(line.text);
+    }
+    tell(missing_behind);
     lock.lock();
     changed.notify_all();
   }
@@ -116,10 +132,11 @@ void LineWriter::write(std::string line) {
   const std::scoped_lock lock(state_->mutex);
   if (state_->bytes + line.size() > state_->options.most_bytes) {
     ++state_->dropped;
+    ++state_->missing_last;
     return;
   }
   state_->bytes += line.size();
-  state_->waiting.push_back(std::move(line));
+  state_->waiting.push_back({std::move(line), std::exchange(state_->missing_last, 0)});
   state_->changed.notify_all();
 }
 

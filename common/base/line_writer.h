@@ -1,7 +1,7 @@
-// Writes lines to a descriptor on a thread of its own: who has a line never waits for a reader.
+// Writes lines to a file descriptor from a thread of its own, so that no caller waits for a reader.
 //
-// A pipe that nobody reads blocks whoever writes to it.  Here at most so many bytes wait for it;
-// lines beyond are dropped and counted, and the count is told as soon as the reader reads on.
+// Writing to a pipe that nobody reads blocks.  Here a bounded number of bytes is queued; lines
+// beyond that are dropped and counted, and the count is written once the reader continues.
 #pragma once
 
 #include <chrono>
@@ -15,7 +15,7 @@ namespace chorus {
 
 struct LineWriterOptions {
   int descriptor = 2;
-  std::size_t most_bytes = 1u << 20;  ///< Of lines that wait.
+  std::size_t most_bytes = 1u << 20;  ///< Of queued lines.
   /// The line that tells how many are missing here.  Called on the writer's thread.
   std::function<std::string(std::uint64_t dropped)> gap;
 };
@@ -24,14 +24,14 @@ struct LineWriterOptions {
 class LineWriter {
  public:
   explicit LineWriter(LineWriterOptions options);
-  ~LineWriter();  ///< Waits for nobody: flush first.
+  ~LineWriter();  ///< Does not flush; call flush() first.
   LineWriter(const LineWriter&) = delete;
   LineWriter& operator=(const LineWriter&) = delete;
 
   /// `line` ends in a line feed.
   void write(std::string line);
 
-  /// Waits until everything written before is out; false when the reader takes nothing for so long.
+  /// Waits until all lines so far are written; false when the reader takes nothing for that long.
   bool flush(std::chrono::milliseconds patience);
 
   /// The same for a signal handler: touches no lock and allocates nothing.

@@ -74,7 +74,7 @@ const LevelName& row_of(Level level) {
   return kLevels.back();
 }
 
-/// A JSON string; bytes that are no UTF-8 become U+FFFD, so a line can always be written.
+/// A JSON string; bytes that are not UTF-8 become U+FFFD, so a line can always be written.
 std::string json_text(std::string_view text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
@@ -84,8 +84,7 @@ bool plain(char c) {
          std::string_view("_-./:+@%,").find(c) != std::string_view::npos;
 }
 
-/// Words stay bare; anything that could be mistaken for the next field, or for a next line, is
-/// quoted.
+/// Words stay unquoted; text that could be mistaken for the next field or line is quoted.
 std::string as_word(std::string_view text) {
   for (const char c : text) {
     if (!plain(c)) return json_text(text);
@@ -119,7 +118,7 @@ std::string line_of(const LevelName& level, std::string_view name, Fields fields
                                 : text_line(level, name, fields);
 }
 
-/// Tells of lines that were dropped.  Not through the queue: it stands where they are missing.
+/// Reports dropped lines.  Not through the queue: the report belongs where they are missing.
 std::string gap_line(std::uint64_t lines) {
   const Format format = sink().format.load();
   const LevelName& level = row_of(Level::Warn);
@@ -140,7 +139,7 @@ void flush_on_crash(int signal) {
   std::raise(signal);  // SA_RESETHAND: now for good
 }
 
-/// Only where nobody else, a sanitizer for example, wants to know of it.
+/// Only if nobody else, such as a sanitizer, handles the signal.
 void watch_for_crash(int signal) {
   struct sigaction now {};
   if (::sigaction(signal, nullptr, &now) != 0 || now.sa_handler != SIG_DFL) return;

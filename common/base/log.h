@@ -22,7 +22,7 @@ enum class Format { Text, Json };
 struct Field {
   std::string_view key;
   std::string value;
-  bool bare = false;  ///< A number or a truth value: unquoted in JSON.
+  bool bare = false;  ///< A number or a Boolean: unquoted in JSON.
 
   Field(std::string_view k, std::string_view v) : key(k), value(v) {}
   Field(std::string_view k, const std::string& v) : key(k), value(v) {}

@@ -1,4 +1,4 @@
-// What stands between the log and whoever reads it.
+// The queue between whoever logs and whoever reads the log.
 //
 // From log::configure() on, lines are queued and written to standard error by a thread of their
 // own.  Nobody who logs waits for a reader: when a pipe is full and 1 MiB waits for it, lines are
@@ -14,7 +14,7 @@ namespace chorus::log {
 /// Waits until everything logged so far is out; false when nobody reads for so long.
 bool flush(std::chrono::milliseconds patience = std::chrono::milliseconds(500));
 
-/// Lines that nobody will read, since the start.
+/// Lines dropped since the start.
 [[nodiscard]] std::uint64_t dropped_lines();
 
 }  // namespace chorus::log

@@ -8,7 +8,7 @@ namespace chorus {
 namespace {
 
 /// Words longer than this are not worth comparing: the cost is quadratic and no key is that long.
-constexpr std::size_t kLongestWord = 64;
+constexpr std::size_t kMaxWord = 64;
 
 std::size_t allowed_distance(std::size_t longer) {
   return longer < 4 ? 1 : std::max<std::size_t>(2, longer / 3);
@@ -17,7 +17,7 @@ std::size_t allowed_distance(std::size_t longer) {
 }  // namespace
 
 std::size_t levenshtein(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);  // distances of a[0, i) to every start of b
+  std::vector<std::size_t> row(b.size() + 1);  // distance from a[0, i) to every prefix of b
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 0; i < a.size(); ++i) {
     std::size_t diagonal = row[0];
@@ -32,12 +32,12 @@ std::size_t levenshtein(std::string_view a, std::string_view b) {
 }
 
 std::string nearest(std::string_view word, std::span<const std::string> known) {
-  if (word.size() > kLongestWord) return {};
+  if (word.size() > kMaxWord) return {};
   std::string best;
-  std::size_t least = kLongestWord + 1;
+  std::size_t least = kMaxWord + 1;
   for (const std::string& candidate : known) {
     const std::size_t longer = std::max(word.size(), candidate.size());
-    if (longer > kLongestWord) continue;
+    if (longer > kMaxWord) continue;
     const std::size_t distance = levenshtein(word, candidate);
     if (distance > allowed_distance(longer) || distance >= longer || distance >= least) continue;
     best = candidate;

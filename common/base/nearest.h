@@ -11,8 +11,8 @@ namespace chorus {
 /// Least number of inserted, deleted and replaced characters between two words.
 [[nodiscard]] std::size_t levenshtein(std::string_view a, std::string_view b);
 
-/// The word of `known` that `word` was most likely meant to be; empty when none is close (a third
-/// of the longer word wrong at most, two characters always allowed for words of four and more).
+/// The word of `known` that `word` was most likely meant to be; empty when none is close: at most a
+/// third of the longer word may differ, or two characters in words of four or more.
 [[nodiscard]] std::string nearest(std::string_view word, std::span<const std::string> known);
 
 }  // namespace chorus

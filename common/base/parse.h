@@ -1,7 +1,8 @@
-// Numbers in foreign text: all of it or nothing.
+// Reads numbers from foreign text: the whole text or nothing.
 #pragma once
 
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -10,13 +11,41 @@
 
 namespace chorus {
 
-/// The number that the whole text spells, without spaces, signs of plus, or anything behind it.
+/// The number that `text` begins with; what is behind it stays in `text`.
+template <class Number>
+[[nodiscard]] std::optional<Number> take_number(std::string_view& text) {
+  Number value{};
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{}) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(stop - text.data()));
+  return value;
+}
+
+/// The number that the whole text spells; no spaces, no plus sign, nothing after it.
 template <class Number>
 [[nodiscard]] std::optional<Number> parse_number(std::string_view text) {
-  Number value{};
+  const auto value = take_number<Number>(text);
+  return text.empty() ? value : std::nullopt;
+}
+
+/// As parse_number, but a plus sign is allowed.
+template <class Number>
+[[nodiscard]] std::optional<Number> parse_signed(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  return parse_number<Number>(text);
+}
+
+/// A finite number as other programs write it: a plus sign is allowed, and a number too small for a
+/// double ("7.6e-400") is zero.
+[[nodiscard]] inline std::optional<double> parse_finite(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0.0;
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stop != end) return std::nullopt;
+  const bool small =
+      error == std::errc::result_out_of_range && text.find_first_of("eE") + 1 == text.find('-', 1);
+  if (small && stop == end) return 0.0;
+  if (error != std::errc{} || stop != end || !std::isfinite(value)) return std::nullopt;
   return value;
 }
 

@@ -27,11 +27,6 @@ void RateReport::hit(std::string_view detail) {
   write_line();
 }
 
-std::uint64_t RateReport::total() const {
-  const std::lock_guard lock(mutex_);
-  return total_;
-}
-
 /// Called with the lock held: lines of one event keep their order.
 void RateReport::write_line() {
   const std::uint64_t count = total_ - reported_;

@@ -26,15 +26,12 @@ class RateReport {
   /// Counts one event; `detail` of the latest one is shown in the line.
   void hit(std::string_view detail = {});
 
-  /// All events since construction.
-  [[nodiscard]] std::uint64_t total() const;
-
  private:
   void write_line();
 
   const std::string event_;
   const log::Level level_;
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   std::uint64_t total_ = 0;
   std::uint64_t reported_ = 0;
   std::string detail_;  ///< Of the last hit.

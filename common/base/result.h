@@ -19,7 +19,7 @@ using Result = tl::expected<T, Error>;
   return tl::unexpected<Error>(Error{code, std::move(context), std::move(message)});
 }
 
-/// Hands an error on unchanged: `if (!x) return pass(x);`
+/// Passes an error on unchanged: `if (!x) return pass(x);`
 template <class T>
 [[nodiscard]] tl::unexpected<Error> pass(const Result<T>& failed) {
   return tl::unexpected<Error>(failed.error());

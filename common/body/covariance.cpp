@@ -4,11 +4,17 @@
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 namespace chorus {
 namespace {
 
 constexpr double kWireRounding = 1e-7;  // six terms of 8 decimals each, generously
+
+/// Sylvester's criterion: all leading minors are positive.
+bool is_positive_definite(const Eigen::Matrix3d& c) {
+  return c(0, 0) > 0 && c(0, 0) * c(1, 1) > c(0, 1) * c(0, 1) && c.determinant() > 0;
+}
 
 }  // namespace
 
@@ -39,6 +45,8 @@ bool Covariance::plausible() const {
       std::all_of(upper_.begin(), upper_.end(), [](float term) { return std::isfinite(term); });
   if (!finite) return false;
   const Eigen::Matrix3d full = matrix();
+  // Nearly all are; their eigenvalues, which take longer than writing the joint, are not needed.
+  if (is_positive_definite(full + kWireRounding * Eigen::Matrix3d::Identity())) return true;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(full, Eigen::EigenvaluesOnly);
   const double largest = solver.eigenvalues().cwiseAbs().maxCoeff();
   return solver.eigenvalues().minCoeff() >= -kWireRounding - 1e-5 * largest;

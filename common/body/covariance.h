@@ -40,7 +40,7 @@ class Covariance {
   bool known_ = false;
 };
 
-/// Between a and b; what only one of them knows is not known.
+/// Between a and b; unknown unless both are known.
 [[nodiscard]] Covariance between(const Covariance& a, const Covariance& b, double share);
 
 }  // namespace chorus

@@ -50,7 +50,7 @@ struct Joint {
   Measurement measurement = Measurement::Point;
   Covariance covariance = {};  ///< Of `position`, where the sensor knows one.
 
-  /// Has a place: a tracked or inferred point.  Whoever cannot use rays asks this and is safe.
+  /// Has a place: a tracked or inferred point.  Code that cannot use rays checks only this.
   [[nodiscard]] bool seen() const { return measurement == Measurement::Point && given(); }
   /// Has a direction: a tracked or inferred ray.
   [[nodiscard]] bool bears() const { return measurement == Measurement::Ray && given(); }

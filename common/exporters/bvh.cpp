@@ -81,7 +81,7 @@ class BvhWriter {
 
   const SkeletonFit& fit_;
   const BvhOptions& options_;
-  std::vector<std::size_t> order_;  ///< Channels stand in the order the joints are written.
+  std::vector<std::size_t> order_;  ///< Channels are written in the order of the joints.
   std::string text_ = "HIERARCHY\n";
 };
 
@@ -100,10 +100,10 @@ double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) 
 std::array<double, 3> euler_zxy(const Eigen::Quaterniond& q, const std::array<double, 3>& last) {
   // R = Rz Rx Ry:  R(2,1) = sin x,  R(0,1) = -sin z cos x,  R(1,1) = cos z cos x,
   //                R(2,0) = -cos x sin y,  R(2,2) = cos x cos y.
-  constexpr double kLeastCosine = 1e-6;
+  constexpr double kMinCosine = 1e-6;
   const Eigen::Matrix3d r = q.normalized().toRotationMatrix();
   const double x = std::asin(std::clamp(r(2, 1), -1.0, 1.0));
-  if (std::hypot(r(0, 1), r(1, 1)) < kLeastCosine) {
+  if (std::hypot(r(0, 1), r(1, 1)) < kMinCosine) {
     // Rz Rx(+-90): R(0,0) = cos(z +- y), R(1,0) = sin(z +- y).
     const double sum = std::atan2(r(1, 0), r(0, 0));
     const double y = last[2];

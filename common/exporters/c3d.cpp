@@ -12,15 +12,15 @@ namespace chorus::exporters {
 namespace {
 
 constexpr std::size_t kBlock = 512;
-constexpr std::size_t kMostBlocks = 255;  // of parameters: their number is one byte
+constexpr std::size_t kMaxBlocks = 255;  // of parameters: their number is one byte
 constexpr std::size_t kMaxPersons = 100;
 constexpr std::size_t kLabelsPerParameter = 255;  // dimensions are bytes
-constexpr std::size_t kMostFrames = 65535;        // of a 16-bit word
+constexpr std::size_t kMaxFrames = 65535;         // of a 16-bit word
 constexpr char kKey = 0x50;
 constexpr char kIntel = 84;
 constexpr float kFloatsInMillimetres = -1.0f;  // POINT:SCALE: negative for floats; 1 mm
 // is the unit of residuals, and of coordinates up to 32 m for whoever converts to integers
-constexpr int kLargestResidual = 255;
+constexpr int kMaxResidual = 255;
 
 void append_word(std::string& bytes, std::size_t value) {
   bytes += static_cast<char>(value & 0xff);
@@ -132,8 +132,8 @@ void add_points(Parameters& parameters, const Take& take, std::size_t data_start
   parameters.add("SCALE", real(kFloatsInMillimetres));
   parameters.add("RATE", real(take.rate_hz));
   parameters.add("DATA_START", word(data_start));
-  parameters.add("FRAMES", word(std::min(take.frames, kMostFrames)));
-  if (take.frames >= kMostFrames)
+  parameters.add("FRAMES", word(std::min(take.frames, kMaxFrames)));
+  if (take.frames >= kMaxFrames)
     parameters.add("LONG_FRAMES", real(static_cast<double>(take.frames)));
   for (std::size_t first = 0; first < labels.size(); first += kLabelsPerParameter) {
     const auto begin = labels.begin() + static_cast<std::ptrdiff_t>(first);
@@ -190,7 +190,7 @@ std::string header_of(const Take& take, std::size_t data_start) {
   append_word(header, take.persons.size() * kJointCount);
   append_word(header, 0);  // analog samples in a frame
   append_word(header, 1);  // first frame
-  append_word(header, std::min(take.frames, kMostFrames));
+  append_word(header, std::min(take.frames, kMaxFrames));
   append_word(header, 0);  // interpolated gap
   append_float(header, kFloatsInMillimetres);
   append_word(header, data_start);
@@ -207,7 +207,7 @@ void append_joint(std::string& bytes, const Joint& joint, double variance) {
   if (joint.seen()) {
     const double millimetres = variance >= 0 ? to_mm(std::sqrt(3 * variance)) : 0.0;
     const double whole = std::clamp(std::round(millimetres), variance >= 0 ? 1.0 : 0.0,
-                                    static_cast<double>(kLargestResidual));
+                                    static_cast<double>(kMaxResidual));
     residual = static_cast<float>(whole);
   }
   append_float(bytes, residual);
@@ -218,9 +218,9 @@ void append_joint(std::string& bytes, const Joint& joint, double variance) {
 Result<std::string> c3d_of(const Take& take) {
   if (take.persons.size() > kMaxPersons)
     return fail(ErrorCode::TooLarge, "C3D", "cannot name the joints of more than 100 persons.");
-  // The length of the parameters does not hang on the number of the block after them.
+  // The length of the parameters does not depend on the number of the block after them.
   const std::size_t blocks = parameters_of(take, 0).size() / kBlock;
-  if (blocks > kMostBlocks)
+  if (blocks > kMaxBlocks)
     return fail(ErrorCode::TooLarge, "C3D",
                 "has no room for the names of so many persons with such long ids; export some of "
                 "them: --person ID.");

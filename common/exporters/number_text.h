@@ -1,4 +1,5 @@
-// Numbers as every reader reads them: a point, no exponent, no locale, never "-0" or "nan".
+// Numbers that every reader understands: a decimal point, no exponent, no locale, never "-0" or
+// "nan".
 #pragma once
 
 #include <string>

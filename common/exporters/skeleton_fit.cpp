@@ -7,12 +7,13 @@
 
 #include <Eigen/SVD>
 
+#include "common/base/median.h"
 #include "common/body/bones.h"
 
 namespace chorus::exporters {
 namespace {
 
-constexpr double kLeastBone = 1e-4;         // [m]; shorter has no direction
+constexpr double kMinBone = 1e-4;           // [m]; shorter has no direction
 constexpr int kProcrustesRounds = 3;        // the shape no longer changes by then
 constexpr std::size_t kShapeFrames = 2000;  // enough for a mean shape
 constexpr double kFootOut = 0.3;
@@ -51,9 +52,7 @@ std::optional<double> bone_length(const PersonTrack& track, JointId a, JointId b
       lengths.push_back((pose.skeleton[a].position - pose.skeleton[b].position).norm());
   }
   if (lengths.empty()) return std::nullopt;
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return *middle;
+  return median(std::move(lengths));
 }
 
 using Children = std::vector<std::vector<std::size_t>>;
@@ -67,7 +66,8 @@ Children children_of(const std::vector<FittedJoint>& joints) {
 /// The tree of the joints that were ever seen, with T-pose offsets of median length.
 std::vector<FittedJoint> tree_of(const PersonTrack& track) {
   std::vector<FittedJoint> joints{{JointId::SpineBase, 0, Eigen::Vector3d::Zero()}};
-  // Where the children of each joint hang: the joint itself, or its parent when it was left out.
+  // Where the children of each joint are attached: to the joint itself, or to its parent when it
+  // was left out.
   std::array<std::size_t, kJointCount> stands_for{};
   for (const Bone& bone : kBones) {
     const std::size_t parent = stands_for[index_of(bone.parent)];
@@ -89,19 +89,19 @@ Eigen::Quaterniond nearest_rotation(const Eigen::Matrix3d& cross) {
   return Eigen::Quaterniond(turn).normalized();
 }
 
-/// Pairs of (bone at rest, bone as seen), of the children that are seen.
-struct Sight {
+/// Pairs of (bone at rest, bone as seen), for the children that are seen.
+struct BonePairs {
   std::vector<Eigen::Vector3d> rest;
   std::vector<Eigen::Vector3d> seen;
 };
 
-Eigen::Quaterniond turn_between(const Sight& sight, const Eigen::Quaterniond& likely) {
-  // Little weight on what is likely decides what the children leave open, and hardly moves the
-  // rest.
+Eigen::Quaterniond turn_between(const BonePairs& pairs, const Eigen::Quaterniond& likely) {
+  // A tiny weight on the likely rotation fixes what the children leave undetermined, and hardly
+  // affects the rest.
   constexpr double kLikely = 1e-6;
   Eigen::Matrix3d cross = Eigen::Matrix3d::Zero();
-  for (std::size_t i = 0; i < sight.rest.size(); ++i)
-    cross += sight.seen[i] * sight.rest[i].transpose();
+  for (std::size_t i = 0; i < pairs.rest.size(); ++i)
+    cross += pairs.seen[i] * pairs.rest[i].transpose();
   return nearest_rotation(cross + kLikely * cross.norm() * likely.toRotationMatrix());
 }
 
@@ -112,20 +112,20 @@ void average_shape(const PersonTrack& track, std::vector<FittedJoint>& joints, s
   const std::size_t stride = track.poses.size() / kShapeFrames + 1;
   for (std::size_t f = 0; f < track.poses.size(); f += stride) {
     const auto& body = track.poses[f].skeleton;
-    Sight sight;
+    BonePairs pairs;
     for (const std::size_t child : children) {
       if (!body[joints[child].id].seen() || !body[joints[joint].id].seen()) break;
-      sight.rest.push_back(joints[child].offset);
-      sight.seen.push_back(body[joints[child].id].position - body[joints[joint].id].position);
+      pairs.rest.push_back(joints[child].offset);
+      pairs.seen.push_back(body[joints[child].id].position - body[joints[joint].id].position);
     }
-    if (sight.rest.size() != children.size()) continue;
-    const Eigen::Quaterniond world_from_rest = turn_between(sight, Eigen::Quaterniond::Identity());
+    if (pairs.rest.size() != children.size()) continue;
+    const Eigen::Quaterniond world_from_rest = turn_between(pairs, Eigen::Quaterniond::Identity());
     for (std::size_t c = 0; c < children.size(); ++c)
-      sums[c] += world_from_rest.conjugate() * sight.seen[c];
+      sums[c] += world_from_rest.conjugate() * pairs.seen[c];
   }
   for (std::size_t c = 0; c < children.size(); ++c) {
     Eigen::Vector3d& offset = joints[children[c]].offset;
-    if (sums[c].norm() > kLeastBone) offset = offset.norm() * sums[c].normalized();
+    if (sums[c].norm() > kMinBone) offset = offset.norm() * sums[c].normalized();
   }
 }
 
@@ -152,23 +152,23 @@ class ChainFollower {
 Eigen::Quaterniond ChainFollower::turn_of(std::size_t joint, const Skeleton<WorldSpace>& body,
                                           const Eigen::Quaterniond& world_from_parent,
                                           const Eigen::Vector3d& place) const {
-  Sight sight;
+  BonePairs pairs;
   for (const std::size_t child : children_[joint]) {
     const Joint& wanted = body[joints_[child].id];
     const Eigen::Vector3d seen = world_from_parent.conjugate() * (wanted.position - place);
-    if (!wanted.seen() || seen.norm() < kLeastBone || joints_[child].offset.norm() < kLeastBone)
+    if (!wanted.seen() || seen.norm() < kMinBone || joints_[child].offset.norm() < kMinBone)
       continue;
-    sight.rest.push_back(joints_[child].offset);
-    sight.seen.push_back(seen);
+    pairs.rest.push_back(joints_[child].offset);
+    pairs.seen.push_back(seen);
   }
   const Eigen::Quaterniond& last = pose_.turns[joint];
-  if (sight.rest.empty()) return last;
-  if (sight.rest.size() > 1) return turn_between(sight, last);
-  // One child in all: the shortest arc from rest, whatever came before.  One of several: from where
-  // the others left it.
+  if (pairs.rest.empty()) return last;
+  if (pairs.rest.size() > 1) return turn_between(pairs, last);
+  // A joint's only child: the shortest arc from rest, whatever came before.  The only visible one
+  // of several: from where the others left it.
   const bool alone = children_[joint].size() == 1;
   const Eigen::Quaterniond start = alone ? Eigen::Quaterniond::Identity() : last;
-  return Eigen::Quaterniond::FromTwoVectors(start * sight.rest[0], sight.seen[0]) * start;
+  return Eigen::Quaterniond::FromTwoVectors(start * pairs.rest[0], pairs.seen[0]) * start;
 }
 
 const FittedPose& ChainFollower::follow(const Skeleton<WorldSpace>& body) {

@@ -1,7 +1,7 @@
 // A skeleton of constant bones that follows a person: what BVH and glTF can carry.
 //
-// Fused joints are points; their distances breathe by centimetres.  Files of skeletal animation
-// hold one rest pose and a rotation per joint and frame.  From the whole track:
+// Fused joints are points, and the distances between them vary by centimetres.  Files of skeletal
+// animation hold one rest pose and a rotation per joint and frame.  From the whole track:
 //   bones    median length of each (Kinect bones, kBones); a joint that is never seen is left out
 //            and its children hang on its parent;
 //   rest     a T-pose: facing +z, arms along +-x, every rotation identity.  Where a joint has
@@ -14,8 +14,8 @@
 //            pelvis and chest take their twist from the hip and shoulder lines, wrists from the
 //            thumb.  The twist of arms, thighs and shins about themselves is not in the points and
 //            stays zero against the parent.
-// What is not seen keeps its last local rotation; without SpineBase the whole pose is held, and
-// before the first one it is the first.  Radians, metres, world space.
+// A joint that is not seen keeps its last local rotation; without SpineBase the whole pose is held.
+// Before the first pose the first one is used.  Radians, metres, world space.
 #pragma once
 
 #include <vector>
@@ -40,8 +40,8 @@ struct FittedPose {
 struct FitResidual {
   double rms = 0.0;                    ///< Over all seen joints of all frames with a SpineBase [m].
   double largest = 0.0;                ///< [m]
-  JointId joint = JointId::SpineBase;  ///< Where the largest is,
-  std::size_t frame = 0;               ///< and when.
+  JointId joint = JointId::SpineBase;  ///< Which joint has the largest error,
+  std::size_t frame = 0;               ///< and in which frame.
 };
 
 struct SkeletonFit {

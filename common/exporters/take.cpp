@@ -5,6 +5,8 @@
 #include <map>
 #include <string>
 
+#include "common/base/median.h"
+#include "common/body/interpolate.h"
 #include "common/motion/motion.h"
 
 namespace chorus::exporters {
@@ -37,11 +39,11 @@ double usual_rate(const Samples& sorted) {
     if (step > kSameInstant) steps.push_back(step);
   }
   if (steps.empty()) return kUsualHz;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  // The usual step to the nanosecond, then so that the last sample is a whole number of steps away.
+  const Duration usual = median(std::move(steps));
+  // The usual step to the nanosecond, adjusted so that the last sample is a whole number of steps
+  // away.
   const auto span = static_cast<double>((sorted.back().instant - sorted.front().instant).count());
-  const double count = std::round(span / static_cast<double>(middle->count()));
+  const double count = std::round(span / static_cast<double>(usual.count()));
   const double rate = count * kNanosecondsPerSecond / span;
   const double whole = std::round(rate);
   return whole > 0 && std::abs(rate - whole) < kWholeHertz * whole ? whole : rate;
@@ -50,14 +52,14 @@ double usual_rate(const Samples& sorted) {
 Pose pose_of(const FusedSample& sample) { return {sample.skeleton, sample.variance}; }
 
 Pose pose_between(const FusedSample& a, const FusedSample& b, double s) {
-  Pose pose{motion::between(a.skeleton, b.skeleton, s), {}};
+  Pose pose{interpolate(a.skeleton, b.skeleton, s), {}};
   for (std::size_t j = 0; j < kJointCount; ++j)
     pose.variance[j] = (1 - s) * a.variance[j] + s * b.variance[j];
   return pose;
 }
 
-/// The pose of one person at an instant; `after` is their first sample not before it by more than
-/// kSameInstant.
+/// The pose of one person at an instant; `after` is their first sample that is not earlier than it
+/// by more than kSameInstant.
 Pose pose_at(const Samples& samples, std::size_t after, Timestamp instant, Duration max_gap) {
   if (after == samples.size()) return {};
   const FusedSample& next = samples[after];

@@ -1,10 +1,10 @@
-// What is exported: fused skeletons on one uniform grid of instants, one track a person.
+// What is exported: fused skeletons on one uniform grid of instants, one track per person.
 //
-// Fused frames may skip instants and persons come and go; files of motion have one rate and no
-// holes.  So the samples are put on the grid start + i / rate: a sample within a microsecond of a
-// grid instant is kept as it is, others are interpolated between their neighbours (positions
-// linear) where these are no farther apart than `max_gap`.  What is left is a gap: no joint is
-// tracked there, and each format says "missing" in its own way.  World space, metres, +y up.
+// Fused frames may skip instants, and people come and go; motion files have one rate and no holes.
+// So the samples are put on the grid start + i / rate: a sample within a microsecond of a grid
+// instant is kept as it is; others are interpolated (positions linearly) between neighbours that
+// are at most `max_gap` apart.  The rest is a gap: no joint is tracked there, and each format has
+// its own way to say "missing".  World space, metres, +y up.
 #pragma once
 
 #include <array>

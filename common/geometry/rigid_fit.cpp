@@ -13,8 +13,8 @@ struct Centred {
   Eigen::Vector3d source = Eigen::Vector3d::Zero();
   Eigen::Vector3d target = Eigen::Vector3d::Zero();
   double weight = 0.0;
-  Eigen::Matrix3d cross =
-      Eigen::Matrix3d::Zero();  ///< sum w (target)(source)^T about the centroids
+  /// sum w (target)(source)^T about the centroids
+  Eigen::Matrix3d cross = Eigen::Matrix3d::Zero();
 };
 
 double weight_at(std::span<const double> weights, std::size_t i) {

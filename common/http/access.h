@@ -17,15 +17,16 @@ struct Peer {
   bool loopback = false;
   std::string local_address = {};  ///< Ours, as text without port.
   std::uint16_t local_port = 0;
-  bool proxy = false;        ///< One of ServerConfig::trusted_proxies: it asks for others.
-  std::string account = {};  ///< Whose connection it is, as limits count.
+  /// One of ServerConfig::trusted_proxies: it forwards requests of others.
+  bool proxy = false;
+  std::string account = {};  ///< Whom limits count the connection for (net::account_of).
 };
 
 /// Constant time whatever the bytes are: compares SHA-256 digests.
 [[nodiscard]] bool same_secret(std::string_view a, std::string_view b);
 
 /// True when a Host field names this service: by an address, as localhost, or by one of `names`.
-/// Any other name may be one that a web page's owner lets point here (DNS rebinding).
+/// Any other name may belong to a web page whose owner points it here (DNS rebinding).
 [[nodiscard]] bool is_own_host(std::string_view host, const std::vector<std::string>& names);
 
 /// The name of this host, and the same with ".local".
@@ -34,12 +35,14 @@ struct Peer {
 /// True for a request that a page of this very service makes.
 [[nodiscard]] bool from_own_page(const RequestHead& head);
 
-/// True for a request of a person or program on this host.  Not for one that a proxy handed on, nor
-/// for a web page of some other origin that a browser on this host runs, DNS rebinding included.
+/// True for a request from a person or program on this host: not one that a proxy forwarded, and
+/// not one that a web page of another origin made in a browser on this host (DNS rebinding
+/// included).
 [[nodiscard]] bool is_trusted_local(const RequestHead& head, const Peer& peer);
 
-/// Nothing when a writing method is allowed: with the right bearer token where there is one, else
-/// trusted local.  Being local does not replace the token: a proxy on this host is local as well.
+/// Nothing when a writing method is allowed: with the right bearer token if one is configured, else
+/// for trusted local requests.  Being local does not replace the token: a proxy on this host is
+/// local as well.
 [[nodiscard]] std::optional<Error> refuse_writing(const RequestHead& head, const Peer& peer,
                                                   std::string_view bearer_token);
 

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cstdio>
 
+#include "common/http/status.h"
+
 namespace chorus::http {
 namespace {
 
@@ -15,33 +17,33 @@ struct ReasonRow {
 };
 
 constexpr std::array kReasons{
-    ReasonRow{200, "OK"},
-    ReasonRow{201, "Created"},
-    ReasonRow{202, "Accepted"},
-    ReasonRow{204, "No Content"},
-    ReasonRow{304, "Not Modified"},
-    ReasonRow{308, "Permanent Redirect"},
-    ReasonRow{400, "Bad Request"},
-    ReasonRow{401, "Unauthorized"},
-    ReasonRow{403, "Forbidden"},
-    ReasonRow{404, "Not Found"},
-    ReasonRow{405, "Method Not Allowed"},
-    ReasonRow{406, "Not Acceptable"},
-    ReasonRow{408, "Request Timeout"},
-    ReasonRow{409, "Conflict"},
-    ReasonRow{410, "Gone"},
-    ReasonRow{411, "Length Required"},
-    ReasonRow{413, "Content Too Large"},
-    ReasonRow{414, "URI Too Long"},
-    ReasonRow{417, "Expectation Failed"},
-    ReasonRow{421, "Misdirected Request"},
-    ReasonRow{429, "Too Many Requests"},
-    ReasonRow{431, "Request Header Fields Too Large"},
-    ReasonRow{500, "Internal Server Error"},
-    ReasonRow{501, "Not Implemented"},
-    ReasonRow{503, "Service Unavailable"},
-    ReasonRow{504, "Gateway Timeout"},
-    ReasonRow{505, "HTTP Version Not Supported"},
+    ReasonRow{status::kOk, "OK"},
+    ReasonRow{status::kCreated, "Created"},
+    ReasonRow{status::kAccepted, "Accepted"},
+    ReasonRow{status::kNoContent, "No Content"},
+    ReasonRow{status::kNotModified, "Not Modified"},
+    ReasonRow{status::kPermanentRedirect, "Permanent Redirect"},
+    ReasonRow{status::kBadRequest, "Bad Request"},
+    ReasonRow{status::kUnauthorized, "Unauthorized"},
+    ReasonRow{status::kForbidden, "Forbidden"},
+    ReasonRow{status::kNotFound, "Not Found"},
+    ReasonRow{status::kMethodNotAllowed, "Method Not Allowed"},
+    ReasonRow{status::kNotAcceptable, "Not Acceptable"},
+    ReasonRow{status::kRequestTimeout, "Request Timeout"},
+    ReasonRow{status::kConflict, "Conflict"},
+    ReasonRow{status::kGone, "Gone"},
+    ReasonRow{status::kLengthRequired, "Length Required"},
+    ReasonRow{status::kContentTooLarge, "Content Too Large"},
+    ReasonRow{status::kUriTooLong, "URI Too Long"},
+    ReasonRow{status::kExpectationFailed, "Expectation Failed"},
+    ReasonRow{status::kMisdirected, "Misdirected Request"},
+    ReasonRow{status::kTooManyRequests, "Too Many Requests"},
+    ReasonRow{status::kFieldsTooLarge, "Request Header Fields Too Large"},
+    ReasonRow{status::kInternal, "Internal Server Error"},
+    ReasonRow{status::kNotImplemented, "Not Implemented"},
+    ReasonRow{status::kUnavailable, "Service Unavailable"},
+    ReasonRow{status::kGatewayTimeout, "Gateway Timeout"},
+    ReasonRow{status::kVersionNotSupported, "HTTP Version Not Supported"},
 };
 
 void append_number(std::string& out, std::int64_t value) {
@@ -60,6 +62,14 @@ const std::string& date_of(Timestamp t) {
     text = http_date(t);
   }
   return text;
+}
+
+void append_clock(std::string& out, const AnswerStamp& stamp) {
+  out.append(stamp.clock_field).append(": ");
+  append_number(out, to_unix_ns(stamp.received));
+  out.append(" ");
+  append_number(out, to_unix_ns(stamp.sent));
+  out.append("\r\n");
 }
 
 /// Milliseconds with three decimals; a capture clock ahead of ours gives age 0.
@@ -101,11 +111,9 @@ std::string http_date(Timestamp t) {
 void write_first_lines(std::string& out, const Answer& answer, const AnswerStamp& stamp) {
   out.append("HTTP/1.1 ");
   append_number(out, answer.status);
-  out.append(" ").append(reason_phrase(answer.status)).append("\r\nChorus-Clock: ");
-  append_number(out, to_unix_ns(stamp.received));
-  out.append(" ");
-  append_number(out, to_unix_ns(stamp.sent));
-  out.append("\r\nDate: ").append(date_of(stamp.sent)).append("\r\n");
+  out.append(" ").append(reason_phrase(answer.status)).append("\r\n");
+  if (!stamp.clock_field.empty()) append_clock(out, stamp);
+  out.append("Date: ").append(date_of(stamp.sent)).append("\r\n");
   if (stamp.close) out.append("Connection: close\r\n");
   if (stamp.keep_alive_http10) out.append("Connection: keep-alive\r\n");
   if (answer.captured) {

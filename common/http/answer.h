@@ -25,10 +25,11 @@ struct Answer {
 
 /// What the first lines say beside the answer itself.
 struct AnswerStamp {
-  Timestamp received;  ///< Chorus-Clock t1: the request was complete.
+  Timestamp received;  ///< The request was complete: t1 of the clock field.
   Timestamp sent;      ///< t2, and Date.
   bool close = false;
-  bool keep_alive_http10 = false;  ///< HTTP/1.0 has to be told.
+  bool keep_alive_http10 = false;     ///< Tells HTTP/1.0, which closes by default.
+  std::string_view clock_field = {};  ///< See AnswerPolicy.
 };
 
 /// Appends the status line and the header lines of this answer alone, up to `route`.

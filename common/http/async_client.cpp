@@ -4,6 +4,8 @@
 #include "common/http/beast.h"
 #include "common/http/client.h"
 #include "common/http/client_wire.h"
+#include "common/http/status.h"
+#include "common/net/connect.h"
 #include "common/time/clock.h"
 
 namespace chorus::http {
@@ -17,7 +19,7 @@ constexpr std::uint32_t kMaxHeadBytes = 16384;
 }  // namespace
 
 struct AsyncClient::Impl : std::enable_shared_from_this<AsyncClient::Impl> {
-  Impl(net::io_context& io, std::string to_host, std::uint16_t to_port, ClientLimits with)
+  Impl(asio::io_context& io, std::string to_host, std::uint16_t to_port, ClientLimits with)
       : host(std::move(to_host)),
         port(to_port),
         limits(with),
@@ -32,11 +34,11 @@ struct AsyncClient::Impl : std::enable_shared_from_this<AsyncClient::Impl> {
   void connect();
   void write();
   void read();
-  void on_head(error_code failed);
-  void on_failed_read(error_code failed);
+  void on_head(net::error_code failed);
+  void on_failed_read(net::error_code failed);
   void on_answer();
   void too_large();
-  void retry_or_fail(error_code failed, std::string_view doing);
+  void retry_or_fail(net::error_code failed, std::string_view doing);
   void finish(Result<ClientResponse> result);
   void finish_later(Error error);
   void arm(std::chrono::milliseconds time, std::string_view doing);
@@ -46,10 +48,10 @@ struct AsyncClient::Impl : std::enable_shared_from_this<AsyncClient::Impl> {
   const std::uint16_t port;
   const ClientLimits limits;
   std::string authority;
-  Executor executor;
-  Resolver resolver;
-  Socket socket;
-  Timer timer;
+  net::Executor executor;
+  net::Resolver resolver;
+  net::Socket socket;
+  net::Timer timer;
 
   Callback callback;          ///< Set while a request is under way.
   std::uint64_t attempt = 0;  ///< Handlers of an older attempt are void.
@@ -69,7 +71,7 @@ void AsyncClient::Impl::begin(ClientRequest request, std::chrono::milliseconds a
                               Callback on_done) {
   if (closed) return;
   if (callback) {
-    net::post(executor, [self = shared_from_this(), on_done] {
+    asio::post(executor, [self = shared_from_this(), on_done] {
       if (!self->closed)
         on_done(fail(ErrorCode::Conflict, self->authority, "a request is under way already"));
     });
@@ -93,25 +95,26 @@ void AsyncClient::Impl::connect() {
   drop();
   reused = false;
   arm(limits.connect_timeout, "connect");
-  Connecting to{host, port,
-                [self = shared_from_this(), mine = attempt] { return self->attempt == mine; }};
-  connect_to(std::move(to), resolver, socket,
-             [self = shared_from_this()](error_code failed, std::string_view doing) {
-               if (failed) return self->retry_or_fail(failed, doing);
-               self->connected = true;
-               self->write();
-             });
+  net::Connecting to{host, port,
+                     [self = shared_from_this(), mine = attempt] { return self->attempt == mine; }};
+  net::connect_to(std::move(to), resolver, socket,
+                  [self = shared_from_this()](net::error_code failed, std::string_view doing) {
+                    if (failed) return self->retry_or_fail(failed, doing);
+                    self->connected = true;
+                    self->write();
+                  });
 }
 
 void AsyncClient::Impl::write() {
   arm(answer_time, "answer");
   sent_ns = to_unix_ns(SystemClock().now());
-  net::async_write(socket, net::buffer(out),
-                   [self = shared_from_this(), mine = attempt](error_code failed, std::size_t) {
-                     if (self->attempt != mine) return;
-                     if (failed) return self->retry_or_fail(failed, "send");
-                     self->read();
-                   });
+  asio::async_write(
+      socket, asio::buffer(out),
+      [self = shared_from_this(), mine = attempt](net::error_code failed, std::size_t) {
+        if (self->attempt != mine) return;
+        if (failed) return self->retry_or_fail(failed, "send");
+        self->read();
+      });
 }
 
 void AsyncClient::Impl::read() {
@@ -122,22 +125,21 @@ void AsyncClient::Impl::read() {
   in.reserve(kMaxHeadBytes);
   beast::http::async_read_header(
       socket, in, *parser,
-      [self = shared_from_this(), mine = attempt](error_code failed, std::size_t) {
+      [self = shared_from_this(), mine = attempt](net::error_code failed, std::size_t) {
         if (self->attempt == mine) self->on_head(failed);
       });
 }
 
-void AsyncClient::Impl::on_head(error_code failed) {
+void AsyncClient::Impl::on_head(net::error_code failed) {
   if (failed) return on_failed_read(failed);
-  constexpr unsigned kFirstFinalStatus = 200;
-  if (parser->get().result_int() < kFirstFinalStatus) return read();  // 100 Continue
-  // Beast 1.74 does not hold a Content-Length of a response against its body limit.
+  if (parser->get().result_int() < unsigned{status::kOk}) return read();  // 100 Continue
+  // Beast 1.74 does not check a response's Content-Length against its body limit.
   const auto length = parser->content_length();
   if (!head_only && length && *length > limits.max_body_bytes) return too_large();
   if (parser->is_done()) return on_answer();
   beast::http::async_read(
       socket, in, *parser,
-      [self = shared_from_this(), mine = attempt](error_code body_failed, std::size_t) {
+      [self = shared_from_this(), mine = attempt](net::error_code body_failed, std::size_t) {
         if (self->attempt != mine) return;
         body_failed ? self->on_failed_read(body_failed) : self->on_answer();
       });
@@ -148,10 +150,10 @@ void AsyncClient::Impl::too_large() {
               "the answer is larger than " + std::to_string(limits.max_body_bytes) + " bytes"));
 }
 
-void AsyncClient::Impl::on_failed_read(error_code failed) {
+void AsyncClient::Impl::on_failed_read(net::error_code failed) {
   if (failed == beast::http::error::body_limit) return too_large();
   if (!parser->got_some()) return retry_or_fail(failed, "read the answer");
-  const error_code cut_off = beast::http::error::partial_message;
+  const net::error_code cut_off = beast::http::error::partial_message;
   const bool broken = failed.category() == cut_off.category() && failed != cut_off;
   finish(fail(broken ? ErrorCode::Malformed : ErrorCode::Unavailable, authority,
               "the answer is broken or cut off: " + failed.message()));
@@ -167,8 +169,8 @@ void AsyncClient::Impl::on_answer() {
   finish(std::move(response));
 }
 
-/// A kept connection that the server has closed meanwhile is no failure: ask again on a new one.
-void AsyncClient::Impl::retry_or_fail(error_code failed, std::string_view doing) {
+/// A kept-alive connection closed by the server meanwhile is not a failure: ask again on a new one.
+void AsyncClient::Impl::retry_or_fail(net::error_code failed, std::string_view doing) {
   if (reused && repeatable) return connect();
   finish(fail(ErrorCode::Unavailable, authority,
               "cannot " + std::string(doing) + ": " + failed.message()));
@@ -176,14 +178,15 @@ void AsyncClient::Impl::retry_or_fail(error_code failed, std::string_view doing)
 
 void AsyncClient::Impl::arm(std::chrono::milliseconds time, std::string_view doing) {
   timer.expires_after(time);
-  timer.async_wait([self = shared_from_this(), mine = attempt, doing, time](error_code cancelled) {
-    if (cancelled || self->attempt != mine || !self->callback) return;
-    // Expired and re-armed in the same instant: a later one is under way.
-    if (self->timer.expiry() > std::chrono::steady_clock::now()) return;
-    self->finish(
-        fail(ErrorCode::Timeout, self->authority,
-             "no " + std::string(doing) + " within " + std::to_string(time.count()) + " ms"));
-  });
+  timer.async_wait(
+      [self = shared_from_this(), mine = attempt, doing, time](net::error_code cancelled) {
+        if (cancelled || self->attempt != mine || !self->callback) return;
+        // Expired and re-armed in the same instant: a later one is under way.
+        if (self->timer.expiry() > std::chrono::steady_clock::now()) return;
+        self->finish(
+            fail(ErrorCode::Timeout, self->authority,
+                 "no " + std::string(doing) + " within " + std::to_string(time.count()) + " ms"));
+      });
 }
 
 void AsyncClient::Impl::finish(Result<ClientResponse> result) {
@@ -196,13 +199,13 @@ void AsyncClient::Impl::finish(Result<ClientResponse> result) {
 }
 
 void AsyncClient::Impl::finish_later(Error error) {
-  net::post(executor, [self = shared_from_this(), mine = attempt, error = std::move(error)] {
+  asio::post(executor, [self = shared_from_this(), mine = attempt, error = std::move(error)] {
     if (self->attempt == mine) self->finish(tl::unexpected<Error>(error));
   });
 }
 
 void AsyncClient::Impl::drop() {
-  error_code ignored;
+  net::error_code ignored;
   resolver.cancel();
   socket.close(ignored);
   in.clear();

@@ -3,7 +3,7 @@
 // The server reads requests itself (request_head.h), stricter than Beast 1.74 does.
 #pragma once
 
-#include "common/http/asio.h"
+#include "common/net/asio.h"
 
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/parser.hpp>

@@ -2,13 +2,13 @@
 
 #include <optional>
 
-#include "common/http/asio.h"
+#include "common/net/asio.h"
 
 namespace chorus::http {
 
 Result<ClientResponse> fetch(const Url& url, const ClientRequest& request,
                              const ClientLimits& limits) {
-  net::io_context io(1);
+  asio::io_context io(1);
   std::optional<Result<ClientResponse>> answer;
   AsyncClient client(io, url.host, url.port, limits);
   ClientRequest once = request;

@@ -53,10 +53,10 @@ struct ClientLimits {
 [[nodiscard]] Result<ClientResponse> fetch(const Url& url, const ClientRequest& request,
                                            const ClientLimits& limits = {});
 
-/// One kept-alive connection on somebody's io_context; one request at a time, callbacks on its
-/// thread. Reconnects on demand; a GET that meets a connection closed meanwhile is asked again on a
-/// new one. Destroying it, or close(), cancels; the callback then never fires.  All calls, the
-/// destructor too, belong on the io_context's thread (or before it runs, or after).
+/// One kept-alive connection on somebody else's io_context: one request at a time, callbacks on its
+/// thread.  Reconnects on demand; a GET on a connection that was closed meanwhile is sent again on
+/// a new one.  Destroying it, or close(), cancels: the callback is then never called.  All calls,
+/// and the destructor, belong on the io_context's thread (or before it runs, or after).
 class AsyncClient {
  public:
   using Callback = std::function<void(Result<ClientResponse>)>;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/base/parse.h"
 #include "common/http/text.h"
 
 namespace chorus::http {
@@ -23,7 +24,7 @@ std::optional<std::chrono::seconds> wait_preference(std::string_view prefer) {
     std::string_view token = next_element(preference, ';');
     const std::string_view name = next_element(token, '=');
     if (!equal_ignoring_case(name, "wait")) continue;
-    const auto wait = parse_digits(trimmed(token));
+    const auto wait = parse_number<std::uint64_t>(trimmed(token));
     if (!wait) return std::nullopt;
     return std::chrono::seconds(std::min(*wait, kLongest));
   }

@@ -81,19 +81,8 @@ void add_line(std::string& out, std::string_view name, std::string_view value) {
   out.append("\r\n");
 }
 
-constexpr std::string_view kLdp = "<http://www.w3.org/ns/ldp#";
-
-void add_type_links(std::string& out, const DocumentOptions& options) {
-  const auto add_type = [&](std::string_view type) {
-    add_line(out, "Link", std::string(kLdp).append(type).append(">; rel=\"type\""));
-  };
-  if (options.container) add_type("BasicContainer");
-  add_type(options.rdf_source || options.container ? "RDFSource" : "NonRDFSource");
-  if (options.rdf_source) add_line(out, "Link", "</shapes>; rel=\"describedby\"");
-}
-
-/// Runs something once, whichever thread comes first; what throws may be tried again.  Not
-/// std::call_once: the thread sanitizer hangs when that throws.
+/// Runs something once, on whichever thread comes first; after an exception it may be tried again.
+/// Not std::call_once: the thread sanitizer hangs when that throws.
 class Once {
  public:
   template <class Action>
@@ -125,21 +114,15 @@ struct Document::Impl {
     std::shared_ptr<const std::string> coded;  ///< A gzip_piece of the text.
   };
   std::array<Event, kEventTypes.size()> events;  ///< In the order of kEventTypes.
-  bool has_json_ld = false;
 
   /// The lines that a 200 and a 304 share.
-  [[nodiscard]] std::string shared_lines(const Rendered& out) const {
+  [[nodiscard]] std::string shared_lines(const Rendered& out, std::string_view own) const {
     std::string lines;
     add_line(lines, "ETag", out.etag);
     add_line(lines, "Cache-Control", options.cache_control);
     if (!options.content_location.empty())
       add_line(lines, "Content-Location", options.content_location);
-    add_type_links(lines, options);
-    // JSON-LD 1.1 6.1: plain JSON is JSON-LD when this link says with which context.
-    if (has_json_ld && out.media_type == kJson)
-      add_line(lines, "Link",
-               "</context.jsonld>; rel=\"http://www.w3.org/ns/json-ld#context\"; "
-               "type=\"application/ld+json\"");
+    lines.append(own);
     for (const auto& [name, value] : options.headers) add_line(lines, name, value);
     return lines;
   }
@@ -149,7 +132,7 @@ struct Document::Impl {
     Rendered& out = rendered[index];
     out.media_type = offers[index];
     out.etag = entity_tag(options, variants[index], index);
-    const std::string shared = shared_lines(out);
+    const std::string shared = shared_lines(out, variants[index].lines);
     const auto size = options.file ? options.file->size() : body.size();
     write_wire(out, content_type(variants[index].media_type), {shared, body, size});
   }
@@ -177,7 +160,7 @@ struct Document::Impl {
     Rendered& out = rendered[variants.size() + index];
     out.media_type = plain.media_type;
     out.etag = plain.etag.substr(0, plain.etag.size() - 1) + "-gz\"";
-    std::string shared = shared_lines(out);
+    std::string shared = shared_lines(out, variants[index].lines);
     add_line(shared, "Content-Encoding", "gzip");
     const std::string body = gzipped(plain.body());
     write_wire(out, content_type(variants[index].media_type), {shared, body, body.size()});
@@ -224,10 +207,8 @@ Document::Document(std::vector<Variant> variants, DocumentOptions options)
   const std::size_t count = impl_->variants.size();
   impl_->rendered.resize(2 * count);
   impl_->once = std::make_unique<Once[]>(2 * count);
-  for (const Variant& variant : impl_->variants) {
+  for (const Variant& variant : impl_->variants)
     impl_->offers.push_back(without_parameters(variant.media_type));
-    impl_->has_json_ld |= impl_->offers.back() == "application/ld+json";
-  }
 }
 
 Document::~Document() = default;

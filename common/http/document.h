@@ -22,19 +22,18 @@ namespace chorus::http {
 
 using Header = std::pair<std::string, std::string>;
 
-/// One way to write the resource down; the order in Document is the server's preference.
+/// One representation of the resource; their order in Document is the server's preference.
 struct Variant {
   std::string media_type;               ///< "text/turtle"; may carry parameters to send along.
   std::function<std::string()> render;  ///< Pure and thread-safe; called at most once.
   std::string profile = {};             ///< Chosen only by ?profile=NAME; empty is the default.
+  std::string_view lines = {};          ///< Its own header lines, each with CR LF; constant.
 };
 
 struct DocumentOptions {
   std::string version;  ///< The ETag is "<version>-<variant>", strong.
   std::string cache_control = "no-cache";
   std::string content_location = {};  ///< Relative IRI of the immutable version, "frames/42".
-  bool container = false;             ///< An LDP basic container (else an RDF source).
-  bool rdf_source = true;             ///< False: LDP non-RDF source (image, page, script).
   std::vector<Header> headers = {};   ///< Further headers, Link among them.
   std::shared_ptr<const FileBody> file = {};  ///< The body, instead of what the variant renders.
   std::optional<Timestamp> captured = {};     ///< Adds Server-Timing: age of what was captured.
@@ -87,7 +86,7 @@ class Document {
 
 using DocumentPtr = std::shared_ptr<const Document>;
 
-/// A document with one fixed representation (an image, a static page, the vocabulary).
+/// A document with one fixed representation (an image, a static page).
 [[nodiscard]] DocumentPtr make_document(std::string media_type, std::string body,
                                         DocumentOptions options);
 

@@ -12,7 +12,7 @@ namespace chorus::http {
 
 struct ServerEvent {
   std::string id;    ///< The last one named, by this event or an earlier one.
-  std::string data;  ///< Lines joined with line feeds; never of an event without data.
+  std::string data;  ///< Lines joined with line feeds; events without data are left out.
 
   bool operator==(const ServerEvent&) const = default;
 };
@@ -35,7 +35,7 @@ class EventReader {
   std::string id_;
   bool any_data_ = false;
   bool after_return_ = false;  ///< The last byte was a carriage return; a line feed belongs to it.
-  bool at_begin_ = true;       ///< Only here a byte order mark is none of the text.
+  bool at_begin_ = true;       ///< A byte order mark is skipped at the beginning only.
 };
 
 }  // namespace chorus::http

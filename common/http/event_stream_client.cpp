@@ -7,6 +7,8 @@
 #include "common/http/beast.h"
 #include "common/http/client_wire.h"
 #include "common/http/media_range.h"
+#include "common/http/status.h"
+#include "common/net/connect.h"
 #include "common/time/clock.h"
 
 namespace chorus::http {
@@ -19,16 +21,15 @@ constexpr std::uint32_t kMaxHeadBytes = 16384;
 constexpr std::size_t kReadBytes = 65536;
 
 bool is_event_stream(const ClientResponse& head) {
-  constexpr int kOk = 200;
   const auto type = head.headers.find("content-type");
-  return head.status == kOk && type != head.headers.end() &&
+  return head.status == status::kOk && type != head.headers.end() &&
          without_parameters(type->second) == "text/event-stream";
 }
 
 }  // namespace
 
 struct AsyncEventStream::Impl : std::enable_shared_from_this<AsyncEventStream::Impl> {
-  Impl(net::io_context& io, std::string to_host, std::uint16_t to_port, ClientLimits with)
+  Impl(asio::io_context& io, std::string to_host, std::uint16_t to_port, ClientLimits with)
       : host(std::move(to_host)),
         port(to_port),
         limits(with),
@@ -41,10 +42,10 @@ struct AsyncEventStream::Impl : std::enable_shared_from_this<AsyncEventStream::I
   void begin(const ClientRequest& request, Handlers with);
   void write();
   void read_head();
-  void on_head(error_code failed);
+  void on_head(net::error_code failed);
   void read();
   void read_now();
-  void on_read(error_code failed);
+  void on_read(net::error_code failed);
   void arm(std::chrono::milliseconds time, std::string_view doing);
   void end(Error error);
   void drop();
@@ -56,11 +57,12 @@ struct AsyncEventStream::Impl : std::enable_shared_from_this<AsyncEventStream::I
   const std::uint16_t port;
   const ClientLimits limits;
   const std::string authority;
-  Resolver resolver;
-  Socket socket;
-  Timer timer;
-  Timer rest;
-  std::shared_ptr<const Handlers> handlers;  ///< Shared: one may close() while it runs.
+  net::Resolver resolver;
+  net::Socket socket;
+  net::Timer timer;
+  net::Timer rest;
+  /// Shared: a handler may close() the stream while it runs.
+  std::shared_ptr<const Handlers> handlers;
   std::uint64_t attempt = 0;
   std::string out;
   beast::flat_buffer in;
@@ -77,24 +79,26 @@ void AsyncEventStream::Impl::begin(const ClientRequest& request, Handlers with) 
   reader.emplace(limits.max_body_bytes);
   arm(limits.connect_timeout, "connect");
   const auto self = shared_from_this();
-  Connecting to{host, port, [self, mine = attempt] { return self->is(mine); }};
-  connect_to(std::move(to), resolver, socket, [self](error_code failed, std::string_view doing) {
-    if (!failed) return self->write();
-    self->end({ErrorCode::Unavailable, self->authority,
-               "cannot " + std::string(doing) + ": " + failed.message()});
-  });
+  net::Connecting to{host, port, [self, mine = attempt] { return self->is(mine); }};
+  net::connect_to(std::move(to), resolver, socket,
+                  [self](net::error_code failed, std::string_view doing) {
+                    if (!failed) return self->write();
+                    self->end({ErrorCode::Unavailable, self->authority,
+                               "cannot " + std::string(doing) + ": " + failed.message()});
+                  });
 }
 
 void AsyncEventStream::Impl::write() {
   arm(limits.answer_timeout, "answer");
   sent_ns = to_unix_ns(SystemClock().now());
-  net::async_write(socket, net::buffer(out),
-                   [self = shared_from_this(), mine = attempt](error_code failed, std::size_t) {
-                     if (!self->is(mine)) return;
-                     failed ? self->end({ErrorCode::Unavailable, self->authority,
-                                         "cannot send: " + failed.message()})
-                            : self->read_head();
-                   });
+  asio::async_write(
+      socket, asio::buffer(out),
+      [self = shared_from_this(), mine = attempt](net::error_code failed, std::size_t) {
+        if (!self->is(mine)) return;
+        failed ? self->end(
+                     {ErrorCode::Unavailable, self->authority, "cannot send: " + failed.message()})
+               : self->read_head();
+      });
 }
 
 void AsyncEventStream::Impl::read_head() {
@@ -105,17 +109,16 @@ void AsyncEventStream::Impl::read_head() {
   in.reserve(kMaxHeadBytes);
   beast::http::async_read_header(
       socket, in, *parser,
-      [self = shared_from_this(), mine = attempt](error_code failed, std::size_t) {
+      [self = shared_from_this(), mine = attempt](net::error_code failed, std::size_t) {
         if (self->is(mine)) self->on_head(failed);
       });
 }
 
-void AsyncEventStream::Impl::on_head(error_code failed) {
+void AsyncEventStream::Impl::on_head(net::error_code failed) {
   if (failed)
     return end({ErrorCode::Unavailable, authority,
                 "the answer is broken or cut off: " + failed.message()});
-  constexpr unsigned kFirstFinalStatus = 200;
-  if (parser->get().result_int() < kFirstFinalStatus) return read_head();  // 100 Continue
+  if (parser->get().result_int() < unsigned{status::kOk}) return read_head();  // 100 Continue
   timer.cancel();
   ClientResponse head = response_of(parser->get().base());
   head.sent_ns = sent_ns;
@@ -132,7 +135,7 @@ void AsyncEventStream::Impl::on_head(error_code failed) {
 void AsyncEventStream::Impl::read() {
   if (paused.count() == 0) return read_now();
   rest.expires_after(std::exchange(paused, std::chrono::milliseconds{0}));
-  rest.async_wait([self = shared_from_this(), mine = attempt](error_code cancelled) {
+  rest.async_wait([self = shared_from_this(), mine = attempt](net::error_code cancelled) {
     if (!cancelled && self->is(mine)) self->read_now();
   });
 }
@@ -142,12 +145,12 @@ void AsyncEventStream::Impl::read_now() {
   in.reserve(kReadBytes);
   beast::http::async_read_some(
       socket, in, *parser,
-      [self = shared_from_this(), mine = attempt](error_code failed, std::size_t) {
+      [self = shared_from_this(), mine = attempt](net::error_code failed, std::size_t) {
         if (self->is(mine)) self->on_read(failed);
       });
 }
 
-void AsyncEventStream::Impl::on_read(error_code failed) {
+void AsyncEventStream::Impl::on_read(net::error_code failed) {
   const std::string bytes = std::exchange(parser->get().body(), {});
   auto events = reader->take(bytes);
   const auto mine = attempt;
@@ -164,13 +167,14 @@ void AsyncEventStream::Impl::on_read(error_code failed) {
 
 void AsyncEventStream::Impl::arm(std::chrono::milliseconds time, std::string_view doing) {
   timer.expires_after(time);
-  timer.async_wait([self = shared_from_this(), mine = attempt, doing, time](error_code cancelled) {
-    // Expired and re-armed or cancelled in the same instant: a later one is under way, or none.
-    if (cancelled || !self->is(mine) || self->has_head()) return;
-    if (self->timer.expiry() > std::chrono::steady_clock::now()) return;
-    self->end({ErrorCode::Timeout, self->authority,
-               "no " + std::string(doing) + " within " + std::to_string(time.count()) + " ms"});
-  });
+  timer.async_wait(
+      [self = shared_from_this(), mine = attempt, doing, time](net::error_code cancelled) {
+        // Expired and re-armed or cancelled in the same instant: a later one is under way, or none.
+        if (cancelled || !self->is(mine) || self->has_head()) return;
+        if (self->timer.expiry() > std::chrono::steady_clock::now()) return;
+        self->end({ErrorCode::Timeout, self->authority,
+                   "no " + std::string(doing) + " within " + std::to_string(time.count()) + " ms"});
+      });
 }
 
 void AsyncEventStream::Impl::end(Error error) {
@@ -181,7 +185,7 @@ void AsyncEventStream::Impl::end(Error error) {
 
 void AsyncEventStream::Impl::drop() {
   ++attempt;
-  error_code ignored;
+  net::error_code ignored;
   resolver.cancel();
   socket.close(ignored);
   timer.cancel();

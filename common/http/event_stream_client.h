@@ -12,9 +12,9 @@
 
 namespace chorus::http {
 
-/// One stream at a time on a connection of its own; callbacks on the io_context's thread, which all
-/// calls belong to.  Destroying it, or close(), cancels; nothing is called then.  It does not come
-/// back by itself.
+/// One stream at a time on a connection of its own.  Callbacks come on the io_context's thread, and
+/// all calls must be made there.  Destroying it, or close(), cancels: no callback comes after that.
+/// It does not reconnect.
 class AsyncEventStream {
  public:
   struct Handlers {
@@ -25,7 +25,7 @@ class AsyncEventStream {
     std::function<void(Error)> on_end;
   };
 
-  /// `limits.max_body_bytes` bounds one event; the others hold until the head is there.
+  /// `limits.max_body_bytes` bounds one event; the time limits hold until the head has arrived.
   AsyncEventStream(boost::asio::io_context& io, std::string host, std::uint16_t port,
                    ClientLimits limits = {});
   ~AsyncEventStream();
@@ -36,7 +36,7 @@ class AsyncEventStream {
   void open(const ClientRequest& request, Handlers handlers);
   void close();
 
-  /// Nothing is read for so long; the server has to wait, and may skip.
+  /// Stops reading for this long; the server has to wait and may skip events.
   void pause(std::chrono::milliseconds time);
 
  private:

@@ -10,7 +10,7 @@
 
 namespace chorus::http {
 
-/// Stays open as long as somebody reads it.  A file that grows is sent as long as it was at first.
+/// Stays open while somebody reads it.  A file that grows is sent with the length it had at first.
 class FileBody {
  public:
   /// NotFound for anything but a regular file.
@@ -21,7 +21,7 @@ class FileBody {
   FileBody& operator=(const FileBody&) = delete;
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  /// Up to 256 KiB from `offset` on; false when the file has less than it had.
+  /// Up to 256 KiB from `offset` on; false when the file has become shorter.
   [[nodiscard]] bool read(std::uint64_t offset, std::string& piece) const;
 
  private:

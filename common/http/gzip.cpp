@@ -11,8 +11,8 @@
 namespace chorus::http {
 namespace {
 
-constexpr std::size_t kLeast = 512;      // Below, headers are most of the answer.
-constexpr std::size_t kMost = 1u << 20;  // About 12 ms.
+constexpr std::size_t kMin = 512;       // Below, headers are most of the answer.
+constexpr std::size_t kMax = 1u << 20;  // About 12 ms.
 constexpr int kGzipFormat = 16 + MAX_WBITS;
 constexpr int kRawFormat = -MAX_WBITS;
 
@@ -32,7 +32,7 @@ class Deflater {
     constexpr std::size_t kFlushMarks = 16;
     deflateReset(&stream_);
     std::string out(deflateBound(&stream_, bytes.size()) + kFlushMarks, '\0');
-    // zlib does not write to its input, it only has no const for it.
+    // zlib does not write to its input; its interface merely lacks the const.
     stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
     stream_.avail_in = static_cast<uInt>(bytes.size());
     stream_.next_out = reinterpret_cast<Bytef*>(out.data());
@@ -73,7 +73,7 @@ Coding coding_for(std::string_view accept_encoding) {
 }
 
 bool worth_compressing(std::string_view media_type, std::size_t size) {
-  if (size < kLeast || size > kMost) return false;
+  if (size < kMin || size > kMax) return false;
   constexpr std::array kParts{"text/", "json", "javascript", "n-triples", "xml", "wasm"};
   return std::any_of(kParts.begin(), kParts.end(), [&](std::string_view part) {
     return media_type.find(part) != std::string_view::npos;

@@ -11,7 +11,7 @@ enum class Coding { Identity, Gzip };
 /// Gzip where an Accept-Encoding field allows it by name or by "*", and not with q=0.
 [[nodiscard]] Coding coding_for(std::string_view accept_encoding);
 
-/// True for text of a size that is worth it and does not hold others up while it is done.
+/// True for text that is large enough to be worth it and small enough not to hold up others.
 [[nodiscard]] bool worth_compressing(std::string_view media_type, std::size_t size);
 
 /// The whole of `bytes` as one gzip file, fast rather than small.
@@ -19,8 +19,8 @@ enum class Coding { Identity, Gzip };
 
 /// For streams: what a gzip file begins with ...
 [[nodiscard]] std::string_view gzip_begin();
-/// ... and pieces that may follow in any order, because none refers to another: each can be shared
-/// by all streams.  The reader gets each whole as soon as it has come.
+/// ... and pieces that may follow in any order, because none refers to another: one piece can be
+/// shared by all streams.  A reader can decode each piece as soon as it arrives.
 [[nodiscard]] std::string gzip_piece(std::string_view bytes);
 
 }  // namespace chorus::http

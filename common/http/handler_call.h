@@ -1,4 +1,4 @@
-// What stands between a request and somebody's handler, and what is said when that fails.
+// Calls a handler for a request, and answers when it fails.
 #pragma once
 
 #include <exception>
@@ -21,7 +21,7 @@ namespace chorus::http {
 /// The problem as the answer to this request.
 [[nodiscard]] Answer complaint(Problem problem, const RequestHead& head, std::string_view route);
 
-/// Runs somebody's handler; nothing it throws gets further.
+/// Runs a handler; its exceptions end here.
 template <class T, class Call>
 Result<T> guarded(const RequestHead& head, const Call& call) {
   try {

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/http/status.h"
+
 namespace chorus::http {
 namespace {
 
@@ -40,8 +42,7 @@ Answer problem_answer(const Problem& problem, bool head_only) {
   answer.status = problem.status;
   answer.own = text->head;
   if (!head_only) answer.body = text->body;
-  constexpr int kUnavailable = 503;
-  if (problem.status == kUnavailable) answer.extra = "Retry-After: 1\r\n";
+  if (problem.status == status::kUnavailable) answer.extra = "Retry-After: 1\r\n";
   answer.owner = std::move(text);
   return answer;
 }

@@ -16,7 +16,7 @@ struct Problem {
   std::string_view instance = {};  ///< The path that was asked for.
   std::string_view context = {};   ///< What the error is about: a path, a key, a field.
   std::string_view detail = {};    ///< What to change, for people.
-  std::vector<std::string_view> available = {};  ///< 406: media types that there are.
+  std::vector<std::string_view> available = {};  ///< 406: the media types there are.
 };
 
 /// Its views point into `error`.

@@ -4,7 +4,9 @@
 #include <array>
 #include <cstring>
 
+#include "common/base/parse.h"
 #include "common/http/route_table.h"
+#include "common/http/status.h"
 #include "common/http/text.h"
 
 namespace chorus::http {
@@ -66,7 +68,7 @@ constexpr std::array kKnown{
     KnownField{"via", &RequestHead::forwarded, true},
 };
 
-Refusal bad(std::string detail) { return {400, std::move(detail)}; }
+Refusal bad(std::string detail) { return {status::kBadRequest, std::move(detail)}; }
 
 std::optional<Refusal> note_known(const Field& field, RequestHead& head) {
   for (const KnownField& known : kKnown) {
@@ -95,7 +97,8 @@ std::optional<Refusal> read_field(std::string_view line, RequestHead& head) {
   const std::string_view value = trimmed(line.substr(colon + 1));
   if (!all_in(value, kValue)) return bad("a header field holds a control character");
   if (head.fields.size() == kMaxFields)
-    return Refusal{431, "send at most " + std::to_string(kMaxFields) + " header fields"};
+    return Refusal{status::kFieldsTooLarge,
+                   "send at most " + std::to_string(kMaxFields) + " header fields"};
   head.fields.push_back({name, value});
   return note_known(head.fields.back(), head);
 }
@@ -115,7 +118,8 @@ std::optional<Refusal> read_version(std::string_view version, RequestHead& head)
     head.keep_alive = head.minor_version == 1;
     return {};
   }
-  if (version.starts_with(kPrefix)) return Refusal{505, "this server speaks HTTP/1.1 and HTTP/1.0"};
+  if (version.starts_with(kPrefix))
+    return Refusal{status::kVersionNotSupported, "this server speaks HTTP/1.1 and HTTP/1.0"};
   return bad("a request line is \"METHOD target HTTP/1.1\"");
 }
 
@@ -153,7 +157,7 @@ std::optional<Refusal> read_request_line(std::string_view line, RequestHead& hea
   if (auto refusal = read_version(line.substr(last + 1), head)) return refusal;
   const auto method = method_named(name);
   if (!method)
-    return Refusal{501,
+    return Refusal{status::kNotImplemented,
                    "the method is not known; methods are written in capitals: GET, HEAD, "
                    "OPTIONS, POST, PUT, PATCH, DELETE"};
   head.method = *method;
@@ -176,11 +180,13 @@ std::optional<Refusal> check_framing(RequestHead& head) {
     if (is_present(head.length_text) || head.minor_version == 0)
       return bad("Transfer-Encoding with Content-Length or in HTTP/1.0 is refused");
     if (equal_ignoring_case(head.transfer_encoding, "chunked"))
-      return Refusal{411, "send the body with Content-Length instead of chunked"};
-    return Refusal{501, "this transfer coding is not known; send the body with Content-Length"};
+      return Refusal{status::kLengthRequired,
+                     "send the body with Content-Length instead of chunked"};
+    return Refusal{status::kNotImplemented,
+                   "this transfer coding is not known; send the body with Content-Length"};
   }
   if (is_present(head.length_text)) {
-    const auto length = parse_digits(head.length_text);
+    const auto length = parse_number<std::uint64_t>(head.length_text);
     if (!length) return bad("Content-Length is one decimal number");
     head.content_length = *length;
   }
@@ -194,7 +200,7 @@ std::optional<Refusal> check_framing(RequestHead& head) {
 std::optional<Refusal> check_expectation(RequestHead& head) {
   if (!is_present(head.expect)) return {};
   if (!equal_ignoring_case(head.expect, "100-continue"))
-    return Refusal{417, "the only expectation known here is 100-continue"};
+    return Refusal{status::kExpectationFailed, "the only expectation known here is 100-continue"};
   head.expects_continue = head.minor_version == 1 && head.content_length > 0;
   return {};
 }

@@ -1,10 +1,10 @@
 // Reads the head of a request, strictly: bytes in, fields or a refusal out; no sockets.
 //
-// Whatever two readers of HTTP could understand differently is refused, because that is what
-// request smuggling is made of: bare line feeds, folded lines, spaces before a colon, repeated Host
-// or Content-Length, Transfer-Encoding (a reader that needs a length answers 411), bodies on GET.
-// What is accepted here, Boost.Beast accepts with the same meaning; tests/fuzz/http_request holds
-// both together.
+// Whatever two readers of HTTP could understand differently is refused, because request smuggling
+// is made of that: bare line feeds, folded lines, spaces before a colon, repeated Host or
+// Content-Length, Transfer-Encoding (411 when a length is missing), bodies on GET.  What is
+// accepted here, Boost.Beast accepts with the same meaning; tests/fuzz/http_request compares the
+// two.
 #pragma once
 
 #include <cstddef>

@@ -7,6 +7,7 @@
 #include "common/http/media_range.h"
 #include "common/http/problem.h"
 #include "common/http/route_lines.h"
+#include "common/http/status.h"
 #include "common/http/uri.h"
 #include "common/http/websocket.h"
 
@@ -14,14 +15,13 @@ namespace chorus::http {
 namespace {
 
 constexpr std::string_view kEventStream = "text/event-stream";
-constexpr int kMisdirected = 421;
 constexpr std::string_view kJsonSuffix = ".json";
 constexpr std::string_view kWaitApplied = "Preference-Applied: wait\r\n";
 
 bool is_head(const RequestHead& head) { return head.method == Method::Head; }
 
-/// Event stream or document: the better quality wins, and only a range that names the stream
-/// counts.
+/// Event stream or document: the better quality wins, and the stream counts only if a range names
+/// it.
 bool wants_events(const RequestHead& head, const Document& document) {
   const int events = explicit_quality_of(kEventStream, head.accept).value_or(0);
   if (events == 0) return false;
@@ -31,7 +31,7 @@ bool wants_events(const RequestHead& head, const Document& document) {
   return true;
 }
 
-/// What an event carries: JSON, unless the Accept likes Turtle better and says so.
+/// The type of the events: JSON, unless the Accept prefers Turtle.
 std::string_view event_type_of(std::string_view accept) {
   constexpr std::string_view kJson = "application/json";
   constexpr std::string_view kTurtle = "text/turtle";
@@ -61,21 +61,21 @@ bool asks_by_query(const RequestHead& head, const Router::Entry& entry) {
   return query && query->contains(entry.query_key);
 }
 
-/// A name that ends in ".json" is worth a header to those who cannot send one; not where the
-/// resource itself is called so.
+/// A name ending in ".json" replaces an Accept header for those who cannot send one; not if the
+/// resource itself has such a name.
 std::string_view accept_of(const RequestHead& head, const Router& router) {
   const bool added = head.path.ends_with(kJsonSuffix) && !router.match(head.path);
   return added ? "application/json, */*;q=0.5" : head.accept;
 }
 
-/// What a path names, or would without ".json".
+/// What a path names, or would name without ".json".
 Result<Router::Match> named(const Router& router, std::string_view path) {
   auto match = router.match(path);
   if (match || !path.ends_with(kJsonSuffix)) return match;
   return router.match(path.substr(0, path.size() - kJsonSuffix.size()));
 }
 
-/// To the other spelling of a path, with a slash at its end or without, where that one is known.
+/// A redirection to the same path with or without the slash at its end, if that one is known.
 std::optional<Answer> redirected(const RequestHead& head, std::string_view path,
                                  const Router& router) {
   if (head.method != Method::Get && head.method != Method::Head) return std::nullopt;
@@ -83,14 +83,12 @@ std::optional<Answer> redirected(const RequestHead& head, std::string_view path,
   const std::string other =
       slash ? std::string(path.substr(0, path.size() - 1)) : std::string(path) + "/";
   if (path.size() < 2 || !router.match(other)) return std::nullopt;
-  // Relative, so that it is right behind any proxy; as it was sent, so that nothing is decoded
-  // twice.
+  // Relative, so that it is right behind any proxy; not decoded, so that nothing is decoded twice.
   std::string_view last = head.path;
   if (slash) last.remove_suffix(1);
   last.remove_prefix(std::min(last.size(), last.rfind('/') + 1));
   Answer answer;
-  constexpr int kPermanentRedirect = 308;
-  answer.status = kPermanentRedirect;
+  answer.status = status::kPermanentRedirect;
   answer.extra = "Location: " + (slash ? "../" + std::string(last) : std::string(last) + "/");
   if (!head.query.empty()) answer.extra.append("?").append(head.query);
   answer.extra += "\r\n";
@@ -103,10 +101,11 @@ std::optional<Answer> redirected(const RequestHead& head, std::string_view path,
 Responder::Responder(const ServerConfig& config, std::shared_ptr<const Router> router)
     : bearer_token_(config.bearer_token),
       allowed_origin_(config.allowed_origin),
+      challenge_("WWW-Authenticate: Bearer realm=\"" + config.policy.realm + "\"\r\n"),
       hosts_(host_names()),
       limits_(config.limits),
       router_(std::move(router)),
-      any_route_(common_lines(config.allowed_origin)),
+      any_route_(common_lines(config)),
       faults_(std::make_unique<RateReport>("request failed", log::Level::Error)),
       wrong_tokens_(std::make_unique<RateReport>("wrong bearer token")),
       tries_(std::make_unique<TokenTries>()) {
@@ -121,12 +120,12 @@ std::string_view Responder::route_lines(const Router::Entry& entry) const {
 Reaction Responder::react(const RequestHead& head, const Peer& peer) const {
   if (!head.authority.empty() && !is_our_authority(head.authority, peer)) {
     return Reaction::of(
-        refuse({kMisdirected, "this server is no proxy; ask it by its own address"}));
+        refuse({status::kMisdirected, "this server is no proxy; ask it by its own address"}));
   }
   if (is_present(head.host) && !is_own_host(head.host, hosts_)) {
-    return Reaction::of(
-        refuse({kMisdirected, "this service is not called " + std::string(head.host) +
-                                  ": ask it by its address, or list the name under http.hosts"}));
+    return Reaction::of(refuse(
+        {status::kMisdirected, "this service is not called " + std::string(head.host) +
+                                   ": ask it by its address, or list the name under http.hosts"}));
   }
   if (head.asterisk) return options(any_route_, "GET, HEAD, OPTIONS");
   std::string storage;
@@ -143,6 +142,8 @@ Reaction Responder::react(const RequestHead& head, const Peer& peer) const {
       return options(route_lines_[match->entry->index], allowed_methods(*match->entry));
     case Method::Get:
     case Method::Head:
+      if (match->entry->dialogue && asks_for_websocket(head))
+        return converse(head, *match->entry, peer);
       if (match->entry->live && !asks_by_query(head, *match->entry))
         return read_live(head, *match->entry);
       return read(head, *match, peer, *path);
@@ -161,8 +162,7 @@ bool Responder::is_vital(const RequestHead& head) const {
 
 Reaction Responder::options(const std::string& route, std::string_view allowed) const {
   Answer answer;
-  constexpr int kNoContent = 204;
-  answer.status = kNoContent;
+  answer.status = status::kNoContent;
   answer.route = route;
   if (&route == &any_route_) answer.extra.append("Allow: ").append(allowed).append("\r\n");
   answer.extra.append("Access-Control-Allow-Methods: ").append(allowed);
@@ -178,7 +178,7 @@ Reaction Responder::read(const RequestHead& head, const Router::Match& match, co
   const Router::Entry& entry = *match.entry;
   const std::string_view route = route_lines(entry);
   if (!entry.readable())
-    return write(head, match, peer);  // GET is one more method that the entry does not have.
+    return write(head, match, peer);  // GET is just another method that the entry does not have.
   const auto document = guarded<DocumentPtr>(head, [&]() -> Result<DocumentPtr> {
     if (entry.files) return entry.files->document(match.rest);
     const auto request = request_of(head, peer, path);
@@ -194,11 +194,10 @@ Reaction Responder::read_live(const RequestHead& head, const Router::Entry& entr
   const DocumentPtr document = entry.live->current();
   if (document == nullptr || head.accept.empty() || !wants_events(head, *document)) {
     Reaction reaction = Reaction::of(represent(document, head, route_lines(entry)));
-    constexpr int kNotModified = 304;
     const auto wait = wait_preference(head.prefer);
     if (!wait || !is_present(head.if_none_match)) return reaction;
     reaction.answer.extra.append(kWaitApplied);
-    if (reaction.answer.status != kNotModified || wait->count() == 0) return reaction;
+    if (reaction.answer.status != status::kNotModified || wait->count() == 0) return reaction;
     reaction.kind = Reaction::Kind::Wait;
     reaction.entry = &entry;
     reaction.wait = std::min(*wait, limits_.max_wait);
@@ -232,8 +231,7 @@ Reaction Responder::upgrade(const RequestHead& head, const Router::Entry& entry)
 
 std::optional<Answer> Responder::waited(const Router::Entry& entry, const RequestHead& head) const {
   Answer answer = represent(entry.live->current(), head, route_lines(entry));
-  constexpr int kNotModified = 304;
-  if (answer.status == kNotModified) return std::nullopt;
+  if (answer.status == status::kNotModified) return std::nullopt;
   answer.extra.append(kWaitApplied);
   return answer;
 }
@@ -266,8 +264,7 @@ Answer Responder::represent(const DocumentPtr& document, const RequestHead& head
   answer.owner = document;
   answer.captured = document->options().captured;
   if (!head.if_none_match.empty() && none_match_lists(head.if_none_match, rendered.etag)) {
-    constexpr int kNotModified = 304;
-    answer.status = kNotModified;
+    answer.status = status::kNotModified;
     answer.own = rendered.not_modified;
     return answer;
   }
@@ -281,16 +278,14 @@ Answer Responder::represent(const DocumentPtr& document, const RequestHead& head
 Answer Responder::fault(const Error& error, const RequestHead& head, std::string_view route) const {
   if (error.code == ErrorCode::Internal) faults_->hit(to_string(error));
   Answer answer = complaint(problem_of(error), head, route);
-  if (error.code == ErrorCode::Unauthorized)
-    answer.extra = "WWW-Authenticate: Bearer realm=\"chorus\"\r\n";
+  if (error.code == ErrorCode::Unauthorized) answer.extra = challenge_;
   return answer;
 }
 
 Answer Responder::refuse(const Refusal& refusal) const {
-  constexpr int kUnavailable = 503;
   std::string_view code = name_of(ErrorCode::Malformed);
-  if (refusal.status == kUnavailable) code = name_of(ErrorCode::Unavailable);
-  if (refusal.status == kMisdirected) code = name_of(ErrorCode::Forbidden);
+  if (refusal.status == status::kUnavailable) code = name_of(ErrorCode::Unavailable);
+  if (refusal.status == status::kMisdirected) code = name_of(ErrorCode::Forbidden);
   Answer answer = problem_answer({refusal.status, code, {}, {}, refusal.detail}, false);
   answer.route = any_route_;
   answer.close = true;

@@ -26,7 +26,7 @@ struct Reaction {
     ReadBody,  ///< Read content_length bytes, then ask act().
     Wait,      ///< Ask waited() after each publish of `entry`, and given_up() after `wait`.
     Stream,    ///< Send `answer`, then events of `entry` until the client leaves.
-    Upgrade,   ///< Hand the socket over to a WebSocket session of `entry`.
+    Upgrade,   ///< Hand the socket to a WebSocket connection of `entry`, or of `dialogue`.
   };
   Kind kind = Kind::Answer;
   Answer answer = {};
@@ -35,6 +35,8 @@ struct Reaction {
   PathParams params = {};
   std::chrono::seconds wait{0};
   std::string_view event_type = {};  ///< Stream: what the events carry.
+  std::shared_ptr<Dialogue> dialogue = {};
+  std::string protocol = {};  ///< Upgrade: the subprotocol that was chosen; empty: none.
 
   [[nodiscard]] static Reaction of(Answer ready) {
     Reaction reaction;
@@ -54,13 +56,13 @@ class Responder {
   /// The answer to a long poll if the document has changed since.
   [[nodiscard]] std::optional<Answer> waited(const Router::Entry& entry,
                                              const RequestHead& head) const;
-  /// The 304 that ends a long poll in vain.
+  /// The 304 that ends a long poll when nothing has changed.
   [[nodiscard]] Answer given_up(const Router::Entry& entry, const RequestHead& head) const;
 
   /// A problem document for a request that never became one.
   [[nodiscard]] Answer refuse(const Refusal& refusal) const;
 
-  /// True for a request for what is answered even when there is no room.
+  /// True for a request for a vital path, which is answered even when there is no room.
   [[nodiscard]] bool is_vital(const RequestHead& head) const;
 
   [[nodiscard]] const Router& router() const { return *router_; }
@@ -72,6 +74,8 @@ class Responder {
                               std::string_view path) const;
   [[nodiscard]] Reaction read_live(const RequestHead& head, const Router::Entry& entry) const;
   [[nodiscard]] Reaction upgrade(const RequestHead& head, const Router::Entry& entry) const;
+  [[nodiscard]] Reaction converse(const RequestHead& head, const Router::Entry& entry,
+                                  const Peer& peer) const;
   [[nodiscard]] Reaction write(const RequestHead& head, Router::Match match,
                                const Peer& peer) const;
   [[nodiscard]] std::optional<Answer> turn_down(const RequestHead& head, const Peer& peer,
@@ -85,7 +89,8 @@ class Responder {
 
   std::string bearer_token_;
   std::string allowed_origin_;
-  std::vector<std::string> hosts_;  ///< What we are called.
+  std::string challenge_;           ///< Header line of a 401.
+  std::vector<std::string> hosts_;  ///< The names of this service.
   ServerLimits limits_;
   std::shared_ptr<const Router> router_;
   std::string any_route_;                 ///< Header lines of answers without a route.

@@ -1,20 +1,21 @@
-// Writing methods: who may, how much, and what the action did.
+// Writing methods: who may, how much, and the answer to what the action did.
 #include "common/http/handler_call.h"
 #include "common/http/responder.h"
+#include "common/http/status.h"
 #include "common/http/uri.h"
+#include "common/http/websocket.h"
 
 namespace chorus::http {
 namespace {
 
-/// The resource that an action answers with, or that there is none.
+/// The answer: the resource that an action returned, or none.
 Result<Answer> answer_of(const ActionResult& done, std::string_view accept) {
   Answer answer;
   answer.status = done.status;
   if (!done.location.empty()) answer.extra = "Location: " + done.location + "\r\n";
-  constexpr int kNoContent = 204;
-  answer.own = done.status == kNoContent ? "\r\n" : "Content-Length: 0\r\n\r\n";
-  if (done.status == kNoContent || !done.document) return answer;
-  // It is done: a client that accepts nothing of ours gets the default rather than an error.
+  answer.own = done.status == status::kNoContent ? "\r\n" : "Content-Length: 0\r\n\r\n";
+  if (done.status == status::kNoContent || !done.document) return answer;
+  // The action is done: a client that accepts none of our types gets the default, not an error.
   auto chosen = done.document->choose(accept);
   if (!chosen) chosen = done.document->choose("");
   if (!chosen) return pass(chosen);
@@ -26,17 +27,16 @@ Result<Answer> answer_of(const ActionResult& done, std::string_view accept) {
 
 }  // namespace
 
-/// What says that this request may not write; nothing when it may.
+/// The answer that refuses this request; nothing when it may write.
 std::optional<Answer> Responder::turn_down(const RequestHead& head, const Peer& peer,
                                            std::string_view route) const {
   const auto now = std::chrono::steady_clock::now();
   const bool tries = !bearer_token_.empty() && is_present(head.authorization);
   if (tries && !tries_->may_try(peer.account, now)) {
-    constexpr int kTooManyRequests = 429;
     const std::string detail =
         "too many wrong tokens came from your address; try again in a second";
-    Answer answer = complaint({kTooManyRequests, name_of(ErrorCode::Unauthorized), {}, {}, detail},
-                              head, route);
+    Answer answer = complaint(
+        {status::kTooManyRequests, name_of(ErrorCode::Unauthorized), {}, {}, detail}, head, route);
     answer.extra = "Retry-After: 1\r\n";
     return answer;
   }
@@ -53,10 +53,10 @@ Reaction Responder::write(const RequestHead& head, Router::Match match, const Pe
   const std::string_view route = route_lines(*match.entry);
   const auto action = match.entry->actions.find(head.method);
   if (action == match.entry->actions.end()) {
-    constexpr int kMethodNotAllowed = 405;
     const std::string detail =
         "this resource answers " + allowed_methods(*match.entry) + " and no other method";
-    return Reaction::of(complaint({kMethodNotAllowed, "unsupported", {}, {}, detail}, head, route));
+    return Reaction::of(
+        complaint({status::kMethodNotAllowed, "unsupported", {}, {}, detail}, head, route));
   }
   if (auto refused = turn_down(head, peer, route)) return Reaction::of(std::move(*refused));
   if (head.content_length > limits_.max_body_bytes)
@@ -68,6 +68,28 @@ Reaction Responder::write(const RequestHead& head, Router::Match match, const Pe
   reaction.entry = match.entry;
   reaction.action = &action->second;
   reaction.params = std::move(match.params);
+  return reaction;
+}
+
+/// A WebSocket whose client speaks.  Browsers cannot send Authorization with one, so the token may
+/// come as a subprotocol.
+Reaction Responder::converse(const RequestHead& head, const Router::Entry& entry,
+                             const Peer& peer) const {
+  const std::string_view route = route_lines(entry);
+  if (!may_open(head, allowed_origin_)) return upgrade(head, entry);
+  const Subprotocols offered = subprotocols_of(head, entry.dialogue->protocol);
+  const std::string token = "Bearer " + offered.token;
+  RequestHead asking = head;
+  if (!offered.token.empty() && !is_present(head.authorization)) asking.authorization = token;
+  if (auto refused = turn_down(asking, peer, route)) return Reaction::of(std::move(*refused));
+  auto begun =
+      guarded<std::unique_ptr<Dialogue>>(head, [&] { return entry.dialogue->open(peer.account); });
+  if (!begun) return Reaction::of(fault(begun.error(), head, route));
+  Reaction reaction;
+  reaction.kind = Reaction::Kind::Upgrade;
+  reaction.entry = &entry;
+  reaction.dialogue = std::move(*begun);
+  if (offered.named) reaction.protocol = entry.dialogue->protocol;
   return reaction;
 }
 

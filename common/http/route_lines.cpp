@@ -4,32 +4,38 @@ namespace chorus::http {
 
 namespace {
 
-/// What lets web pages of another origin read; browsers let none without it.
-std::string sharing_lines(const std::string& origin) {
+/// CORS: lets web pages of `origin` read the answers; without these lines browsers let none read.
+std::string sharing_lines(const std::string& origin, const AnswerPolicy& policy) {
   if (origin.empty()) return {};
+  const std::string clock = policy.clock_field.empty() ? "" : policy.clock_field + ", ";
   return "Access-Control-Allow-Origin: " + origin +
          "\r\n"
          "Access-Control-Expose-Headers: ETag, Link, Location, Content-Location, Allow, "
-         "Preference-Applied, Retry-After, Chorus-Clock, Server-Timing\r\n"
+         "Preference-Applied, Retry-After, " +
+         clock +
+         "Server-Timing\r\n"
          "Timing-Allow-Origin: " +
          origin + "\r\n";
 }
 
+std::string lines_for(const std::string& origin, const AnswerPolicy& policy) {
+  return "Vary: Accept, Accept-Encoding, Origin\r\n" + sharing_lines(origin, policy) +
+         "X-Content-Type-Options: nosniff\r\n" + policy.lines;
+}
+
 }  // namespace
 
-std::string common_lines(const std::string& origin) {
-  return "Vary: Accept, Accept-Encoding, Origin\r\n" + sharing_lines(origin) +
-         "X-Content-Type-Options: nosniff\r\n"
-         "Link: </openapi.json>; rel=\"service-desc\"\r\n";
+std::string common_lines(const ServerConfig& config) {
+  return lines_for(config.allowed_origin, config.policy);
 }
 
 std::string lines_of(const ServerConfig& config, const Router::Entry& entry) {
-  std::string lines = "Allow: " + allowed_methods(entry) +
-                      "\r\nLink: <http://www.w3.org/ns/ldp#Resource>; rel=\"type\"\r\n";
-  if (!entry.shows_people) return lines + common_lines(config.allowed_origin);
-  // Nor may a page show it in an element of its own, which needs no permission otherwise.
+  std::string lines = "Allow: " + allowed_methods(entry) + "\r\n" + config.policy.resource_lines;
+  if (!entry.shows_people) return lines + common_lines(config);
+  // Nor may a page embed it in an element, which needs no permission otherwise.
   lines += "Cross-Origin-Resource-Policy: same-origin\r\n";
-  return lines + common_lines(config.allowed_origin == "*" ? "" : config.allowed_origin);
+  return lines +
+         lines_for(config.allowed_origin == "*" ? "" : config.allowed_origin, config.policy);
 }
 
 }  // namespace chorus::http

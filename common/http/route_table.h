@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,9 +24,10 @@ struct Router::Entry {
   std::string query_key;  ///< With `live`: requests that have this key in their query ...
   Getter by_query;        ///< ... are answered here.
   std::map<Method, Action> actions;
-  bool vital = false;                  ///< See Router::vital.
-  bool shows_people = false;           ///< See Router::shows_people.
-  std::unique_ptr<StaticFiles> files;  ///< The pattern is a prefix then.
+  std::optional<DialogueRoute> dialogue;  ///< Of WebSockets.
+  bool vital = false;                     ///< See Router::vital.
+  bool shows_people = false;              ///< See Router::shows_people.
+  std::unique_ptr<StaticFiles> files;     ///< The pattern is a prefix then.
 
   [[nodiscard]] bool readable() const { return getter || live || files; }
 };

@@ -110,11 +110,17 @@ void Router::action(Method method, std::string pattern, Action action) {
   assert(added);
 }
 
-void Router::files(std::string prefix, std::string folder) {
+void Router::dialogue(const std::string& pattern, DialogueRoute route) {
+  Entry& entry = entry_of(pattern);
+  assert(!entry.live && !entry.dialogue && route.open);
+  entry.dialogue = std::move(route);
+}
+
+void Router::files(std::string prefix, std::string folder, std::string_view lines) {
   assert(prefix.back() == '/');
   Entry& entry = entry_of(prefix);
   assert(!entry.readable());
-  entry.files = std::make_unique<StaticFiles>(std::move(folder));
+  entry.files = std::make_unique<StaticFiles>(std::move(folder), lines);
 }
 
 void Router::vital(const std::string& pattern) { entry_of(pattern).vital = true; }

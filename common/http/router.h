@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/http/dialogue.h"
 #include "common/http/document.h"
 #include "common/http/live_document.h"
 
@@ -16,12 +17,12 @@ namespace chorus::http {
 
 enum class Method { Get, Head, Options, Post, Put, Patch, Delete };
 
-/// A request that passed every check.  Views live as long as the call.
+/// A request that passed every check.  Views are valid during the call.
 struct Request {
   Method method = Method::Get;
   std::string_view path;  ///< Percent-decoded, without query.
-  std::map<std::string, std::string, std::less<>>
-      query;  ///< Decoded; a repeated key keeps the last.
+  /// Decoded; a repeated key keeps the last.
+  std::map<std::string, std::string, std::less<>> query;
   std::map<std::string, std::string, std::less<>> headers;  ///< Lower-case names.
   std::string_view body;
   bool from_loopback = false;
@@ -54,17 +55,20 @@ class Router {
   void get(std::string pattern, Getter getter);
   /// GET/HEAD of a live document, with Prefer: wait long polling and Accept: text/event-stream.
   void live(std::string pattern, std::shared_ptr<LiveDocument> document);
-  /// GET/HEAD with ?key=... of a pattern that live() knows: answered by the getter instead.
+  /// GET/HEAD with ?key=... of a path given to live(): answered by the getter instead.
   void by_query(const std::string& pattern, std::string key, Getter getter);
-  /// A writing method; ServerConfig::bearer_token says who may use it.
+  /// A writing method; who may use it: ServerConfig::bearer_token.
   void action(Method method, std::string pattern, Action action);
+  /// WebSockets whose clients speak.  That is writing: ServerConfig::bearer_token says who may.
+  void dialogue(const std::string& pattern, DialogueRoute route);
   /// GET/HEAD of the files below `folder`, never outside it; types by extension.  Prefix ends in
   /// '/'.
-  void files(std::string prefix, std::string folder);
+  /// `lines`: header lines of each of them, with CR LF; constant.
+  void files(std::string prefix, std::string folder, std::string_view lines = {});
 
-  /// What a monitor reads: still answered when there are as many connections as may be.
+  /// For monitors: still answered when the limit of connections is reached.
   void vital(const std::string& pattern);
-  /// Pictures and recordings: no web page of another origin reads them unless that very origin is
+  /// Pictures and recordings: a web page of another origin reads them only if that very origin is
   /// allowed; "*" is not enough.
   void shows_people(const std::string& pattern);
 

@@ -3,8 +3,8 @@
 #include <thread>
 #include <utility>
 
-#include "common/http/event_loop.h"
 #include "common/http/server_core.h"
+#include "common/net/event_loop.h"
 
 namespace chorus::http {
 
@@ -27,7 +27,7 @@ Result<void> Server::start() {
   impl_->port = impl_->core->accepting.port();
   impl_->core->subscribe();
   impl_->thread = std::thread([core = impl_->core] {
-    run_events(core->io, "server handler failed", [&core] { core->ensure(); });
+    net::run_events(core->io, "server handler failed", [&core] { core->ensure(); });
   });
   return {};
 }
@@ -47,14 +47,14 @@ ServerCounters Server::counters() const {
 }
 
 void Server::set_bearer_token(std::string token) {
-  net::post(impl_->core->io, [core = impl_->core.get(), token = std::move(token)]() mutable {
+  asio::post(impl_->core->io, [core = impl_->core.get(), token = std::move(token)]() mutable {
     core->responder.set_bearer_token(std::move(token));
   });
 }
 
 void Server::stop() {
   if (!impl_->thread.joinable()) return;
-  net::post(impl_->core->io, [core = impl_->core.get()] { core->begin_stop(); });
+  asio::post(impl_->core->io, [core = impl_->core.get()] { core->begin_stop(); });
   impl_->thread.join();
 }
 

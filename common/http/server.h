@@ -9,16 +9,17 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/http/answer_policy.h"
 #include "common/http/router.h"
 #include "common/time/clock.h"
 
 namespace chorus::http {
 
 struct ServerLimits {
-  /// Fewer when the system gives fewer descriptors.  Some more are let in, to be told so and to
+  /// Fewer when the system gives fewer descriptors.  Some more are accepted, to be told so and to
   /// read what is vital (Router::vital).
   std::size_t max_connections = 2000;
-  std::size_t max_per_address = 64;  ///< Not for loopback and trusted proxies.
+  std::size_t max_per_address = 64;  ///< Does not apply to loopback and trusted proxies.
   std::size_t max_long_polls = 1500;
   std::size_t max_downloads = 16;  ///< Files under way at once; each costs 256 KiB.
   std::size_t max_header_bytes = 8192;
@@ -37,19 +38,20 @@ struct ServerConfig {
   std::uint16_t port = 0;  ///< 0: any free port; ask port() after start.
   /// Once set, every writing method needs it.  Empty: only direct requests from loopback may write.
   std::string bearer_token = {};
-  /// Web pages that may read beside our own: of one origin, or "*" for all.  Empty: none.
+  /// Origin whose web pages may read, besides our own pages; "*": all.  Empty: none.
   std::string allowed_origin = {};
-  /// What this service is called, beside addresses, localhost and the name of this host.
+  /// Names of this service, beside addresses, localhost and the name of this host.
   std::vector<std::string> hosts = {};
-  /// Numeric addresses whose X-Forwarded-For is believed, for limits; never taken for this host.
+  /// Numeric addresses whose X-Forwarded-For is believed, for limits; never treated as this host.
   std::vector<std::string> trusted_proxies = {};
-  std::shared_ptr<const Clock> clock = {};  ///< Stamps Chorus-Clock and Date; null: the host's.
+  std::shared_ptr<const Clock> clock = {};  ///< Stamps answers; null: the host's.
+  AnswerPolicy policy = {};
   ServerLimits limits = {};
 
   bool operator==(const ServerConfig&) const = default;
 };
 
-/// What /metrics tells; each counter only grows.
+/// Values for /metrics; those without _open, _waiting or _limit only grow.
 struct ServerCounters {
   std::uint64_t requests = 0;
   std::uint64_t refused = 0;  ///< Malformed or over a limit.
@@ -59,12 +61,12 @@ struct ServerCounters {
   std::uint64_t long_polls_waiting = 0;
   std::uint64_t event_streams_open = 0;
   std::uint64_t websockets_open = 0;
-  std::uint64_t events_skipped = 0;  ///< Frames a slow reader of a stream did not get.
+  std::uint64_t events_skipped = 0;  ///< Events that a slow reader of a stream did not get.
   std::uint64_t bytes_sent = 0;
   std::uint64_t downloads_open = 0;
   std::uint64_t unauthorized = 0;       ///< Writing requests with a wrong token, or with none.
-  std::uint64_t closed_for_room = 0;    ///< Idle connections that gave way to others.
-  std::uint64_t connections_limit = 0;  ///< That many at once, as far as descriptors go.
+  std::uint64_t closed_for_room = 0;    ///< Idle connections closed to make room for others.
+  std::uint64_t connections_limit = 0;  ///< The most connections at once, given the descriptors.
 };
 
 /// Owns one thread that runs all sockets.
@@ -78,7 +80,7 @@ class Server {
   [[nodiscard]] std::uint16_t port() const;
   [[nodiscard]] ServerCounters counters() const;
 
-  /// Another bearer token from the next request on; any thread, while serving or before.
+  /// Sets another bearer token, from the next request on; from any thread, before or while serving.
   void set_bearer_token(std::string token);
 
   /// Stops accepting, answers waiting long polls with 503, lets writes finish (2 s), joins.

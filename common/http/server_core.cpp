@@ -11,8 +11,8 @@ constexpr std::chrono::milliseconds kSweepInterval{250};
 constexpr std::chrono::seconds kStopTime{2};
 
 void warn_of_open_door(const ServerConfig& config) {
-  error_code failed;
-  const auto address = net::ip::make_address(config.address, failed);
+  net::error_code failed;
+  const auto address = asio::ip::make_address(config.address, failed);
   if (failed || address.is_loopback() || !config.bearer_token.empty()) return;
   log::warn("open to the network without a token",
             {{"address", config.address},
@@ -25,7 +25,7 @@ void warn_of_open_door(const ServerConfig& config) {
 ServerCore::ServerCore(ServerConfig server_config, std::shared_ptr<const Router> routes)
     : config(std::move(server_config)),
       responder(config, std::move(routes)),
-      accepting(io, "accept failed", [this](Socket socket) { welcome(std::move(socket)); }),
+      accepting(io, "accept failed", [this](net::Socket socket) { welcome(std::move(socket)); }),
       sweeping(io, kSweepInterval, [this] { sweep(); }),
       now(std::chrono::steady_clock::now()) {
   const std::size_t entries = responder.router().entries().size();
@@ -47,16 +47,16 @@ void ServerCore::ensure() {
 
 void ServerCore::sweep() {
   now = std::chrono::steady_clock::now();
-  std::vector<std::shared_ptr<Session>> expired;
+  std::vector<std::shared_ptr<Connection>> expired;
   const bool out_of_time = stopping && now >= stop_deadline;
-  for (const auto& [key, session] : sessions) {
-    if (out_of_time || session->deadline() <= now) expired.push_back(session);
+  for (const auto& [key, connection] : connections) {
+    if (out_of_time || connection->deadline() <= now) expired.push_back(connection);
   }
-  for (const auto& session : expired) {
+  for (const auto& connection : expired) {
     if (out_of_time) {
-      session->close();
+      connection->close();
     } else {
-      session->expire();
+      connection->expire();
     }
   }
 }
@@ -72,49 +72,49 @@ void ServerCore::subscribe() {
 
 void ServerCore::post_wake(std::size_t entry) {
   if (waiters[entry].load() == 0 || wake_posted[entry].exchange(true)) return;
-  net::post(io, [this, entry] { wake(entry); });
+  asio::post(io, [this, entry] { wake(entry); });
 }
 
 void ServerCore::wake(std::size_t entry) {
   wake_posted[entry].store(false);
-  std::vector<std::shared_ptr<Session>> woken;
+  std::vector<std::shared_ptr<Connection>> woken;
   woken.swap(waiting[entry]);
-  for (const auto& session : woken) session->wake();
+  for (const auto& connection : woken) connection->wake();
   waiters[entry].store(waiting[entry].size());
 }
 
-void ServerCore::wait_for(std::size_t entry, std::shared_ptr<Session> session) {
-  waiting[entry].push_back(std::move(session));
+void ServerCore::wait_for(std::size_t entry, std::shared_ptr<Connection> connection) {
+  waiting[entry].push_back(std::move(connection));
   waiters[entry].store(waiting[entry].size());
 }
 
-void ServerCore::stop_waiting(std::size_t entry, const Session* session) {
-  std::erase_if(waiting[entry], [&](const auto& w) { return w.get() == session; });
+void ServerCore::stop_waiting(std::size_t entry, const Connection* connection) {
+  std::erase_if(waiting[entry], [&](const auto& w) { return w.get() == connection; });
   waiters[entry].store(waiting[entry].size());
 }
 
-void ServerCore::forget(const Session* session) {
-  const auto peer = per_peer.find(session->peer_address());
+void ServerCore::forget(const Connection* connection) {
+  const auto peer = per_peer.find(connection->peer_address());
   if (peer != per_peer.end() && --peer->second == 0) per_peer.erase(peer);
-  sessions.erase(session);
-  counters.connections_open.store(sessions.size(), std::memory_order_relaxed);
-  if (stopping && sessions.empty()) sweeping.stop();
+  connections.erase(connection);
+  counters.connections_open.store(connections.size(), std::memory_order_relaxed);
+  if (stopping && connections.empty()) sweeping.stop();
 }
 
-void ServerCore::replace(const Session* session, std::shared_ptr<Session> by) {
-  const Session* key = by.get();
-  sessions.emplace(key, std::move(by));
-  sessions.erase(session);
+void ServerCore::replace(const Connection* connection, std::shared_ptr<Connection> by) {
+  const Connection* key = by.get();
+  connections.emplace(key, std::move(by));
+  connections.erase(connection);
 }
 
 void ServerCore::begin_stop() {
   stopping = true;
   stop_deadline = std::chrono::steady_clock::now() + kStopTime;
   accepting.stop();
-  std::vector<std::shared_ptr<Session>> all;
-  for (const auto& [key, session] : sessions) all.push_back(session);
-  for (const auto& session : all) session->stop();
-  if (sessions.empty()) sweeping.stop();
+  std::vector<std::shared_ptr<Connection>> all;
+  for (const auto& [key, connection] : connections) all.push_back(connection);
+  for (const auto& connection : all) connection->stop();
+  if (connections.empty()) sweeping.stop();
 }
 
 }  // namespace chorus::http

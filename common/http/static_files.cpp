@@ -46,7 +46,7 @@ struct FileState {
   bool operator==(const FileState&) const = default;
 };
 
-/// Nothing when it is no regular file; a FIFO would block the reader for ever.
+/// Nothing for anything but a regular file; a FIFO would block the reader forever.
 Result<FileState> state_of(const fs::path& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode))
@@ -88,6 +88,7 @@ struct StaticFiles::Impl {
     DocumentPtr document;
   };
   fs::path folder;
+  std::string_view lines;
   std::size_t max_file_bytes = 0;
   std::mutex mutex;
   std::map<std::string, Kept> kept;
@@ -109,15 +110,18 @@ struct StaticFiles::Impl {
     if (!bytes) return pass(bytes);
     DocumentOptions options;
     options.version = std::to_string(state.modified_ns) + "-" + std::to_string(state.size);
-    options.rdf_source = false;
-    return make_document(std::string(media_type_of_file(file.filename().string())),
-                         std::move(*bytes), std::move(options));
+    std::vector<Variant> variants;
+    variants.push_back({std::string(media_type_of_file(file.filename().string())),
+                        [text = std::move(*bytes)] { return text; }});
+    variants.back().lines = lines;
+    return std::make_shared<const Document>(std::move(variants), std::move(options));
   }
 };
 
-StaticFiles::StaticFiles(std::string folder, std::size_t max_file_bytes)
+StaticFiles::StaticFiles(std::string folder, std::string_view lines, std::size_t max_file_bytes)
     : impl_(std::make_unique<Impl>()) {
   impl_->folder = std::move(folder);
+  impl_->lines = lines;
   impl_->max_file_bytes = max_file_bytes;
 }
 

@@ -1,4 +1,4 @@
-// A folder of files as resources: never outside of it, types by extension, bounded size.
+// A folder of files as resources: never anything outside it, types by extension, bounded size.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,9 @@ namespace chorus::http {
 /// Reads files on request and keeps the documents until mtime or size change.  Thread-safe.
 class StaticFiles {
  public:
-  explicit StaticFiles(std::string folder, std::size_t max_file_bytes = 16u << 20);
+  /// `lines`: header lines of every file's answer, each with CR LF; constant.
+  explicit StaticFiles(std::string folder, std::string_view lines = {},
+                       std::size_t max_file_bytes = 16u << 20);
   ~StaticFiles();
 
   /// `path` is decoded and relative; "" and "sub/" mean index.html.  NotFound for anything that is

@@ -1,9 +1,6 @@
 // Small readers of header text: ASCII only, no locale, no allocation.
 #pragma once
 
-#include <charconv>
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -53,14 +50,6 @@ namespace chorus::http {
   const std::string_view element = trimmed(text.substr(0, end));
   text.remove_prefix(end < text.size() ? end + 1 : text.size());
   return element;
-}
-
-/// Digits only, no sign, no overflow.
-[[nodiscard]] inline std::optional<std::uint64_t> parse_digits(std::string_view text) noexcept {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
 }
 
 }  // namespace chorus::http

@@ -7,13 +7,13 @@ namespace {
 
 constexpr std::chrono::seconds kPerTry{1};
 constexpr int kAtOnce = 10;
-constexpr std::size_t kMostAddresses = 4096;
+constexpr std::size_t kMaxAddresses = 4096;
 const std::string kShared = "others";
 
 }  // namespace
 
 const std::string& TokenTries::account(const std::string& address) const {
-  return forgiven_.contains(address) || forgiven_.size() < kMostAddresses ? address : kShared;
+  return forgiven_.contains(address) || forgiven_.size() < kMaxAddresses ? address : kShared;
 }
 
 bool TokenTries::may_try(const std::string& address, Time now) const {

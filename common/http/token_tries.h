@@ -8,9 +8,9 @@
 
 namespace chorus::http {
 
-/// Ten wrong tokens of one address are looked at as fast as they come, then one a second.  Until
-/// that second is over the right one is not looked at either, or its answer would tell.  Addresses
-/// beyond the first few thousand share one account.
+/// Ten wrong tokens from one address are checked as fast as they come, then one a second.  During
+/// that second even the right one is not checked, or its answer would reveal it.  Addresses beyond
+/// the first few thousand share one account.
 class TokenTries {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -21,7 +21,7 @@ class TokenTries {
  private:
   [[nodiscard]] const std::string& account(const std::string& address) const;
 
-  std::map<std::string, Time> forgiven_;  ///< When an address has nothing held against it again.
+  std::map<std::string, Time> forgiven_;  ///< When an address has a clean record again.
 };
 
 }  // namespace chorus::http

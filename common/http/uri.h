@@ -12,8 +12,8 @@ namespace chorus::http {
 using Query = std::map<std::string, std::string, std::less<>>;
 
 /// Decodes a path.  Refuses broken escapes, escaped control characters, '/' and '\', and "." or
-/// ".." segments, so that a decoded path means to everyone what it means to us.  The answer points
-/// into `raw` or, when there was something to decode, into `storage`.
+/// ".." segments, so that a decoded path means the same to everyone.  The result points into `raw`
+/// or, if something was decoded, into `storage`.
 [[nodiscard]] Result<std::string_view> decode_path(std::string_view raw, std::string& storage);
 
 /// "a=1&b=%20" without '?'; a repeated key keeps the last value, a key without '=' has an empty

@@ -1,3 +1,4 @@
+#include "common/base/parse.h"
 #include "common/http/client.h"
 #include "common/http/text.h"
 
@@ -5,9 +6,9 @@ namespace chorus::http {
 namespace {
 
 Result<void> read_port(std::string_view text, std::string_view url, std::uint16_t& port) {
-  constexpr std::uint64_t kMostPort = 65535;
-  const auto number = parse_digits(text);
-  if (!number || *number == 0 || *number > kMostPort)
+  constexpr std::uint64_t kMaxPort = 65535;
+  const auto number = parse_number<std::uint64_t>(text);
+  if (!number || *number == 0 || *number > kMaxPort)
     return fail(ErrorCode::InvalidArgument, std::string(url), "a port is a number 1 to 65535");
   port = static_cast<std::uint16_t>(*number);
   return {};

@@ -73,7 +73,7 @@ Result<Eigen::Isometry3d> read_camera_from_world(const nlohmann::json& camera,
   const auto matrix = read_matrix(**rotation, 1.0 + kRotationSlack, at + ".R");
   if (!matrix) return pass(matrix);
   std::array<double, 3> t{};
-  const auto read = read_numbers(**shift, t, kMaxCoordinate, at + ".t_m");
+  const auto read = read_numbers(**shift, t, kMaxImported, at + ".t_m");
   if (!read) return pass(read);
   if (!(*matrix * matrix->transpose()).isIdentity(kRotationSlack) || matrix->determinant() < 0.0)
     return fail(ErrorCode::Malformed, at + ".R", "is not a rotation.");

@@ -19,7 +19,7 @@ struct CalibratedCamera {
 
 /// [{"camera", "width", "height", "K": 3x3, "distortion_k1k2p1p2k3": 5,
 ///   "camera_from_world": {"R": 3x3, "t_m": 3}}]: OpenCV camera axes, world z up.
-/// Refuses rotations that are none, repeated names, more than 64 cameras.
+/// Refuses matrices that are no rotations, repeated names, and more than 64 cameras.
 [[nodiscard]] Result<std::vector<CalibratedCamera>> read_cameras(const std::filesystem::path& file,
                                                                  const ImportLimits& limits = {});
 

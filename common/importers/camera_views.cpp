@@ -6,23 +6,24 @@
 #include <fmt/format.h>
 
 #include "common/importers/json_values.h"
+#include "common/layout/tables.h"
 
 namespace chorus::importers {
 namespace {
 
 constexpr BodyId kOnlyBody{1};
 
-/// Empty when nobody was found; `unfitted` counts sights that fit no body.
+/// Empty when nobody was found; `unfitted` counts detections that fit no body.
 std::vector<BodyFrame> bodies_of(const LandmarkFrame& frame, Timestamp captured,
                                  const Intrinsics& intrinsics, Lateral lateral,
                                  std::size_t& unfitted) {
-  if (!frame.sight) return {};
-  const auto landmarks = fit_landmarks(*frame.sight, intrinsics, lateral);
+  if (!frame.detected) return {};
+  const auto landmarks = fit_landmarks(*frame.detected, intrinsics, lateral);
   if (!landmarks) {
     ++unfitted;
     return {};
   }
-  return {{kOnlyBody, captured, {joints_of(*landmarks)}}};
+  return {{kOnlyBody, captured, {layout::joints_of(layout::kMediapipe, *landmarks)}}};
 }
 
 Result<Landmarks> read_truth_landmarks(const nlohmann::json& points, const std::string& at) {
@@ -32,7 +33,7 @@ Result<Landmarks> read_truth_landmarks(const nlohmann::json& points, const std::
   for (std::size_t i = 0; i < kLandmarkCount; ++i) {
     if (points[i].is_null()) continue;  // not seen by enough cameras
     std::array<double, 3> x{};
-    const auto read = read_numbers(points[i], x, kMaxCoordinate, fmt::format("{}[{}]", at, i));
+    const auto read = read_numbers(points[i], x, kMaxImported, fmt::format("{}[{}]", at, i));
     if (!read) return pass(read);
     landmarks[i] = {world_from_z_up() * Eigen::Vector3d(x[0], x[1], x[2]), JointState::Tracked};
   }
@@ -95,7 +96,7 @@ Result<std::vector<TruthFrame>> read_triangulation(const std::filesystem::path& 
     const std::string at = fmt::format("{}: frames[{}]", file.string(), i);
     const auto landmarks = read_truth_landmarks((**frames)[i], at);
     if (!landmarks) return pass(landmarks);
-    truth.push_back({i, {joints_of(*landmarks)}});
+    truth.push_back({i, {layout::joints_of(layout::kMediapipe, *landmarks)}});
   }
   return truth;
 }

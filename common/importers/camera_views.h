@@ -1,8 +1,8 @@
 // Real camera views as recordings: landmarks + calibration -> 25 joints in each camera's own space.
 //
-// The folder holds cameras.json (camera_set.h), one landmark file per camera (landmarks.h) and,
-// where there is a truth, triangulated.json.  The published extrinsics and the truth come along, in
-// our world.
+// The folder holds cameras.json (camera_set.h), one landmark file per camera (landmarks.h) and, if
+// the truth is known, triangulated.json.  The published extrinsics and the truth are imported too,
+// in our world.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@
 
 namespace chorus::importers {
 
-/// One view; frames in which nobody was found, or that fit no body, have none.
+/// One view; frames in which nobody was found, or whose landmarks fit no body, are empty.
 [[nodiscard]] Result<record::FrameRecording> read_camera_view(
     const std::filesystem::path& file, const std::vector<CalibratedCamera>& cameras,
     const ImportOptions& options = {}, Lateral lateral = Lateral::PixelRay);
@@ -24,7 +24,7 @@ namespace chorus::importers {
 struct TruthFrame {
   std::uint64_t index = 0;
   Skeleton<WorldSpace> skeleton;
-  std::uint64_t person = 1;  ///< Several of one frame stand together.
+  std::uint64_t person = 1;  ///< Frames with several people have several entries.
 };
 
 /// {"frames": [frame][33] x [x, y, z] or null}, metres, world z up -> our joints in our world.

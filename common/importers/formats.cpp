@@ -6,11 +6,12 @@
 
 #include <fmt/format.h>
 
-#include "common/importers/keraal_text.h"
-#include "common/importers/labanotation_csv.h"
+#include "common/base/median.h"
+#include "common/importers/datasets/keraal_text.h"
+#include "common/importers/datasets/labanotation_csv.h"
+#include "common/importers/datasets/ntu_skeleton.h"
+#include "common/importers/datasets/nw_ucla_json.h"
 #include "common/importers/motion_file.h"
-#include "common/importers/ntu_skeleton.h"
-#include "common/importers/nw_ucla_json.h"
 
 namespace chorus::importers {
 namespace {
@@ -103,8 +104,8 @@ Duration boot_time_of(const record::FrameRecording& recording) {
   return Duration(std::stoll(recording.notes.at(kBootTicksNote)) * kNanosecondsPerTick);
 }
 
-/// Counts of one sensor's clock: takes of one afternoon, not of hosts that were started on their
-/// own days.  Those that say nothing stay where they are.
+/// The times of one sensor's clock: takes of one afternoon, not of hosts started on different days.
+/// Files that state no times stay where they are.
 void keep_common_counter(std::vector<record::FrameRecording>& recordings) {
   constexpr Duration kOneAfternoon = std::chrono::hours(6);
   std::vector<record::FrameRecording*> counted;
@@ -144,9 +145,7 @@ Duration median_step(const std::vector<SensorFrame>& frames) {
   for (std::size_t i = 1; i < frames.size(); ++i)
     steps.push_back(frames[i].captured - frames[i - 1].captured);
   if (steps.empty()) return std::chrono::seconds(1);
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return median(std::move(steps));
 }
 
 void note_set_times(std::vector<record::FrameRecording>& recordings) {

@@ -39,18 +39,18 @@ inline constexpr std::array<FormatRow, 8> kFormats{{
 [[nodiscard]] std::optional<FileFormat> format_named(std::string_view name);
 
 struct ImportedSet {
-  std::vector<record::FrameRecording>
-      recordings;  ///< Distinct sensors, in the order of the inputs.
+  /// Distinct sensors, in the order of the inputs.
+  std::vector<record::FrameRecording> recordings;
   std::map<SensorId, Eigen::Isometry3d> world_from_sensor;  ///< Published extrinsics, if any.
   std::vector<TruthFrame> truth;                            ///< Published truth, if any.
-  std::vector<Error> empty = {};  ///< Inputs that hold nothing, left out beside others.
+  std::vector<Error> empty = {};  ///< Inputs that hold nothing and were left out.
 };
 
-/// One input is one sensor; for pose2sim one input is the folder, for c3d, bvh and mvnx one file,
-/// whose world becomes ours (motion_file.h).  Refuses sets in which two inputs
-/// would be the same sensor, or hold the same numbers.  Every recording's notes say when the set
-/// begins and how long it lasts (set_origin, set_period_ns), so that several replays loop in step.
-/// Files that count from one sensor's start keep their distance in time.
+/// Each input is one sensor; for pose2sim the one input is the folder, for c3d, bvh and mvnx one
+/// file whose world becomes ours (motion_file.h).  Refuses sets in which two inputs would be the
+/// same sensor or hold the same numbers.  Every recording's notes say when the set begins and how
+/// long it lasts (set_origin, set_period_ns), so that several replays loop in step.  Files that
+/// count from the start of one sensor keep their distance in time.
 [[nodiscard]] Result<ImportedSet> import_files(FileFormat format,
                                                const std::vector<std::filesystem::path>& inputs,
                                                const ImportOptions& options = {});

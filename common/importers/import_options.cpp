@@ -34,7 +34,7 @@ Result<FloorPlane> parse_floor(std::string_view text) {
   const LineReader at(text, "floor plane");
   const auto row = Row::split(at, text, ',', 4);
   std::array<double, 4> p{};
-  const bool readable = row && row->numbers(0, p, kMaxCoordinate);
+  const bool readable = row && row->numbers(0, p, kMaxImported);
   if (!readable)
     return fail(ErrorCode::InvalidArgument, "floor plane",
                 "must be four numbers a,b,c,d of the plane a x + b y + c z + d = 0 in sensor space "

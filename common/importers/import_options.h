@@ -1,5 +1,5 @@
-// What every importer is told besides the file: whose recording it is, where the floor lies, when
-// it began.
+// What every importer needs beside the file: whose recording it is, where the floor is, and when it
+// began.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,8 @@ struct ImportLimits {
 };
 
 /// Farther than this from the sensor is a unit mistake (millimetres) or noise, not a person [m].
-inline constexpr double kMaxCoordinate = 100.0;
+/// Tighter than kMaxCoordinate, because a foreign file does not say its unit.
+inline constexpr double kMaxImported = 100.0;
 
 struct ImportOptions {
   std::optional<SensorId> sensor;   ///< Default: named after the file.

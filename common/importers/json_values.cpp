@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "common/base/json.h"
 #include "common/importers/text_rows.h"
 
 namespace chorus::importers {
@@ -12,15 +13,9 @@ namespace chorus::importers {
 Result<nlohmann::json> read_json(const std::filesystem::path& file, std::uintmax_t max_bytes) {
   const auto text = read_bounded(file, max_bytes);
   if (!text) return pass(text);
-  try {
-    return nlohmann::json::parse(*text);
-  } catch (const nlohmann::json::exception& broken) {
-    // "[json.exception.parse_error.101] parse error at line 1, column 7: ..."
-    const std::string what = broken.what();
-    const auto bracket = what.find("] ");
-    return fail(ErrorCode::Malformed, file.string(),
-                bracket == std::string::npos ? what : what.substr(bracket + 2));
-  }
+  auto parsed = parse_json(*text, {.bytes = max_bytes});
+  if (!parsed) return fail(parsed.error().code, file.string(), parsed.error().message);
+  return parsed;
 }
 
 Result<const nlohmann::json*> member(const nlohmann::json& object, const char* key,

@@ -1,4 +1,4 @@
-// JSON formats: bounded reading, and numbers that are numbers.  Private to this folder's .cpp
+// For JSON formats: bounded reading, and numbers that are checked.  Private to this folder's .cpp
 // files.
 #pragma once
 

@@ -9,7 +9,7 @@ namespace chorus::importers {
 namespace {
 
 /// Nearer than this to the camera's plane a pixel ray says nothing [m].
-constexpr double kLeastDepth = 0.1;
+constexpr double kMinDepth = 0.1;
 
 cv::Matx33d camera_matrix(const Intrinsics& k) {
   return {k.fx, 0.0, k.cx, 0.0, k.fy, k.cy, 0.0, 0.0, 1.0};
@@ -20,11 +20,12 @@ struct PixelsAndBody {
   std::vector<cv::Point2d> pixel;
 };
 
-PixelsAndBody for_opencv(const LandmarkSight& sight) {
+PixelsAndBody for_opencv(const DetectedLandmarks& detected) {
   PixelsAndBody points;
   for (std::size_t i = 0; i < kLandmarkCount; ++i) {
-    points.in_body.emplace_back(sight.in_body[i].x(), sight.in_body[i].y(), sight.in_body[i].z());
-    points.pixel.emplace_back(sight.pixel[i].x(), sight.pixel[i].y());
+    points.in_body.emplace_back(detected.in_body[i].x(), detected.in_body[i].y(),
+                                detected.in_body[i].z());
+    points.pixel.emplace_back(detected.pixel[i].x(), detected.pixel[i].y());
   }
   return points;
 }
@@ -56,10 +57,11 @@ std::optional<CameraFit> fit_camera(const PixelsAndBody& points, const Intrinsic
   return fit;
 }
 
-Landmark landmark_of(const CameraFit& fit, std::size_t i, double visibility, Lateral lateral) {
+layout::Landmark landmark_of(const CameraFit& fit, std::size_t i, double visibility,
+                             Lateral lateral) {
   Eigen::Vector3d x_in_camera = fit.in_camera[i];
   const double depth = x_in_camera.z();
-  if (!x_in_camera.allFinite() || depth < kLeastDepth) return {};
+  if (!x_in_camera.allFinite() || depth < kMinDepth) return {};
   if (lateral == Lateral::PixelRay)
     x_in_camera = Eigen::Vector3d(fit.ray[i].x * depth, fit.ray[i].y * depth, depth);
   const bool tracked = visibility >= kTrackedVisibility;
@@ -68,18 +70,18 @@ Landmark landmark_of(const CameraFit& fit, std::size_t i, double visibility, Lat
 
 }  // namespace
 
-Result<Landmarks> fit_landmarks(const LandmarkSight& sight, const Intrinsics& intrinsics,
+Result<Landmarks> fit_landmarks(const DetectedLandmarks& detected, const Intrinsics& intrinsics,
                                 Lateral lateral) {
   std::optional<CameraFit> fit;
   try {
-    fit = fit_camera(for_opencv(sight), intrinsics);
+    fit = fit_camera(for_opencv(detected), intrinsics);
   } catch (const cv::Exception& refused) {
     return fail(ErrorCode::InvalidArgument, "landmarks", refused.err);
   }
   Landmarks landmarks;
   std::size_t in_front = 0;
   for (std::size_t i = 0; fit && i < kLandmarkCount; ++i) {
-    landmarks[i] = landmark_of(*fit, i, sight.visibility[i], lateral);
+    landmarks[i] = landmark_of(*fit, i, detected.visibility[i], lateral);
     in_front += landmarks[i].state != JointState::NotTracked ? 1 : 0;
   }
   if (in_front < kLandmarkCount / 2)

@@ -1,11 +1,11 @@
 // One image's landmarks as a metric body before the camera: perspective-n-point.
 //
-// The detector gives the body in metres about its own hips and, separately, each landmark's pixel.
-// The pose that projects the first onto the second puts the body before the camera; its depth is
-// then as good as the detector's guess of the person's size (decimetres), its bearing as good as
-// the pixels.  So each landmark keeps its depth from the fit and takes its lateral place from its
-// own pixel ray: lateral error is then 15-35 mm against 31-48 mm for the rigid fit
-// (tests/bench/real_bench.cpp).
+// The detector gives the body in metres about its own hips and, separately, the pixel of each
+// landmark.  The pose that projects the former onto the latter places the body before the camera;
+// its depth is as good as the detector's guess of the person's size (decimetres), its bearing as
+// good as the pixels.  So each landmark takes its depth from the fit and its lateral place from its
+// own pixel ray: the lateral error is then 15-35 mm, against 31-48 mm for the rigid fit
+// (tests/bench/accuracy/real_bench.cpp).
 #pragma once
 
 #include "common/base/result.h"
@@ -23,7 +23,7 @@ enum class Lateral {
 /// In sensor space (x to the sensor's left, y up, z into the scene).  State by kTrackedVisibility;
 /// landmarks that come out behind the camera are NotTracked.  Fails when the pixels fit no body
 /// before the camera.
-[[nodiscard]] Result<Landmarks> fit_landmarks(const LandmarkSight& sight,
+[[nodiscard]] Result<Landmarks> fit_landmarks(const DetectedLandmarks& detected,
                                               const Intrinsics& intrinsics,
                                               Lateral lateral = Lateral::PixelRay);
 

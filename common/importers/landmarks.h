@@ -1,4 +1,4 @@
-// Pose landmarks (MediaPipe Pose, 33 of them) and how they become our 25 joints.
+// Pose landmarks in files: MediaPipe Pose, 33 of them (common/layout/mediapipe.cpp).
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 #include <Eigen/Geometry>
 
 #include "common/base/duration.h"
-#include "common/body/skeleton.h"
 #include "common/importers/import_options.h"
+#include "common/layout/layout.h"
 
 namespace chorus::importers {
 
@@ -22,15 +22,15 @@ inline constexpr std::size_t kLandmarkCount = 33;  ///< 0 nose, 11/12 shoulders,
 inline constexpr double kTrackedVisibility = 0.6;
 
 /// What the detector saw in one image.
-struct LandmarkSight {
+struct DetectedLandmarks {
   std::array<Eigen::Vector2d, kLandmarkCount> pixel;
   std::array<Eigen::Vector3d, kLandmarkCount> in_body;  ///< Hip-centred, OpenCV axes [m].
   std::array<double, kLandmarkCount> visibility{};
 };
 
 struct LandmarkFrame {
-  Duration at{0};                      ///< Since the recording's start.
-  std::optional<LandmarkSight> sight;  ///< None: nobody found.
+  Duration at{0};                             ///< Since the recording's start.
+  std::optional<DetectedLandmarks> detected;  ///< None: nobody found.
 };
 
 struct LandmarkView {
@@ -43,15 +43,7 @@ struct LandmarkView {
 [[nodiscard]] Result<LandmarkView> read_landmark_view(const std::filesystem::path& file,
                                                       const ImportLimits& limits = {});
 
-/// A landmark in any metric space.
-struct Landmark {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  JointState state = JointState::NotTracked;
-};
-using Landmarks = std::array<Landmark, kLandmarkCount>;
-
-/// Each joint is a fixed weighted mean of landmarks (the table is in the .cpp) and as sure as the
-/// least sure of them.  Landmarks carry no orientation, so the joints carry none.
-[[nodiscard]] std::array<Joint, kJointCount> joints_of(const Landmarks& landmarks);
+/// In any metric space, in the order of layout::kMediapipe.
+using Landmarks = std::array<layout::Landmark, kLandmarkCount>;
 
 }  // namespace chorus::importers

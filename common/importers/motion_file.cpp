@@ -23,9 +23,9 @@ namespace {
 
 constexpr std::size_t kShownLabels = 40;
 constexpr double kNanosecondsPerSecond = 1e9;
-constexpr double kLongestSeconds = 7 * 24 * 3600.0;
+constexpr double kMaxSeconds = 7 * 24 * 3600.0;
 
-/// What the readers agree on: one motion a person, all of one length.
+/// What the readers have in common: one motion per person, all of one length.
 struct Captured {
   std::string device;
   std::vector<motion::Motion> persons;
@@ -46,7 +46,8 @@ std::optional<std::uint64_t> person_named(std::string_view name) {
   return parse_number<std::uint64_t>(name.substr(1));
 }
 
-/// The ids in the names, if all have one of their own; else 1, 2, ... in the order of the file.
+/// The ids in the names, if every name has a different one; else 1, 2, ... in the order of the
+/// file.
 std::vector<std::uint64_t> ids_of(const std::vector<motion::C3dSubject>& subjects) {
   std::vector<std::uint64_t> ids;
   for (const auto& subject : subjects) {
@@ -159,7 +160,7 @@ Result<MotionRecording> read_motion_file(const std::filesystem::path& file, Moti
   if (found->persons.size() > kMaxBodies)
     return fail(ErrorCode::TooLarge, file.string(), "holds more than 64 persons.");
   const motion::Motion& first = found->persons.front();
-  if (!(static_cast<double>(first.frames.size()) / first.rate_hz <= kLongestSeconds))
+  if (!(static_cast<double>(first.frames.size()) / first.rate_hz <= kMaxSeconds))
     return fail(ErrorCode::TooLarge, file.string(),
                 fmt::format("holds {} frames at {:.6g} Hz, which is more than a week.",
                             first.frames.size(), first.rate_hz));

@@ -1,4 +1,4 @@
-// What all line-by-line formats share: reading the file, naming the sensor, an empty file refused.
+// What all line-by-line formats share: reading the file, naming the sensor, refusing an empty file.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ namespace chorus::importers {
 struct TextFormat {
   std::string device;                        ///< FrameRecording::device
   std::map<std::string, std::string> notes;  ///< "origin" is added.
-  std::string unit;                          ///< What an empty file is told to hold none of.
+  std::string unit;                          ///< What an empty file holds none of, for the message.
   std::function<Result<void>(LineReader&, const ImportOptions&, record::FrameRecording&)> read;
 };
 

@@ -1,12 +1,12 @@
 #include "common/importers/text_rows.h"
 
-#include <charconv>
 #include <cmath>
 #include <system_error>
 
 #include <fmt/format.h>
 
 #include "common/base/file.h"
+#include "common/base/parse.h"
 
 namespace chorus::importers {
 namespace {
@@ -37,15 +37,6 @@ std::optional<std::string_view> cut_field(std::string_view& rest, char separator
   const auto field = rest.substr(0, rest.find(separator));
   rest.remove_prefix(field.size());
   return trimmed(field);
-}
-
-template <class Number>
-std::optional<Number> parsed(std::string_view field) {
-  Number value{};
-  const char* end = field.data() + field.size();
-  const auto [stop, failed] = std::from_chars(field.data(), end, value);
-  if (failed != std::errc{} || stop != end) return std::nullopt;
-  return value;
 }
 
 }  // namespace
@@ -99,20 +90,20 @@ Result<Row> Row::split(const LineReader& at, std::string_view line, char separat
 }
 
 Result<std::int64_t> Row::integer(std::size_t column) const {
-  const auto value = parsed<std::int64_t>(fields_[column]);
+  const auto value = parse_number<std::int64_t>(fields_[column]);
   if (!value) return wrong(column, "is not a whole number");
   return *value;
 }
 
 Result<std::uint64_t> Row::natural(std::size_t column) const {
-  const auto value = parsed<std::uint64_t>(fields_[column]);
+  const auto value = parse_number<std::uint64_t>(fields_[column]);
   if (!value) return wrong(column, "is not a whole number of 0 or more");
   return *value;
 }
 
 Result<void> Row::numbers(std::size_t first, std::span<double> out, double bound) const {
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const auto value = parsed<double>(fields_[first + i]);
+    const auto value = parse_number<double>(fields_[first + i]);
     if (!value) return wrong(first + i, "is not a number");
     if (!std::isfinite(*value)) return wrong(first + i, "is not finite");
     if (std::abs(*value) > bound)

@@ -36,11 +36,11 @@ class LineReader {
   std::size_t line_ = 0;
 };
 
-/// The fields of one row.  Separator ',' is exact but may also end the row (LabanotationSuite
-/// writes it so); ' ' stands for any run of blanks.
+/// The fields of one row.  A ',' separates exactly, but may also end the row (LabanotationSuite
+/// writes that); ' ' stands for any run of blanks.
 class Row {
  public:
-  /// Refuses a row that does not have exactly `expected` fields ("truncated" comes out here).
+  /// Refuses a row that does not have exactly `expected` fields (such as a truncated one).
   [[nodiscard]] static Result<Row> split(const LineReader& at, std::string_view line,
                                          char separator, std::size_t expected);
 

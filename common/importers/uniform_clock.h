@@ -1,4 +1,4 @@
-// Capture times for formats that count frames and keep no time.
+// Capture times for formats that count frames but store no times.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@ namespace chorus::importers {
 
 inline constexpr int kKinectHz = 30;  ///< Nominal rate of Kinect v1 and v2; real ones drop frames.
 
-/// The note that goes with such times.
+/// The note for such times.
 inline constexpr const char* kUniformTimeNote =
     "no times in the file; an exact 30 Hz is assumed, dropped frames are invisible";
 

@@ -293,8 +293,7 @@ Result<std::vector<AmcFrame>> parse_amc(std::string_view text, std::string_view 
         return lines.wrong("the frame before this line lacks " + *absent);
       }
       double number = 0;
-      if (!parse_number(lines.word(0), number) ||
-          number != static_cast<double>(frames.size() + 1)) {
+      if (!read_finite(lines.word(0), number) || number != static_cast<double>(frames.size() + 1)) {
         return lines.wrong("expected frame " + std::to_string(frames.size() + 1));
       }
       if (frames.size() >= kMaxFrames) return lines.too_large("more than 200000 frames");

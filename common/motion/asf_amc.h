@@ -1,6 +1,6 @@
 // Acclaim ASF (skeleton) and AMC (motion), as the CMU motion capture library uses them.
 //
-// A bone hangs at its parent's end; its own end is where its name's point lies.  With C the
+// A bone starts at its parent's end; its own end is the point its name stands for.  With C the
 // rotation of the bone's `axis` and R that of its channels (both about fixed axes, x first: Rz Ry
 // Rx),
 //   world_from_bone = world_from_parent * C * R * C^-1,   end = parent end + length *

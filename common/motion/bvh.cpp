@@ -117,14 +117,14 @@ Result<void> BvhReader::read_channels() {
 
 Result<void> BvhReader::read_motion() {
   double count = 0;
-  if (!lines_.next() || lines_.word(0) != "Frames:" || !parse_number(lines_.word(1), count)) {
+  if (!lines_.next() || lines_.word(0) != "Frames:" || !read_finite(lines_.word(1), count)) {
     return lines_.wrong("expected 'Frames: N'");
   }
   if (count < 0 || count > static_cast<double>(kMaxFrames)) {
     return lines_.too_large("more than 200000 frames");
   }
   if (!lines_.next() || lines_.word(0) != "Frame" || lines_.word(1) != "Time:" ||
-      !parse_number(lines_.word(2), bvh_.frame_time) || !(bvh_.frame_time > 0)) {
+      !read_finite(lines_.word(2), bvh_.frame_time) || !(bvh_.frame_time > 0)) {
     return lines_.wrong("expected 'Frame Time: SECONDS' above zero");
   }
   while (lines_.next()) {

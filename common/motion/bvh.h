@@ -2,8 +2,8 @@
 // frame.
 //
 // parent_from_joint = translate(offset or position channels) * R(first channel) * R(second) *
-// R(third), in the order the file lists the channels.  Lengths are the file's (centimetres by
-// custom); `metres_per_unit` says.
+// R(third), in the order in which the file lists the channels.  Lengths are in the file's unit
+// (usually centimetres); `metres_per_unit` converts them.
 #pragma once
 
 #include <cstdint>

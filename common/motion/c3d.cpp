@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "common/motion/text_lines.h"
+#include "common/sensor/limits.h"
 
 namespace chorus::motion {
 namespace {
@@ -172,7 +173,7 @@ Result<void> C3dReader::read_processor() {
 
 Result<void> C3dReader::read_parameters() {
   const std::size_t blocks = static_cast<std::uint8_t>(bytes_[parameters_at_ + 2]);
-  // Some writers leave the count 0; the list then ends itself.
+  // Some writers leave the count at 0; then the list ends itself.
   const std::size_t end =
       std::min(bytes_.size(), parameters_at_ + (blocks == 0 ? 255 : blocks) * kBlock);
   std::size_t at = parameters_at_ + 4;
@@ -336,7 +337,7 @@ C3dPoint C3dReader::read_point(const Layout& layout, std::size_t at) const {
   const Eigen::Vector3d position = metres * Eigen::Vector3d(xyzw.data());
   // The fourth number: camera bits in the high byte, the residual in units of the scale in the low.
   if (!(xyzw[3] >= 0 && xyzw[3] < 32768) || !position.allFinite() ||
-      position.cwiseAbs().maxCoeff() > kMaxDistance)
+      position.cwiseAbs().maxCoeff() > kMaxCoordinate)
     return point;
   point.position = position.cast<float>();
   point.residual = static_cast<float>((static_cast<int>(xyzw[3]) & 0xff) * std::abs(layout.scale) *

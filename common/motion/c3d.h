@@ -1,8 +1,8 @@
 // C3D: labelled points over time, binary (https://www.c3d.org, "The C3D File Format: User Guide").
 //
-// Blocks of 512 bytes: a header, parameters in groups, then frames of four numbers a point (x, y,
-// z, residual and camera mask), 16-bit integers times POINT:SCALE or, where that is negative,
-// floats.  Byte orders Intel, DEC (VAX floats) and MIPS are read; analog samples are stepped over.
+// Blocks of 512 bytes: a header, parameters in groups, then frames of four numbers per point (x, y,
+// z, residual and camera mask), 16-bit integers times POINT:SCALE or, if that is negative, floats.
+// Intel, DEC (VAX floats) and MIPS byte orders are read; analog samples are skipped.
 #pragma once
 
 #include <string>
@@ -27,8 +27,8 @@ struct C3d {
   std::vector<std::string> labels;  ///< One a point; "" where the file has no name for it.
   double rate_hz = 0.0;
   std::vector<std::vector<C3dPoint>> frames;
-  /// Turns the file's axes into ours (+y up), by POINT:X_SCREEN and Y_SCREEN; +z is up where the
-  /// file says nothing, as biomechanics has it.
+  /// Turns the file's axes into ours (+y up), by POINT:X_SCREEN and Y_SCREEN; +z is up when the
+  /// file does not say, as is usual in biomechanics.
   Eigen::Matrix3d world_from_file = Eigen::Matrix3d::Identity();
   std::string processor;  ///< "Intel", "DEC" or "MIPS"
 };
@@ -37,7 +37,7 @@ struct C3d {
 inline constexpr std::size_t kMaxC3dBytes = 128u << 20;
 
 /// Refuses headers and parameters that point outside the file or announce more frames than it
-/// holds; coordinates that are not finite, or farther than 10 km, count as not there.
+/// holds; coordinates that are not finite, or farther than 10 km, count as missing.
 [[nodiscard]] Result<C3d> parse_c3d(std::string_view bytes, std::string_view origin);
 
 /// One person of a C3D file.
@@ -52,8 +52,9 @@ struct C3dMotion {
 };
 
 /// Joints by label: our own 25 names, joint centres (LHJC, LKJC, ...), Plug-in Gait's segment
-/// origins (LFEP, LFEO, ...), at last means of skin markers, which count as inferred.  The table is
-/// in c3d_labels.cpp.  A file in which no subject has two joints is refused, naming its labels.
+/// origins (LFEP, LFEO, ...), and last the means of skin markers, which count as inferred.  The
+/// table is in c3d_labels.cpp.  A file in which no subject has two joints is refused, with its
+/// labels.
 [[nodiscard]] Result<C3dMotion> motion_from_c3d(const C3d& c3d);
 
 }  // namespace chorus::motion

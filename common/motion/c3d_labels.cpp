@@ -21,9 +21,9 @@ struct LabelRow {
   std::array<std::string_view, 4> labels{};  ///< Their mean; '<' stands for L or R.
 };
 
-// In order of preference; the first row of a joint whose labels are all there counts.  After our
-// own names: joint centres as OpenSim users write them, the segment origins of Plug-in Gait, then
-// skin markers of the Plug-in Gait set.
+// In order of preference: the first row of a joint whose labels are all present is used.  After our
+// own names come joint centres as OpenSim users write them, the segment origins of Plug-in Gait,
+// then skin markers of the Plug-in Gait set.
 constexpr auto kSure = JointState::Tracked;
 constexpr auto kGuess = JointState::Inferred;
 // clang-format off

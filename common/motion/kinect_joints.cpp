@@ -9,6 +9,7 @@
 #include "common/body/bones.h"
 #include "common/motion/motion.h"
 #include "common/motion/text_lines.h"
+#include "common/sensor/limits.h"
 
 namespace chorus::motion {
 namespace {
@@ -127,8 +128,8 @@ std::optional<std::size_t> find_named(const Names& names, const BvhRow& row,
 /// Kinect joint -> BVH joint; kJointCount entries, empty where the file has none.
 using Sources = std::array<std::optional<std::size_t>, kJointCount>;
 
-/// Files with our own joint names (chorus export) say themselves what is what; "HandLeft" would be
-/// a wrist in other dialects.
+/// Files with our own joint names (chorus export) are unambiguous; "HandLeft" would be a wrist in
+/// other dialects.
 std::optional<Sources> match_own_names(const Bvh& bvh) {
   Sources sources;
   for (std::size_t i = 0; i < bvh.joints.size(); ++i) {
@@ -233,7 +234,7 @@ Result<Motion> motion_from_bvh(const Bvh& bvh) {
       const auto& source = (*sources)[j];
       if (!source) continue;
       if (!(positions[*source].norm() <=
-            kMaxDistance))  // NaN too: numbers that overflow on the way
+            kMaxCoordinate))  // NaN too: numbers that overflow on the way
         return fail(ErrorCode::Malformed, "frame " + std::to_string(i + 1),
                     "a joint is farther than 10 km; is the unit of lengths right?");
       place(body, static_cast<JointId>(j), positions[*source], JointState::Tracked);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/body/bones.h"
+#include "common/body/interpolate.h"
 #include "common/geometry/rotation.h"
 
 namespace chorus::motion {
@@ -51,43 +52,14 @@ void orient_segments(Skeleton<WorldSpace>& body) {
   for (const JointId leaf : kLeaves) body[leaf].orientation = Eigen::Quaterniond(0, 0, 0, 0);
 }
 
-Skeleton<WorldSpace> between(const Skeleton<WorldSpace>& a, const Skeleton<WorldSpace>& b,
-                             double s) {
-  Skeleton<WorldSpace> body;
-  for (std::size_t i = 0; i < kJointCount; ++i) {
-    const Joint& from = a.joints[i];
-    const Joint& to = b.joints[i];
-    if (!from.seen() || !to.seen()) continue;
-    Joint& joint = body.joints[i];
-    joint.position = (1 - s) * from.position + s * to.position;
-    if (is_unit(from.orientation) && is_unit(to.orientation)) {
-      joint.orientation = lerp(from.orientation, to.orientation, s);
-    }
-    joint.state = std::min(from.state, to.state);
-  }
-  return body;
-}
-
 Skeleton<WorldSpace> at(const Motion& motion, double time) {
   if (motion.frames.empty()) return {};
   const double last = static_cast<double>(motion.frames.size() - 1);
   const double place = std::isfinite(time) ? std::clamp(time * motion.rate_hz, 0.0, last) : 0.0;
   const auto before = static_cast<std::size_t>(place);
   const std::size_t after = std::min(before + 1, motion.frames.size() - 1);
-  return between(motion.frames[before], motion.frames[after], place - static_cast<double>(before));
-}
-
-Motion resampled(const Motion& motion, double rate_hz) {
-  Motion out;
-  out.rate_hz = rate_hz;
-  if (motion.frames.empty() || !(rate_hz > 0) || !(motion.rate_hz > 0)) return out;
-  const double duration = static_cast<double>(motion.frames.size() - 1) / motion.rate_hz;
-  const auto count = static_cast<std::size_t>(duration * rate_hz + kTiny) + 1;
-  out.frames.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    out.frames.push_back(at(motion, static_cast<double>(i) / rate_hz));
-  }
-  return out;
+  return interpolate(motion.frames[before], motion.frames[after],
+                     place - static_cast<double>(before));
 }
 
 }  // namespace chorus::motion

@@ -29,22 +29,15 @@ inline constexpr double kCmuRateHz = 120.0;
                                              const std::vector<AmcFrame>& frames,
                                              double rate_hz = kCmuRateHz);
 
-/// Knows the joint names of the usual BVH dialects, and our own 25, which count when there is a
-/// SpineBase.  A joint the file has no counterpart for is not tracked or, in other dialects than
-/// ours, inferred from its neighbours; there a file without hips, knees, shoulders, elbows or a
-/// neck is refused.
+/// Knows the joint names of the usual BVH dialects, and our own 25 names, used when there is a
+/// SpineBase.  A joint without a counterpart in the file is not tracked or, in dialects other than
+/// ours, inferred from its neighbours; those files are refused without hips, knees, shoulders,
+/// elbows or a neck.
 [[nodiscard]] Result<Motion> motion_from_bvh(const Bvh& bvh);
 
 /// The skeleton at `time` [s] after the first frame: positions linear, orientations sign-aligned
-/// LERP; held at both ends.  A motion without frames gives a skeleton that is not tracked.
+/// LERP; held at both ends.  For a motion without frames nothing is tracked.
 [[nodiscard]] Skeleton<WorldSpace> at(const Motion& motion, double time);
-
-/// The same motion at another rate, first frame to last.
-[[nodiscard]] Motion resampled(const Motion& motion, double rate_hz);
-
-/// Between two skeletons; s in [0, 1].  A joint is there when both ends have it.
-[[nodiscard]] Skeleton<WorldSpace> between(const Skeleton<WorldSpace>& a,
-                                           const Skeleton<WorldSpace>& b, double s);
 
 /// Gives each joint the orientation of its segment: +y along the bone that ends there, +z as near
 /// to the body's forward as that allows.  Head, hand tips, thumbs and feet stay all-zero, as Kinect

@@ -8,6 +8,7 @@
 
 #include "common/geometry/rotation.h"
 #include "common/motion/text_lines.h"
+#include "common/sensor/limits.h"
 
 namespace chorus::motion {
 namespace {
@@ -27,7 +28,7 @@ std::optional<std::vector<double>> numbers_in(std::string_view text, std::size_t
     text.remove_prefix(begin);
     const std::size_t end = std::min(text.find_first_of(kBlanks), text.size());
     double number = 0;
-    if (!parse_number(text.substr(0, end), number)) return std::nullopt;
+    if (!read_finite(text.substr(0, end), number)) return std::nullopt;
     numbers.push_back(number);
     text.remove_prefix(end);
   }
@@ -129,7 +130,7 @@ void MvnxReader::start_subject(const XML_Char** attributes) {
   if (mvnx_.rate_hz != 0)
     return stop(ErrorCode::Unsupported, "a second subject; export one person a file");
   mvnx_.subject = std::string(attribute(attributes, "label"));
-  const bool read = parse_number(attribute(attributes, "frameRate"), mvnx_.rate_hz);
+  const bool read = read_finite(attribute(attributes, "frameRate"), mvnx_.rate_hz);
   if (!read || !(mvnx_.rate_hz > 0) || mvnx_.rate_hz > kMaxRateHz)
     stop(ErrorCode::Malformed, "the subject has no frameRate above zero");
 }
@@ -142,8 +143,7 @@ void MvnxReader::start_frame(const XML_Char** attributes) {
   if (mvnx_.frames.size() >= kMaxFrames)
     return stop(ErrorCode::TooLarge, "more than 200000 frames");
   double milliseconds = 0;
-  if (parse_number(attribute(attributes, "time"), milliseconds))
-    frame_.time = milliseconds / 1000.0;
+  if (read_finite(attribute(attributes, "time"), milliseconds)) frame_.time = milliseconds / 1000.0;
 }
 
 void MvnxReader::end(std::string_view name) {
@@ -171,7 +171,7 @@ void MvnxReader::end_vectors() {
   frame_.positions.clear();
   for (std::size_t i = 0; i < numbers->size(); i += 3) {
     frame_.positions.emplace_back(numbers->data() + i);
-    if (frame_.positions.back().cwiseAbs().maxCoeff() > kMaxDistance)
+    if (frame_.positions.back().cwiseAbs().maxCoeff() > kMaxCoordinate)
       return stop(ErrorCode::Malformed, "a position is farther than 10 km");
   }
 }

@@ -45,7 +45,7 @@ struct Mvnx {
 inline constexpr std::size_t kMaxMvnxBytes = 512u << 20;
 
 /// Refuses entity declarations, elements nested deeper than 32, frames whose numbers do not match
-/// the segments, numbers that are none.  Elements it does not know are passed over.
+/// the segments, and text that is not a number.  Unknown elements are skipped.
 [[nodiscard]] Result<Mvnx> parse_mvnx(std::string_view xml, std::string_view origin);
 
 /// Which point of which segment is which joint is a table in mvnx_joints.cpp; segments' rotations

@@ -1,7 +1,8 @@
 #include "common/motion/text_lines.h"
 
-#include <charconv>
 #include <cmath>
+
+#include "common/base/parse.h"
 
 namespace chorus::motion {
 namespace {
@@ -34,15 +35,10 @@ bool TextLines::next() {
   return false;
 }
 
-bool parse_number(std::string_view word, double& out) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), out);
-  // Values below the smallest double ("7.6e-400") are as good as zero.
-  if (problem == std::errc::result_out_of_range && word.find("e-") != std::string_view::npos) {
-    out = 0.0;
-    return true;
-  }
-  return problem == std::errc() && end == word.data() + word.size() && std::isfinite(out);
+bool read_finite(std::string_view word, double& out) {
+  const auto value = parse_finite(word);
+  if (value) out = *value;
+  return value.has_value();
 }
 
 Result<std::vector<double>> TextLines::numbers(std::size_t first, std::size_t count) const {
@@ -52,7 +48,7 @@ Result<std::vector<double>> TextLines::numbers(std::size_t first, std::size_t co
   }
   std::vector<double> values(count);
   for (std::size_t i = 0; i < count; ++i) {
-    if (!parse_number(words_[first + i], values[i])) {
+    if (!read_finite(words_[first + i], values[i])) {
       return wrong("'" + std::string(words_[first + i].substr(0, 40)) + "' is not a finite number");
     }
   }

@@ -11,12 +11,11 @@
 
 namespace chorus::motion {
 
-/// No motion file we read is larger, nor has more segments or frames; hostile ones end here.
+/// Limits against hostile files; no motion file that we read comes near them.
 inline constexpr std::size_t kMaxTextBytes = 64u << 20;
 inline constexpr std::size_t kMaxSegments = 512;
 inline constexpr std::size_t kMaxFrames = 200'000;
 inline constexpr std::size_t kMaxWordsPerLine = 4096;
-inline constexpr double kMaxDistance = 1e4;  ///< [m]; beyond it a coordinate is no coordinate.
 
 class TextLines {
  public:
@@ -47,7 +46,7 @@ class TextLines {
   std::vector<std::string_view> words_;
 };
 
-/// One finite decimal number; none otherwise.
-[[nodiscard]] bool parse_number(std::string_view word, double& out);
+/// One finite decimal number; false for anything else.
+[[nodiscard]] bool read_finite(std::string_view word, double& out);
 
 }  // namespace chorus::motion

@@ -1,9 +1,9 @@
-// Looks at Turtle or N-Triples bytes before a parser does: size, nesting, and bytes no document
-// has.
+// Checks Turtle or N-Triples bytes before a parser sees them: size, nesting, and bytes that no
+// document may contain.
 //
 // Serd 0.30 reads nested brackets by recursion; 20 000 of them overflow its stack.  So depth is
-// counted here first, in one pass that knows strings, IRIs and comments and refuses whatever would
-// let the two readers disagree on where those end.
+// counted here first, in one pass that knows strings, IRIs and comments and refuses everything
+// about whose end the two readers could disagree.
 #pragma once
 
 #include <cstddef>

@@ -74,7 +74,7 @@ class Events {
     return SERD_ERR_UNKNOWN;  // SERD_FAILURE would not stop it
   }
 
-  /// Keeps the first error only: what follows is a consequence.
+  /// Keeps only the first error: the others are consequences.
   static SerdStatus on_error(void* self, const SerdError* error) {
     auto& events = *static_cast<Events*>(self);
     if (events.message_.empty()) {
@@ -176,7 +176,8 @@ struct CountedText {
   static int failed(void*) { return 0; }
 };
 
-/// Serd does not say where a statement with an undeclared prefix stood: read again, counting lines.
+/// Serd does not say where a statement with an undeclared prefix stood: reads again, counting
+/// lines.
 unsigned line_of_failure(std::string_view text, const ReadOptions& options) {
   const TripleSink ignore = [](const TripleView&) { return true; };
   Events events(options, ignore);
@@ -192,7 +193,7 @@ unsigned line_of_failure(std::string_view text, const ReadOptions& options) {
 Result<void> read_triples(std::string_view text, const ReadOptions& options,
                           const TripleSink& sink) {
   if (auto ok = check_bytes(text, options.limits); !ok) return ok;
-  // Serd 0.30 looks past the end of an empty string; of one that ends with a line it does not.
+  // Serd 0.30 reads past the end of an empty string, but not past one that ends with a line.
   const std::string terminated = std::string(text) + '\n';
   Events events(options, sink);
   const Reader reader = make_reader(options, events);

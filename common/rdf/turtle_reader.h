@@ -28,12 +28,12 @@ struct TripleView {
 
 struct ReadOptions {
   Syntax syntax = Syntax::Turtle;
-  std::string base =
-      {};  ///< Absolute IRI that relative ones are resolved against; empty: left as they are.
+  /// Absolute IRI that relative ones are resolved against; empty: left as they are.
+  std::string base = {};
   Limits limits = {};
 };
 
-/// Takes one triple; false ends the reading early, which is no error.
+/// Takes one triple; false stops the reading early, which is not an error.
 using TripleSink = std::function<bool(const TripleView&)>;
 
 /// Feeds every triple in document order.  An error names the line; triples before it have been fed.

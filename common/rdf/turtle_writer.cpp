@@ -12,7 +12,8 @@
 namespace chorus::rdf {
 namespace {
 
-/// Blank nodes deeper than this are written with labels, so that readers with a limit follow.
+/// Blank nodes nested deeper than this are written with labels, so that readers with a limit can
+/// follow.
 constexpr int kMaxInline = 16;
 
 const std::uint8_t* bytes_of(const std::string& text) {

@@ -21,9 +21,9 @@ struct WriteOptions {
   std::string base = {};  ///< N-Triples: relative IRIs are resolved against this absolute one.
 };
 
-/// Groups triples by subject in order of first appearance; Turtle writes a blank node used once in
-/// place, as "[ ]".  Refuses what no syntax can hold: a literal as subject, broken UTF-8, an IRI
-/// with a space.
+/// Groups triples by subject in order of first appearance; in Turtle a blank node that is used once
+/// is written in place, as "[ ]".  Refuses what no syntax can express: a literal as subject, broken
+/// UTF-8, an IRI with a space.
 [[nodiscard]] Result<std::string> write_graph(const Graph& graph, const WriteOptions& options);
 
 /// A Turtle document as N-Triples, one triple at a time; relative IRIs are resolved against `base`.

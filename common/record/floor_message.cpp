@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/base/json.h"
+
 namespace chorus::record {
 namespace {
 
@@ -19,7 +21,7 @@ std::string floor_json(const FloorPlane& floor) {
 }
 
 Result<FloorPlane> read_floor_json(std::string_view text) {
-  const auto json = nlohmann::json::parse(text, nullptr, false);
+  const auto json = parse_json(text).value_or(nlohmann::json());
   std::array<double, 4> v{};
   for (std::size_t i = 0; i < v.size(); ++i) {
     if (!json.is_object() || !json.contains(kKeys[i]) || !json[kKeys[i]].is_number()) {

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "common/base/parse.h"
+#include "common/record/cell_reader.h"
 #include "common/record/floor_message.h"
 #include "common/record/frame_schema.h"
-#include "common/record/session_reader.h"
 #include "common/resource/frame_resource.h"
 
 namespace chorus::record {
@@ -22,7 +22,7 @@ constexpr std::string_view kFrameTopic = "/frame";
 constexpr std::string_view kFloorTopic = "/floor-plane";
 constexpr std::string_view kNotePrefix = "note.";
 constexpr std::array<const char*, 5> kDistortion{"k1", "k2", "p1", "p2", "k3"};
-constexpr int kLargestImage = 1 << 20;  // [pixels per side]
+constexpr int kMaxImage = 1 << 20;  // [pixels per side]
 
 std::string text_of(double value) {
   std::array<char, 32> buffer{};
@@ -50,7 +50,7 @@ std::optional<Intrinsics> intrinsics_of(const Strings& values) {
   const auto cx = number_at(values, "cx");
   const auto cy = number_at(values, "cy");
   if (!width || !height || !fx || !fy || !cx || !cy) return std::nullopt;
-  if (*width < 1 || *width > kLargestImage || *height < 1 || *height > kLargestImage) {
+  if (*width < 1 || *width > kMaxImage || *height < 1 || *height > kMaxImage) {
     return std::nullopt;
   }
   Intrinsics camera{static_cast<int>(*width), static_cast<int>(*height), *fx, *fy, *cx, *cy, {}};
@@ -176,16 +176,16 @@ Result<void> write_frame_recording(const std::filesystem::path& path,
 
 Result<FrameRecording> read_frame_recording(const std::filesystem::path& path,
                                             const ReadLimits& limits, const SensorId& which) {
-  auto session = read_session(path, {limits, which, false, true});
-  if (!session) return pass(session);
-  auto& sensors = session->sensors;
-  const bool any = which.str().empty() || session->cell.empty();
+  auto cell = read_cell(path, {limits, which, false, true});
+  if (!cell) return pass(cell);
+  auto& sensors = cell->sensors;
+  const bool any = which.str().empty() || cell->cell.empty();
   for (FrameRecording& one : sensors) {
     // A recording of one sensor may be played under any name.
     if (one.sensor == which || (any && sensors.size() == 1)) return std::move(one);
   }
   std::string there;
-  for (const SensorId& sensor : session->cell) there += (there.empty() ? "" : ", ") + sensor.str();
+  for (const SensorId& sensor : cell->cell) there += (there.empty() ? "" : ", ") + sensor.str();
   return fail(ErrorCode::NotFound, path.string(),
               there.empty() ? "it holds no frames of a sensor"
                             : "it holds the sensors " + there + "; name one of them, not \"" +

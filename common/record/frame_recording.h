@@ -14,24 +14,24 @@
 
 namespace chorus::record {
 
-/// Everything about one sensor's stay, in capture order.
+/// Everything about one sensor's part of a recording, in capture order.
 struct FrameRecording {
   SensorId sensor;
   std::string device;  ///< "Kinect v2 (LabanotationSuite csv)", "MediaPipe Pose", ...
   std::optional<Intrinsics> intrinsics;
   std::optional<FloorPlane> floor;
-  std::map<std::string, std::string>
-      notes;  ///< Origin, licence, conversions made; "damage.1": lost parts.
+  /// Origin, licence, conversions made; "damage.1": lost parts.
+  std::map<std::string, std::string> notes;
   std::vector<SensorFrame> frames;
 };
 
-/// Replaces `path` only when the whole file is written.  A frame without a floor plane of its own
-/// keeps the one before it (the recording's, at first).
+/// Replaces `path` only when the whole file has been written.  A frame without a floor plane of its
+/// own keeps the previous one (at first the recording's).
 [[nodiscard]] Result<void> write_frame_recording(const std::filesystem::path& path,
                                                  const FrameRecording& recording);
 
-/// The one sensor of a recording (a file, or a folder of them); `which` of several.  Refuses frames
-/// that go back in time or repeat a capture time, saying where.
+/// The one sensor of a recording (a file, or a folder of files); `which` selects among several.
+/// Refuses frames that go back in time or repeat a capture time, and says where.
 [[nodiscard]] Result<FrameRecording> read_frame_recording(const std::filesystem::path& path,
                                                           const ReadLimits& limits = {},
                                                           const SensorId& which = {});

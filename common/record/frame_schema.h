@@ -1,4 +1,4 @@
-// The JSON Schemas that stand in every recording, so that its messages explain themselves.
+// The JSON Schemas stored in every recording, so that its messages explain themselves.
 #pragma once
 
 #include <string_view>

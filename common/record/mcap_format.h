@@ -52,8 +52,8 @@ class ByteWriter {
 /// Opcode, length, content.
 [[nodiscard]] std::string record(Op op, std::string_view content);
 
-/// Takes fields off a byte range.  Running over the end yields zeros and empties and ok() == false,
-/// so that a whole record is read first and judged once.
+/// Takes fields off a byte range.  Running over the end yields zeros and empty texts and makes ok()
+/// false, so that a whole record is read first and checked once.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : rest_(bytes) {}

@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How long a message may wait in an open chunk when nothing follows it, and how often space,
-/// index and duration are looked at.
+/// How long a message may wait in an open chunk when nothing follows it, and how often space, index
+/// and duration are checked.
 constexpr auto kRest = std::chrono::seconds(1);
 /// Events are taken in batches: waking up for each would cost more than encoding it.
 constexpr auto kBatch = std::chrono::milliseconds(100);
@@ -89,8 +89,8 @@ struct Recorder::Impl {
   [[nodiscard]] bool rotates() const { return options.file.empty(); }
 
   const RecorderOptions options;
-  // The recorder's thread alone:
-  std::optional<SessionWriter> writer;
+  // Used by the recorder's thread only:
+  std::optional<CellWriter> writer;
   std::optional<PlacesChanged> places;  ///< Each file begins with them.
   Timestamp file_started;
   bool index_lost = false;
@@ -139,10 +139,10 @@ Result<void> Recorder::Impl::next_file() {
   const std::size_t part = report.files.size() + 1;
   const fs::path path =
       rotates() ? options.folder / file_name(options, part, file_started) : options.file;
-  SessionHead head = options.head;
+  CellHead head = options.head;
   head.metadata["recording"] = options.id;
   head.metadata["part"] = std::to_string(part);
-  auto opened = SessionWriter::create(path, head);
+  auto opened = CellWriter::create(path, head);
   if (!opened) return pass(opened);
   writer.emplace(std::move(*opened));
   sync_folder(path.parent_path());
@@ -169,7 +169,7 @@ void Recorder::Impl::store_index() {
   }
   if (now.state != RecordingState::Failed) now.reason.clear();  // what ails the index heals with it
   const auto stored = write_index(options.folder, now);
-  // The recording itself is worth more than its index: it goes on.
+  // The recording is worth more than its index, so it continues.
   if (!stored && !index_lost) {
     log::error("the recording's index is not written; without it a restart forgets the recording",
                {{"name", options.name}, {"reason", to_string(stored.error())}});
@@ -208,8 +208,7 @@ Result<void> Recorder::Impl::write(const RecordedEvent& event) {
   return {};
 }
 
-/// Once a second: nothing stays in memory for longer, the disk has it for certain, and is not
-/// filled to its brim.
+/// Once a second: nothing stays in memory longer, the disk has it safely, and is not filled up.
 Result<void> Recorder::Impl::rest() {
   const auto now = std::chrono::steady_clock::now();
   if (now - rested < kRest) return {};
@@ -244,7 +243,7 @@ void Recorder::Impl::run() {
   finish(how);
 }
 
-/// A service learns of it here; who writes one file asks for the report.
+/// A service learns of it here; whoever writes a single file asks for the report.
 void Recorder::Impl::tell_end() const {
   if (!rotates()) return;
   if (report.state == RecordingState::Failed)
@@ -294,7 +293,7 @@ bool Recorder::offer(RecordedEvent event) {
   {
     const std::scoped_lock lock(impl_->mutex);
     if (impl_->stopping) return false;
-    // A registration changes seldom, and the frames after it mean nothing without it.
+    // A registration changes seldom, and the frames after it are meaningless without it.
     if (impl_->queue.size() >= most && !std::holds_alternative<PlacesChanged>(event)) {
       ++impl_->report.dropped;
       return false;

@@ -1,8 +1,8 @@
 // Records what happens while others work: a bounded queue, a thread of its own, files that rotate.
 //
 // offer() never waits for the disk, the encoder or the compressor.  Drop policy "drop newest": what
-// arrives while the queue is full is not recorded and counted.  A failure of the disk ends the
-// recording, never the service; what was written stays readable.
+// arrives while the queue is full is counted but not recorded.  A disk failure ends the recording,
+// never the service; what was written stays readable.
 #pragma once
 
 #include <chrono>
@@ -12,8 +12,8 @@
 #include <string>
 #include <variant>
 
+#include "common/record/cell_writer.h"
 #include "common/record/recording_index.h"
-#include "common/record/session_writer.h"
 #include "common/time/clock.h"
 
 namespace chorus::record {
@@ -23,21 +23,22 @@ struct RecorderLimits {
   /// Likewise, unpacked: programs that read a file whole must have the memory for it.
   std::uintmax_t max_unpacked_bytes = 2ull << 30;
   Duration max_file_duration = std::chrono::minutes(10);  ///< Likewise.
-  std::uintmax_t min_free_bytes = 200ull << 20;  ///< The recording ends before it takes these.
-  std::size_t max_queue = 2048;                  ///< Seconds of ten sensors.
+  /// The recording ends before less than this is free.
+  std::uintmax_t min_free_bytes = 200ull << 20;
+  std::size_t max_queue = 2048;  ///< Some seconds of ten sensors.
 
   bool operator==(const RecorderLimits&) const = default;
 };
 
 struct RecorderOptions {
   std::string name;
-  /// Of this run, in every file of it, so that no two runs are taken for one.  Empty: made up.
+  /// Identifies this run in every file of it, so that no two runs are mixed up.  Empty: generated.
   std::string id = {};
   /// A new folder for the files and their index.json ...
   std::filesystem::path folder = {};
   /// ... or one file, which is not rotated and has no index.
   std::filesystem::path file = {};
-  SessionHead head = {};
+  CellHead head = {};
   RecorderLimits limits = {};
   Duration stop_after{0};  ///< Zero: until stopped.
   std::shared_ptr<const Clock> clock = std::make_shared<SystemClock>();
@@ -54,9 +55,9 @@ class Recorder {
   /// Any thread; false: dropped.
   bool offer(RecordedEvent event);
 
-  /// Nothing is taken any more; what is queued is still written.  Does not wait.
+  /// Accepts no more; what is queued is still written.  Does not wait.
   void ask_to_stop();
-  /// Waits until the file is closed; false when the time was too short.
+  /// Waits until the file is closed; false when that took too long.
   bool wait(std::chrono::milliseconds patience);
 
   [[nodiscard]] RecordingReport report() const;

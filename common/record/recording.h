@@ -39,8 +39,8 @@ struct Message {
 
 struct WriterOptions {
   std::size_t chunk_bytes = 1u << 20;  ///< A chunk is closed at this size or
-  Duration chunk_duration =
-      std::chrono::seconds(1);  ///< at this span of log time: what a crash can lose.
+  /// after this span of log time: what a crash can lose.
+  Duration chunk_duration = std::chrono::seconds(1);
   std::string library = "chorus";
 };
 
@@ -54,7 +54,7 @@ class RecordingWriter {
   ~RecordingWriter();  ///< close()s; use close() to learn of errors.
 
   [[nodiscard]] Result<std::uint16_t> add_channel(const Channel& channel);
-  /// `message.topic` is not looked at; the channel says it.  After an IO error every call repeats
+  /// `message.topic` is ignored; the channel has the topic.  After an IO error every call repeats
   /// it.
   [[nodiscard]] Result<void> write(std::uint16_t channel, const Message& message);
   /// A named set of strings about the whole recording ("chorus": sensor id, device, intrinsics).
@@ -62,11 +62,12 @@ class RecordingWriter {
                                             const std::map<std::string, std::string>& values);
   /// Closes the open chunk and hands it to the operating system, for whoever falls silent.
   [[nodiscard]] Result<void> flush();
-  /// Waits until the disk has what was flushed: that survives a power cut, not only a crash.
+  /// Waits until the disk has stored what was flushed, so that it survives a power cut, not only a
+  /// crash.
   [[nodiscard]] Result<void> sync();
   /// In the file, without the open chunk.
   [[nodiscard]] std::uint64_t bytes() const;
-  /// What its closed chunks hold when they are unpacked.
+  /// Unpacked size of its closed chunks.
   [[nodiscard]] std::uint64_t unpacked_bytes() const;
   /// Writes the last chunk, the summary and the footer, and waits for the disk.
   [[nodiscard]] Result<void> close();
@@ -93,9 +94,9 @@ struct Recording {
 struct ReadLimits {
   std::uintmax_t max_file_bytes = 4ull << 30;
   std::size_t max_chunk_bytes = 64u << 20;  ///< Uncompressed; zip bombs are refused.
-  std::uintmax_t max_total_bytes =
-      4ull << 30;  ///< Memory of all it holds; beyond it the file is refused.
-  /// Messages of other topics are skipped; empty: all are wanted.
+  /// Memory of all it holds; beyond it the file is refused.
+  std::uintmax_t max_total_bytes = 4ull << 30;
+  /// Only messages of these topics are read; empty: all.
   std::function<bool(std::string_view topic)> wanted = {};
 };
 

@@ -12,7 +12,7 @@ namespace chorus::record {
 [[nodiscard]] Result<std::vector<std::filesystem::path>> recording_files(
     const std::filesystem::path& path);
 
-/// By the log time each begins with, whatever they are called now; those without one come first.
+/// By the log time of their first message, whatever their names; those without messages come first.
 [[nodiscard]] std::vector<std::filesystem::path> in_log_order(
     std::vector<std::filesystem::path> files);
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/file.h"
+#include "common/base/json.h"
 
 namespace chorus::record {
 namespace {
@@ -15,8 +16,8 @@ namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 5> kStateNames{"recording", "stopping", "finished", "failed",
                                                       "interrupted"};
-constexpr std::size_t kLongestName = 64;
-constexpr std::uintmax_t kMostIndexBytes = 1u << 20;
+constexpr std::size_t kMaxName = 64;
+constexpr std::uintmax_t kMaxIndexBytes = 1u << 20;
 
 std::string text_at(const nlohmann::json& json, const char* key) {
   const auto found = json.find(key);
@@ -72,8 +73,7 @@ bool is_recording_name(std::string_view name) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
            c == '-';
   };
-  return !name.empty() && name.size() <= kLongestName &&
-         std::all_of(name.begin(), name.end(), fits);
+  return !name.empty() && name.size() <= kMaxName && std::all_of(name.begin(), name.end(), fits);
 }
 
 std::string utc_name(Timestamp t) {
@@ -104,9 +104,9 @@ Result<void> write_index(const fs::path& folder, const RecordingReport& report) 
 
 Result<RecordingReport> read_index(const fs::path& folder) {
   const fs::path path = folder / kIndexFile;
-  const auto text = read_file(path, kMostIndexBytes);
+  const auto text = read_file(path, kMaxIndexBytes);
   if (!text) return pass(text);
-  const auto json = nlohmann::json::parse(*text, nullptr, false);
+  const auto json = parse_json(*text, {.bytes = kMaxIndexBytes}).value_or(nlohmann::json());
   const bool usable = json.is_object() && time_at(json, "started");
   if (!usable) return fail(ErrorCode::Malformed, path.string(), "this is no index of a recording");
   RecordingReport report;

@@ -1,4 +1,5 @@
-// What a recording consists of: kept while it is written, and beside its files as index.json.
+// What a recording consists of: kept in memory while it is written, and beside its files as
+// index.json.
 #pragma once
 
 #include <cstdint>
@@ -49,7 +50,7 @@ inline constexpr std::string_view kIndexFile = "index.json";
 /// "20261121T073000Z": UTC to the second, a recording name.
 [[nodiscard]] std::string utc_name(Timestamp t);
 
-/// Replaces index.json at once.
+/// Replaces index.json atomically.
 [[nodiscard]] Result<void> write_index(const std::filesystem::path& folder,
                                        const RecordingReport& report);
 /// A recording that the index calls running is Interrupted.  Sizes are those of the files.

@@ -9,7 +9,7 @@ namespace {
 using mcap::ByteReader;
 using mcap::Op;
 
-constexpr std::uint64_t kLongestRun = 1U << 20;  // of messages outside of chunks
+constexpr std::uint64_t kMaxRun = 1U << 20;  // of messages outside of chunks
 
 class Scan {
  public:
@@ -25,7 +25,7 @@ class Scan {
       if (out_.definitions.bytes > limits_.max_total_bytes)
         return tl::unexpected<Error>(over_total(limits_));
     }
-    // What was cut off behind a chunk may have been a part of its index.
+    // What was cut off after a chunk may have been a part of its index.
     if (out_.truncated && indexing_) out_.pieces.back().counts.reset();
     if (out_.truncated)
       add_note(out_.notes, "the end is missing; read up to the last complete chunk");
@@ -114,7 +114,7 @@ class Scan {
     auto& pieces = out_.pieces;
     const bool follows = !pieces.empty() && pieces.back().chunk == 0 &&
                          pieces.back().offset + pieces.back().length == begin &&
-                         pieces.back().length + size <= kLongestRun;
+                         pieces.back().length + size <= kMaxRun;
     if (!follows) pieces.push_back({begin, 0, logged, logged, 0, {}});
     pieces.back().length += size;
     pieces.back().first = std::min(pieces.back().first, logged);
@@ -142,8 +142,8 @@ class Scan {
     return {};
   }
 
-  /// What follows the data section: summary records, a footer, the magic.  Only whether it is there
-  /// counts.
+  /// After the data section come summary records, a footer and the magic.  Only whether they are
+  /// there matters.
   void check_end() {
     for (auto head = peek_head(); head; head = peek_head()) {
       walk_.skip(mcap::kRecordHead + head->length);

@@ -1,8 +1,8 @@
-// Internal to the room: what stands where in a recording, found by stepping from record to record
-// without unpacking any.
+// Internal to the room: the records of a recording and their places, found by stepping from record
+// to record without unpacking.
 //
-// The index at a file's end is not used: what a crash or a bad disk leaves has none.  The message
-// indexes beside each chunk only tell which chunks need not be unpacked.
+// The index at a file's end is not used: after a crash or a disk failure there is none.  The
+// message indexes beside each chunk only tell which chunks need not be unpacked.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace chorus::record {
 
-/// A chunk, or messages in a row outside of one.
+/// A chunk, or consecutive messages outside of one.
 struct Piece {
   std::uint64_t offset = 0;  ///< Of the chunk's content, or of the first message's record.
   std::uint64_t length = 0;

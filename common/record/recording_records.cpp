@@ -29,7 +29,7 @@ std::uintmax_t size_of(const Channel& channel) {
   return sum;
 }
 
-/// Writers repeat their definitions in every chunk; only what is new takes memory.
+/// Writers repeat their definitions in every chunk; only new ones take memory.
 template <class Definition>
 void define(std::map<std::uint16_t, Definition>& known, std::uint16_t id, Definition definition,
             Definitions& into) {

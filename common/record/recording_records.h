@@ -1,4 +1,4 @@
-// Internal to the room: what single records of a recording say, read without trust.
+// Internal to the room: reads single records of a recording, trusting nothing.
 //
 // The readers return "" or what is wrong with the record.
 #pragma once
@@ -55,8 +55,8 @@ struct RawMessage {
 [[nodiscard]] std::string read_message(std::string_view content, const Definitions& known,
                                        std::optional<RawMessage>& out);
 
-/// The records in a chunk.  Refuses what claims to be larger than the limits, or packed tighter
-/// than any recording is.
+/// The records in a chunk.  Refuses chunks that claim to be larger than the limits, or that are
+/// packed tighter than any recording is.
 [[nodiscard]] Result<std::string> unpack_chunk(std::string_view content, const ReadLimits& limits);
 
 }  // namespace chorus::record

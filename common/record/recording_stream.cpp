@@ -54,7 +54,7 @@ struct RecordingStream::Impl {
 
   static Result<std::unique_ptr<Impl>> make(std::unique_ptr<ByteSource> source,
                                             const ReadLimits& limits);
-  /// Null when nothing in the piece is wanted, or nothing could be used.
+  /// Null when nothing in the piece is wanted, or nothing is usable.
   std::unique_ptr<Loaded> load(std::size_t piece);
   std::string read_records(Loaded& into, bool chunk);
   std::string read_one(const RawRecord& record, Loaded& into);
@@ -72,7 +72,7 @@ struct RecordingStream::Impl {
   std::size_t next_piece = 0;      ///< Within `order`.
   Active active;
   std::uintmax_t active_bytes = 0;
-  std::unique_ptr<Loaded> current;  ///< Its last message is the one that was given out.
+  std::unique_ptr<Loaded> current;  ///< Holds the last message that was returned.
 };
 
 Result<std::unique_ptr<RecordingStream::Impl>> RecordingStream::Impl::make(
@@ -88,7 +88,7 @@ Result<std::unique_ptr<RecordingStream::Impl>> RecordingStream::Impl::make(
   return impl;
 }
 
-/// "" or what is wrong; a chunk counts whole or not at all.
+/// "" or what is wrong; a chunk counts as a whole or not at all.
 std::string RecordingStream::Impl::read_records(Loaded& into, bool chunk) {
   mcap::ByteReader records(into.bytes);
   while (!records.rest().empty()) {
@@ -113,12 +113,12 @@ std::string RecordingStream::Impl::read_one(const RawRecord& record, Loaded& int
       return wrong;
     }
     default:
-      // Kinds of the future are skipped; zero never is one.
+      // Unknown kinds are skipped, because later versions may add some; zero is never one.
       return record.op == Op{} ? "it holds zeros where a record should be" : std::string{};
   }
 }
 
-/// Every message of the piece is of a channel that is known and not wanted.
+/// True when every message of the piece is of a known channel that is not wanted.
 bool RecordingStream::Impl::unwanted(const Piece& piece) const {
   return piece.counts && std::ranges::all_of(*piece.counts, [this](const auto& entry) {
            return outline.definitions.skipped.contains(entry.first);

@@ -18,7 +18,7 @@
 
 namespace chorus::record {
 
-/// A message that stays where it was unpacked: valid until the next call.
+/// A message, still in the memory where it was unpacked: valid until the next call.
 struct MessageView {
   std::string_view topic;
   std::uint32_t sequence = 0;
@@ -34,7 +34,7 @@ struct MessageView {
 class RecordingStream {
  public:
   /// Steps through the whole file once without unpacking it.  Of the limits, `max_total_bytes`
-  /// holds for what is in memory at one time, and `max_file_bytes` does not hold.
+  /// applies to what is in memory at one time, and `max_file_bytes` does not apply.
   [[nodiscard]] static Result<RecordingStream> open(const std::filesystem::path& path,
                                                     const ReadLimits& limits = {});
   /// The same from bytes, which must outlive it.
@@ -47,7 +47,8 @@ class RecordingStream {
   /// The next wanted message; none at the end.  TooLarge when its chunks cannot be put in order
   /// within the limit.
   [[nodiscard]] Result<std::optional<MessageView>> next();
-  /// From the beginning again, or from the first chunk that may hold something of `from` or later.
+  /// Starts again from the beginning, or from the first chunk that may hold messages from `from`
+  /// on.
   void rewind(std::optional<Timestamp> from = {});
 
   /// The first and the last message of a topic; chunks without it are not unpacked.
@@ -56,7 +57,7 @@ class RecordingStream {
   /// Messages of a topic; nothing when not every chunk says how many it holds.
   [[nodiscard]] std::optional<std::uint64_t> count(std::string_view topic) const;
 
-  /// Known so far: those that stand in chunks come with them.
+  /// What is known so far: definitions inside chunks are found when those are unpacked.
   [[nodiscard]] std::vector<Channel> channels() const;
   [[nodiscard]] const std::map<std::string, std::map<std::string, std::string>>& metadata() const;
   /// No footer, or the tail was unreadable.

@@ -139,7 +139,7 @@ Result<std::uint16_t> RecordingWriter::Impl::schema_id(const Channel& channel) {
   return id;
 }
 
-/// The chunk's message indexes, and into `offsets` where each will stand in the file.
+/// Writes the chunk's message indexes, and into `offsets` where each one will be in the file.
 std::string RecordingWriter::Impl::message_indexes(std::uint64_t start, ByteWriter& offsets) const {
   std::string bytes;
   for (const auto& [channel, entries] : chunk.index) {
@@ -207,7 +207,7 @@ Result<void> RecordingWriter::Impl::write_summary() {
     fields.u8(static_cast<std::uint8_t>(op)).u64(summary_start + before);
     offsets += mcap::record(Op::SummaryOffset, fields.u64(summary.size() - before).bytes());
   }
-  // The summary's CRC reaches into the footer: up to the field before the CRC itself.
+  // The summary's CRC covers the footer up to the field before the CRC itself.
   ByteWriter footer;
   footer.u8(static_cast<std::uint8_t>(Op::Footer)).u64(8 + 8 + 4);
   footer.u64(summary_start).u64(summary_start + summary.size());

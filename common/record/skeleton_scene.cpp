@@ -124,7 +124,7 @@ std::string time_of(Timestamp t) {
 
 bool drawable(const resource::JointResource& joint) {
   return joint.state != JointState::NotTracked && joint.position.allFinite() &&
-         joint.position.cwiseAbs().maxCoeff() <= resource::kMaxCoordinate;
+         joint.position.cwiseAbs().maxCoeff() <= kMaxCoordinate;
 }
 
 /// The points of all drawable joints and, for each bone between two of them, their numbers.

@@ -1,7 +1,7 @@
 // Skeletons as lines between joints, in messages that recording viewers draw by themselves.
 //
 // JSON of the published Foxglove schemas foxglove.SceneUpdate and foxglove.FrameTransforms. Viewers
-// have +z up: their root frame `map` is our world, +y up, laid on its back by one transform.
+// have +z up, so their root frame `map` is our world (+y up), turned by one transform.
 #pragma once
 
 #include <string>
@@ -32,8 +32,8 @@ struct NamedPlace {
   }
 };
 
-/// One entity a body, which vanishes by itself when it is not seen again.  Bones with a joint that
-/// is not tracked are left out.
+/// One entity per body, which disappears by itself when it is not seen again.  Bones with a joint
+/// that is not tracked are left out.
 [[nodiscard]] std::string scene_update(const resource::FrameResource& frame,
                                        std::string_view frame_id);
 

@@ -1,8 +1,6 @@
 // `/clock`: the service's UTC now and what the kernel knows of its clock.
 #pragma once
 
-#include <string_view>
-
 #include "common/resource/node.h"
 #include "common/time/ntp_status.h"
 
@@ -14,8 +12,5 @@ struct ClockState {
 };
 
 [[nodiscard]] Node clock_node(const ClockState& clock);
-
-/// A document without `now` is refused; an unknown NTP state reads as "not synchronised".
-[[nodiscard]] Result<ClockState> read_clock(std::string_view bytes, Format format);
 
 }  // namespace chorus::resource

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "common/base/parse.h"
+
 namespace chorus::resource {
 namespace {
 
@@ -43,14 +45,9 @@ std::optional<std::string> fixed(double value, int decimals) {
   return std::string(text.data(), static_cast<std::size_t>(size));
 }
 
-std::optional<double> parse_number(std::string_view text) noexcept {
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (code != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) {
-    return std::nullopt;
-  }
-  return value;
+std::optional<double> read_decimal(std::string_view text) noexcept {
+  const auto value = parse_signed<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 }  // namespace chorus::resource

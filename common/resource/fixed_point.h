@@ -8,7 +8,7 @@
 
 namespace chorus::resource {
 
-/// Beyond this a coordinate is absurd and the fast formatter does not take it.
+/// Beyond this a coordinate is absurd, and the fast formatter does not handle it.
 inline constexpr double kMaxFixed = 1e6;
 
 /// Longest output of write_fixed: sign, 7 digits, point, 8 decimals.
@@ -22,6 +22,6 @@ char* write_fixed(char* at, double value, int decimals) noexcept;
 [[nodiscard]] std::optional<std::string> fixed(double value, int decimals);
 
 /// Reads "-1.25", "1.5e-3"; the whole text, finite.
-[[nodiscard]] std::optional<double> parse_number(std::string_view text) noexcept;
+[[nodiscard]] std::optional<double> read_decimal(std::string_view text) noexcept;
 
 }  // namespace chorus::resource

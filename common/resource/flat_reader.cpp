@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "common/base/json.h"
 #include "common/rdf/turtle_reader.h"
 #include "common/resource/fixed_point.h"
-#include "common/resource/json_guard.h"
 #include "common/resource/terms.h"
 
 namespace chorus::resource {
@@ -71,7 +71,7 @@ Result<double> number_of(const Properties& properties, std::string_view key) {
   const auto found = properties.find(key);
   if (found == properties.end())
     return fail(ErrorCode::Malformed, "ch:" + std::string(key), "is missing");
-  const auto value = parse_number(found->second);
+  const auto value = read_decimal(found->second);
   if (!value) return fail(ErrorCode::Malformed, "ch:" + std::string(key), "is no finite number");
   return *value;
 }

@@ -10,8 +10,8 @@
 
 namespace chorus::resource {
 
-/// Our properties of the one subject of class `type` ("FloorPlane"), by name without prefix.  Only
-/// literals and our own individuals; a repeated property is refused.
+/// The properties of the one subject of class `type` ("FloorPlane"), by name without prefix.  Only
+/// literals and our own individuals are read; a repeated property is refused.
 using Properties = std::map<std::string, std::string, std::less<>>;
 [[nodiscard]] Result<Properties> read_properties(std::string_view bytes, Format format,
                                                  std::string_view type);

@@ -1,7 +1,7 @@
-// Profile "arvida": the whole ARVIDA pattern, one spatial relationship a joint (proto/README.md).
+// Profile "arvida": the whole ARVIDA pattern, one spatial relationship per joint (proto/README.md).
 //
 // Source is the tracker's space, target the joint, translation the joint's position in the source:
-// the direction is documented nowhere, this is the one a published client uses.
+// the direction is documented nowhere, so this follows a published client.
 #include <algorithm>
 #include <array>
 

@@ -1,28 +1,19 @@
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <set>
 
+#include "common/base/parse.h"
 #include "common/body/bones.h"
 #include "common/rdf/utf8.h"
-#include "common/resource/contributors.h"
 #include "common/resource/frame_facts.h"
+#include "common/sensor/limits.h"
 
 namespace chorus::resource {
 namespace {
 
 /// The two forms of one time may differ by rounding, not by more.
 constexpr Duration kTimeTolerance = std::chrono::milliseconds(1);
-
-template <class T>
-std::optional<T> parse_integer(std::string_view text) {
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-  T value = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (code != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
 
 tl::unexpected<Error> refuse(const SubjectFacts& subject, std::string_view property,
                              std::string message) {
@@ -216,14 +207,6 @@ std::optional<JointState> state_named(std::string_view name) {
   if (name == "Inferred") return JointState::Inferred;
   if (name == "NotTracked") return JointState::NotTracked;
   return std::nullopt;
-}
-
-std::optional<std::uint64_t> parse_unsigned(std::string_view text) {
-  return parse_integer<std::uint64_t>(text);
-}
-
-std::optional<std::int64_t> parse_signed(std::string_view text) {
-  return parse_integer<std::int64_t>(text);
 }
 
 std::string place_of(const SubjectFacts& subject, std::string_view property) {

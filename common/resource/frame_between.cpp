@@ -2,23 +2,14 @@
 
 #include <algorithm>
 
-#include "common/geometry/rotation.h"
+#include "common/body/interpolate.h"
 
 namespace chorus::resource {
 namespace {
 
 JointResource joint_between(const JointResource& a, const JointResource& b, double s) {
-  JointResource out;
-  if (a.measurement != b.measurement) return out;  // a point and a ray: nothing in between
-  out.state = std::min(a.state, b.state);
-  if (out.state == JointState::NotTracked) return out;
-  out.measurement = a.measurement;
-  out.position = (1.0 - s) * a.position + s * b.position;
-  if (out.measurement == Measurement::Ray) out.position.normalize();
-  out.covariance = between(a.covariance, b.covariance, s);
-  if (is_unit(a.orientation) && is_unit(b.orientation)) {
-    out.orientation = lerp(a.orientation, b.orientation, s);
-  }
+  JointResource out{interpolate(a, b, s), std::nullopt, 0};
+  if (!out.given()) return out;
   if (a.variance && b.variance) out.variance = std::max(*a.variance, *b.variance);
   out.contributors = a.contributors | b.contributors;
   return out;
@@ -29,7 +20,7 @@ JointResource joint_between(const JointResource& a, const JointResource& b, doub
 FrameResource between(const FrameResource& a, const FrameResource& b, Timestamp instant) {
   const double span = seconds(b.captured - a.captured);
   const double s = span > 0.0 ? std::clamp(seconds(instant - a.captured) / span, 0.0, 1.0) : 0.0;
-  // Contributor bits mean positions in `sensors`; they agree only while the circle is the same.
+  // Contributor bits are positions in `sensors`; they agree only while the list is the same.
   if (s == 0.0 || a.sensors != b.sensors) return a;
   FrameResource out = a;
   out.captured = instant;

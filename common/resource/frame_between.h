@@ -1,4 +1,4 @@
-// The frame at an instant for which there is none.
+// An interpolated frame for an instant without one.
 #pragma once
 
 #include "common/resource/frame_resource.h"

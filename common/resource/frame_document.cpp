@@ -6,13 +6,14 @@
 #include <utility>
 #include <vector>
 
+#include "common/resource/link_lines.h"
 #include "common/resource/node.h"
 
 namespace chorus::resource {
 namespace {
 
-/// A frame never changes, but a restarted service may use its number again: caches may keep it for
-/// about as long as a service might, not for ever.
+/// A frame never changes, but a restarted service may use its number again, so caches may keep it
+/// for about as long as a service does, not forever.
 constexpr std::string_view kImmutable = "public, max-age=60, immutable";
 constexpr std::string_view kArvida = "arvida";
 
@@ -54,7 +55,8 @@ http::DocumentPtr frame_document(FramePtr frame, const Place& place,
                         [frame, place, format] { return write_arvida(*frame, place, format); },
                         std::string(kArvida)});
   }
-  return std::make_shared<const http::Document>(std::move(variants), std::move(options));
+  return std::make_shared<const http::Document>(linked(std::move(variants), Kind::Source),
+                                                std::move(options));
 }
 
 http::DocumentPtr skeleton_document(FramePtr frame, std::uint64_t body_id, const Place& place,
@@ -64,7 +66,8 @@ http::DocumentPtr skeleton_document(FramePtr frame, std::uint64_t body_id, const
   const auto render = [frame, &found = *body, place](Format format) {
     return write_skeleton(*frame, found, format, place);
   };
-  return std::make_shared<const http::Document>(variants_of(render), std::move(options));
+  return std::make_shared<const http::Document>(linked(variants_of(render), Kind::Source),
+                                                std::move(options));
 }
 
 http::DocumentPtr skeletons_document(const FrameResource& frame, const Place& place,
@@ -77,8 +80,7 @@ http::DocumentPtr skeletons_document(const FrameResource& frame, const Place& pl
                         {"frame", Ref{place.up() + place.names + "frame"}},
                         {"sequence", static_cast<std::int64_t>(frame.sequence)},
                         {"contains", bodies}}};
-  options.container = true;
-  return document_of(container, std::move(options), place);
+  return document_of(container, std::move(options), place, Kind::Container);
 }
 
 }  // namespace chorus::resource

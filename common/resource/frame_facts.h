@@ -1,4 +1,4 @@
-// Internal to the room: what a frame document says, subject by subject, before it is believed.
+// Internal to the room: what a frame document says, subject by subject, before it is checked.
 //
 // The Turtle and the JSON reader both fill these; assemble() alone decides what is a valid frame.
 #pragma once
@@ -64,7 +64,7 @@ struct SubjectFacts {
 
 using Facts = std::vector<SubjectFacts>;
 
-/// Sets a property that a subject has once.  Saying the same twice is no contradiction.
+/// Sets a property that a subject may have only once.  Repeating the same value is allowed.
 template <class T>
 [[nodiscard]] bool set_once(std::optional<T>& property, T value) {
   if (property && *property != value) return false;
@@ -74,19 +74,18 @@ template <class T>
 
 [[nodiscard]] std::optional<SpaceKind> space_named(std::string_view name);
 [[nodiscard]] std::optional<JointState> state_named(std::string_view name);
-[[nodiscard]] std::optional<std::uint64_t> parse_unsigned(std::string_view text);
-[[nodiscard]] std::optional<std::int64_t> parse_signed(std::string_view text);
 
 /// "skeletons/7#Head ch:x": where in the document something is wrong.
 [[nodiscard]] std::string place_of(const SubjectFacts& subject, std::string_view property);
 
 [[nodiscard]] Result<FrameResource> assemble(const Facts& facts);
 
-/// The Turtle of our own template, without a parser; nullopt at the first byte that is not as we
-/// write it.
+/// Reads the Turtle of our own template without a parser; nullopt at the first byte that differs
+/// from what we write.
 [[nodiscard]] std::optional<FrameResource> read_template(std::string_view turtle);
 
-/// The same of our own JSON (not JSON-LD); whatever it accepts, read_json_frame() reads alike.
+/// The same for our own JSON (not JSON-LD); read_json_frame() reads whatever it accepts to the same
+/// frame.
 [[nodiscard]] std::optional<FrameResource> read_json_template(std::string_view json);
 
 [[nodiscard]] Result<FrameResource> read_rdf_frame(std::string_view text, Format format);

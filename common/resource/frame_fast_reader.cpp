@@ -1,8 +1,8 @@
 // Reads back the bytes that frame_turtle.cpp writes, following its template; 25 times faster than a
 // parser.
 //
-// Nothing is decided here: at the first byte that is not as expected, or value that is not plainly
-// right, the answer is nullopt and the parser reads the document from the start, with its messages.
+// Nothing is decided here: at the first unexpected byte, or value that is not plainly right, the
+// answer is nullopt and the parser reads the document from the start, with its messages.
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -19,7 +19,7 @@ constexpr std::string_view kHead =
     "@prefix ch: <https://w3id.org/chorus-tracking/ns#> .\n"
     "@prefix xsd: <http://www.w3.org/2001/XMLSchema#> .\n\n<";
 
-/// Each step returns false at a surprise; callers give up.
+/// Each step returns false at anything unexpected; callers then give up.
 class Template : TemplateText {
  public:
   using TemplateText::TemplateText;
@@ -106,7 +106,7 @@ class Template : TemplateText {
     return true;
   }
 
-  /// From behind "ch:" of the first property to before the final " .".
+  /// From after "ch:" of the first property to before the final " .".
   bool joint(JointResource& joint) {
     if (text("state ch:NotTracked")) return true;
     if (!(text("ray") ? ray(joint) : point(joint)) || !text(" ;\n  ch:")) return false;
@@ -129,7 +129,7 @@ class Template : TemplateText {
            decimal(p.z());
   }
 
-  /// From behind "ray".
+  /// From after "ray".
   bool ray(JointResource& joint) {
     auto& p = joint.position;
     joint.measurement = Measurement::Ray;
@@ -137,7 +137,7 @@ class Template : TemplateText {
            text(" ; ch:rayZ ") && decimal(p.z()) && std::abs(p.norm() - 1.0) <= kRayTolerance;
   }
 
-  /// From behind the name of the first term.
+  /// From after the name of the first term.
   bool covariance(Covariance& out) {
     std::array<double, Covariance::kTerms> upper{};
     for (std::size_t i = 0; i < upper.size(); ++i) {
@@ -168,7 +168,7 @@ std::optional<FrameResource> read_template(std::string_view turtle) {
 }
 
 Result<FrameResource> read_frame(std::string_view bytes, Format format) {
-  // The parsers' limit holds here too (proto/README.md).
+  // The parsers' limit applies here too (proto/README.md).
   constexpr std::size_t kMaxBytes = 2'000'000;
   const bool small = bytes.size() <= kMaxBytes;
   if (format == Format::Turtle && small) {

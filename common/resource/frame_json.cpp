@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "common/body/bones.h"
-#include "common/resource/contributors.h"
 #include "common/resource/frame_parts.h"
+#include "common/sensor/limits.h"
 
 namespace chorus::resource {
 namespace {
@@ -72,7 +72,7 @@ class JsonFrame {
   }
 
  private:
-  /// `living`: the document is about the body that lives on, and says what that is.
+  /// `living`: the document is about the living body, and states its type.
   void put_body_head(const BodyResource& body, bool living) {
     pen_.put("\"@id\":\"");
     put_body_name(body);
@@ -131,7 +131,7 @@ class JsonFrame {
     pen_.put("]");
   }
 
-  /// Linked, bodies and joints are named by their frame, so that documents can be put together.
+  /// In linked JSON, bodies and joints are named by their frame, so that documents can be merged.
   void put_frame_name() {
     pen_.put(names_);
     if (!linked_) return pen_.put("frame");

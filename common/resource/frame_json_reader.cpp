@@ -1,9 +1,10 @@
 // A frame from JSON or JSON-LD, in the shape of our own context only (proto/README.md, section 3).
 #include <nlohmann/json.hpp>
 
+#include "common/base/json.h"
+#include "common/base/parse.h"
 #include "common/resource/fixed_point.h"
 #include "common/resource/frame_facts.h"
-#include "common/resource/json_guard.h"
 
 namespace chorus::resource {
 namespace {
@@ -16,7 +17,7 @@ class Reading {
   Result<Facts> run(const Json& root) {
     if (!root.is_object()) return fail(ErrorCode::Malformed, {}, "a frame is a JSON object");
     const std::size_t frame = add_subject(root, "frame");
-    // Who writes it by hand may leave it out: what was asked for is a frame.
+    // People who write JSON by hand may leave it out: a frame was asked for.
     if (root.contains("@type") && root.at("@type") != "Frame")
       complain(frame, "@type", "is not \"Frame\"");
     facts_[frame].is_frame = true;
@@ -41,10 +42,10 @@ class Reading {
   }
 
   void read_common(std::size_t at, const Json& object) {
-    integer(at, object, "sequence", facts_[at].sequence, parse_unsigned);
-    integer(at, object, "bodyId", facts_[at].body_id, parse_unsigned);
-    integer(at, object, "slot", facts_[at].slot, parse_unsigned);
-    integer(at, object, "capturedNanoseconds", facts_[at].captured_ns, parse_signed);
+    integer(at, object, "sequence", facts_[at].sequence);
+    integer(at, object, "bodyId", facts_[at].body_id);
+    integer(at, object, "slot", facts_[at].slot);
+    integer(at, object, "capturedNanoseconds", facts_[at].captured_ns);
     text(at, object, "source", facts_[at].source);
     named(at, object, "space", facts_[at].space, space_named);
     named(at, object, "state", facts_[at].state, state_named);
@@ -90,14 +91,13 @@ class Reading {
   }
 
   /// A JSON number, or the same as a string, as JSON-LD and large integers have it.
-  template <class T, class Parse>
-  void integer(std::size_t at, const Json& object, std::string_view key, std::optional<T>& out,
-               Parse parse) {
+  template <class T>
+  void integer(std::size_t at, const Json& object, std::string_view key, std::optional<T>& out) {
     const auto found = object.find(key);
     if (found == object.end()) return;
     if (!found->is_number_integer() && !found->is_string())
       return complain(at, key, "is no integer");
-    out = parse(found->is_string() ? found->template get<std::string>() : found->dump());
+    out = parse_signed<T>(found->is_string() ? found->template get<std::string>() : found->dump());
     if (!out) complain(at, key, "is no integer of 64 bits, or has the wrong sign");
   }
 
@@ -108,7 +108,7 @@ class Reading {
     if (found->is_number()) {
       out = found->get<double>();
     } else if (found->is_string()) {
-      out = parse_number(found->get_ref<const std::string&>());
+      out = read_decimal(found->get_ref<const std::string&>());
     }
     if (!out) complain(at, key, "is no finite number");
   }

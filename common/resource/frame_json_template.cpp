@@ -1,5 +1,5 @@
 // Reads back the JSON that frame_json.cpp writes, following its template, as frame_fast_reader.cpp
-// does with Turtle: at the first surprise the answer is nullopt, and the parser decides.
+// does with Turtle: at anything unexpected the answer is nullopt, and the parser decides.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -83,7 +83,7 @@ class JsonTemplate : TemplateText {
     return integer(id) && (!quoted || text("\""));
   }
 
-  /// From behind the quote of the first property to behind the brace.
+  /// From after the quote of the first property to after the brace.
   bool joint(JointResource& joint) {
     if (text("state\":\"NotTracked\"}")) return true;
     if (!(text("ray") ? ray(joint) : point(joint)) || !text(",\"")) return false;
@@ -108,7 +108,7 @@ class JsonTemplate : TemplateText {
            decimal(p.z());
   }
 
-  /// From behind "ray".
+  /// Reads a ray; the text up to and including "ray" has been read.
   bool ray(JointResource& joint) {
     auto& p = joint.position;
     joint.measurement = Measurement::Ray;
@@ -116,7 +116,7 @@ class JsonTemplate : TemplateText {
            text(",\"rayZ\":") && decimal(p.z()) && std::abs(p.norm() - 1.0) <= kRayTolerance;
   }
 
-  /// From behind the name of the first term to behind the quote of what follows.
+  /// From after the name of the first term to after the quote of what follows.
   bool covariance(Covariance& out) {
     std::array<double, Covariance::kTerms> upper{};
     for (std::size_t i = 0; i < upper.size(); ++i) {

@@ -10,7 +10,7 @@ namespace {
 
 /// A quaternion this far from unit length is normalised before it is written.
 constexpr double kWrittenTolerance = 0.05;
-constexpr double kLeastNorm = 1e-6;  // below, a quaternion is "not given"
+constexpr double kMinNorm = 1e-6;  // below, a quaternion is "not given"
 constexpr double kMaxVariance = 1e4;
 
 bool plausible(const JointResource& joint) {
@@ -20,7 +20,7 @@ bool plausible(const JointResource& joint) {
   return p.cwiseAbs().maxCoeff() <= kMaxCoordinate;
 }
 
-/// Terms whose wire form stays a covariance after rounding.
+/// Terms whose wire form is still a covariance after rounding.
 bool writable(const Covariance& covariance) {
   return covariance.known() && covariance.plausible() &&
          covariance.matrix().cwiseAbs().maxCoeff() <= kMaxVariance;
@@ -36,7 +36,7 @@ WritableJoint writable(const JointResource& joint) {
   out.position = joint.position;
   if (writable(joint.covariance)) out.covariance = joint.covariance;
   const double norm = joint.orientation.norm();
-  if (std::isfinite(norm) && norm > kLeastNorm) {
+  if (std::isfinite(norm) && norm > kMinNorm) {
     out.has_orientation = true;
     out.orientation = joint.orientation;
     if (std::abs(norm - 1.0) > kWrittenTolerance) out.orientation.coeffs() /= norm;
@@ -86,7 +86,7 @@ std::string_view name_of(SpaceKind space) {
 }
 
 std::string to_ntriples(const std::string& turtle, const Place& place) {
-  // Our own text: it has no errors, and its size is no concern.
+  // Our own text: it has no errors, and its size does not matter.
   return rdf::turtle_to_ntriples(turtle, place.root + place.path, turtle.size()).value_or("");
 }
 
@@ -129,11 +129,8 @@ FrameResource to_resource(const SensorFrame& frame) {
     BodyResource& written = out.bodies.emplace_back();
     written.id = body.id.value;
     written.captured = body.captured;
-    for (std::size_t i = 0; i < kJointCount; ++i) {
-      const Joint& joint = body.skeleton.joints[i];
-      written.joints[i] = {joint.position,    joint.orientation, joint.state, std::nullopt, 0,
-                           joint.measurement, joint.covariance};
-    }
+    for (std::size_t i = 0; i < kJointCount; ++i)
+      written.joints[i] = {body.skeleton.joints[i], std::nullopt, 0};
   }
   return out;
 }
@@ -150,9 +147,8 @@ SensorFrame to_sensor_frame(const FrameResource& frame, SensorId sensor, Timesta
     seen.id = BodyId{body.id};
     seen.captured = body.captured;
     for (std::size_t i = 0; i < kJointCount; ++i) {
-      const JointResource& joint = body.joints[i];
       Joint& read = seen.skeleton.joints[i];
-      read = {joint.position, joint.orientation, joint.state, joint.measurement, joint.covariance};
+      read = body.joints[i];
       if (read.bears()) read.position.normalize();
     }
   }

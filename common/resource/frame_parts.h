@@ -23,7 +23,7 @@ inline constexpr int kRayDecimals = 6;
 inline constexpr std::array<std::string_view, Covariance::kTerms> kCovarianceNames{
     "cxx", "cxy", "cxz", "cyy", "cyz", "czz"};
 
-/// A joint as it may be written: finite, plausible, or not tracked.
+/// A joint as it may be written: finite and plausible, else not tracked.
 struct WritableJoint {
   JointState state = JointState::NotTracked;
   bool has_orientation = false;
@@ -41,7 +41,7 @@ struct WritableJoint {
 /// Every sensor's name, quoted.
 [[nodiscard]] std::vector<std::string> quoted_names(const FrameResource& frame);
 
-/// Appends without checks: need() first says how much may follow.
+/// Appends without checks: need() has reserved the room before.
 class Pen {
  public:
   explicit Pen(std::size_t expected) : text_(expected, '\0'), at_(text_.data()) {}
@@ -73,7 +73,7 @@ class Pen {
   char* at_;
 };
 
-/// dateTime text of an instant; bodies mostly share the frame's, so the last one is kept.
+/// The dateTime text of an instant; the last one is kept, because bodies mostly share the frame's.
 class TimeText {
  public:
   [[nodiscard]] std::string_view of(Timestamp t) {
@@ -92,7 +92,7 @@ class TimeText {
 [[nodiscard]] std::string_view name_of(JointState state);
 [[nodiscard]] std::string_view name_of(SpaceKind space);
 
-/// Bytes that one body takes, generously; and what a joint takes beyond its names.
+/// An upper bound of the bytes that one body takes, and what a joint takes beyond its names.
 inline constexpr std::size_t kBodyBytes = 16384;
 inline constexpr std::size_t kJointBytes = 1024;
 

@@ -3,6 +3,7 @@
 #include <functional>
 #include <unordered_map>
 
+#include "common/base/parse.h"
 #include "common/rdf/turtle_reader.h"
 #include "common/resource/fixed_point.h"
 #include "common/resource/frame_facts.h"
@@ -14,7 +15,7 @@ namespace {
 using rdf::TermKind;
 using rdf::TermView;
 
-/// Of so many things a document may speak; 64 bodies of 25 joints are 1 665.
+/// The most subjects a document may have; 64 bodies of 25 joints are 1 665.
 constexpr std::size_t kMaxSubjects = 4096;
 
 enum class Property : std::uint8_t {
@@ -91,13 +92,13 @@ bool is_integer(std::string_view datatype) {
          is_xsd(datatype, "long");
 }
 
-/// The name of one of our own individuals; empty when the term is none.
+/// The name of one of our own individuals; empty when the term is not one.
 std::string_view individual(const TermView& term) {
   if (term.kind != TermKind::Iri || !term.value.starts_with(kChorus)) return {};
   return term.value.substr(kChorus.size());
 }
 
-/// Adds to a list that is a set.
+/// Adds to a list in which each value stands once.
 template <class T>
 void add(std::vector<T>& list, T value) {
   if (std::ranges::find(list, value) == list.end()) list.push_back(std::move(value));
@@ -149,13 +150,13 @@ class Collector {
       case Property::Number:
         return store_number(facts_[at].numbers[static_cast<std::size_t>(row.number)], object);
       case Property::BodyId:
-        return store_integer(facts_[at].body_id, object, parse_unsigned);
+        return store_integer(facts_[at].body_id, object);
       case Property::Slot:
-        return store_integer(facts_[at].slot, object, parse_unsigned);
+        return store_integer(facts_[at].slot, object);
       case Property::Sequence:
-        return store_integer(facts_[at].sequence, object, parse_unsigned);
+        return store_integer(facts_[at].sequence, object);
       case Property::CapturedNanoseconds:
-        return store_integer(facts_[at].captured_ns, object, parse_signed);
+        return store_integer(facts_[at].captured_ns, object);
       case Property::Captured:
         return store_time(facts_[at].captured, object);
       case Property::Source:
@@ -180,23 +181,22 @@ class Collector {
     if (object.kind == TermKind::Literal) return "is a literal, not a resource";
     const std::size_t to = find_or_add(object);
     std::vector<std::size_t>& links = facts_[at].*list;
-    // Bounded here already, so that a long list costs nothing; assemble() names the limit.
+    // Bounded here already, so that a long list costs nothing; assemble() reports the limit.
     if (links.size() <= std::max(kMaxBodies, kJointCount)) add(links, to);
     return {};
   }
 
   static std::string_view store_number(std::optional<double>& property, const TermView& object) {
     if (object.kind != TermKind::Literal || !is_number(object.datatype)) return "is no number";
-    const auto value = parse_number(object.value);
+    const auto value = read_decimal(object.value);
     if (!value) return "is no finite number";
     return set_once(property, *value) ? std::string_view() : kTwice;
   }
 
-  template <class T, class Parse>
-  static std::string_view store_integer(std::optional<T>& property, const TermView& object,
-                                        Parse parse) {
+  template <class T>
+  static std::string_view store_integer(std::optional<T>& property, const TermView& object) {
     if (object.kind != TermKind::Literal || !is_integer(object.datatype)) return "is no integer";
-    const auto value = parse(object.value);
+    const auto value = parse_signed<T>(object.value);
     if (!value) return "is no integer of 64 bits, or has the wrong sign";
     return set_once(property, *value) ? std::string_view() : kTwice;
   }

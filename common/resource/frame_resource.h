@@ -1,7 +1,7 @@
 // `/frame`: all bodies at one instant, of a sensor or of the fusion server, as one document.
 //
-// The same value on both sides, so that a fusion server is a valid sensor for another one.  Metres,
-// Hamilton quaternions x y z w, UTC capture time.  proto/README.md is the specification.
+// The same value on both sides, so that a fusion server can serve as a sensor for another one.
+// Metres, Hamilton quaternions x y z w, UTC capture time.  proto/README.md is the specification.
 #pragma once
 
 #include <array>
@@ -15,21 +15,16 @@
 #include "common/body/skeleton.h"
 #include "common/resource/media_type.h"
 #include "common/resource/place.h"
+#include "common/sensor/limits.h"
 #include "common/sensor/sensor_frame.h"
 
 namespace chorus::resource {
 
 enum class SpaceKind { Sensor, World };
 
-struct JointResource {
-  /// Of a point [m]; of a ray the unit vector from the sensor's origin towards the joint.
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  Eigen::Quaterniond orientation = Eigen::Quaterniond(0, 0, 0, 0);  ///< All zero: not given.
-  JointState state = JointState::NotTracked;
+struct JointResource : Joint {
   std::optional<double> variance;  ///< Fused: mean variance per axis [m^2].
   std::uint64_t contributors = 0;  ///< Fused: bit i = FrameResource::sensors[i] contributed.
-  Measurement measurement = Measurement::Point;
-  Covariance covariance = {};  ///< Of `position`, in the axes of the space, where one is known.
 };
 
 struct BodyResource {
@@ -48,16 +43,12 @@ struct FrameResource {
   std::vector<BodyResource> bodies;  ///< Distinct ids, at most kMaxBodies.
 };
 
-/// Beyond this no coordinate is believed [m]; a writer treats the joint as not tracked, a reader
-/// refuses.
-inline constexpr double kMaxCoordinate = 1e4;
-
 /// How far from length 1 the direction of a ray may be.
 inline constexpr double kRayTolerance = 0.01;
 
 /// Writes the default (compact) profile.  Numbers that are not finite or absurd are never written:
-/// the joint is written as not tracked, without position.  Turtle and JSON come from templates,
-/// proven isomorphic to the Serd writer.
+/// such a joint is written as not tracked, without a position.  Turtle and JSON come from
+/// templates, which tests prove isomorphic to the Serd writer.
 [[nodiscard]] std::string write(const FrameResource& frame, Format format, const Place& place = {});
 
 /// The full ARVIDA pattern (proto/README.md, profile "arvida"), Turtle or N-Triples.

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "common/body/bones.h"
-#include "common/resource/contributors.h"
 #include "common/resource/frame_parts.h"
 #include "common/resource/terms.h"
+#include "common/sensor/limits.h"
 
 namespace chorus::resource {
 namespace {
@@ -66,7 +66,8 @@ class TurtleFrame {
     begun_ = true;
   }
 
-  /// What lives on has no place of its own: two documents about it would contradict each other.
+  /// A living body or joint has no place of its own: two documents about it would contradict each
+  /// other.
   void begin_living(const BodyResource& body) {
     pen_.need(kJointBytes + names_.size());
     pen_.put(kPrefixes);
@@ -134,7 +135,7 @@ class TurtleFrame {
     pen_.put_integer(body.id);
   }
 
-  /// A body at this instant; `ch:of` leads to the one that lives on.
+  /// A body at this instant; `ch:of` leads to the living body.
   void put_body_name(const BodyResource& body) {
     put_frame_name();
     pen_.put("#");

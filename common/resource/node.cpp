@@ -17,8 +17,8 @@ namespace {
 using rdf::Graph;
 using rdf::Term;
 
-/// Text from a config file or a peer as an IRI that can be written: what may not stand in one is
-/// escaped.
+/// Text from a config file or a peer as an IRI that can be written: characters that an IRI cannot
+/// hold are escaped.
 std::string safe_iri(std::string_view text) {
   constexpr std::string_view kNever = "<>\"{}|^`\\";
   constexpr std::string_view kHex = "0123456789ABCDEF";

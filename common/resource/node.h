@@ -1,5 +1,5 @@
-// Rare documents as a small tree that writes itself in every format: /, /clock, /registration,
-// /sensors/ ...
+// Small documents as a tree that is written in every format: /, /clock, /registration, /sensors/
+// ...
 //
 // Keys are the terms of proto/context.jsonld ("captured", "verdict"); the context maps each to its
 // IRI and datatype.  A key that is not there is written under our own namespace; undeclared_terms()
@@ -19,6 +19,7 @@
 
 #include "common/http/document.h"
 #include "common/rdf/term.h"
+#include "common/resource/link_lines.h"
 #include "common/resource/media_type.h"
 #include "common/resource/place.h"
 #include "common/time/timestamp.h"
@@ -32,7 +33,7 @@ struct Ref {
   std::string iri;
 };
 
-/// A decimal with so many fractional digits; not finite: the property is left out.
+/// A decimal with this many fractional digits; left out when it is not finite.
 struct Decimal {
   double value = 0.0;
   int digits = 4;
@@ -46,17 +47,17 @@ using Value =
 /// One subject: id "" is the document itself, "_" a blank node, else a relative or absolute IRI.
 struct Node {
   std::string id;
-  std::vector<std::string>
-      types;  ///< Terms ("Registration") or prefixed names ("ldp:BasicContainer").
+  /// Terms ("Registration") or prefixed names ("ldp:BasicContainer").
+  std::vector<std::string> types;
   std::vector<std::pair<std::string, Value>> properties;
 };
 
-/// The document as it stands at `place`.  Text is made UTF-8 where it is not.
+/// The document as it stands at `place`.  Text that is not UTF-8 is made UTF-8.
 [[nodiscard]] std::string write(const Node& node, Format format, const Place& place = {});
 
 /// The document with all four formats, rendered on demand.
 [[nodiscard]] http::DocumentPtr document_of(Node node, http::DocumentOptions options,
-                                            Place place = {});
+                                            Place place = {}, Kind kind = Kind::Source);
 
 /// Its triples; relative IRIs stay relative.
 [[nodiscard]] rdf::Graph graph_of(const Node& node);

@@ -18,8 +18,8 @@ constexpr int kIndent = 2;
 
 Json object_of(const Node& node, bool linked, std::string_view without = {});
 
-/// A value whose datatype the context does not give: plain JSON says it plainly, JSON-LD states the
-/// type.
+/// A value whose datatype the context does not define: plain JSON writes just the value, JSON-LD
+/// states the type.
 Json typed(std::string text, std::string_view datatype, const TermUse& use, bool linked) {
   const std::string type = rdf::xsd(datatype);
   if (!linked || use.type == type) return text;

@@ -6,12 +6,12 @@
 
 namespace chorus::resource {
 
-/// Bodies hold relative IRIs, so the same bytes are right behind any host name and proxy prefix.
-/// What they are relative to is the document's own path.
+/// Bodies hold IRIs relative to the document's own path, so the same bytes are right behind any
+/// host name and proxy prefix.
 struct Place {
   std::string path = {};  ///< From the service's root: "frame", "frames/42", "sensors/"; "" is `/`.
-  std::string names =
-      {};  ///< Frames: what precedes "frame" and "skeletons/7", such as "sensors/s1/".
+  /// Frames: what precedes "frame" and "skeletons/7", such as "sensors/s1/".
+  std::string names = {};
   std::string root = "http://localhost/";  ///< Absolute IRI of `/`; only N-Triples needs it.
 
   /// "" at the top, "../" one folder down: leads from the document to the root.

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/resource/contributors.h"
+#include "common/sensor/limits.h"
 
 namespace chorus::resource {
 namespace {

@@ -1,7 +1,7 @@
 // Internal to the room: steps over text that is expected byte for byte.
 //
-// What the template readers share.  Each step returns false at a surprise, and nobody goes on from
-// there: the parser reads such a document from the start.
+// Shared by the template readers.  Each step returns false at anything unexpected; the document is
+// then read by the parser from the start.
 #pragma once
 
 #include <array>

@@ -19,11 +19,11 @@ enum class Container { None, Set, List, Index };
 /// What one key means.
 struct TermUse {
   std::string iri;
-  std::string type = {};  ///< "@id", "@vocab", a datatype IRI, or empty: as the value is.
+  std::string type = {};  ///< "@id", "@vocab", a datatype IRI, or empty: the value's own type.
   Container container = Container::None;
   std::string index = {};  ///< Container::Index: IRI of the property whose value is the key.
-  bool declared =
-      true;  ///< False: not in the context; the word stands for itself in our namespace.
+  /// False: not in the context; the word stands for itself in our namespace.
+  bool declared = true;
 };
 
 /// The meaning of `key` in a node of these types (a type may give a key a meaning of its own).

@@ -24,8 +24,8 @@ struct Intrinsics {
 struct CameraImage {
   Timestamp captured;
   Intrinsics intrinsics;
-  std::string
-      media_type;  ///< "image/jpeg" (colour) or "image/png" (depth: 16 bit, millimetres, 0 = none)
+  /// "image/jpeg" (colour) or "image/png" (depth: 16 bit, millimetres, 0 = none)
+  std::string media_type;
   std::string bytes;
 };
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "common/base/result.h"
 #include "common/sensor/camera_image.h"
@@ -13,12 +14,19 @@
 
 namespace chorus {
 
+/// A resource that the service has because of its device.
+struct DeviceResource {
+  std::string path;  ///< "push"
+  std::string what;  ///< For people, half a sentence.
+};
+
 /// What the service says about its device at `/`.
 struct DeviceDescription {
   std::string kind;   ///< "simulated", "replay", "bridge", ...
   std::string label;  ///< For people: "simulated Kinect v2", "replay of cam01.mcap".
-  Intrinsics depth_camera;
+  std::optional<Intrinsics> depth_camera = Intrinsics{};  ///< None: not known.
   double nominal_rate_hz = 30.0;
+  std::vector<DeviceResource> resources = {};
 };
 
 /// One capture.  Images are encoded only on demand, so they are functions, called at most once,
@@ -39,6 +47,9 @@ class FrameSource {
   /// Delivers captures in time order from the calling thread until stopped or at its end.  An error
   /// is final; a stop or the end of a recording is success.
   [[nodiscard]] virtual Result<void> run(std::stop_token stop, const Sink& sink) = 0;
+
+  /// Why it delivers nothing just now, for people; empty when it does not know.  Any thread.
+  [[nodiscard]] virtual std::string trouble() const { return {}; }
 };
 
 }  // namespace chorus

@@ -8,6 +8,7 @@
 #include "common/base/strong_id.h"
 #include "common/body/body_frame.h"
 #include "common/geometry/plane.h"
+#include "common/sensor/limits.h"
 #include "common/time/timestamp.h"
 
 namespace chorus {
@@ -24,8 +25,5 @@ struct SensorFrame {
   std::vector<BodyFrame> bodies;
   std::optional<FloorPlane> floor;
 };
-
-/// At most this many bodies in one frame; more are refused as malformed (Kinect v2 gives six).
-inline constexpr std::size_t kMaxBodies = 64;
 
 }  // namespace chorus

@@ -3,8 +3,9 @@
 //   --config FILE   --set PATH=VALUE   --port N   --log-level L   --log-format F   --check
 //   --version   --help   and the service's own shortcuts
 //
-// Every option that sets something stands for an assignment to a key of the configuration, so file
-// and command line know the same things; the command line wins, and of it --set.
+// Every option that sets something is an assignment to a configuration key, so the file and the
+// command line know the same things.  The command line wins over the file, and --set over the other
+// options.
 #pragma once
 
 #include <optional>
@@ -15,20 +16,20 @@
 
 namespace chorus::service {
 
-inline constexpr int kExitStopped = 0;   ///< Asked to stop, and stopped; or nothing was to be run.
-inline constexpr int kExitFailed = 1;    ///< Broke down while running.
-inline constexpr int kExitMistaken = 2;  ///< Command line, configuration, or a port in use.
+inline constexpr int kExitStopped = 0;   ///< Stopped on request, or had nothing to run.
+inline constexpr int kExitFailed = 1;    ///< Failed while running.
+inline constexpr int kExitMistaken = 2;  ///< Wrong command line or configuration, or a port in use.
 
-/// An option that stands for an assignment.
+/// An option that is an assignment.
 struct Shortcut {
   std::string option;  ///< "--id"
   std::string key;     ///< "id"
   std::string help;
   bool quoted = true;        ///< Its value is a text, even when it looks like a number.
-  std::string implied = {};  ///< An assignment that goes before: device.kind="replay".
+  std::string implied = {};  ///< An assignment that is made first: device.kind="replay".
 };
 
-/// What a program says of itself.
+/// What a program says about itself.
 struct About {
   std::string name;  ///< "chorus-sensor"
   std::string description;
@@ -37,9 +38,10 @@ struct About {
 };
 
 struct CommandLine {
-  std::optional<int> exit;  ///< Set: nothing is to be run (help, or a mistake already explained).
+  /// Set: do not run (help, or a mistake that has been explained already).
+  std::optional<int> exit;
   ConfigSource source;
-  bool check_only = false;  ///< Read the configuration, say whether it is good, and leave.
+  bool check_only = false;  ///< Check the configuration and leave.
 };
 
 [[nodiscard]] CommandLine read_command_line(const About& about, int argc, const char* const* argv);

@@ -5,8 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/base/fnv.h"
 #include "common/base/log_queue.h"
 #include "common/resource/clock_resource.h"
+#include "common/resource/link_lines.h"
 #include "common/resource/node.h"
 #include "common/resource/place.h"
 #include "common/service/metrics.h"
@@ -21,26 +23,22 @@ using http::DocumentPtr;
 using http::PathParams;
 using http::Request;
 using http::Variant;
+using resource::Kind;
+using resource::linked;
 
-/// FNV-1a, 64 bit: the ETag of a text that only a new build changes.
-std::string version_of(std::string_view text) {
-  constexpr std::uint64_t kOffsetBasis = 0xcbf29ce484222325;
-  constexpr std::uint64_t kPrime = 0x100000001b3;
-  std::uint64_t hash = kOffsetBasis;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * kPrime;
-  return std::to_string(hash);
-}
+/// The ETag of a text that only a new build changes.
+std::string version_of(std::string_view text) { return std::to_string(fnv1a(text)); }
 
 /// The same text under each of these types.
 DocumentPtr fixed_document(std::vector<std::string> media_types, std::string_view text) {
   DocumentOptions options;
   options.version = version_of(text);
   options.cache_control = "public, max-age=3600";
-  options.rdf_source = false;
   std::vector<Variant> variants;
   for (std::string& type : media_types)
     variants.push_back({std::move(type), [text] { return std::string(text); }});
-  return std::make_shared<const http::Document>(std::move(variants), std::move(options));
+  return std::make_shared<const http::Document>(linked(std::move(variants), Kind::Other),
+                                                std::move(options));
 }
 
 void serve(http::Router& router, std::string path, DocumentPtr document) {
@@ -64,7 +62,6 @@ DocumentPtr clock_document(const Clock& clock) {
 Result<DocumentPtr> health_document(const Health& health, Timestamp now) {
   if (!health.ready) return fail(ErrorCode::Unavailable, "health", health.reason);
   DocumentOptions options = fleeting(now);
-  options.rdf_source = false;
   nlohmann::json status{{"status", "ok"}};
   if (!health.reason.empty()) status["warning"] = health.reason;
   const std::string json =
@@ -72,10 +69,11 @@ Result<DocumentPtr> health_document(const Health& health, Timestamp now) {
   const std::string text = health.reason.empty() ? "ok\n" : "ok, but " + health.reason + "\n";
   std::vector<Variant> variants{{"application/json", [json] { return json; }},
                                 {"text/plain", [text] { return text; }}};
-  return std::make_shared<const http::Document>(std::move(variants), std::move(options));
+  return std::make_shared<const http::Document>(linked(std::move(variants), Kind::Other),
+                                                std::move(options));
 }
 
-/// What is of the process rather than of a service.
+/// Metrics of the process rather than of a service.
 std::string process_metrics() {
   MetricsText text;
   text.counter({"chorus_log_dropped_lines_total", "Log lines dropped because nobody read them."},
@@ -85,12 +83,11 @@ std::string process_metrics() {
 
 DocumentPtr metrics_document(std::string text, Timestamp now) {
   DocumentOptions options = fleeting(now);
-  options.rdf_source = false;
-  return http::make_document("text/plain; version=0.0.4; charset=utf-8", std::move(text),
-                             std::move(options));
+  return resource::other_document("text/plain; version=0.0.4; charset=utf-8", std::move(text),
+                                  std::move(options));
 }
 
-/// VoID: where the data begins and in which words it speaks.
+/// VoID: where the data begins, and its vocabularies.
 DocumentPtr void_document() {
   const resource::Place place{".well-known/void"};
   resource::Node node{"", {"void:Dataset"}, {}};

@@ -14,14 +14,14 @@ namespace chorus::service {
 /// Health for a load balancer: 200 when ready, 503 with the reason when not.
 struct Health {
   bool ready = true;
-  std::string reason;  ///< Why not ready; when ready, what people should look at all the same.
+  std::string reason;  ///< Why not ready; when ready, a warning for people.
 };
 
 struct CommonResources {
   std::shared_ptr<const Clock> clock;  ///< Null: the host's.
   std::function<Health()> health;      ///< Empty: always ready.
-  std::function<std::string()>
-      metrics;  ///< Prometheus text (metrics.h), complete; empty: no /metrics.
+  /// Prometheus text (metrics.h), complete; empty: no /metrics.
+  std::function<std::string()> metrics;
 };
 
 void add_routes(http::Router& router, const CommonResources& options);

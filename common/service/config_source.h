@@ -1,4 +1,4 @@
-// Where a program's configuration comes from: a file, and what the command line puts over it.
+// Where a program's configuration comes from: a file, overridden by the command line.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ struct ConfigSource {
   std::vector<std::string> assignments;  ///< "path=value", in order.
 };
 
-/// Reads the file anew; what stands in it is judged by whoever reads the keys.
+/// Reads the file anew; its content is checked by whoever reads the keys.
 [[nodiscard]] Result<ConfigReader> read_config(const ConfigSource& source);
 
 }  // namespace chorus::service

@@ -18,9 +18,9 @@ class FrameResources {
  public:
   FrameResources(Serving serving, const FrameHistory& history);
 
-  /// Sequences must increase, within one run of the service.
+  /// Sequences must increase within one run of the service.
   void publish(const FramePtr& frame);
-  /// A better answer for an instant that was published: only ?at= has it.
+  /// A better answer for an instant already published: only ?at= shows it.
   void amend(FramePtr frame) { ring_.amend(std::move(frame)); }
 
   /// The router keeps using this object, which must outlive it.

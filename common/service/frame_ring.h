@@ -18,7 +18,7 @@ using resource::FramePtr;
 /// How far /frames/{seq} and ?at= reach back.
 struct FrameHistory {
   Duration span = std::chrono::seconds(3);
-  std::size_t most = 10'000;  ///< Frames, whatever their pace.
+  std::size_t most = 10'000;  ///< Frames, whatever their rate.
 
   bool operator==(const FrameHistory&) const = default;
 };
@@ -31,15 +31,14 @@ class FrameRing {
 
   void push(FramePtr frame);
 
-  /// A better answer for an instant that is here; ?at= has it from now on, /frames/{seq} never:
-  /// those do not change.
+  /// A better answer for an instant that is here: ?at= shows it from now on; /frames/{seq} never
+  /// changes.
   void amend(FramePtr frame);
   /// How often that has happened.
   [[nodiscard]] std::uint64_t amendments() const;
 
-  /// By its number as it stands in a path.  Gone when it is older than all that are kept; NotFound
-  /// when no frame has this number: not yet, or never, because it was lost or left out, or it is
-  /// none.
+  /// By the number in a path.  Gone when it is older than all that are kept; NotFound when no frame
+  /// has this number: not yet, never (it was lost or left out), or not a number.
   [[nodiscard]] Result<FramePtr> find(std::string_view sequence) const;
 
   /// The frame for an instant (xsd:dateTime or nanoseconds since the epoch as integer),

@@ -1,8 +1,8 @@
 // From settings to a running service: the part of Program that is the same for all of them.
 //
-// Settings have two parts, each compared by value (defaulted ==): `live`, what a reload takes over,
-// and `at_start`, what waits for the next start.  A reload hands the whole live part on and names
-// the changed keys of the other part, so no key can be forgotten; nobody lists them.
+// Settings have two parts, each compared by value (defaulted ==): `live`, which a reload takes
+// over, and `at_start`, which needs a restart.  A reload hands the whole live part on and names the
+// changed keys of the other part.  No key is listed by hand, so none can be forgotten.
 #pragma once
 
 #include <memory>
@@ -56,7 +56,7 @@ class HostedProgram final : public Program {
     return !(wanted.at_start == settings_.at_start);
   }
 
-  /// A key that cannot change alone counts as one that waits.
+  /// A key that cannot change alone counts as one that needs a restart.
   [[nodiscard]] std::string waiting(const std::string& wanted) const {
     return waiting_keys(started_as_, wanted, [this](const std::string& text) {
       const auto probe = ConfigReader::parse(text, "reload").and_then(read_);
@@ -66,7 +66,7 @@ class HostedProgram final : public Program {
 
   Read read_;
   Settings settings_;
-  std::string started_as_;  ///< The configuration of the start, JSON.
+  std::string started_as_;  ///< The configuration at the start, JSON.
   std::unique_ptr<Host> host_;
 };
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "common/http/admission.h"
+#include "common/net/address.h"
 
 namespace chorus::service {
 namespace {
@@ -15,21 +15,21 @@ void read_names(ConfigReader& config, http::ServerConfig& out) {
   }
   config.read("trusted_proxies", out.trusted_proxies);
   for (std::string& proxy : out.trusted_proxies) {
-    http::error_code failed;
-    const auto address = http::net::ip::make_address(proxy, failed);
+    net::error_code failed;
+    const auto address = asio::ip::make_address(proxy, failed);
     if (failed) {
       config.complain("trusted_proxies", "numeric addresses only, such as 127.0.0.1");
     } else {
-      proxy = http::unmapped(address).to_string();
+      proxy = net::unmapped(address).to_string();
     }
   }
 }
 
 void read_limits(ConfigReader& config, http::ServerLimits& out) {
-  constexpr int kMost = 60'000;
+  constexpr int kMax = 60'000;
   const auto read_count = [&](std::string_view key, std::size_t& count, int least) {
     int value = static_cast<int>(count);
-    config.read(key, value, least, kMost);
+    config.read(key, value, least, kMax);
     count = static_cast<std::size_t>(value);
   };
   read_count("max_connections", out.max_connections, 8);

@@ -1,4 +1,4 @@
-// The section "http" of a service's configuration, the same on each of them.
+// The section "http" of a configuration, the same for every service.
 #pragma once
 
 #include "common/base/config_reader.h"
@@ -6,7 +6,7 @@
 
 namespace chorus::service {
 
-/// What is absent keeps the value that `out` has: each service brings its own port.
+/// An absent key keeps the value that `out` has: each service has its own default port.
 void read_http(ConfigReader config, http::ServerConfig& out);
 
 }  // namespace chorus::service

@@ -16,7 +16,7 @@ struct LogConfig {
 /// Mistakes are reported by the reader's finish().
 void read_log(ConfigReader config, LogConfig& out);
 
-/// From now on the log is written so.
+/// Applies it to the log from now on.
 void apply(const LogConfig& config);
 
 }  // namespace chorus::service

@@ -1,6 +1,6 @@
 // What a service measures of itself, written for Prometheus (text format 0.0.4).
 //
-// Counters end in _total, names carry their unit; never a label per body or client.
+// Counters end in _total, names carry their unit; no label is ever per body or client.
 #pragma once
 
 #include <string>
@@ -29,7 +29,7 @@ class MetricsText {
   void histogram(const Metric& metric, const Histogram::Snapshot& values,
                  const Labels& labels = {});
 
-  /// Samples of one metric stand together whatever the order of the calls.
+  /// Samples of one metric stand together, whatever the order of the calls.
   [[nodiscard]] std::string text() const;
 
  private:

@@ -1,8 +1,8 @@
 // The shell around every service: from its command line to its exit code.
 //
-// Signals are taken one by one by the main thread (sigwait), so that no handler interrupts anybody:
-// SIGTERM and SIGINT stop, SIGHUP reads the configuration again.  A configuration that is wrong
-// then changes nothing.
+// Signals are taken one by one by the main thread (sigwait), so that no handler interrupts other
+// code: SIGTERM and SIGINT stop, SIGHUP reads the configuration again.  A wrong configuration then
+// changes nothing.
 #pragma once
 
 #include "common/base/result.h"

@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/base/json.h"
 #include "common/record/recording_index.h"
-#include "common/resource/json_guard.h"
 
 namespace chorus::service {
 namespace {
@@ -44,8 +44,8 @@ Result<RecordingRequest> parse_recording_request(std::string_view body, bool has
   RecordingRequest request;
   request.fused = has_fused;
   if (body.find_first_not_of(" \t\r\n") == std::string_view::npos) return request;
-  constexpr resource::JsonLimits kLimits{4096, 4};
-  const auto json = resource::parse_json(body, kLimits);
+  constexpr JsonLimits kLimits{4096, 4};
+  const auto json = parse_json(body, kLimits);
   if (!json || !json->is_object()) {
     const std::string reason = json ? "" : "; " + to_string(json.error());
     return wrong("send a JSON object, such as {\"seconds\": 60}" + reason);

@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <filesystem>
 #include <iterator>
 #include <system_error>
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/base/parse.h"
+#include "common/http/status.h"
+#include "common/resource/link_lines.h"
 
 namespace chorus::service {
 namespace {
@@ -21,23 +23,20 @@ using resource::Ref;
 
 constexpr std::string_view kWhere = "recordings";
 constexpr std::string_view kSuffix = ".mcap";
-constexpr std::size_t kMostListed = 10'000;
-constexpr int kOk = 200;
-constexpr int kCreated = 201;
-constexpr int kAccepted = 202;
+constexpr std::size_t kMaxListed = 10'000;
 
 bool is_running(const RecordingReport& report) {
   return report.state == RecordingState::Recording || report.state == RecordingState::Stopping;
 }
 
-/// What is in the folder from earlier runs.
+/// The recordings of earlier runs in the folder.
 std::map<std::string, RecordingReport> recordings_in(const fs::path& folder) {
   std::map<std::string, RecordingReport> found;
   std::error_code error;
   if (folder.empty()) return found;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().filename().string();
-    if (found.size() >= kMostListed || !record::is_recording_name(name)) continue;
+    if (found.size() >= kMaxListed || !record::is_recording_name(name)) continue;
     if (auto report = record::read_index(it->path())) found.emplace(name, std::move(*report));
   }
   return found;
@@ -49,7 +48,7 @@ std::string version_of(const RecordingReport& report) {
          std::to_string(report.bytes());
 }
 
-/// Why a recording did not start, without where this host keeps its files.
+/// Why a recording did not start, without the paths of this host.
 tl::unexpected<Error> refused(const Error& error, const std::string& name) {
   const std::string where = std::string(kWhere) + "/" + name;
   if (error.code == ErrorCode::Conflict)
@@ -61,7 +60,7 @@ tl::unexpected<Error> refused(const Error& error, const std::string& name) {
   return fail(error.code, where, error.message);
 }
 
-/// The part of the list that a request asks for.
+/// The part of the list that a request wants.
 struct Page {
   std::string after;  ///< Names up to this one are left out.
   std::size_t limit = 100;
@@ -69,28 +68,28 @@ struct Page {
 
 Result<Page> page_of(const http::Request& request) {
   Page page;
-  constexpr std::size_t kMost = 1000;
+  constexpr std::size_t kMax = 1000;
   if (const auto after = request.query.find("after"); after != request.query.end())
     page.after = after->second;
   const auto limit = request.query.find("limit");
   if (limit == request.query.end()) return page;
   const std::string& text = limit->second;
-  const auto end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, page.limit);
-  if (error == std::errc{} && stop == end && page.limit >= 1 && page.limit <= kMost) return page;
+  const auto number = parse_number<std::size_t>(text);
+  page.limit = number.value_or(0);
+  if (page.limit >= 1 && page.limit <= kMax) return page;
   return fail(
       ErrorCode::InvalidArgument, "limit",
-      "a whole number from 1 to " + std::to_string(kMost) + ", not '" + text.substr(0, 32) + "'");
+      "a whole number from 1 to " + std::to_string(kMax) + ", not '" + text.substr(0, 32) + "'");
 }
 
 }  // namespace
 
 void read_recording(ConfigReader config, RecordingConfig& out) {
   constexpr double kMegabyte = 1u << 20;
-  constexpr double kMost = 1e6;  // [MB]
+  constexpr double kMax = 1e6;  // [MB]
   const auto read_mb = [&](std::string_view key, std::uintmax_t& bytes, double least) {
     double megabytes = static_cast<double>(bytes) / kMegabyte;
-    config.read(key, megabytes, least, kMost);
+    config.read(key, megabytes, least, kMax);
     bytes = static_cast<std::uintmax_t>(megabytes * kMegabyte);
   };
   config.read("folder", out.folder);
@@ -238,7 +237,6 @@ Result<http::DocumentPtr> Recordings::list(const http::Request& request) const {
   node.properties.emplace_back("contains", std::move(contains));
   node.properties.emplace_back("recordings", std::move(members));
   http::DocumentOptions options;
-  options.container = true;
   options.version = options_.serving.run + "-" + std::to_string(std::hash<std::string>{}(version));
   options.headers = {{"Accept-Post", "application/json"}};
   if (more) {
@@ -246,7 +244,7 @@ Result<http::DocumentPtr> Recordings::list(const http::Request& request) const {
                                              std::to_string(page->limit) + ">; rel=\"next\"");
   }
   return resource::document_of(std::move(node), std::move(options),
-                               options_.serving.place("recordings/"));
+                               options_.serving.place("recordings/"), resource::Kind::Container);
 }
 
 http::DocumentPtr Recordings::description(const RecordingReport& report) const {
@@ -287,10 +285,9 @@ Result<http::DocumentPtr> Recordings::file(const std::string& name, const std::s
   if (!body) return pass(body);
   http::DocumentOptions options;
   options.version = options_.serving.run + "-" + file + "-" + std::to_string((*body)->size());
-  options.rdf_source = false;
   options.headers = {{"Content-Disposition", "attachment; filename=\"" + file + "\""}};
   options.file = std::move(*body);
-  return http::make_document("application/octet-stream", {}, std::move(options));
+  return resource::other_document("application/octet-stream", {}, std::move(options));
 }
 
 Result<http::ActionResult> Recordings::post(const http::Request& request) {
@@ -298,7 +295,8 @@ Result<http::ActionResult> Recordings::post(const http::Request& request) {
   if (!wanted) return pass(wanted);
   const auto report = start(*wanted);
   if (!report) return pass(report);
-  return http::ActionResult{kCreated, description(*report), "/recordings/" + report->name};
+  return http::ActionResult{http::status::kCreated, description(*report),
+                            "/recordings/" + report->name};
 }
 
 void Recordings::add_routes(http::Router& router) {
@@ -315,13 +313,15 @@ void Recordings::add_routes(http::Router& router) {
   router.shows_people("/recordings/{name}/{file}");
   router.action(http::Method::Post, "/recordings/",
                 [this](const Request& request, const PathParams&) { return post(request); });
-  router.action(
-      http::Method::Delete, "/recordings/{name}",
-      [this](const Request&, const PathParams& path) -> Result<http::ActionResult> {
-        const auto report = stop(path.at("name"));
-        if (!report) return pass(report);
-        return http::ActionResult{is_running(*report) ? kAccepted : kOk, description(*report), {}};
-      });
+  router.action(http::Method::Delete, "/recordings/{name}",
+                [this](const Request&, const PathParams& path) -> Result<http::ActionResult> {
+                  const auto report = stop(path.at("name"));
+                  if (!report) return pass(report);
+                  return http::ActionResult{
+                      is_running(*report) ? http::status::kAccepted : http::status::kOk,
+                      description(*report),
+                      {}};
+                });
 }
 
 std::string Recordings::metrics_text() const {

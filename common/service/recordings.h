@@ -1,4 +1,4 @@
-// /recordings/: what this service records and has recorded, the same on each service.
+// /recordings/: what this service records and has recorded; every service has this interface.
 //
 // One recording at a time.  POST /recordings/ starts one, DELETE /recordings/{name} ends it; no
 // request ever deletes a file (docs/decisions/0011-recordings.md).
@@ -36,8 +36,8 @@ void read_recording(ConfigReader config, RecordingConfig& out);
 
 struct RecordingsOptions {
   RecordingConfig config;
-  record::SessionHead head;  ///< Of every file.
-  bool has_fused = false;    ///< A fusion server.
+  record::CellHead head;   ///< Of every file.
+  bool has_fused = false;  ///< A fusion server.
   Serving serving;
   std::shared_ptr<const Clock> clock = std::make_shared<SystemClock>();
 };
@@ -49,12 +49,12 @@ class Recordings {
   ~Recordings();  ///< Ends the recording under way and waits for its file.
 
   enum class Stream { Raw, Fused, Any };
-  /// Where to offer what this stream brings; null while it is not being recorded.
+  /// Where to offer the items of this stream; null while it is not being recorded.
   [[nodiscard]] std::shared_ptr<record::Recorder> recorder(Stream stream) const;
 
   [[nodiscard]] Result<record::RecordingReport> start(const RecordingRequest& request);
-  /// Has it ended, without waiting for that (state `stopping`); harmless when it has ended.
-  /// NotFound when there is none of this name.
+  /// Ends it without waiting (state `stopping`); does nothing when it has ended.  NotFound when
+  /// there is none of this name.
   [[nodiscard]] Result<record::RecordingReport> stop(std::string_view name);
 
   /// chorus_recording_*, Prometheus text.
@@ -71,8 +71,8 @@ class Recordings {
   };
 
   [[nodiscard]] record::RecorderOptions options_for(const RecordingRequest& request) const;
-  void settle();  ///< Takes note of a recording that has ended.  Called with the mutex held.
-  /// In the order of their names, those after `after`, at most so many.
+  void settle();  ///< Takes note that a recording has ended.  Called with the mutex held.
+  /// In order of their names, those after `after`, at most `most`.
   [[nodiscard]] std::map<std::string, record::RecordingReport> some(const std::string& after,
                                                                     std::size_t most) const;
   [[nodiscard]] Result<record::RecordingReport> find(std::string_view name) const;
@@ -84,7 +84,7 @@ class Recordings {
   [[nodiscard]] Result<http::ActionResult> post(const http::Request& request);
 
   const RecordingsOptions options_;
-  std::mutex starting_;       ///< One start at a time; never held by those who offer frames.
+  std::mutex starting_;       ///< One start at a time; never held by threads that offer frames.
   mutable std::mutex mutex_;  ///< Guards what follows; never held while the disk is used.
   Running running_;
   std::map<std::string, record::RecordingReport> ended_;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/http/html.h"
+#include "common/resource/link_lines.h"
 
 namespace chorus::service {
 namespace {
@@ -89,9 +90,9 @@ http::DocumentPtr self_document(const Self& self, const Serving& serving,
   variants.push_back({"text/html; charset=utf-8", [self] { return self_page(self); }});
   http::DocumentOptions options;
   options.version = version + "." + serving.run;
-  options.container = true;
   options.headers = {{"Link", "</openapi.json>; rel=\"service-desc\""}};
-  return std::make_shared<const http::Document>(std::move(variants), std::move(options));
+  return std::make_shared<const http::Document>(
+      resource::linked(std::move(variants), resource::Kind::Container), std::move(options));
 }
 
 }  // namespace chorus::service

@@ -1,5 +1,5 @@
-// `/`: what a service is, with links to all it has, for people and for machines.  One table per
-// service says it all.
+// `/`: what a service is, with links to everything it has, for people and for machines, from one
+// table per service.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ namespace chorus::service {
 /// One resource of a service.
 struct Listed {
   std::string path;
-  std::string key;   ///< The property that names its role; empty: only contained.
+  std::string key;   ///< The property that names its role; empty: only listed.
   std::string what;  ///< For people, half a sentence.
 };
 
@@ -23,7 +23,7 @@ struct Self {
   std::string title;
   std::string description;  ///< One sentence.
   std::string type;         ///< "Sensor", beside what every service is.
-  std::vector<std::pair<std::string, resource::Value>> facts;  ///< Of this one alone.
+  std::vector<std::pair<std::string, resource::Value>> facts;  ///< Particular to this service.
   /// What it has beside /clock, /healthz and so on, which every service has.
   std::vector<Listed> resources;
 };

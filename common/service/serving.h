@@ -1,4 +1,4 @@
-// How this run of a service names itself in all its documents.
+// How this run of a service identifies itself in its documents.
 #pragma once
 
 #include <string>
@@ -9,7 +9,8 @@
 namespace chorus::service {
 
 struct Serving {
-  /// In every ETag: a validator of an earlier run never fits a document of this one.
+  /// Part of every ETag, so that a validator from an earlier run never matches a document of this
+  /// one.
   std::string run;
   std::string root = "http://localhost/";  ///< Absolute IRI of `/`, for N-Triples.
 

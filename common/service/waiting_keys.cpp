@@ -21,8 +21,8 @@ const json* value_at(const json& object, const std::string& key) {
   return found == object.end() ? nullptr : &*found;
 }
 
-/// Appends the paths of what differs; what is missing counts as an empty object where the other one
-/// is an object.
+/// Appends the paths that differ; a missing value counts as an empty object when the other one is
+/// an object.
 void add_changes(const json& a, const json& b, Path& at, std::vector<Path>& out) {
   static const json kNothing = json::object();
   json names = a;
@@ -42,7 +42,7 @@ void add_changes(const json& a, const json& b, Path& at, std::vector<Path>& out)
   }
 }
 
-/// `base` with what `wanted` has at the path, which may be nothing.
+/// `base` with `wanted`'s value at the path, which may be missing.
 json with_one_change(json base, const Path& path, const json& wanted) {
   json* to = &base;
   const json* from = &wanted;

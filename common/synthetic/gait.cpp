@@ -15,8 +15,8 @@ namespace {
 using motion::AmcFrame;
 
 constexpr std::size_t kRootTranslation = 3;  // channels 0-2 are tx ty tz, 3-5 the root's angles
-constexpr std::size_t kShortestCycle = 100;  // frames at 120 Hz: 0.83 s
-constexpr std::size_t kLongestCycle = 150;   // 1.25 s
+constexpr std::size_t kMinCycle = 100;       // frames at 120 Hz: 0.83 s
+constexpr std::size_t kMaxCycle = 150;       // 1.25 s
 constexpr std::size_t kBlend = 24;           // frames cross-faded at the seam: 0.2 s
 constexpr double kToeHeight = 0.03;          // foot joint over the floor when the foot stands [m]
 
@@ -36,7 +36,7 @@ struct Cut {
 Cut best_cut(const std::vector<AmcFrame>& take) {
   Cut best;
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t length = kShortestCycle; length <= kLongestCycle; ++length) {
+  for (std::size_t length = kMinCycle; length <= kMaxCycle; ++length) {
     for (std::size_t start = kBlend; start + length < take.size(); ++start) {
       double sum = 0;
       for (std::size_t back = 0; back <= kBlend; back += kBlend / 4) {

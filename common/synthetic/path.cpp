@@ -14,27 +14,27 @@ namespace {
 
 // Everyday figures, estimates of ours without a measured source; nothing depends on their exact
 // values.
-constexpr double kAcceleration = 1.2;      // mean, when starting and stopping [m/s^2]
-constexpr double kTurnRate = deg(110);     // mean, turning on the spot [rad/s]
-constexpr double kTurnSettling = 0.3;      // extra time of every turn [s]
-constexpr double kTurnStep = 0.35;         // stride amplitude while turning on the spot
-constexpr double kPauseShare = 0.35;       // of the way-points of a random walk
-constexpr double kShortestPause = 0.5;     // [s]
-constexpr double kLongestPause = 3.0;      // [s]
-constexpr double kRandomLoop = 240.0;      // a random walk repeats after at least so long [s]
-constexpr double kStandLoop = 60.0;        // [s]
-constexpr double kLinePause = 0.4;         // before turning at the ends [s]
-constexpr double kShortestLegShare = 0.5;  // of the reach; shorter way-points are redrawn
-constexpr double kLeastAmplitude = 0.3;
-constexpr double kMostAmplitude = 1.4;
+constexpr double kAcceleration = 1.2;   // mean, when starting and stopping [m/s^2]
+constexpr double kTurnRate = deg(110);  // mean, turning on the spot [rad/s]
+constexpr double kTurnSettling = 0.3;   // extra time of every turn [s]
+constexpr double kTurnStep = 0.35;      // stride amplitude while turning on the spot
+constexpr double kPauseShare = 0.35;    // of the way-points of a random walk
+constexpr double kMinPause = 0.5;       // [s]
+constexpr double kMaxPause = 3.0;       // [s]
+constexpr double kRandomLoop = 240.0;   // a random walk repeats after at least so long [s]
+constexpr double kStandLoop = 60.0;     // [s]
+constexpr double kLinePause = 0.4;      // before turning at the ends [s]
+constexpr double kMinLegShare = 0.5;    // of the reach; shorter way-points are redrawn
+constexpr double kMinAmplitude = 0.3;
+constexpr double kMaxAmplitude = 1.4;
 constexpr int kRedraws = 20;
 constexpr double kTurnPause = 1.5;    // between full turns [s]
 constexpr int kStations = 3;          // of a workplace, beside each other
 constexpr double kStationStep = 0.4;  // from one to the next [m]
 constexpr int kReachesPerStation = 4;
 constexpr double kReachTime = 0.7;                           // a hand's way there, and back [s]
-constexpr double kLeastHold = 0.3;                           // [s]
-constexpr double kMostHold = 1.2;                            // [s]
+constexpr double kMinHold = 0.3;                             // [s]
+constexpr double kMaxHold = 1.2;                             // [s]
 constexpr double kAsideSpeed = 0.35;                         // mean, stepping aside [m/s]
 constexpr double kReachForward = 0.42;                       // of the targets before the body [m]
 constexpr std::array kReachHeights{0.85, 1.10, 1.35, 1.60};  // [m]
@@ -55,7 +55,7 @@ Path::Path(const PathScript& script) : script_(script) {
   script_.speed = std::clamp(script_.speed, 0.1, 2.0);
   const double recorded = script_.stride / script_.period;
   // Slower people take both shorter and fewer strides.
-  amplitude_ = std::clamp(std::sqrt(script_.speed / recorded), kLeastAmplitude, kMostAmplitude);
+  amplitude_ = std::clamp(std::sqrt(script_.speed / recorded), kMinAmplitude, kMaxAmplitude);
   cadence_ = script_.speed / (amplitude_ * script_.stride);
   place_ = script_.centre;
   heading_ = Draw{script_.seed, kDrawDirection}.uniform(-std::numbers::pi, std::numbers::pi);
@@ -139,13 +139,12 @@ void Path::wander() {
   const Eigen::Vector2d first = place_;
   while (loop_ < kRandomLoop) {
     Eigen::Vector2d target = way_point();
-    for (int i = 0; i < kRedraws && (target - place_).norm() < kShortestLegShare * script_.reach;
-         ++i) {
+    for (int i = 0; i < kRedraws && (target - place_).norm() < kMinLegShare * script_.reach; ++i) {
       target = way_point();
     }
     walk_to(target);
     if (draw.uniform() < kPauseShare || script_.reach <= 0) {
-      pause(draw.uniform(kShortestPause, kLongestPause));
+      pause(draw.uniform(kMinPause, kMaxPause));
     }
   }
   walk_to(first);
@@ -173,7 +172,7 @@ void Path::circle() {
   const double cycles = std::max(1.0, std::round(cadence_ * leg.duration));
   cadence_ = cycles / leg.duration;
   amplitude_ =
-      std::clamp(script_.speed / (cadence_ * script_.stride), kLeastAmplitude, kMostAmplitude);
+      std::clamp(script_.speed / (cadence_ * script_.stride), kMinAmplitude, kMaxAmplitude);
   add(leg);
 }
 
@@ -201,7 +200,7 @@ void Path::assemble() {
       const double aside = draw.uniform(-0.05, 0.35);  // across the middle to well outside [m]
       const double height = kReachHeights[static_cast<std::size_t>(i + k) % kReachHeights.size()];
       reach_for(left, {left ? aside : -aside, height, kReachForward},
-                draw.uniform(kLeastHold, kMostHold));
+                draw.uniform(kMinHold, kMaxHold));
     }
     pause(kLinePause);
     step_aside(station((i + 1) % kStations));

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "common/base/median.h"
 #include "common/body/bones.h"
 #include "common/geometry/rotation.h"
 
@@ -20,12 +21,12 @@ using Frames = std::vector<Body>;
 constexpr double kToeHeight = 0.03;  // foot joint over the floor when the foot stands [m]
 // Of the frames' lowest feet, the one that stands on the floor; lower ones are noise.
 constexpr double kStandingShare = 0.05;
-// Knee to hip of anybody from eight years to giant; narrow enough that inches taken for centimetres
-// do not pass [m].
-constexpr double kShortestThigh = 0.25;
-constexpr double kLongestThigh = 0.65;
-constexpr double kMostRate = 1000.0;  // [Hz]
-constexpr double kFastest = 30.0;     // any joint, a thrower's hand included [m/s]
+// Distance from knee to hip of anybody from an eight-year-old to a giant; narrow enough that inches
+// taken for centimetres do not pass [m].
+constexpr double kMinThigh = 0.25;
+constexpr double kMaxThigh = 0.65;
+constexpr double kMaxRate = 1000.0;  // [Hz]
+constexpr double kFastest = 30.0;    // any joint, a thrower's hand included [m/s]
 
 constexpr std::array kRequired{JointId::HipLeft,       JointId::HipRight,   JointId::KneeLeft,
                                JointId::KneeRight,     JointId::AnkleLeft,  JointId::AnkleRight,
@@ -135,19 +136,13 @@ Result<void> complete(motion::Motion& role) {
   return {};
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 Result<void> has_human_size(const motion::Motion& role) {
   std::vector<double> thighs;
   for (const Body& body : role.frames) {
     thighs.push_back((body[JointId::HipLeft].position - body[JointId::KneeLeft].position).norm());
   }
   const double thigh = median(std::move(thighs));
-  if (thigh >= kShortestThigh && thigh <= kLongestThigh) return {};
+  if (thigh >= kMinThigh && thigh <= kMaxThigh) return {};
   return fail(
       ErrorCode::InvalidArgument, "thigh",
       fmt::format("is {:.3g} m long; metres_per_unit must say what the file's unit of length is",
@@ -189,20 +184,20 @@ void to_origin(std::vector<motion::Motion>& roles) {
 
 Result<void> can_be_played(const motion::Motion& role) {
   if (role.frames.empty()) return fail(ErrorCode::InvalidArgument, "motion", "has no frames");
-  if (role.frames.size() > kMostMotionFrames) {
+  if (role.frames.size() > kMaxMotionFrames) {
     return fail(ErrorCode::TooLarge, "motion",
                 fmt::format("has {} frames; cut it to {} or export it at a lower rate",
-                            role.frames.size(), kMostMotionFrames));
+                            role.frames.size(), kMaxMotionFrames));
   }
-  if (role.rate_hz > 0.0 && role.rate_hz <= kMostRate) return {};
+  if (role.rate_hz > 0.0 && role.rate_hz <= kMaxRate) return {};
   return fail(
       ErrorCode::InvalidArgument, "motion",
       fmt::format("has {:.6g} frames a second; more than 0 and at most {:.0f} can be played",
-                  role.rate_hz, kMostRate));
+                  role.rate_hz, kMaxRate));
 }
 
-/// Some programs (Xsens MVN) put a T-pose before the motion: nobody gets from there to the second
-/// frame in time.
+/// Some programs (Xsens MVN) put a T-pose before the motion: nobody can move from there to the
+/// second frame in time.
 bool starts_with_pose(const motion::Motion& role) {
   if (role.frames.size() < 3) return false;
   for (std::size_t i = 0; i < kJointCount; ++i) {

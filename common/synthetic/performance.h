@@ -33,6 +33,6 @@ struct MotionFile {
 [[nodiscard]] Result<Performance> staged(std::vector<motion::Motion> captured);
 
 /// 16 minutes at 120 Hz, 200 MB a person.
-inline constexpr std::size_t kMostMotionFrames = 120'000;
+inline constexpr std::size_t kMaxMotionFrames = 120'000;
 
 }  // namespace chorus::synthetic

@@ -19,7 +19,7 @@ namespace {
 
 using Captured = Result<std::vector<motion::Motion>>;
 
-constexpr std::uintmax_t kMostBytes = 256u << 20;
+constexpr std::uintmax_t kMaxBytes = 256u << 20;
 
 Result<std::string> text_of(const std::filesystem::path& path) {
   std::error_code problem;
@@ -28,7 +28,7 @@ Result<std::string> text_of(const std::filesystem::path& path) {
   }
   std::ifstream file(path, std::ios::binary);
   if (!file) return fail(ErrorCode::NotFound, path.string(), std::strerror(errno));
-  if (std::filesystem::file_size(path, problem) > kMostBytes && !problem) {
+  if (std::filesystem::file_size(path, problem) > kMaxBytes && !problem) {
     return fail(ErrorCode::TooLarge, path.string(), "is larger than 256 MB");
   }
   return std::string(std::istreambuf_iterator<char>(file), {});

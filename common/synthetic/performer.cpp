@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/body/interpolate.h"
 #include "common/geometry/rotation.h"
 #include "common/synthetic/draw.h"
 
@@ -55,7 +56,7 @@ Skeleton<WorldSpace> sampled(const motion::Motion& motion, double time) {
     return motion
         .frames[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(before + offset, 0, last))];
   };
-  Skeleton<WorldSpace> body = motion::between(frame(0), frame(1), s);
+  Skeleton<WorldSpace> body = interpolate(frame(0), frame(1), s);
   for (std::size_t i = 0; i < kJointCount; ++i) {
     const auto at = [&](std::ptrdiff_t offset) { return frame(offset).joints[i].position; };
     body.joints[i].position = spline({at(-1), at(0), at(1), at(2)}, s);

@@ -42,9 +42,9 @@ class Performer {
 };
 
 /// `count` people who play it at the script's centre.  People of one file stay together as
-/// captured; more people than it has play it again: further groups stand evenly on a circle of the
-/// script's reach, each turned, of other build, and elsewhere in the loop.  Of the script count
-/// seed, centre, reach and body_scale.
+/// captured.  If there are more people than the file has, further groups play it again: evenly on a
+/// circle of the script's reach, each turned, of another build, and elsewhere in the loop.  Only
+/// the script's seed, centre, reach and body_scale are used.
 [[nodiscard]] std::vector<Person> make_performers(std::shared_ptr<const Performance> performance,
                                                   const WalkerScript& script, std::size_t count);
 

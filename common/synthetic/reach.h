@@ -14,7 +14,7 @@ struct Reach {
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< For the wrist [m]
 };
 
-/// Moves elbow, wrist and hand; a target too far away is reached for, not reached.
+/// Moves elbow, wrist and hand; the hand stretches towards a target that is too far away.
 void apply(const Reach& reach, Skeleton<WorldSpace>& body);
 
 }  // namespace chorus::synthetic

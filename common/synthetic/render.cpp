@@ -11,15 +11,15 @@ namespace chorus::synthetic {
 namespace {
 
 constexpr std::uint64_t kDrawDepth = 401;
-constexpr double kMostDepthCode = 65535;  // 16 bit
+constexpr double kMaxDepthCode = 65535;  // 16 bit
 constexpr int kJpegQuality = 85;
 constexpr double kTileSize = 0.5;  // of the floor pattern [m]
 constexpr std::uint16_t kNobody = 0;
 constexpr std::uint16_t kThing = 65535;
-constexpr int kMostPixels = 4'000'000;
+constexpr int kMaxPixels = 4'000'000;
 
-/// What each pixel sees: distance along its ray, and whose body (0: the floor or nothing; kThing).
-struct Sight {
+/// What each pixel sees: distance along its ray, and whose body (0: floor or nothing; kThing).
+struct RangeImage {
   int width = 0;
   int height = 0;
   std::vector<float> range;  ///< [m], infinity: nothing
@@ -59,89 +59,92 @@ Box box_of(const Capsule& capsule, const Intrinsics& camera) {
   return box;
 }
 
-void see_floor(Sight& sight, const Plane& floor) {
-  for (std::size_t i = 0; i < sight.rays.size(); ++i) {
-    const double down = floor.normal.dot(sight.rays[i].cast<double>());
-    if (down < 0) sight.range[i] = static_cast<float>(-floor.offset / down);
+void see_floor(RangeImage& image, const Plane& floor) {
+  for (std::size_t i = 0; i < image.rays.size(); ++i) {
+    const double down = floor.normal.dot(image.rays[i].cast<double>());
+    if (down < 0) image.range[i] = static_cast<float>(-floor.offset / down);
   }
 }
 
-void see_capsule(Sight& sight, const Capsule& capsule, const Intrinsics& camera,
+void see_capsule(RangeImage& image, const Capsule& capsule, const Intrinsics& camera,
                  std::uint16_t person) {
   const Box box = box_of(capsule, camera);
   for (int row = box.top; row < box.bottom; ++row) {
     for (int column = box.left; column < box.right; ++column) {
-      const auto i = static_cast<std::size_t>(row * sight.width + column);
-      const auto distance = hit(capsule, sight.rays[i].cast<double>());
-      if (!distance || *distance >= static_cast<double>(sight.range[i])) continue;
-      sight.range[i] = static_cast<float>(*distance);
-      sight.person[i] = person;
+      const auto i = static_cast<std::size_t>(row * image.width + column);
+      const auto distance = hit(capsule, image.rays[i].cast<double>());
+      if (!distance || *distance >= static_cast<double>(image.range[i])) continue;
+      image.range[i] = static_cast<float>(*distance);
+      image.person[i] = person;
     }
   }
 }
 
-void see_box(Sight& sight, const Eigen::Isometry3d& box_from_sensor, const Eigen::Vector3d& half) {
-  for (std::size_t i = 0; i < sight.rays.size(); ++i) {
+void see_box(RangeImage& image, const Eigen::Isometry3d& box_from_sensor,
+             const Eigen::Vector3d& half) {
+  for (std::size_t i = 0; i < image.rays.size(); ++i) {
     const auto distance = hit_box(half, box_from_sensor.translation(),
-                                  box_from_sensor.linear() * sight.rays[i].cast<double>());
-    if (!distance || *distance >= static_cast<double>(sight.range[i])) continue;
-    sight.range[i] = static_cast<float>(*distance);
-    sight.person[i] = kThing;
+                                  box_from_sensor.linear() * image.rays[i].cast<double>());
+    if (!distance || *distance >= static_cast<double>(image.range[i])) continue;
+    image.range[i] = static_cast<float>(*distance);
+    image.person[i] = kThing;
   }
 }
 
 /// Every pixel's ray, nothing seen yet.
-Sight open_eyes(const Intrinsics& camera) {
+RangeImage open_eyes(const Intrinsics& camera) {
   const auto pixels =
       static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
-  Sight sight{camera.width, camera.height,
-              std::vector<float>(pixels, std::numeric_limits<float>::infinity()),
-              std::vector<std::uint16_t>(pixels, kNobody), std::vector<Eigen::Vector3f>(pixels)};
+  RangeImage image{camera.width, camera.height,
+                   std::vector<float>(pixels, std::numeric_limits<float>::infinity()),
+                   std::vector<std::uint16_t>(pixels, kNobody),
+                   std::vector<Eigen::Vector3f>(pixels)};
   for (int row = 0; row < camera.height; ++row) {
     for (int column = 0; column < camera.width; ++column) {
-      sight.rays[static_cast<std::size_t>(row * camera.width + column)] =
+      image.rays[static_cast<std::size_t>(row * camera.width + column)] =
           ray_of(camera, column, row).cast<float>();
     }
   }
-  return sight;
+  return image;
 }
 
-Result<Sight> look(const Scene& scene, std::size_t sensor, Timestamp instant,
-                   const Intrinsics& camera) {
+Result<RangeImage> look(const Scene& scene, std::size_t sensor, Timestamp instant,
+                        const Intrinsics& camera) {
   if (sensor >= scene.world_from_sensor.size() || camera.width <= 0 || camera.height <= 0 ||
-      camera.width > kMostPixels / camera.height || !(camera.fx > 0) || !(camera.fy > 0)) {
+      camera.width > kMaxPixels / camera.height || !(camera.fx > 0) || !(camera.fy > 0)) {
     return fail(ErrorCode::InvalidArgument, "render", "there is no such sensor or no such camera");
   }
-  Sight sight = open_eyes(camera);
+  RangeImage image = open_eyes(camera);
   const Eigen::Isometry3d sensor_from_world = scene.world_from_sensor[sensor].inverse();
-  see_floor(sight, floor_in_sensor(scene.world_from_sensor[sensor]));
+  see_floor(image, floor_in_sensor(scene.world_from_sensor[sensor]));
   for (std::size_t person = 0; person < scene.people.size(); ++person) {
     const auto body = to_sensor(sensor_from_world, truth(scene, person, instant));
     for (const Capsule& capsule : capsules_of(body)) {
-      see_capsule(sight, capsule, camera, static_cast<std::uint16_t>(person + 1));
+      see_capsule(image, capsule, camera, static_cast<std::uint16_t>(person + 1));
     }
   }
   for (const Occluder& thing : scene.occluders) {
     const Eigen::Isometry3d world_from_box = place_of(thing, instant - scene.epoch);
-    see_box(sight, world_from_box.inverse() * scene.world_from_sensor[sensor], thing.half);
+    see_box(image, world_from_box.inverse() * scene.world_from_sensor[sensor], thing.half);
   }
-  return sight;
+  return image;
 }
 
 /// Blue, green, red; a person's colour, a thing's, a chequered floor or the wall.
-cv::Vec3b shade(const Sight& sight, std::size_t i, const Eigen::Isometry3d& world_from_sensor) {
-  const double range = static_cast<double>(sight.range[i]);
+cv::Vec3b shade(const RangeImage& image, std::size_t i,
+                const Eigen::Isometry3d& world_from_sensor) {
+  const double range = static_cast<double>(image.range[i]);
   if (!std::isfinite(range)) return {196, 190, 184};
   const double light = std::clamp(1.15 - 0.13 * range, 0.35, 1.0);
   Eigen::Vector3d colour(96, 120, 210);
-  if (sight.person[i] == kNobody) {
-    const Eigen::Vector3d x = world_from_sensor * (range * sight.rays[i].cast<double>());
+  if (image.person[i] == kNobody) {
+    const Eigen::Vector3d x = world_from_sensor * (range * image.rays[i].cast<double>());
     const double tile = std::floor(x.x() / kTileSize) + std::floor(x.z() / kTileSize);
     colour = std::fmod(std::abs(tile), 2.0) < 0.5 ? Eigen::Vector3d(150, 160, 165)
                                                   : Eigen::Vector3d(120, 128, 132);
-  } else if (sight.person[i] == kThing) {
+  } else if (image.person[i] == kThing) {
     colour = Eigen::Vector3d(70, 78, 84);
-  } else if (sight.person[i] % 2 == 0) {
+  } else if (image.person[i] % 2 == 0) {
     colour = Eigen::Vector3d(110, 170, 90);
   }
   const Eigen::Vector3d lit = light * colour;
@@ -168,30 +171,30 @@ Result<CameraImage> encode(const cv::Mat& pixels, Timestamp instant, const Intri
 
 Result<CameraImage> render_depth(const Scene& scene, std::size_t sensor, Timestamp instant,
                                  const CameraModel& camera) {
-  const Result<Sight> sight = look(scene, sensor, instant, camera.intrinsics);
-  if (!sight) return pass(sight);
+  const Result<RangeImage> image = look(scene, sensor, instant, camera.intrinsics);
+  if (!image) return pass(image);
   Draw draw{camera.seed, kDrawDepth, sensor, static_cast<std::uint64_t>(to_unix_ns(instant))};
-  cv::Mat pixels(sight->height, sight->width, CV_16UC1, cv::Scalar(0));
-  for (std::size_t i = 0; i < sight->rays.size(); ++i) {
+  cv::Mat pixels(image->height, image->width, CV_16UC1, cv::Scalar(0));
+  for (std::size_t i = 0; i < image->rays.size(); ++i) {
     const double exact =
-        static_cast<double>(sight->range[i]) * static_cast<double>(sight->rays[i].z());
+        static_cast<double>(image->range[i]) * static_cast<double>(image->rays[i].z());
     if (!(exact <= camera.most_depth)) continue;
     const double measured = std::round(to_mm(exact + camera.depth_noise * draw.gauss()));
-    pixels.at<std::uint16_t>(static_cast<int>(i) / sight->width,
-                             static_cast<int>(i) % sight->width) =
-        static_cast<std::uint16_t>(std::clamp(measured, 0.0, kMostDepthCode));
+    pixels.at<std::uint16_t>(static_cast<int>(i) / image->width,
+                             static_cast<int>(i) % image->width) =
+        static_cast<std::uint16_t>(std::clamp(measured, 0.0, kMaxDepthCode));
   }
   return encode(pixels, instant, camera.intrinsics, false);
 }
 
 Result<CameraImage> render_color(const Scene& scene, std::size_t sensor, Timestamp instant,
                                  const CameraModel& camera) {
-  const Result<Sight> sight = look(scene, sensor, instant, camera.intrinsics);
-  if (!sight) return pass(sight);
-  cv::Mat pixels(sight->height, sight->width, CV_8UC3);
-  for (std::size_t i = 0; i < sight->rays.size(); ++i) {
-    pixels.at<cv::Vec3b>(static_cast<int>(i) / sight->width, static_cast<int>(i) % sight->width) =
-        shade(*sight, i, scene.world_from_sensor[sensor]);
+  const Result<RangeImage> image = look(scene, sensor, instant, camera.intrinsics);
+  if (!image) return pass(image);
+  cv::Mat pixels(image->height, image->width, CV_8UC3);
+  for (std::size_t i = 0; i < image->rays.size(); ++i) {
+    pixels.at<cv::Vec3b>(static_cast<int>(i) / image->width, static_cast<int>(i) % image->width) =
+        shade(*image, i, scene.world_from_sensor[sensor]);
   }
   return encode(pixels, instant, camera.intrinsics, true);
 }

@@ -7,7 +7,6 @@
 namespace chorus::synthetic {
 namespace {
 
-bool is_drawn(std::string_view profile) { return profile == "A" || profile == "B"; }
 bool is_rendered(std::string_view profile) { return profile == "C"; }
 
 template <class Profile>
@@ -42,10 +41,8 @@ std::unique_ptr<BodySensor> rendered_sensor(const Scene& scene, const SensorChoi
 
 }  // namespace
 
-bool has_source(std::string_view profile, Source source) {
-  if (profile == kGaussProfile) return false;
-  return is_drawn(profile) ||
-         (source != Source::Yaw && source != Source::Coloured && source != Source::Visibility);
+bool is_drawn(std::string_view profile) {
+  return profile == "A" || profile == "B" || profile == "D";
 }
 
 Result<std::unique_ptr<BodySensor>> make_sensor(const Scene& scene, const SensorChoice& choice,
@@ -59,7 +56,7 @@ Result<std::unique_ptr<BodySensor>> make_sensor(const Scene& scene, const Sensor
         scene, SimulatedSensor{choice.id, choice.place, choice.gauss}, start);
   }
   return fail(ErrorCode::InvalidArgument, choice.profile,
-              "the sensor profiles are A, B, C and gauss");
+              "the sensor profiles are A, B, C, D and gauss");
 }
 
 Result<std::vector<SensorFrame>> record(const Scene& scene, const SensorChoice& choice,

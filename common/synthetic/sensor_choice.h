@@ -1,5 +1,5 @@
-// A simulated sensor by the name of its profile: "A" and "B" draw their errors (kinect/), in "C"
-// they emerge from depth images and a body fitter (depth/), "gauss" has white noise only
+// A simulated sensor by the name of its profile: "A", "B" and "D" draw their errors (kinect/), in
+// "C" they emerge from depth images and a body fitter (depth/), "gauss" has white noise only
 // (sensor_model.h).
 //
 // Parameters are the nominal ones or one draw from their intervals; any source of error can be
@@ -32,20 +32,19 @@ struct Stress {
 struct SensorChoice {
   SensorId id;
   std::size_t place = 0;              ///< Index into Scene::world_from_sensor.
-  std::string profile = "A";          ///< "A", "B", "C" or "gauss"
+  std::string profile = "A";          ///< "A", "B", "C", "D" or "gauss"
   std::optional<std::uint64_t> draw;  ///< Parameters drawn by this seed; none: the nominal ones.
   std::vector<Stress> stress = {};
   std::uint64_t seed = 1;       ///< The same for all sensors of a room: shared errors are shared.
   std::uint64_t bias_seed = 1;  ///< SDK and people: the same person errs the same way in every run.
   bool own_clock = true;        ///< Stamps by the host's erring clock; false: true time.
-  /// All that counts for "gauss" beside id and place, which has no intervals to draw from, no
-  /// sources to multiply, and an exact clock.
+  /// The other parameters of "gauss", which has no intervals to draw from, no sources to multiply,
+  /// and an exact clock.
   SensorModel gauss = {};
 };
 
-/// Does this source exist in the profile?  "gauss" has none; in "C" neither yaw, coloured error nor
-/// visibility is a number that could be multiplied.
-[[nodiscard]] bool has_source(std::string_view profile, Source source);
+/// Are the errors of this profile drawn (kinect/)?
+[[nodiscard]] bool is_drawn(std::string_view profile);
 
 /// `scene` must outlive the sensor.  First frames at or after `start`.  Refuses an unknown profile
 /// and a place that the scene does not have.
@@ -58,8 +57,8 @@ struct SensorChoice {
                                                       const SensorChoice& choice, Timestamp start,
                                                       Timestamp end);
 
-/// First 12 hex digits of the SHA-256 of what defines the profile: printed with every result; empty
-/// for "gauss", which is frozen by nothing, and for an unknown one.
+/// First 12 hex digits of the SHA-256 of what defines the profile, printed with every result; empty
+/// for "gauss", which is not frozen, and for an unknown profile.
 [[nodiscard]] std::string frozen_hash(std::string_view profile);
 
 }  // namespace chorus::synthetic

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/geometry/rotation.h"
+#include "common/body/interpolate.h"
 
 namespace chorus::align {
 namespace {
 
-constexpr Duration kGrace = std::chrono::milliseconds(15);  ///< Later than ever before, but coming.
+/// Later than ever before, but still expected.
+constexpr Duration kGrace = std::chrono::milliseconds(15);
 
 /// The frames around an instant; `before` and `after` are the same frame when it is hit exactly.
 struct Bracket {
@@ -32,26 +33,13 @@ Bracket bracket(Timestamp instant, Timestamp now, const History& history,
   if (!found.after) {
     // A silent sensor is given up early: no later frame could close a bracket this wide.
     const bool hopeless = found.before && instant - found.before->captured > config.max_gap;
-    const Duration wait = std::min(config.patience, usual_wait(history).value_or(config.patience));
+    const Duration wait =
+        std::min(config.patience, longest_wait(history).value_or(config.patience));
     found.basis = hopeless || now - instant > wait ? Basis::Lost : Basis::Pending;
   } else if (found.before && found.after->captured - found.before->captured <= config.max_gap) {
     found.basis = Basis::Interpolated;
   }
   return found;
-}
-
-Joint between(const Joint& a, const Joint& b, double s) {
-  if (!a.given() || !b.given() || a.measurement != b.measurement) return {};
-  Joint joint;
-  joint.measurement = a.measurement;
-  joint.position = (1.0 - s) * a.position + s * b.position;
-  if (joint.measurement == Measurement::Ray) joint.position.normalize();
-  joint.covariance = between(a.covariance, b.covariance, s);
-  if (is_unit(a.orientation) && is_unit(b.orientation)) {
-    joint.orientation = lerp(a.orientation, b.orientation, s);
-  }
-  joint.state = std::min(a.state, b.state);
-  return joint;
 }
 
 const BodyFrame* body_of(const SensorFrame& frame, BodyId id) {
@@ -75,19 +63,14 @@ std::vector<BodyFrame> bodies_between(const Bracket& around, Timestamp instant) 
 
 }  // namespace
 
-Skeleton<SensorSpace> interpolate(const Skeleton<SensorSpace>& a, const Skeleton<SensorSpace>& b,
-                                  double s) {
-  const double share = std::isfinite(s) ? std::clamp(s, 0.0, 1.0) : 0.0;
-  Skeleton<SensorSpace> body;
-  for (std::size_t i = 0; i < kJointCount; ++i) {
-    body.joints[i] = between(a.joints[i], b.joints[i], share);
-  }
-  return body;
+std::optional<Duration> longest_wait(const History& history) {
+  if (!history.habit()) return std::nullopt;
+  return history.habit()->longest_wait + kGrace;
 }
 
 std::optional<Duration> usual_wait(const History& history) {
   if (!history.habit()) return std::nullopt;
-  return history.habit()->gap + history.habit()->most_delay + kGrace;
+  return history.habit()->usual_wait + kGrace;
 }
 
 Basis basis_at(Timestamp instant, Timestamp now, const History& history,

@@ -1,8 +1,8 @@
 // Moves one sensor's bodies to a common instant by linear interpolation (Otto 5.2.4).
 //
 // Positions linearly, orientations by sign-aligned normalised LERP.  A joint is interpolated only
-// when both ends saw it; its state is the worse of the two.  Bodies are matched by id; a body
-// present at one end only is lost.  Nothing is ever extrapolated.
+// when both ends saw it; its state is the worse of the two.  Bodies are matched by id; a body that
+// only one end has is left out.  Nothing is ever extrapolated.
 #pragma once
 
 #include <optional>
@@ -13,12 +13,14 @@
 namespace chorus::align {
 
 struct AlignConfig {
-  Duration max_gap =
-      std::chrono::milliseconds(120);  ///< Widest bracket that is interpolated across.
-  /// Age at which Pending turns into Lost, unless the sensor's own habit says sooner (usual_wait).
+  /// Widest bracket that is interpolated across.
+  Duration max_gap = std::chrono::milliseconds(120);
+  /// Age at which Pending turns into Lost, unless the sensor's own habit says sooner
+  /// (longest_wait).
   Duration patience = std::chrono::milliseconds(200);
-  /// A sensor whose frames are late by more or less than this from one to the next is waited for
-  /// no longer than the others need: one bad link does not make everybody's bodies old.
+  /// A sensor whose delay varies by more than this from frame to frame, and by more than twice what
+  /// is usual among the others, is waited for no longer than the others usually need, so that one
+  /// bad link does not make everybody's bodies old.
   Duration unsteady = std::chrono::milliseconds(30);
 
   bool operator==(const AlignConfig&) const = default;
@@ -32,12 +34,11 @@ struct AlignConfig {
 [[nodiscard]] Basis basis_at(Timestamp instant, Timestamp now, const History& history,
                              const AlignConfig& config);
 
-/// How long after an instant this sensor's next frame comes at the latest, by its recent gaps and
-/// arrival delays; none before there are enough frames with a time of arrival.
-[[nodiscard]] std::optional<Duration> usual_wait(const History& history);
+/// How long after an instant this sensor's next frame comes at the latest, judged by its recent
+/// frames; none before enough frames with a time of arrival have come.
+[[nodiscard]] std::optional<Duration> longest_wait(const History& history);
 
-/// One body between two captures; s in [0, 1].  Exposed for registration and tests.
-[[nodiscard]] Skeleton<SensorSpace> interpolate(const Skeleton<SensorSpace>& a,
-                                                const Skeleton<SensorSpace>& b, double s);
+/// The same by the median: a single frame that the processor delayed does not count.
+[[nodiscard]] std::optional<Duration> usual_wait(const History& history);
 
 }  // namespace chorus::align

@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace chorus::align {
 namespace {
 
-constexpr std::size_t kHabit = 30;       ///< Frames that make a habit: one second.
-constexpr std::size_t kLeastHabit = 10;  ///< Fewer say nothing.
+constexpr std::size_t kHabit = 30;     ///< Frames that make a habit: one second.
+constexpr std::size_t kMinHabit = 10;  ///< Fewer say nothing.
 
-/// Two bodies with one id in a frame cannot be told apart later: the first keeps it, the rest go.
+/// Two bodies of a frame with one id cannot be told apart later: the first keeps it, the others are
+/// left out.
 void keep_first_of_each_id(std::vector<BodyFrame>& bodies) {
   for (std::size_t i = 1; i < bodies.size();) {
     const auto seen_before = [&](const BodyFrame& b) { return b.id == bodies[i].id; };
@@ -22,21 +24,31 @@ void keep_first_of_each_id(std::vector<BodyFrame>& bodies) {
   }
 }
 
+/// `tenths` of the sorted values are smaller.
+Duration tenths_of(std::vector<Duration>& values, std::size_t tenths) {
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(tenths * values.size() / 10);
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
 std::optional<Habit> habit_of(const std::deque<SensorFrame>& frames) {
   const std::size_t count = std::min(frames.size(), kHabit);
-  if (count < kLeastHabit) return std::nullopt;
-  Habit habit{Duration{0}, Duration::max(), Duration{0}};
-  Timestamp first_received = Timestamp::max();  // of the frames captured later
+  if (count < kMinHabit) return std::nullopt;
+  std::vector<Duration> waits;
+  std::vector<Duration> delays;
+  Timestamp first_received = Timestamp::max();  // of this frame and those captured later
   for (std::size_t i = 1; i <= count; ++i) {
     const SensorFrame& frame = frames[frames.size() - i];
     if (frame.received == Timestamp{}) return std::nullopt;
-    if (i > 1)
-      habit.gap = std::max(habit.gap, frames[frames.size() - i + 1].captured - frame.captured);
-    if (frame.received > first_received) continue;  // out of turn
-    first_received = frame.received;
-    habit.least_delay = std::min(habit.least_delay, frame.received - frame.captured);
-    habit.most_delay = std::max(habit.most_delay, frame.received - frame.captured);
+    if (frame.received <= first_received) delays.push_back(frame.received - frame.captured);
+    first_received = std::min(first_received, frame.received);
+    if (i < count) waits.push_back(first_received - frames[frames.size() - i - 1].captured);
   }
+  Habit habit;
+  habit.longest_wait = *std::ranges::max_element(waits);
+  habit.usual_wait = tenths_of(waits, 5);
+  habit.least_delay = *std::ranges::min_element(delays);
+  habit.late_delay = tenths_of(delays, 9);
   return habit;
 }
 

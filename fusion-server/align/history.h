@@ -1,6 +1,6 @@
 // One sensor's recent frames, in capture order, each exactly once (Otto 5.2.4).
 //
-// A late one (fetched after a stream had left it out) takes its place among the others.
+// A late frame (fetched after a stream left it out) is put in its place among the others.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,8 @@ namespace chorus::align {
 enum class PushVerdict {
   Added,
   Duplicate,  ///< A frame of this capture time is already there (polling faster than the sensor).
-  Late,       ///< An earlier one of the sensor's sequence, and put in its place.
-  Backwards,  ///< A later one of the sequence, captured before the newest one; refused.
+  Late,       ///< Earlier in the sensor's sequence than the newest; put in its place.
+  Backwards,  ///< Later in the sequence, but captured before the newest one; refused.
   Future,     ///< Captured implausibly far after it was received; refused.
   Restarted,  ///< A long step back: the sensor's clock was set or the device restarted; history
               ///< cleared.
@@ -31,23 +31,28 @@ struct HistoryLimits {
   Duration restart_step = std::chrono::milliseconds(1500);
 };
 
-/// How a sensor's frames have come lately.
+/// How a sensor's frames have arrived lately.
 struct Habit {
-  Duration gap{0};          ///< Widest between two captures.
+  /// After an instant, until a frame captured at it or later was there: for instants just behind a
+  /// capture, which wait longest.  Frames that came after later ones tell nothing.
+  Duration longest_wait{0};
+  Duration usual_wait{0};   ///< Median.
   Duration least_delay{0};  ///< From capture to receipt.
-  Duration most_delay{0};
+  Duration late_delay{0};   ///< Of ten frames one comes later.
+
+  [[nodiscard]] Duration spread() const { return late_delay - least_delay; }
 };
 
 class History {
  public:
   explicit History(HistoryLimits limits = {}) : limits_(limits) {}
 
-  /// Of two bodies with one id in the frame the first is kept.
+  /// When two bodies of a frame have the same id, the first is kept.
   PushVerdict push(SensorFrame frame);
 
   [[nodiscard]] const std::deque<SensorFrame>& frames() const noexcept { return frames_; }
   [[nodiscard]] std::optional<Timestamp> newest() const;
-  /// None before there are enough frames with a time of receipt.  Late ones tell nothing of it.
+  /// None before enough frames with a time of receipt.  Late frames do not count.
   [[nodiscard]] const std::optional<Habit>& habit() const noexcept { return habit_; }
 
  private:

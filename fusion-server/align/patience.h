@@ -1,4 +1,4 @@
-// How long an instant waits for each sensor, so that one bad link cannot spend everybody's time.
+// How long an instant waits for each sensor, so that one bad link cannot delay everybody.
 #pragma once
 
 #include <map>
@@ -9,16 +9,18 @@ namespace chorus::align {
 
 class Patience {
  public:
-  /// From the habits of all; `histories` are of the sensors that take part.
+  /// From the habits of all sensors that take part.
   Patience(const std::map<SensorId, const History*>& histories, const AlignConfig& config);
 
-  /// `config` with the patience this sensor deserves: what it usually needs when it is steady, and
-  /// otherwise at most what the others usually need.
+  /// `config` with the patience for this sensor: all of it, or what the others usually need if it
+  /// is unsteady compared with the others (on a busy machine the delays of all of them vary, and
+  /// none is to blame).
   [[nodiscard]] AlignConfig of(const History& history) const;
 
  private:
   AlignConfig config_;
-  Duration common_;  ///< What the middle one of the sensors usually needs.
+  Duration common_;  ///< The median of what the sensors usually need.
+  Duration steady_;  ///< The widest spread that is not unsteady.
 };
 
 }  // namespace chorus::align

@@ -8,33 +8,42 @@ namespace {
 
 constexpr std::size_t kFree = 0;  // rows and columns are counted from one inside the method
 
-/// Shortest augmenting paths with potentials, on a square table padded with forbidden pairs.
+/// Shortest augmenting paths with potentials.  The shorter side supplies the rows, so that each of
+/// them gets a column; a forbidden pair costs more than all allowed pairs together.
 class Hungarian {
  public:
   explicit Hungarian(const CostTable& table)
       : table_(table),
-        size_(std::max(table.rows, table.columns)),
-        forbidden_((table.gate + 1.0) * static_cast<double>(size_ + 1)),
-        row_potential_(size_ + 1, 0.0),
-        column_potential_(size_ + 1, 0.0),
-        row_of_(size_ + 1, kFree) {
-    for (std::size_t row = 1; row <= size_; ++row) add(row);
+        turned_(table.rows > table.columns),
+        rows_(std::min(table.rows, table.columns)),
+        columns_(std::max(table.rows, table.columns)),
+        forbidden_((table.gate + 1.0) * static_cast<double>(columns_ + 1)),
+        row_potential_(rows_ + 1, 0.0),
+        column_potential_(columns_ + 1, 0.0),
+        row_of_(columns_ + 1, kFree) {
+    for (std::size_t row = 1; row <= rows_; ++row) add(row);
   }
 
-  [[nodiscard]] std::size_t row_of(std::size_t column) const { return row_of_[column]; }
-  [[nodiscard]] std::size_t size() const { return size_; }
+  /// Calls `take(row, column)` for each pair, with the indices of the table.
+  template <class Take>
+  void visit(const Take& take) const {
+    for (std::size_t column = 1; column <= columns_; ++column) {
+      const std::size_t row = row_of_[column];
+      if (row == kFree) continue;
+      turned_ ? take(column - 1, row - 1) : take(row - 1, column - 1);
+    }
+  }
 
  private:
   [[nodiscard]] double cost(std::size_t row, std::size_t column) const {
-    if (row > table_.rows || column > table_.columns) return forbidden_;
-    const double c = table_.at(row - 1, column - 1);
+    const double c = turned_ ? table_.at(column - 1, row - 1) : table_.at(row - 1, column - 1);
     return c <= table_.gate ? c : forbidden_;
   }
 
   void add(std::size_t row) {
-    slack_.assign(size_ + 1, std::numeric_limits<double>::infinity());
-    came_from_.assign(size_ + 1, kFree);
-    visited_.assign(size_ + 1, false);
+    slack_.assign(columns_ + 1, std::numeric_limits<double>::infinity());
+    came_from_.assign(columns_ + 1, kFree);
+    visited_.assign(columns_ + 1, false);
     row_of_[kFree] = row;
     std::size_t column = kFree;
     while (row_of_[column] != kFree) column = step(column);
@@ -51,7 +60,7 @@ class Hungarian {
     const std::size_t row = row_of_[column];
     std::size_t nearest = kFree;
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t j = 1; j <= size_; ++j) {
+    for (std::size_t j = 1; j <= columns_; ++j) {
       if (visited_[j]) continue;
       const double reduced = cost(row, j) - row_potential_[row] - column_potential_[j];
       if (reduced < slack_[j]) {
@@ -63,7 +72,7 @@ class Hungarian {
         nearest = j;
       }
     }
-    for (std::size_t j = 0; j <= size_; ++j) {
+    for (std::size_t j = 0; j <= columns_; ++j) {
       if (visited_[j]) {
         row_potential_[row_of_[j]] += least;
         column_potential_[j] -= least;
@@ -75,7 +84,9 @@ class Hungarian {
   }
 
   const CostTable& table_;
-  std::size_t size_;
+  bool turned_;
+  std::size_t rows_;
+  std::size_t columns_;
   double forbidden_;
   std::vector<double> row_potential_;
   std::vector<double> column_potential_;
@@ -90,12 +101,9 @@ class Hungarian {
 std::vector<std::optional<std::size_t>> assign(const CostTable& table) {
   std::vector<std::optional<std::size_t>> column_of(table.rows);
   if (table.rows == 0 || table.columns == 0) return column_of;
-  const Hungarian solved(table);
-  for (std::size_t column = 1; column <= table.columns; ++column) {
-    const std::size_t row = solved.row_of(column);
-    if (row == kFree || row > table.rows) continue;
-    if (table.at(row - 1, column - 1) <= table.gate) column_of[row - 1] = column - 1;
-  }
+  Hungarian(table).visit([&](std::size_t row, std::size_t column) {
+    if (table.at(row, column) <= table.gate) column_of[row] = column;
+  });
   return column_of;
 }
 

@@ -1,4 +1,5 @@
-// One-to-one assignment of rows to columns at least total cost (Hungarian method, O(n^3)).
+// One-to-one assignment of rows to columns at least total cost (Hungarian method, O(r^2 c) with r
+// the shorter side).
 #pragma once
 
 #include <optional>

@@ -9,17 +9,18 @@
 #include <utility>
 
 #include "common/body/bones.h"
+#include "fusion-server/associate/admission.h"
 #include "fusion-server/associate/assignment.h"
 
 namespace chorus::associate {
 namespace {
 
-constexpr std::size_t kMostTracks = 256;  // four times what a frame holds
-constexpr double kVelocityBlend = 0.2;  // share of the newest difference; smooths 30 Hz to ~0.15 s
+constexpr std::size_t kMaxTracks = 256;  // Four times what a frame holds.
+constexpr double kVelocityBlend = 0.2;   // share of the newest difference; smooths 30 Hz to ~0.15 s
 constexpr double kFastest = 4.0;  // [m/s] a sprint; keeps one wild view from throwing the track
 
 /// A body with its core point; bodies without any seen joint have none and are left out.
-struct Sight {
+struct PlacedView {
   SensorView view;
   Eigen::Vector3d core = Eigen::Vector3d::Zero();
 };
@@ -51,23 +52,23 @@ double horizontal_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 }
 
 /// In sensor and body order, so that the result does not depend on how the views arrived.
-std::vector<Sight> sights_of(std::vector<SensorView> views) {
-  std::vector<Sight> sights;
+std::vector<PlacedView> placed_views(std::vector<SensorView> views) {
+  std::vector<PlacedView> sights;
   for (SensorView& view : views) {
     const auto core = core_of(view.skeleton);
     if (core) sights.push_back({std::move(view), *core});
   }
-  std::sort(sights.begin(), sights.end(), [](const Sight& a, const Sight& b) {
+  std::sort(sights.begin(), sights.end(), [](const PlacedView& a, const PlacedView& b) {
     return std::tie(a.view.sensor, a.view.body) < std::tie(b.view.sensor, b.view.body);
   });
   return sights;
 }
 
-/// A track while its instant is being worked on.
+/// A track while its instant is being processed.
 struct Candidate {
   Track track;
   Eigen::Vector3d predicted = Eigen::Vector3d::Zero();
-  std::vector<Sight> sights;
+  std::vector<PlacedView> sights;
 };
 
 std::vector<Candidate> predict(const Tracks& tracks, Timestamp instant,
@@ -81,17 +82,17 @@ std::vector<Candidate> predict(const Tracks& tracks, Timestamp instant,
   return candidates;
 }
 
-/// One sensor's bodies to the tracks; what found no track is handed back.
-std::vector<Sight> match_sensor(std::vector<Sight> bodies, std::vector<Candidate>& candidates,
-                                double gate) {
+/// Assigns one sensor's bodies to the tracks; returns those without a track.
+std::vector<PlacedView> match_sensor(std::vector<PlacedView> bodies,
+                                     std::vector<Candidate>& candidates, double gate) {
   CostTable table{bodies.size(), candidates.size(), {}, gate};
-  for (const Sight& body : bodies) {
+  for (const PlacedView& body : bodies) {
     for (const Candidate& c : candidates) {
       table.cost.push_back(horizontal_distance(body.core, c.predicted));
     }
   }
   const auto chosen = assign(table);
-  std::vector<Sight> leftovers;
+  std::vector<PlacedView> leftovers;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     auto& home = chosen[i] ? candidates[*chosen[i]].sights : leftovers;
     home.push_back(std::move(bodies[i]));
@@ -99,38 +100,38 @@ std::vector<Sight> match_sensor(std::vector<Sight> bodies, std::vector<Candidate
   return leftovers;
 }
 
-std::vector<Sight> match(std::vector<Sight> sights, std::vector<Candidate>& candidates,
-                         double gate) {
-  std::map<SensorId, std::vector<Sight>> by_sensor;
-  for (Sight& sight : sights) by_sensor[sight.view.sensor].push_back(std::move(sight));
-  std::vector<Sight> leftovers;
+std::vector<PlacedView> match(std::vector<PlacedView> sights, std::vector<Candidate>& candidates,
+                              double gate) {
+  std::map<SensorId, std::vector<PlacedView>> by_sensor;
+  for (PlacedView& sight : sights) by_sensor[sight.view.sensor].push_back(std::move(sight));
+  std::vector<PlacedView> leftovers;
   for (auto& [sensor, bodies] : by_sensor) {
-    for (Sight& left : match_sensor(std::move(bodies), candidates, gate)) {
+    for (PlacedView& left : match_sensor(std::move(bodies), candidates, gate)) {
       leftovers.push_back(std::move(left));
     }
   }
   return leftovers;
 }
 
-bool has_sensor(const std::vector<Sight>& sights, const SensorId& sensor) {
+bool has_sensor(const std::vector<PlacedView>& sights, const SensorId& sensor) {
   return std::any_of(sights.begin(), sights.end(),
-                     [&](const Sight& s) { return s.view.sensor == sensor; });
+                     [&](const PlacedView& s) { return s.view.sensor == sensor; });
 }
 
-/// Complete linkage: farthest member; none when the sensor is in already.
-std::optional<double> linkage(const std::vector<Sight>& cluster, const Sight& sight) {
+/// Complete linkage: the farthest member; none when the sensor is in the cluster already.
+std::optional<double> linkage(const std::vector<PlacedView>& cluster, const PlacedView& sight) {
   if (has_sensor(cluster, sight.view.sensor)) return std::nullopt;
   double farthest = 0.0;
-  for (const Sight& member : cluster) {
+  for (const PlacedView& member : cluster) {
     farthest = std::max(farthest, horizontal_distance(member.core, sight.core));
   }
   return farthest;
 }
 
-std::vector<std::vector<Sight>> cluster(std::vector<Sight> sights, double limit) {
-  std::vector<std::vector<Sight>> clusters;
-  for (Sight& sight : sights) {
-    std::vector<Sight>* nearest = nullptr;
+std::vector<std::vector<PlacedView>> cluster(std::vector<PlacedView> sights, double limit) {
+  std::vector<std::vector<PlacedView>> clusters;
+  for (PlacedView& sight : sights) {
+    std::vector<PlacedView>* nearest = nullptr;
     double least = limit;
     for (auto& members : clusters) {
       const auto distance = linkage(members, sight);
@@ -149,12 +150,12 @@ std::vector<std::vector<Sight>> cluster(std::vector<Sight> sights, double limit)
 
 bool share_a_sensor(const Candidate& a, const Candidate& b) {
   return std::any_of(a.sights.begin(), a.sights.end(),
-                     [&](const Sight& s) { return has_sensor(b.sights, s.view.sensor); });
+                     [&](const PlacedView& s) { return has_sensor(b.sights, s.view.sensor); });
 }
 
-Eigen::Vector3d centre_of(const std::vector<Sight>& sights) {
+Eigen::Vector3d centre_of(const std::vector<PlacedView>& sights) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Sight& s : sights) sum += s.core;
+  for (const PlacedView& s : sights) sum += s.core;
   return sum / static_cast<double>(sights.size());
 }
 
@@ -174,14 +175,26 @@ void update(Candidate& candidate, Timestamp instant) {
   ++track.hits;
 }
 
+bool is_settled(const Track& track, const AssociationConfig& config) {
+  return track.admitted && track.hits >= config.confirm_frames;
+}
+
 /// Seen on one spot at this instant, but by different sensors.
 bool on_one_spot(const Candidate& a, const Candidate& b, double limit) {
   return !a.sights.empty() && !b.sights.empty() && !share_a_sensor(a, b) &&
          horizontal_distance(a.track.core, b.track.core) <= limit;
 }
 
-/// Candidates are in order of age, because ids only grow; the older one keeps the person.
+/// Published tracks first; within each group the older first, because ids only grow.
+void seniors_first(std::vector<Candidate>& candidates, const AssociationConfig& config) {
+  std::stable_partition(candidates.begin(), candidates.end(), [&](const Candidate& candidate) {
+    return is_settled(candidate.track, config);
+  });
+}
+
+/// Of two on one spot the senior one keeps the person.
 void merge_doubles(std::vector<Candidate>& candidates, const AssociationConfig& config) {
+  seniors_first(candidates, config);
   for (std::size_t i = 1; i < candidates.size(); ++i) {
     Candidate& young = candidates[i];
     const auto end = candidates.begin() + static_cast<std::ptrdiff_t>(i);
@@ -189,16 +202,32 @@ void merge_doubles(std::vector<Candidate>& candidates, const AssociationConfig& 
       return on_one_spot(older, young, config.cluster);
     });
     young.track.shadowed = old == end ? 0 : young.track.shadowed + 1;
-    const bool same_person = old != end && (young.track.hits < config.confirm_frames ||
-                                            young.track.shadowed >= config.merge_frames);
+    const bool published = is_settled(young.track, config);
+    const bool same_person =
+        old != end && (!published || young.track.shadowed >= config.merge_frames);
     if (!same_person) continue;
     std::move(young.sights.begin(), young.sights.end(), std::back_inserter(old->sights));
     candidates.erase(end);
     --i;
   }
+  std::ranges::sort(candidates, {}, [](const Candidate& one) { return one.track.id; });
 }
 
-/// As many as a frame holds: liars must not push out whom several sensors see.
+void admit(std::vector<Candidate>& candidates, const std::vector<Observer>& observers,
+           Duration elapsed, const AssociationConfig& config) {
+  const auto waits = [](const Candidate& candidate) { return !candidate.track.admitted; };
+  if (std::ranges::none_of(candidates, waits)) return;
+  std::vector<Assigned> bodies;
+  for (const Candidate& candidate : candidates) {
+    const bool settled = is_settled(candidate.track, config);
+    for (const PlacedView& sight : candidate.sights)
+      bodies.push_back({sight.view.sensor, sight.core, candidate.track.id, settled});
+  }
+  const Admission admission(observers, bodies, elapsed, config);
+  for (Candidate& candidate : candidates) admission.judge(candidate.track);
+}
+
+/// As many as a frame holds: false bodies must not displace people whom several sensors see.
 void keep_the_best(std::vector<Person>& people) {
   if (people.size() <= kMaxBodies) return;
   std::stable_partition(people.begin(), people.end(),
@@ -208,15 +237,13 @@ void keep_the_best(std::vector<Person>& people) {
             [](const Person& a, const Person& b) { return a.id < b.id; });
 }
 
-Grouping publish(std::vector<Candidate> candidates, std::uint64_t next_id,
-                 const AssociationConfig& config) {
+Grouping publish(std::vector<Candidate> candidates, const AssociationConfig& config) {
   Grouping grouping;
-  grouping.tracks.next_id = next_id;
   for (Candidate& candidate : candidates) {
     grouping.tracks.people.push_back(candidate.track);
-    if (candidate.sights.empty() || candidate.track.hits < config.confirm_frames) continue;
+    if (candidate.sights.empty() || !is_settled(candidate.track, config)) continue;
     Person person{candidate.track.id, {}};
-    for (Sight& sight : candidate.sights) person.views.push_back(std::move(sight.view));
+    for (PlacedView& sight : candidate.sights) person.views.push_back(std::move(sight.view));
     grouping.people.push_back(std::move(person));
   }
   keep_the_best(grouping.people);
@@ -225,13 +252,14 @@ Grouping publish(std::vector<Candidate> candidates, std::uint64_t next_id,
 
 }  // namespace
 
-Grouping group(std::vector<SensorView> views, Timestamp instant, const Tracks& tracks,
-               const AssociationConfig& config) {
+Grouping group(Scene scene, const Tracks& tracks, const AssociationConfig& config) {
+  const Timestamp instant = scene.instant;
   std::vector<Candidate> candidates = predict(tracks, instant, config);
-  std::vector<Sight> leftovers = match(sights_of(std::move(views)), candidates, config.gate);
+  std::vector<PlacedView> leftovers =
+      match(placed_views(std::move(scene.views)), candidates, config.gate);
   std::uint64_t next_id = std::max<std::uint64_t>(tracks.next_id, 1);
   for (auto& members : cluster(std::move(leftovers), config.cluster)) {
-    if (candidates.size() >= kMostTracks) break;
+    if (candidates.size() >= kMaxTracks) break;
     Candidate fresh;
     fresh.track.id = PersonId{next_id++};
     fresh.sights = std::move(members);
@@ -239,7 +267,12 @@ Grouping group(std::vector<SensorView> views, Timestamp instant, const Tracks& t
   }
   for (Candidate& candidate : candidates) update(candidate, instant);
   merge_doubles(candidates, config);
-  return publish(std::move(candidates), next_id, config);
+  const Duration elapsed = std::clamp(instant - tracks.instant, Duration{0}, config.coast);
+  admit(candidates, scene.observers, elapsed, config);
+  Grouping grouping = publish(std::move(candidates), config);
+  grouping.tracks.next_id = next_id;
+  grouping.tracks.instant = instant;
+  return grouping;
 }
 
 }  // namespace chorus::associate

@@ -9,8 +9,9 @@
 
 #include <fmt/format.h>
 
+#include "common/http/status.h"
+#include "common/record/cell_stream.h"
 #include "common/record/mcap_format.h"
-#include "common/record/session_stream.h"
 #include "common/resource/frame_resource.h"
 #include "fusion-server/client/live_poll.h"
 #include "fusion-server/client/recordings.h"
@@ -23,7 +24,6 @@ namespace fs = std::filesystem;
 constexpr std::string_view kFusedTopic = "/frame";
 constexpr std::size_t kMaxLineBytes = 16u << 20;
 constexpr std::size_t kMaxSamples = exporters::kMaxPoses;
-constexpr int kUnavailable = 503;  // no frame yet
 
 void add_body(FusedSamples& samples, const resource::BodyResource& body, Timestamp instant) {
   exporters::FusedSample sample{instant, PersonId{body.id}, {}};
@@ -61,10 +61,10 @@ Result<void> add_frame(FusedSamples& samples, const resource::FrameResource& fra
 Result<FusedFrames> read_recording_files(const std::string& source) {
   const auto files = find_recordings({source});
   if (!files) return pass(files);
-  record::SessionQuery query;
+  record::CellQuery query;
   query.fused = true;
   query.raw = false;
-  record::SessionStream stream(*files, query);
+  record::CellStream stream(*files, query);
   FusedFrames out;
   std::size_t frames = 0;
   std::string raw;  // a sensor whose own frames are there
@@ -139,7 +139,7 @@ Result<FusedFrames> read_file(const std::string& source) {
   return of_lines(file, source);
 }
 
-/// What a server says for a while: each frame once, by conditional long poll.
+/// A server's frames for a while: each one once, by conditional long poll.
 class Listening {
  public:
   Listening(const http::Url& server, std::string source)
@@ -169,7 +169,7 @@ class Listening {
     const auto frame = world_frame(answer.body, source_);
     if (!frame && frame.error().code == ErrorCode::Unsupported) return end_with(frame.error());
     if (!frame) return count_.cannot_read(frame.error());
-    // Where a server gives no ETag, the same frame comes again.
+    // A server without ETags may send the same frame again.
     if (count_.frames > 0 && frame->sequence == count_.last) return;
     if (auto added = add_frame(samples_, *frame, source_); !added) {
       count_.cannot_read(added.error());
@@ -181,7 +181,7 @@ class Listening {
   /// A server that is not there, or refuses from the start, is not waited for.
   void failed(const Error& error, int status) {
     count_.fail(error);
-    if (count_.frames > 0 || status == kUnavailable) return;
+    if (count_.frames > 0 || status == http::status::kUnavailable) return;
     Error why = error;
     if (status == 0) why.message += "; is chorus-fusion running there?";
     end_with(std::move(why));
@@ -198,7 +198,7 @@ class Listening {
   }
 
   std::string source_;
-  http::net::io_context io_{1};
+  asio::io_context io_{1};
   LivePoll poll_;
   FusedSamples samples_;
   StreamCount count_;

@@ -1,4 +1,4 @@
-// Fused frames from wherever they are: our recordings, NDJSON of `chorus fuse`, a running server.
+// Fused frames from any source: our recordings, NDJSON of `chorus fuse`, a running server.
 #pragma once
 
 #include <chrono>
@@ -19,14 +19,15 @@ struct FusedFrames {
   std::vector<std::string> notes;  ///< What is missing: damage, gaps, failures.
 };
 
-/// By the look of `source`: http://... is a fusion server (or anything with its /frame in world
-/// space), listened to for `listen`; "-" is NDJSON on standard input; a file that begins as MCAP,
-/// or a folder of .mcap, is a recording; any other file is NDJSON.  Frames in a sensor's own space
-/// are refused: they have to be fused first.  What a server has said is kept when it fails later.
+/// Chosen by the form of `source`: http://... is a fusion server (or anything with its /frame in
+/// world space), listened to for `listen`; "-" is NDJSON on standard input; a file that starts as
+/// MCAP does, or a folder of .mcap files, is a recording; any other file is NDJSON.  Frames in a
+/// sensor's own space are refused: they have to be fused first.  Frames from a server that fails
+/// later are kept.
 [[nodiscard]] Result<FusedFrames> read_fused_frames(const std::string& source,
                                                     std::chrono::milliseconds listen);
 
-/// A frame as NDJSON: its /frame document on one line, with its end.
+/// A frame as NDJSON: its /frame document on one line, with the line end.
 [[nodiscard]] std::string frame_line(const resource::FrameResource& frame);
 
 /// Lines as frame_line writes them; blank lines are fine.  `origin` names the text in messages.

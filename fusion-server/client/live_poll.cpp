@@ -2,12 +2,12 @@
 
 #include <utility>
 
+#include "common/http/status.h"
 #include "fusion-server/client/service_client.h"
 
 namespace chorus::client {
 namespace {
 
-constexpr int kOk = 200;
 constexpr std::chrono::seconds kAnswerWithin{8};  // the wait below and some network
 constexpr const char* kWait = "wait=5";
 constexpr std::chrono::milliseconds kAfterFailure{250};
@@ -32,7 +32,7 @@ void StreamCount::cannot_read(const Error& why) {
   error = to_string(why);
 }
 
-LivePoll::LivePoll(http::net::io_context& io, const http::Url& base, Options options, Takers takers)
+LivePoll::LivePoll(asio::io_context& io, const http::Url& base, Options options, Takers takers)
     : options_(std::move(options)),
       takers_(std::move(takers)),
       client_(io, base.host, base.port),
@@ -64,16 +64,16 @@ void LivePoll::ask() {
 
 void LivePoll::take(const Result<http::ClientResponse>& answer) {
   if (answer) answered_ = std::chrono::steady_clock::now();
-  const bool failed = !answer || answer->status >= kFirstErrorStatus;
+  const bool failed = !answer || answer->status >= http::status::kBadRequest;
   if (failed) {
     takers_.failure(answer ? refusal_of(*answer, options_.target) : answer.error(),
                     answer ? answer->status : 0);
   }
-  if (!failed && answer->status == kOk) deliver(*answer);
+  if (!failed && answer->status == http::status::kOk) deliver(*answer);
   if (stopped_) return;
   if (options_.every.count() > 0) return ask_after(options_.every);
   if (failed) return ask_after(kAfterFailure);
-  if (answer->status == kOk && !etag_.empty()) return ask();
+  if (answer->status == http::status::kOk && !etag_.empty()) return ask();
   ask_after(kAfterNothing);
 }
 
@@ -85,7 +85,7 @@ void LivePoll::deliver(const http::ClientResponse& answer) {
 
 void LivePoll::ask_after(std::chrono::milliseconds pause) {
   timer_.expires_after(pause);
-  timer_.async_wait([this](const http::error_code& error) {
+  timer_.async_wait([this](const net::error_code& error) {
     if (!error && !stopped_) ask();
   });
 }

@@ -6,12 +6,12 @@
 #include <functional>
 #include <string>
 
-#include "common/http/asio.h"
 #include "common/http/client.h"
+#include "common/net/asio.h"
 
 namespace chorus::client {
 
-/// What came of a resource whose answers are numbered frames.
+/// The counts of a resource whose answers are numbered frames.
 struct StreamCount {
   std::uint64_t frames = 0;
   std::uint64_t missed = 0;      ///< Gaps in the sequence.
@@ -30,22 +30,22 @@ class LivePoll {
   struct Options {
     std::string target;  ///< "/frame"
     std::string accept = "text/turtle";
-    /// Not a long poll but asked anew so often; zero: long poll.
+    /// Asked again after each such interval; zero: long poll instead.
     std::chrono::milliseconds every{0};
   };
   /// Both are called on the thread of `io`.
   struct Takers {
     std::function<void(const http::ClientResponse&)> answer;  ///< With status 200.
-    /// Status 0 is no answer at all; it is asked again all the same, a moment later.
+    /// Status 0: no answer at all.  It is asked again in any case, a moment later.
     std::function<void(const Error&, int status)> failure;
   };
 
-  LivePoll(http::net::io_context& io, const http::Url& base, Options options, Takers takers);
+  LivePoll(asio::io_context& io, const http::Url& base, Options options, Takers takers);
 
   void start() { ask(); }
   void stop();
 
-  /// Since when there has been no answer of any kind.
+  /// The time of the last answer of any kind.
   [[nodiscard]] std::chrono::steady_clock::time_point answered() const { return answered_; }
 
  private:
@@ -57,7 +57,7 @@ class LivePoll {
   Options options_;
   Takers takers_;
   http::AsyncClient client_;
-  http::Timer timer_;
+  net::Timer timer_;
   std::string etag_;
   bool stopped_ = false;
   std::chrono::steady_clock::time_point answered_ = std::chrono::steady_clock::now();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/base/json.h"
 #include "common/record/frame_recording.h"
 #include "common/resource/floor_plane_resource.h"
 #include "fusion-server/client/service_client.h"
@@ -43,8 +44,8 @@ record::ClockModel clock_of(const nlohmann::json& sensor) {
   return clock;
 }
 
-record::SessionHead head_of(const nlohmann::json& self, bool tracker) {
-  record::SessionHead head;
+record::CellHead head_of(const nlohmann::json& self, bool tracker) {
+  record::CellHead head;
   head.metadata["title"] = text_at(self, "title", "");
   head.single_sensor = !tracker;
   if (tracker) return head;
@@ -57,7 +58,7 @@ record::SessionHead head_of(const nlohmann::json& self, bool tracker) {
 
 }  // namespace
 
-Result<std::unique_ptr<LiveRecording>> LiveRecording::start(http::net::io_context& io,
+Result<std::unique_ptr<LiveRecording>> LiveRecording::start(asio::io_context& io,
                                                             LiveRecordingOptions options) {
   const std::string url = "http://" + options.service.host + ":" +
                           std::to_string(options.service.port) + options.service.target;
@@ -107,7 +108,7 @@ void LiveRecording::poll_state(LivePoll::Options what, Take take) {
                          take(answer);
                        },
                        [this, path](const Error& error, int) {
-                         // What a service does not have, such as a floor, is no trouble.
+                         // What a service does not have, such as a floor, is not an error.
                          if (error.code != ErrorCode::NotFound) troubles_[path] = to_string(error);
                        }});
 }
@@ -168,7 +169,7 @@ void LiveRecording::take_fused(const http::ClientResponse& answer) {
 }
 
 void LiveRecording::take_clocks(const http::ClientResponse& answer) {
-  const auto list = nlohmann::json::parse(answer.body, nullptr, false);
+  const auto list = parse_json(answer.body).value_or(nlohmann::json());
   for (const auto& [name, sensor] : part_at(list, "sensors").items()) {
     if (const auto id = SensorId::parse(name)) clocks_[*id] = clock_of(sensor);
   }

@@ -25,22 +25,23 @@ struct LiveRecordingOptions {
 /// Everything on the thread of one io_context; the file on the recorder's.
 class LiveRecording {
  public:
-  /// Asks the service what it is and begins.  Errors: it does not answer, is no Chorus service, or
-  /// the file cannot be made.
-  [[nodiscard]] static Result<std::unique_ptr<LiveRecording>> start(http::net::io_context& io,
+  /// Asks the service what it is and begins.  Errors: it does not answer, it is no Chorus service,
+  /// or the file cannot be created.
+  [[nodiscard]] static Result<std::unique_ptr<LiveRecording>> start(asio::io_context& io,
                                                                     LiveRecordingOptions options);
   /// Ends polling and waits for the file.
   [[nodiscard]] record::RecordingReport stop();
 
-  /// By topic: "/frame", "/sensors/s1/frame"; all that the service announced, from the beginning.
+  /// By topic: "/frame", "/sensors/s1/frame"; all topics that the service announced, from the
+  /// beginning.
   [[nodiscard]] const std::map<std::string, StreamCount>& counts() const { return counts_; }
   /// What went wrong with the states beside the frames (clocks, registration), by path.
   [[nodiscard]] const std::map<std::string, std::string>& troubles() const { return troubles_; }
-  /// How long nothing at all has answered.
+  /// For how long nothing at all has answered.
   [[nodiscard]] std::chrono::steady_clock::duration silence() const;
 
  private:
-  LiveRecording(http::net::io_context& io, LiveRecordingOptions options)
+  LiveRecording(asio::io_context& io, LiveRecordingOptions options)
       : io_(io), options_(std::move(options)) {}
 
   using Take = std::function<void(const http::ClientResponse&)>;
@@ -54,7 +55,7 @@ class LiveRecording {
   void take_clocks(const http::ClientResponse& answer);
   void take_registration(const http::ClientResponse& answer);
 
-  http::net::io_context& io_;
+  asio::io_context& io_;
   LiveRecordingOptions options_;
   std::unique_ptr<record::Recorder> recorder_;
   std::deque<LivePoll> polls_;

@@ -21,21 +21,22 @@ Result<std::vector<fs::path>> find_recordings(const std::vector<fs::path>& input
   return all;
 }
 
-Result<record::Session> read_recordings(const std::vector<fs::path>& files, std::ostream* notes) {
-  auto session = record::read_session(files);
-  if (!session) return session;
-  if (session->sensors.empty())
+Result<record::CellRecording> read_recordings(const std::vector<fs::path>& files,
+                                              std::ostream* notes) {
+  auto cell = record::read_cell(files);
+  if (!cell) return cell;
+  if (cell->sensors.empty())
     return fail(ErrorCode::NotFound, files.front().string(),
                 "holds no frames of a sensor; was it recorded with --fused alone?");
   if (notes != nullptr) {
-    for (const std::string& note : notes_of(*session)) *notes << "note: " << note << '\n';
+    for (const std::string& note : notes_of(*cell)) *notes << "note: " << note << '\n';
   }
-  return session;
+  return cell;
 }
 
-std::vector<std::string> notes_of(const record::Session& session) {
-  std::vector<std::string> notes = session.damage;
-  for (const auto& recording : session.sensors) {
+std::vector<std::string> notes_of(const record::CellRecording& cell) {
+  std::vector<std::string> notes = cell.damage;
+  for (const auto& recording : cell.sensors) {
     const auto left_out = recording.notes.find("left_out");
     if (left_out != recording.notes.end())
       notes.push_back(recording.sensor.str() + ": left out " + left_out->second);

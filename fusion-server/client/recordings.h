@@ -1,4 +1,4 @@
-// Which recordings a command line means: folders stand for the .mcap files in them.
+// Which recordings a command line names: a folder stands for the .mcap files in it.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/base/result.h"
-#include "common/record/session_reader.h"
+#include "common/record/cell_reader.h"
 
 namespace chorus::client {
 
@@ -15,12 +15,12 @@ namespace chorus::client {
 [[nodiscard]] Result<std::vector<std::filesystem::path>> find_recordings(
     const std::vector<std::filesystem::path>& inputs);
 
-/// Read whole; refuses none at all, and two of the same sensor unless they are parts of one
-/// recording.  What was damaged or left out is told on `notes`, unless that is null.
-[[nodiscard]] Result<record::Session> read_recordings(
+/// Read whole.  Refuses an empty list, and two recordings of the same sensor unless they are parts
+/// of one recording.  Damaged or omitted parts are reported on `notes`, unless that is null.
+[[nodiscard]] Result<record::CellRecording> read_recordings(
     const std::vector<std::filesystem::path>& files, std::ostream* notes);
 
-/// What reading had to leave out, a line each: damage once, then by sensor.
-[[nodiscard]] std::vector<std::string> notes_of(const record::Session& session);
+/// What reading had to leave out, one line each: damage once, then by sensor.
+[[nodiscard]] std::vector<std::string> notes_of(const record::CellRecording& cell);
 
 }  // namespace chorus::client

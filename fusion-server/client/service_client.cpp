@@ -3,6 +3,9 @@
 #include <cstdlib>
 #include <limits>
 
+#include "common/base/json.h"
+#include "common/http/status.h"
+
 #include <fmt/format.h>
 
 namespace chorus::client {
@@ -20,17 +23,15 @@ std::vector<std::pair<std::string, std::string>> authorization() {
 }
 
 Error refusal_of(const http::ClientResponse& answer, const std::string& where) {
-  const auto problem = nlohmann::json::parse(answer.body, nullptr, false);
+  const auto problem = parse_json(answer.body).value_or(nlohmann::json());
   std::string message = fmt::format("answers with status {}", answer.status);
   for (const char* key : {"title", "detail"}) {
     if (problem.is_object() && problem.contains(key) && problem[key].is_string())
       message += ": " + problem[key].get<std::string>();
   }
-  constexpr int kNotFound = 404;
-  constexpr int kConflict = 409;
   auto code = ErrorCode::Unavailable;
-  if (answer.status == kNotFound) code = ErrorCode::NotFound;
-  if (answer.status == kConflict) code = ErrorCode::Conflict;
+  if (answer.status == http::status::kNotFound) code = ErrorCode::NotFound;
+  if (answer.status == http::status::kConflict) code = ErrorCode::Conflict;
   return {code, where, message};
 }
 
@@ -68,10 +69,11 @@ Result<nlohmann::json> ServiceClient::ask(std::string_view method, std::string_v
   if (!answer)
     return fail(answer.error().code, where,
                 answer.error().message + "; is chorus-fusion running there?");
-  if (answer->status >= kFirstErrorStatus) return tl::unexpected<Error>(refusal_of(*answer, where));
+  if (answer->status >= http::status::kBadRequest)
+    return tl::unexpected<Error>(refusal_of(*answer, where));
   if (answer->body.empty()) return nlohmann::json();
-  auto parsed = nlohmann::json::parse(answer->body, nullptr, false);
-  if (parsed.is_discarded())
+  auto parsed = parse_json(answer->body, {.bytes = answer->body.size()});
+  if (!parsed)
     return fail(ErrorCode::Malformed, where, "does not answer in JSON. Is it a Chorus service?");
   return parsed;
 }

@@ -1,5 +1,4 @@
-// Asking a fusion server, as JSON.  Problem documents (RFC 9457) become errors that keep their
-// words.
+// Asks a fusion server, in JSON.  Problem documents (RFC 9457) become errors with the same words.
 #pragma once
 
 #include <string>
@@ -14,12 +13,10 @@
 
 namespace chorus::client {
 
-inline constexpr int kFirstErrorStatus = 400;
-
-/// What a problem document says, or the bare status; `where` was asked.
+/// The error a problem document states, or the bare status; `where`: what was asked.
 [[nodiscard]] Error refusal_of(const http::ClientResponse& answer, const std::string& where);
 
-/// The header that goes with every request: the bearer token in CHORUS_TOKEN, where one is set.
+/// The header of every request: the bearer token in CHORUS_TOKEN, if one is set.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> authorization();
 
 inline constexpr const char* kDefaultServer = "http://127.0.0.1:8080/";
@@ -43,7 +40,7 @@ class ServiceClient {
   http::Url base_;
 };
 
-/// Members that may be absent or of another type: what people see then is the fallback.
+/// Members that may be absent or of another type: the fallback is shown then.
 [[nodiscard]] std::string text_at(const nlohmann::json& object, const char* key,
                                   std::string fallback = "-");
 [[nodiscard]] double number_at(const nlohmann::json& object, const char* key);  ///< NaN if none.

@@ -81,7 +81,7 @@ std::optional<Eigen::Isometry3d> between_worlds(const Registration& current,
   return fit->target_from_source;
 }
 
-/// Chain and error from our master on, whatever master the candidate had.
+/// Chain and error from our master, whatever the candidate's master was.
 void lead_from_master(const Registration& current, Extrinsics& place) {
   if (place.chain.empty() || place.chain.front() == current.master) return;
   const auto known = current.sensors.find(place.chain.front());
@@ -108,7 +108,7 @@ void add_once(std::vector<std::string>& reasons, const std::vector<std::string>&
   }
 }
 
-/// Reasons of the candidate that speak of no sensor in particular.
+/// Those of the candidate's reasons that name no sensor.
 std::vector<std::string> common_reasons(const Registration& registration) {
   std::vector<std::string> reasons = registration.reasons;
   for (const auto& [sensor, own] : registration.verdicts) {
@@ -117,7 +117,7 @@ std::vector<std::string> common_reasons(const Registration& registration) {
   return reasons;
 }
 
-/// Replaces what is known of one sensor's standing.
+/// Replaces what is known about one sensor's standing.
 void take_verdict(Registration& registration, const SensorId& sensor, SensorVerdict verdict) {
   const auto shared = common_reasons(registration);
   registration.verdicts[sensor] = std::move(verdict);
@@ -126,7 +126,8 @@ void take_verdict(Registration& registration, const SensorId& sensor, SensorVerd
     add_once(registration.reasons, own.reasons);
 }
 
-/// With what speaks against the whole walk, if that is why it is not good.
+/// A sensor's verdict with its own reasons; if it is not Good, also with those that concern the
+/// whole walk.
 SensorVerdict sentence_of(const Registration& candidate, const SensorId& sensor) {
   SensorVerdict sentence{verdict_of(candidate, sensor), {}};
   const auto own = candidate.verdicts.find(sensor);
@@ -144,7 +145,7 @@ Verdict least_of_placed(const Registration& registration) {
   return least;
 }
 
-/// Registrations of before verdicts were per sensor, and given ones.
+/// Registrations from before there were verdicts per sensor, and given ones.
 void spell_out_verdicts(Registration& registration) {
   for (const auto& [sensor, place] : registration.sensors)
     registration.verdicts.try_emplace(sensor, SensorVerdict{registration.verdict, {}});
@@ -164,7 +165,7 @@ bool should_replace(const Registration& current, const Registration& candidate, 
   if (!covers(candidate, current)) return false;
   if (rank(candidate.verdict) != rank(current.verdict))
     return rank(candidate.verdict) > rank(current.verdict);
-  // A provisional solve in the middle of a walk does not push a good one aside; its end may.
+  // A provisional solve in the middle of a walk does not replace a good registration; its end may.
   return kind == SolveKind::Final || current.verdict == Verdict::Provisional;
 }
 

@@ -25,10 +25,10 @@ std::vector<SensorId> those(const Situation& s, Wanted wanted) {
   return found;
 }
 
-/// Who is silent; true when nobody delivers, so that nothing else matters.
+/// Names the silent sensors; true when none delivers, so that nothing else matters.
 bool say_silent(const Situation& s, std::vector<std::string>& out) {
   const auto silent =
-      those(s, [&](const SensorId& sensor) { return !s.sightings.delivers(sensor, s.now); });
+      those(s, [&](const SensorId& sensor) { return !s.last_seen.delivers(sensor, s.now); });
   if (s.sensors.empty()) {
     out.emplace_back("no sensors are configured: add them under \"sensors\" in the configuration");
   } else if (silent.size() == s.sensors.size()) {
@@ -41,12 +41,12 @@ bool say_silent(const Situation& s, std::vector<std::string>& out) {
   return silent.size() == s.sensors.size();
 }
 
-/// What keeps a walk from being one; true when somebody walks in sight of enough sensors.
+/// What is still missing for a walk; true when somebody walks in sight of enough sensors.
 bool say_walker(const Situation& s, std::vector<std::string>& out) {
   const auto seeing =
-      those(s, [&](const SensorId& sensor) { return s.sightings.bodies(sensor, s.now) > 0; });
+      those(s, [&](const SensorId& sensor) { return s.last_seen.bodies(sensor, s.now) > 0; });
   const auto crowded =
-      those(s, [&](const SensorId& sensor) { return s.sightings.bodies(sensor, s.now) > 1; });
+      those(s, [&](const SensorId& sensor) { return s.last_seen.bodies(sensor, s.now) > 1; });
   const std::size_t enough = std::min<std::size_t>(2, s.sensors.size());
   if (seeing.empty()) {
     out.emplace_back(

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fusion-server/core/sightings.h"
+#include "fusion-server/core/last_seen.h"
 #include "fusion-server/status.h"
 
 namespace chorus::core {
@@ -14,7 +14,7 @@ namespace chorus::core {
 struct Situation {
   const std::set<SensorId>& sensors;  ///< Configured ones.
   const Registration& registration;
-  const Sightings& sightings;
+  const LastSeen& last_seen;
   const SessionStatus* session = nullptr;  ///< The one that runs; null: none does.
   bool automatic = true;                   ///< Sessions start by themselves.
   std::optional<Duration> retry;           ///< Until one may start by itself again.

@@ -50,7 +50,7 @@ void FusionCore::take(SensorFrame frame) {
   registrar_.take(frame);
 }
 
-/// Takes out what is no body of a person; the others of the frame stay.
+/// Removes bodies that are not a person's; the others of the frame stay.
 void FusionCore::sift(SensorFrame& frame) {
   const associate::BodyLimits& limits = config_.pipeline.association.bodies;
   std::string_view why;
@@ -125,7 +125,7 @@ Duration FusionCore::idle(Timestamp now) {
 void FusionCore::forget() {
   registrar_.forget();
   memory_.tracks.people.clear();  // the ids go on
-  memory_.sides.clear();
+  memory_.sides.people.clear();   // a sensor's habits stay its own
   hindsight_.forget();
 }
 

@@ -39,10 +39,10 @@ class FusionCore {
 
   /// The next snapshot when its time has come.
   [[nodiscard]] std::optional<Snapshot> tick(Timestamp now);
-  /// An earlier snapshot once more, now with the frames that came too late for it: the people's ids
-  /// are the same.  Ask after each tick; none is the rule.
+  /// An earlier snapshot once more, with frames that came too late for it: people keep their ids.
+  /// Ask after each tick; usually there is none.
   [[nodiscard]] std::optional<Snapshot> amended(Timestamp now);
-  /// How long nothing will come unless a frame arrives.
+  /// How long nothing is due unless a frame arrives.
   [[nodiscard]] Duration idle(Timestamp now);
 
   /// See Registrar.
@@ -58,26 +58,26 @@ class FusionCore {
   Outcome solved(Solution solution, Timestamp now);
 
   [[nodiscard]] const Registration& registration() const { return registrar_.registration(); }
-  /// All but storage and commands, which are not ours.
+  /// All of it except storage and commands, which belong to others.
   [[nodiscard]] RegistrationProgress progress(Timestamp now) const;
 
   [[nodiscard]] const std::vector<SensorReport>& reports() const noexcept { return reports_; }
   /// Bodies in the sensor's newest frame, with a place or without.
   [[nodiscard]] std::size_t bodies(const SensorId& sensor, Timestamp now) const {
-    return registrar_.sightings().bodies(sensor, now);
+    return registrar_.last_seen().bodies(sensor, now);
   }
   [[nodiscard]] std::uint64_t refused(const SensorId& sensor) const;
-  /// What of this sensor has been refused within the last seconds, and why; empty: nothing.
+  /// Why something from this sensor was refused in the last few seconds; empty: nothing was.
   [[nodiscard]] std::string complaint(const SensorId& sensor, Timestamp now) const;
   [[nodiscard]] Share share(const SensorId& sensor) const { return shares_.of(sensor); }
   [[nodiscard]] std::uint64_t skipped() const noexcept { return schedule_.skipped(); }
-  /// No person has had this id or a higher one.
+  /// No person has had this id or a higher one yet.
   [[nodiscard]] std::uint64_t next_person() const noexcept { return memory_.tracks.next_id; }
 
  private:
   struct Refusals {
     std::uint64_t count = 0;
-    Timestamp last;  ///< Receipt of the last frame with something to refuse.
+    Timestamp last;  ///< Receipt of the last frame with something refused.
     std::string_view why;
   };
 

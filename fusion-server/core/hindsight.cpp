@@ -6,7 +6,7 @@
 namespace chorus::core {
 namespace {
 
-constexpr std::size_t kMostWaiting = 512;  // two seconds at 240 Hz
+constexpr std::size_t kMaxWaiting = 512;  // two seconds at 240 Hz
 constexpr double kBlend = 1.0 / 30.0;
 
 void blend(double& average, double now) { average += kBlend * (now - average); }
@@ -34,7 +34,7 @@ void Hindsight::remember(Answered answered) {
   if (answered.without.empty()) return;
   if (!waiting_.empty() && answered.tick.instant <= waiting_.back().tick.instant) forget();
   waiting_.push_back(std::move(answered));
-  if (waiting_.size() > kMostWaiting) waiting_.pop_front();
+  if (waiting_.size() > kMaxWaiting) waiting_.pop_front();
 }
 
 std::optional<Answered> Hindsight::due(Timestamp now) {

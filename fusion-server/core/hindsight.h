@@ -1,4 +1,4 @@
-// Instants that were answered without a sensor, for a second answer when its frames have come.
+// Instants that were answered without a sensor, kept for a second answer once its frames have come.
 #pragma once
 
 #include <deque>
@@ -11,16 +11,16 @@
 
 namespace chorus::core {
 
-/// Of all joints of a snapshot, those that each of its sensors contributed to [0, 1]; empty without
-/// bodies.
+/// For each sensor of a snapshot, the share of all joints that it contributed to [0, 1]; empty
+/// without bodies.
 using Parts = std::map<SensorId, double>;
 [[nodiscard]] Parts parts_of(const Snapshot& snapshot);
 
-/// An instant as it was answered, and what the answer stood on.
+/// An instant as it was answered, with what the answer was based on.
 struct Answered {
   Tick tick;
-  pipeline::Memory before;        ///< What the instants before had left.
-  std::vector<SensorId> without;  ///< Sensors with a place that had nothing to say in time.
+  pipeline::Memory before;        ///< What earlier instants had left.
+  std::vector<SensorId> without;  ///< Sensors with a place whose frames did not arrive in time.
   Parts parts;
 };
 
@@ -28,9 +28,9 @@ class Hindsight {
  public:
   explicit Hindsight(Duration delay) : delay_(delay) {}
 
-  /// Complete ones need not be told.
+  /// Complete instants need not be added.
   void remember(Answered answered);
-  /// The oldest instant that is so long ago that late frames must have come by now.
+  /// The oldest instant old enough for late frames to have arrived by now.
   [[nodiscard]] std::optional<Answered> due(Timestamp now);
   void forget() { waiting_.clear(); }
 
@@ -39,14 +39,14 @@ class Hindsight {
   std::deque<Answered> waiting_;
 };
 
-/// What a sensor has to do with the fused bodies, each averaged over about a second [0, 1].
+/// A sensor's part in the fused bodies, each averaged over about a second [0, 1].
 struct Share {
-  double in_time = 0.0;     ///< Of all joints, those that it contributed to.
+  double in_time = 0.0;     ///< Share of all joints that it contributed to.
   double afterwards = 0.0;  ///< The same with its late frames, as /frame?at= has it.
-  double awaited = 0.0;     ///< Of all instants, those whose answer waited for it to the last.
+  double awaited = 0.0;     ///< Share of all instants whose answer waited for it to the last.
 };
 
-/// Shares of all sensors, instant by instant.
+/// Shares of all sensors, updated instant by instant.
 class Shares {
  public:
   void answered(const Snapshot& snapshot, const std::vector<SensorId>& awaited);

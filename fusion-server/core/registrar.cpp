@@ -11,10 +11,11 @@ namespace chorus::core {
 namespace {
 
 constexpr std::size_t kSessionsKept = 8;
-/// A sensor that could not be placed starts no session by itself for this long, then twice as long.
+/// A sensor that could not be placed starts no session for this long, then for twice as long, and
+/// so on.
 constexpr Duration kFirstRetry = std::chrono::seconds(30);
-constexpr int kMostDoublings = 5;  // 16 minutes
-/// After somebody has cancelled a session none starts by itself for this long.
+constexpr int kMaxDoublings = 5;  // 16 minutes
+/// After somebody has cancelled a session, none starts by itself for this long.
 constexpr Duration kAfterCancel = std::chrono::seconds(60);
 
 void keep_configured(Registration& registration, const std::set<SensorId>& sensors) {
@@ -35,12 +36,12 @@ void Registrar::reconfigure(RegistrarConfig config) {
   const bool same_session = config.session == config_.session;
   config_ = std::move(config);
   if (!same_session && !session_.collecting()) session_ = RegistrationSession(config_.session);
-  sightings_.keep(config_.sensors);
+  last_seen_.keep(config_.sensors);
   std::erase_if(retries_, [&](const auto& e) { return !config_.sensors.contains(e.first); });
 }
 
 void Registrar::take(const SensorFrame& frame) {
-  sightings_.add(frame);
+  last_seen_.add(frame);
   session_.add(frame);
 }
 
@@ -115,8 +116,8 @@ bool Registrar::waits(const SensorId& sensor, Timestamp now) const {
 void Registrar::start_by_itself(Timestamp now) {
   const bool busy = !sessions_.empty() && running(sessions_.front());
   if (!config_.session.automatic || busy || now < not_before_) return;
-  const std::set<SensorId> seeing = sightings_.seeing(now);
-  // One sensor alone has nobody to be registered with, unless it is the only one there is.
+  const std::set<SensorId> seeing = last_seen_.seeing(now);
+  // A single sensor has nobody to be registered with, unless it is the only one there is.
   const bool enough = seeing.size() >= 2 || (seeing.size() == 1 && config_.sensors.size() == 1);
   std::set<SensorId> missing = unplaced(registration_, seeing);
   std::erase_if(missing, [&](const SensorId& sensor) { return waits(sensor, now); });
@@ -125,7 +126,7 @@ void Registrar::start_by_itself(Timestamp now) {
 
 std::optional<SolveJob> Registrar::due_job(Timestamp now) {
   if (solving_) {
-    // Nobody wants to know any more how half of the walk looked.
+    // Nobody needs the result for half of the walk any more.
     if (solving_kind_ == SolveKind::Provisional && session_.final_due()) stop_solve_.request_stop();
     return std::nullopt;
   }
@@ -179,7 +180,7 @@ Outcome Registrar::solved(Solution solution, Timestamp now) {
       !sessions_.empty() && running(sessions_.front()) && sessions_.front().id == solution.session;
   if (!wanted || solution.given_up) return Outcome::Nothing;
   session_.solved_in(solution.cost);
-  // Places of sensors that are no longer configured do not bind the new registration.
+  // Places of sensors that are no longer configured do not constrain the new registration.
   keep_configured(registration_, config_.sensors);
   if (before_) keep_configured(*before_, config_.sensors);
   sessions_.front().verdict = solution.registration.verdict;
@@ -198,7 +199,7 @@ Outcome Registrar::settle_provisional(const Registration& candidate) {
   return Outcome::Adopted;
 }
 
-/// Weighed against what was there before the session: its own provisional ones do not count.
+/// Compared with what was in use before the session: its own provisional ones do not count.
 Outcome Registrar::settle_final(const Registration& candidate, Timestamp now) {
   SessionStatus& current = sessions_.front();
   auto next =
@@ -221,7 +222,7 @@ Outcome Registrar::settle_final(const Registration& candidate, Timestamp now) {
 void Registrar::explain_refusal(const Registration& candidate, const Error& why, bool withdrawn) {
   SessionStatus& current = sessions_.front();
   const bool none = registration_.sensors.empty();
-  // One that started by itself was there for the sensors without a place only.
+  // An automatic session concerns only the sensors without a place.
   if (current.automatic && !none) current.verdict = Verdict::Refused;
   current.reasons = shortfalls(candidate);
   if (why.code == ErrorCode::Conflict) current.reasons.push_back(why.message);
@@ -238,7 +239,7 @@ void Registrar::back_off(const Registration& candidate, Timestamp now) {
       continue;
     }
     Retry& retry = retries_[sensor];
-    retry.not_before = now + kFirstRetry * (1 << std::min(retry.failures, kMostDoublings));
+    retry.not_before = now + kFirstRetry * (1 << std::min(retry.failures, kMaxDoublings));
     ++retry.failures;
   }
 }
@@ -254,17 +255,17 @@ std::vector<SessionStatus> Registrar::sessions() const {
 
 std::vector<std::string> Registrar::awaits(Timestamp now) const {
   const auto all = sessions();
-  Situation situation{config_.sensors,           registration_, sightings_, nullptr,
+  Situation situation{config_.sensors,           registration_, last_seen_, nullptr,
                       config_.session.automatic, std::nullopt,  now};
   if (!all.empty() && running(all.front())) situation.session = &all.front();
   situation.retry = retry_in(now);
   return awaited(situation);
 }
 
-/// Until the first of the sensors that see somebody may start a session again.
+/// How long until the first unplaced sensor that sees somebody may start a session; nothing: now.
 std::optional<Duration> Registrar::retry_in(Timestamp now) const {
   std::optional<Timestamp> first;
-  for (const SensorId& sensor : unplaced(registration_, sightings_.seeing(now))) {
+  for (const SensorId& sensor : unplaced(registration_, last_seen_.seeing(now))) {
     const Timestamp at = waits(sensor, now) ? retries_.at(sensor).not_before : now;
     first = std::min(first.value_or(at), at);
   }

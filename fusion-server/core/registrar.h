@@ -1,8 +1,8 @@
 // The registration in use, the session that improves it, and the record of the last few sessions.
 //
-// No thread, no socket, no clock: frames, wishes and solutions go in, solve jobs come out.  A
-// session's provisional registrations are its own: when its last solve is refused they are taken
-// back.  A sensor that could not be placed does not start sessions by itself again and again.
+// No thread, no socket, no clock: frames, requests and solutions go in, solve jobs come out.  A
+// session's provisional registrations belong to it: when its last solve is refused, they are
+// withdrawn.  A sensor that could not be placed does not start sessions by itself again and again.
 #pragma once
 
 #include <deque>
@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "fusion-server/core/adoption.h"
+#include "fusion-server/core/last_seen.h"
 #include "fusion-server/core/registration_session.h"
-#include "fusion-server/core/sightings.h"
 #include "fusion-server/status.h"
 
 namespace chorus::core {
@@ -26,7 +26,7 @@ struct SolveJob {
   SolveKind kind = SolveKind::Provisional;
   SharedWalk walk;
   registration::RegistrationConfig config;
-  std::stop_token stop;  ///< Its result is not wanted any more.
+  std::stop_token stop;  ///< Stopped when its result is no longer wanted.
 };
 
 struct Solution {
@@ -34,7 +34,7 @@ struct Solution {
   SolveKind kind = SolveKind::Provisional;
   Registration registration;
   Duration cost{0};       ///< How long the solve took.
-  bool given_up = false;  ///< Stopped half-way: no result.
+  bool given_up = false;  ///< Stopped before the end: no result.
 };
 
 struct RegistrarConfig {
@@ -47,7 +47,7 @@ struct RegistrarConfig {
 enum class Outcome {
   Nothing,    ///< The registration in use stays.
   Adopted,    ///< It was replaced or extended.
-  Withdrawn,  ///< The session's own provisional one was taken back.
+  Withdrawn,  ///< The session's own provisional registration was withdrawn.
 };
 
 class Registrar {
@@ -57,10 +57,10 @@ class Registrar {
   void reconfigure(RegistrarConfig config);
   void take(const SensorFrame& frame);
 
-  /// Starts a session, or takes over the one that runs by itself, and returns its id; Conflict when
+  /// Starts a session, or takes over the automatic one that runs, and returns its id; Conflict when
   /// somebody has started the one that runs.
   [[nodiscard]] Result<std::uint64_t> start(Duration target, Timestamp now);
-  /// Ends this session as if it had never been; NotFound when it does not run.
+  /// Cancels this session and all its effects; NotFound when it is not running.
   [[nodiscard]] Result<void> cancel(std::uint64_t session, Timestamp now);
   /// Cancels the session and forgets the registration.
   void forget();
@@ -70,11 +70,11 @@ class Registrar {
   Outcome solved(Solution solution, Timestamp now);
 
   [[nodiscard]] const Registration& registration() const noexcept { return registration_; }
-  [[nodiscard]] const Sightings& sightings() const noexcept { return sightings_; }
+  [[nodiscard]] const LastSeen& last_seen() const noexcept { return last_seen_; }
   /// Newest first.
   [[nodiscard]] std::vector<SessionStatus> sessions() const;
   [[nodiscard]] std::uint64_t next_session() const noexcept { return next_session_; }
-  /// What is missing for (a better) registration, one sentence for a person each.
+  /// What is missing for a (better) registration, one sentence for people each.
   [[nodiscard]] std::vector<std::string> awaits(Timestamp now) const;
 
  private:
@@ -99,15 +99,15 @@ class Registrar {
   RegistrarConfig config_;
   Registration registration_;
   RegistrationSession session_;
-  Sightings sightings_;
+  LastSeen last_seen_;
   std::uint64_t next_session_;
-  std::deque<SessionStatus> sessions_;  ///< Newest first; its front is the one that runs, if any.
-  std::optional<Registration> before_;  ///< Set while what is in use is the session's own.
+  std::deque<SessionStatus> sessions_;  ///< Newest first; the running one, if any, is at the front.
+  std::optional<Registration> before_;  ///< Set while the session's own registration is in use.
   bool solving_ = false;
   std::stop_source stop_solve_;
   SolveKind solving_kind_ = SolveKind::Provisional;
   std::map<SensorId, Retry> retries_;
-  Timestamp not_before_{};  ///< No session by itself earlier.
+  Timestamp not_before_{};  ///< No automatic session before this.
 };
 
 }  // namespace chorus::core

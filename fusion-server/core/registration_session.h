@@ -20,8 +20,8 @@ struct SessionConfig {
   Duration target = std::chrono::seconds(30);      ///< Seconds of walk until the final solve.
   Duration first_solve = std::chrono::seconds(6);  ///< First provisional solve.
   Duration solve_every = std::chrono::seconds(2);
-  Duration max_pause =
-      std::chrono::milliseconds(500);  ///< Nobody in sight for longer is not walking.
+  /// A longer time with nobody in sight does not count as walking.
+  Duration max_pause = std::chrono::milliseconds(500);
   std::size_t max_frames = 20000;  ///< Per sensor; more are dropped, so that memory stays bounded.
 
   bool operator==(const SessionConfig&) const = default;
@@ -46,14 +46,14 @@ class RegistrationSession {
   /// Starts to collect; what was collected before is forgotten.
   void start(Duration target);
   void cancel();
-  /// How much walk is wanted from now on; what was collected stays.
+  /// Sets how much walk is wanted from now on; what was collected stays.
   void retarget(Duration target) { target_ = target; }
 
   /// Takes note of a frame; one without bodies only shows that nobody is there.
   void add(const SensorFrame& frame);
 
-  /// At most one answer per step of walk: a solve that should run now on walk().  After Final the
-  /// session is no longer collecting.
+  /// At most one answer per step of the walk: a solve of walk() that should run now.  After Final
+  /// the session no longer collects.
   [[nodiscard]] std::optional<SolveKind> due();
   [[nodiscard]] bool final_due() const noexcept { return collecting_ && elapsed_ >= target_; }
   /// How long the last solve took: the next provisional one waits three times as long.
@@ -62,7 +62,7 @@ class RegistrationSession {
   [[nodiscard]] bool collecting() const noexcept { return collecting_; }
   [[nodiscard]] Duration elapsed() const noexcept { return elapsed_; }
   [[nodiscard]] Duration target() const noexcept { return target_; }
-  /// Shares what has been collected; after the end of collecting it hands it over.
+  /// Shares what has been collected; once collecting has ended, hands it over.
   [[nodiscard]] SharedWalk walk();
 
  private:

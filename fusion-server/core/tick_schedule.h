@@ -1,6 +1,6 @@
 // When the fused output ticks: instants on the grid k / rate of UTC, each answered once, in order.
 //
-// Pure: the caller says what time it is and whether the pipeline could already answer completely.
+// Pure: the caller says what time it is and whether the pipeline could answer completely now.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@ namespace chorus::core {
 
 struct TickConfig {
   int rate_hz = 30;
-  Duration alignment_delay =
-      std::chrono::milliseconds(200);  ///< Latest time after the instant to answer it.
-  /// Between two answers, but at most half an interval: after a stall the late ones come one by
+  /// An instant is answered at most this long after it.
+  Duration alignment_delay = std::chrono::milliseconds(200);
+  /// Between two answers, but at most half an interval: after a stall the late answers come one by
   /// one, so that whoever polls the latest frame sees each of them.
   Duration min_spacing = std::chrono::milliseconds(13);
-  Duration max_lag =
-      std::chrono::seconds(1);  ///< Further behind (suspended host): skip, and say so.
-  /// So long after an instant it is fused once more, if frames have come too late for it.
+  /// When further behind than this (suspended host), skips, and says so.
+  Duration max_lag = std::chrono::seconds(1);
+  /// This long after an instant it is fused once more, if frames came too late for it.
   Duration late_frames = std::chrono::milliseconds(800);
 
   bool operator==(const TickConfig&) const = default;
@@ -35,16 +35,16 @@ class TickSchedule {
       : config_(config), sequence_(first_sequence) {}
 
   /// The instant to answer next.  Starts at the first one after `now`, skips when the clock or the
-  /// load left us further behind than max_lag, and starts anew when the clock was set back.
+  /// load put us further behind than max_lag, and starts anew when the clock was set back.
   [[nodiscard]] Tick next(Timestamp now);
 
-  /// Zero: answer it now.  Else: wait so long at most, and ask again when a frame has arrived.
+  /// Zero: answer it now.  Else: wait at most this long, and ask again when a frame arrives.
   [[nodiscard]] Duration wait(Timestamp now, bool ready) const;
 
   /// The tick of next() has been answered.
   void answered(Timestamp now);
 
-  /// The grid changes, the sequence goes on.
+  /// Changes the grid; the sequence continues.
   void reconfigure(TickConfig config) {
     config_ = config;
     index_ = 0;

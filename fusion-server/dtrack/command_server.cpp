@@ -10,34 +10,33 @@
 
 #include "common/base/log.h"
 #include "common/base/rate_report.h"
-#include "common/http/event_loop.h"
-#include "common/http/every.h"
-#include "common/http/listen.h"
+#include "common/net/capacity.h"
+#include "common/net/event_loop.h"
+#include "common/net/every.h"
+#include "common/net/listen.h"
 #include "fusion-server/dtrack/dtrack_commands.h"
 
 namespace chorus::dtrack {
 namespace {
 
-namespace net = http::net;
-using http::error_code;
-using http::tcp;
-using SteadyTime = std::chrono::steady_clock::time_point;
+using net::error_code;
+using net::tcp;
 
-constexpr std::size_t kMostWaiting = 4096;  ///< Bytes of answers that a client has not read.
-constexpr std::size_t kMostRefused = 64;    ///< Commands.
+constexpr std::size_t kMaxWaiting = 4096;  ///< Bytes of answers that a client has not read.
+constexpr std::size_t kMaxRefused = 64;    ///< Commands.
 constexpr std::chrono::milliseconds kSweep{250};
 
 struct Connection {
-  Connection(http::Socket accepted, std::uint64_t number)
+  Connection(net::Socket accepted, std::uint64_t number)
       : socket(std::move(accepted)), serial(number) {}
 
-  http::Socket socket;
+  net::Socket socket;
   std::uint64_t serial;
   std::string host;
   CommandReader reader;
   Conversation conversation;
   std::array<char, 1024> incoming{};
-  std::string waiting;  ///< Answers not handed to the system yet.
+  std::string waiting;  ///< Answers not yet handed to the system.
   std::string writing;  ///< Those that are.
   SteadyTime deadline;
 };
@@ -48,10 +47,10 @@ using ConnectionPtr = std::shared_ptr<Connection>;
 struct CommandServer::Impl {
   explicit Impl(CommandServerOptions settings) : options(std::move(settings)) {}
 
-  /// Starts what must always be under way, as far as it is not.
+  /// Starts whatever must always be running and is not.
   void ensure();
-  void welcome(http::Socket socket);
-  /// Why one more of this host is not taken; empty: it is.
+  void welcome(net::Socket socket);
+  /// Why another connection of this host is refused; empty: it is accepted.
   [[nodiscard]] std::string objection(const std::string& host) const;
   void read(const ConnectionPtr& connection);
   void obey(const ConnectionPtr& connection);
@@ -64,10 +63,10 @@ struct CommandServer::Impl {
   void tell_controller();
 
   const CommandServerOptions options;
-  net::io_context io{1};
-  http::AcceptLoop accepting{io, "DTrack accept failed",
-                             [this](http::Socket socket) { welcome(std::move(socket)); }};
-  http::Every sweeping{io, kSweep, [this] { sweep(); }};
+  asio::io_context io{1};
+  net::AcceptLoop accepting{io, "DTrack accept failed",
+                            [this](net::Socket socket) { welcome(std::move(socket)); }};
+  net::Every sweeping{io, kSweep, [this] { sweep(); }};
   RateReport turned_away{"DTrack client turned away"};
   std::list<ConnectionPtr> connections;  ///< Oldest first: the first one is in control.
   Device device;
@@ -88,20 +87,14 @@ void CommandServer::Impl::ensure() {
 std::string CommandServer::Impl::objection(const std::string& host) const {
   const auto of_host = std::ranges::count(
       connections, host, [](const ConnectionPtr& connection) { return connection->host; });
-  const auto text = [](auto count, std::string_view of, std::string_view key) {
-    return "there are " + std::to_string(count) + " already" + std::string(of) +
-           ", as many as outputs.dtrack.command." + std::string(key) + " allows";
-  };
-  if (connections.size() >= static_cast<std::size_t>(options.max_connections)) {
-    return text(options.max_connections, "", "max_connections");
-  }
-  if (of_host >= options.max_connections_per_address) {
-    return text(of_host, " of " + host, "max_connections_per_address");
-  }
-  return {};
+  return net::objection({static_cast<std::size_t>(options.max_connections),
+                         static_cast<std::size_t>(options.max_connections_per_address),
+                         "outputs.dtrack.command.max_connections",
+                         "outputs.dtrack.command.max_connections_per_address"},
+                        {connections.size(), static_cast<std::size_t>(of_host)}, host);
 }
 
-void CommandServer::Impl::welcome(http::Socket socket) {
+void CommandServer::Impl::welcome(net::Socket socket) {
   error_code error;
   const tcp::endpoint peer = socket.remote_endpoint(error);
   if (error) return;  // it has left; leaving here closes the socket
@@ -111,7 +104,7 @@ void CommandServer::Impl::welcome(http::Socket socket) {
   connection->host = host;
   connection->deadline = std::chrono::steady_clock::now() + options.first_word;
   connection->socket.set_option(tcp::no_delay(true), error);
-  connection->socket.set_option(net::socket_base::keep_alive(true), error);
+  connection->socket.set_option(asio::socket_base::keep_alive(true), error);
   connections.push_back(connection);
   clients = connections.size();
   read(connection);
@@ -119,7 +112,7 @@ void CommandServer::Impl::welcome(http::Socket socket) {
 
 void CommandServer::Impl::read(const ConnectionPtr& connection) {
   connection->socket.async_read_some(
-      net::buffer(connection->incoming), [this, connection](error_code error, std::size_t size) {
+      asio::buffer(connection->incoming), [this, connection](error_code error, std::size_t size) {
         if (!connection->socket.is_open()) return;
         if (error) return close(connection);
         if (!connection->reader.feed({connection->incoming.data(), size})) {
@@ -136,8 +129,8 @@ void CommandServer::Impl::obey(const ConnectionPtr& connection) {
   while (connection->reader.next(command)) {
     conversation.in_control = connection == connections.front();
     connection->waiting += answer(command, conversation, device);
-    if (conversation.refused > kMostRefused) return turn_away(connection, "it knows no command");
-    if (connection->waiting.size() > kMostWaiting) {
+    if (conversation.refused > kMaxRefused) return turn_away(connection, "it knows no command");
+    if (connection->waiting.size() > kMaxWaiting) {
       return turn_away(connection, "it does not read its answers");
     }
   }
@@ -152,13 +145,13 @@ void CommandServer::Impl::obey(const ConnectionPtr& connection) {
 void CommandServer::Impl::write(const ConnectionPtr& connection) {
   if (!connection->writing.empty() || connection->waiting.empty()) return;
   connection->writing.swap(connection->waiting);
-  net::async_write(connection->socket, net::buffer(connection->writing),
-                   [this, connection](error_code error, std::size_t) {
-                     if (!connection->socket.is_open()) return;
-                     if (error) return close(connection);
-                     connection->writing.clear();
-                     write(connection);
-                   });
+  asio::async_write(connection->socket, asio::buffer(connection->writing),
+                    [this, connection](error_code error, std::size_t) {
+                      if (!connection->socket.is_open()) return;
+                      if (error) return close(connection);
+                      connection->writing.clear();
+                      write(connection);
+                    });
 }
 
 void CommandServer::Impl::refuse(std::string_view reason) {
@@ -181,7 +174,7 @@ void CommandServer::Impl::close(const ConnectionPtr& connection) {
   tell_controller();
 }
 
-/// Closes whose time is over.
+/// Closes connections whose time is over.
 void CommandServer::Impl::sweep() {
   const SteadyTime now = std::chrono::steady_clock::now();
   const std::list<ConnectionPtr> all = connections;
@@ -211,7 +204,7 @@ CommandServer::CommandServer() = default;
 
 CommandServer::~CommandServer() {
   if (!impl_ || !impl_->thread.joinable()) return;
-  net::post(impl_->io, [impl = impl_.get()] { impl->stop(); });
+  asio::post(impl_->io, [impl = impl_.get()] { impl->stop(); });
   impl_->thread.join();
 }
 
@@ -219,12 +212,12 @@ Result<std::unique_ptr<CommandServer>> CommandServer::start(const CommandServerO
   std::unique_ptr<CommandServer> server(new CommandServer);
   server->impl_ = std::make_unique<Impl>(options);
   Impl& impl = *server->impl_;
-  const http::ListenAt where{options.address, static_cast<std::uint16_t>(options.port),
-                             "outputs.dtrack.command.port"};
+  const net::ListenAt where{options.address, static_cast<std::uint16_t>(options.port),
+                            "outputs.dtrack.command.port"};
   if (auto ok = impl.accepting.listen(where); !ok) return pass(ok);
   impl.port = impl.accepting.port();
   impl.thread = std::thread(
-      [&impl] { http::run_events(impl.io, "command channel failed", [&impl] { impl.ensure(); }); });
+      [&impl] { net::run_events(impl.io, "command channel failed", [&impl] { impl.ensure(); }); });
   return server;
 }
 

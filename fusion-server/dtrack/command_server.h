@@ -1,8 +1,9 @@
-// The TCP end of DTrack's command channel: a thread of its own, few connections, nobody trusted.
+// The TCP side of DTrack's command channel: a thread of its own, few connections, no client
+// trusted.
 //
-// Turned away, logged and counted as refused: connections beyond a limit, commands over 200
-// bytes, clients that do not read their answers (4 kB wait at most), that say nothing known for ten
-// seconds, that are silent for longer than `idle`, and that send 64 commands nobody knows.
+// Turned away, logged and counted as refused: connections beyond a limit, commands over 200 bytes,
+// and clients that do not read their answers (4 kB are kept at most), send no known command within
+// ten seconds, are silent for longer than `idle`, or send 64 unknown commands.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +21,7 @@ struct CommandServerOptions {
   std::string address = "127.0.0.1";  ///< Numeric.
   int port = 50105;                   ///< 0: any.
   int max_connections = 8;
-  int max_connections_per_address = 4;             ///< So that one host does not take all.
+  int max_connections_per_address = 4;             ///< So that one host cannot take all places.
   Duration idle = std::chrono::hours(1);           ///< Clients are silent while they receive.
   Duration first_word = std::chrono::seconds(10);  ///< Until the first known command.
 
@@ -30,7 +31,7 @@ struct CommandServerOptions {
 /// The connection in control, while it has started tracking.
 struct Controller {
   std::string host;          ///< Numeric.
-  std::uint64_t serial = 0;  ///< Of the connection: another one is another controller.
+  std::uint64_t serial = 0;  ///< Of the connection: a new connection is a new controller.
 
   bool operator==(const Controller&) const = default;
 };

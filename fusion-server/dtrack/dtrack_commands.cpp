@@ -9,7 +9,7 @@ constexpr std::string_view kOk = "dtrack2 ok";
 
 struct Command {
   std::string_view text;
-  bool whole;    ///< Exactly this text, else what begins with it.
+  bool whole;    ///< This exact text; otherwise every text that begins with it.
   bool control;  ///< Only for the connection in control.
   std::string_view (*obey)(const Conversation& conversation, Device& device);
 };
@@ -72,7 +72,7 @@ bool CommandReader::feed(std::string_view bytes) {
   while (true) {
     const std::size_t end = bytes_.find('\0', begin);
     const std::size_t length = (end == std::string::npos ? bytes_.size() : end) - begin;
-    if (length > kMostCommandBytes) return false;
+    if (length > kMaxCommandBytes) return false;
     if (end == std::string::npos) return true;
     begin = end + 1;
   }

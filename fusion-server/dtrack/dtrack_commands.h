@@ -9,7 +9,7 @@
 //   dtrack2 set ...                    -> dtrack2 ok              (and nothing changes)
 //   anything else                      -> dtrack2 err 1 "..."
 // Only the connection in control may start, stop and set; others get err 2.  No command redirects
-// data: where it goes is said in the configuration.
+// data: the configuration says where it goes.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@
 
 namespace chorus::dtrack {
 
-inline constexpr std::size_t kMostCommandBytes = 200;  ///< Without the NUL.
+inline constexpr std::size_t kMaxCommandBytes = 200;  ///< Without the NUL.
 
 /// Cuts a stream into commands.
 class CommandReader {
@@ -38,7 +38,7 @@ struct Device {
 };
 
 struct Conversation {
-  bool in_control = false;   ///< The oldest connection is.
+  bool in_control = false;   ///< True for the oldest connection.
   std::size_t answered = 0;  ///< Commands that were known and allowed.
   std::size_t refused = 0;   ///< Commands that were not.
 };

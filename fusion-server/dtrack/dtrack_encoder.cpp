@@ -43,7 +43,7 @@ void add(std::string& out, std::uint64_t value) {
   out.append(digits.data(), end);
 }
 
-/// Fixed point; the coordinates are bounded (resource::kMaxCoordinate), so the digits are too.
+/// Fixed point; the coordinates are bounded (kMaxCoordinate), so the number of digits is too.
 void add(std::string& out, double value, int digits) {
   if (std::abs(value) < 0.5 * std::pow(10.0, -digits)) value = 0.0;  // no "-0.000"
   std::array<char, 64> text{};
@@ -103,7 +103,7 @@ std::size_t add_bodies(std::string& out, const outlet::Axes& axes,
   std::size_t count = 0;
   for (std::size_t i = 0; i < kJointCount; ++i) {
     const std::size_t id = kJointCount * body.slot + i;
-    if (!body.joints[i].tracked || id >= kMostBodies) continue;
+    if (!body.joints[i].tracked || id >= kMaxDtrackBodies) continue;
     out += " [";
     add(out, id);
     out += kSeen;
@@ -113,7 +113,7 @@ std::size_t add_bodies(std::string& out, const outlet::Axes& axes,
   return count;
 }
 
-/// " [slot joints][joint 1.000][..][..] ..." or nothing when the body's rig is not known.
+/// " [slot joints][joint 1.000][..][..] ..." or nothing when the body's rig is unknown.
 std::string human_model(const outlet::Axes& axes, const outlet::TrackerBody& body) {
   const outlet::Humanoid rig = outlet::humanoid_of(body);
   std::string joints;
@@ -142,7 +142,7 @@ void add_human_models(std::string& out, const outlet::Axes& axes,
   std::uint64_t count = 0;
   for (const outlet::TrackerBody& body : frame.bodies) {
     const std::string model = human_model(axes, body);
-    if (out.size() + kHeadOfLine + models.size() + model.size() > kMostBytes) break;
+    if (out.size() + kHeadOfLine + models.size() + model.size() > kMaxBytes) break;
     if (model.empty()) continue;
     models += model;
     ++count;
@@ -163,7 +163,7 @@ std::string encode(const outlet::TrackerFrame& frame, const Content& content) {
   std::string out;
   add_line(out, "fr", frame.sequence & 0xFFFF'FFFFU, "");
   add_times(out, frame.instant, content.latency);
-  add_line(out, "6dcal", std::min(kJointCount * frame.slots, kMostBodies), "");
+  add_line(out, "6dcal", std::min(kJointCount * frame.slots, kMaxDtrackBodies), "");
   add_line(out, "6d", count, bodies);
   add_line(out, "3d", 0, "");
   if (content.human_model) add_human_models(out, axes, frame);

@@ -8,10 +8,10 @@
 //   6dj <slots> <n> [slot joints][joint 1.000][sx .. phi][b0 .. b8] ...   human models, on demand
 //
 // Lines end with CR LF.  Millimetres, degrees; right-handed, +z up in a "normal" room, +y up in a
-// "powerwall" one.  The matrix is written column by column; R = Rx(eta) Ry(theta) Rz(phi).
-// Body id = 25 * slot + joint.  The 6dj joints are those of A.R.T.'s own Unreal plugin; their
-// rotations are the rig's of humanoid.h, so a person in T-pose who looks along the normal room's +y
-// has unit matrices.
+// "powerwall" one.  The matrix is written column by column; R = Rx(eta) Ry(theta) Rz(phi). Body id
+// = 25 * slot + joint.  The 6dj joints are those of A.R.T.'s own Unreal plugin; their rotations are
+// those of humanoid.h's rig, so a person in T-pose who looks along +y of the normal room has unit
+// matrices.
 #pragma once
 
 #include <string>
@@ -20,9 +20,9 @@
 
 namespace chorus::dtrack {
 
-/// Clients read a datagram into 32768 bytes; 150 bodies fit for certain.
-inline constexpr std::size_t kMostBodies = 150;
-inline constexpr std::size_t kMostBytes = 32768;
+/// Clients read datagrams of up to 32768 bytes; 150 bodies always fit.
+inline constexpr std::size_t kMaxDtrackBodies = 150;
+inline constexpr std::size_t kMaxBytes = 32768;
 
 enum class Room { Normal, Powerwall };
 

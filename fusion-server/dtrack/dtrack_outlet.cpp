@@ -8,9 +8,9 @@
 namespace chorus::dtrack {
 namespace {
 
-/// What a client sends to open its firewall (with its NUL or without).
+/// What a client sends to open its firewall (with or without a NUL).
 constexpr std::string_view kFirewallOpener = "fw4dtsdkc";
-constexpr int kMostArrivals = 64;  ///< Read per frame; the rest waits, and the system drops it.
+constexpr int kMaxArrivals = 64;  ///< Read per frame; the rest waits, and the system drops it.
 
 class DtrackOutlet final : public outlet::Outlet {
  public:
@@ -40,12 +40,12 @@ class DtrackOutlet final : public outlet::Outlet {
   }
 
  private:
-  /// Who wants data besides the targets: the host in control, at the port it opened.
+  /// Who gets data besides the targets: the host in control, at the port it opened.
   void listen() {
     const auto controller = commands_ ? commands_->controller() : std::nullopt;
     if (controller != controller_) client_.reset();
     controller_ = controller;
-    for (int i = 0; i < kMostArrivals; ++i) {
+    for (int i = 0; i < kMaxArrivals; ++i) {
       const auto arrival = sender_->receive();
       if (!arrival) return;
       if (!settings_.send_to_client || !controller_) continue;
@@ -63,14 +63,14 @@ class DtrackOutlet final : public outlet::Outlet {
 };
 
 void read_command(ConfigReader reader, Settings& out) {
-  constexpr int kMostPort = 65535;
-  constexpr int kMostConnections = 64;
+  constexpr int kMaxPort = 65535;
+  constexpr int kMaxConnections = 64;
   reader.read("enabled", out.commands);
   reader.read("address", out.command.address);
-  reader.read("port", out.command.port, 0, kMostPort);
-  reader.read("max_connections", out.command.max_connections, 1, kMostConnections);
+  reader.read("port", out.command.port, 0, kMaxPort);
+  reader.read("max_connections", out.command.max_connections, 1, kMaxConnections);
   reader.read("max_connections_per_address", out.command.max_connections_per_address, 1,
-              kMostConnections);
+              kMaxConnections);
   reader.read_s("idle_s", out.command.idle, std::chrono::seconds(1), std::chrono::hours(24));
   reader.read("send_to_client", out.send_to_client);
 }
@@ -78,9 +78,9 @@ void read_command(ConfigReader reader, Settings& out) {
 }  // namespace
 
 void read_settings(ConfigReader& reader, Settings& out) {
-  constexpr int kMostPort = 65535;
+  constexpr int kMaxPort = 65535;
   outlet::read_targets(reader, out.targets);
-  reader.read("source_port", out.source_port, 0, kMostPort);
+  reader.read("source_port", out.source_port, 0, kMaxPort);
   outlet::read_multicast(reader, out.multicast);
   auto room = static_cast<std::size_t>(out.room);
   reader.read_choice("room", room, {"normal", "powerwall"});

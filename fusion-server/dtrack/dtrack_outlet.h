@@ -1,5 +1,4 @@
-// Sends DTrack's ASCII format over UDP, and answers on the command channel when that is switched
-// on.
+// Sends DTrack's ASCII format over UDP, and answers on the command channel if that is enabled.
 #pragma once
 
 #include <memory>
@@ -23,7 +22,7 @@ struct Settings {
   bool human_model = false;
   bool commands = false;
   CommandServerOptions command;
-  /// Also to the host that is in control, at the port it wrote to our source port from.
+  /// Also to the host in control, at the port it wrote to our source port from.
   bool send_to_client = false;
 
   bool operator==(const Settings&) const = default;

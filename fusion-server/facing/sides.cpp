@@ -2,136 +2,95 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "common/body/bones.h"
-#include "common/geometry/rotation.h"
 
 namespace chorus::facing {
 namespace {
 
-constexpr double kGuessed = 0.3;    // weight of a pair with an inferred end
-constexpr int kRounds = 3;          // agreement settles in one or two
-constexpr double kShortest = 0.05;  // [m] shorter spans have no direction
-constexpr std::size_t kTrunkPairs = 2;
+constexpr double kMinLength = 0.05;  // [m] shorter spans have no direction
+constexpr double kClear = 2.0;  // log odds from which one view is certain which way round it is
+constexpr double kBlind = 1.0;  // log odds of all views together below which they tell nothing
+constexpr double kFrameTime = 0.033;  // [s] labels of one frame are one observation
 
-double agreement(const Spans& a, const Spans& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
-  return sum;
+/// One instant of one person on the way through the model.
+struct Instant {
+  Timestamp at;
+  double elapsed = 0.0;  ///< Since the person was last seen [s].
+  bool first = true;
+  std::vector<Spans> views;
+  std::vector<double> agree;     ///< Log odds per view, see agreement_log_odds.
+  std::vector<bool> exchanged;   ///< Per view: it opposes the sides held.
+  std::vector<LabelStep> steps;  ///< Per view; exchanged is 0.5 where nothing is known.
+};
+
+std::vector<Spans> all_spans(const Person& person) {
+  std::vector<Spans> views;
+  for (const SensorView& view : person.views) views.push_back(spans_of(view.skeleton));
+  return views;
 }
 
-/// Weighted by how well the pair is seen.
-Spans spans_of(const Skeleton<WorldSpace>& body) {
-  Spans spans;
-  spans.fill(Eigen::Vector3d::Zero());
-  for (std::size_t i = 0; i < kSidePairs.size(); ++i) {
-    const Joint& left = body[kSidePairs[i]];
-    const Joint& right = body[mirror(kSidePairs[i])];
-    if (!left.seen() || !right.seen()) continue;
-    const bool tracked = left.state == JointState::Tracked && right.state == JointState::Tracked;
-    spans[i] = (tracked ? 1.0 : kGuessed) * (left.position - right.position);
+/// What is remembered of a person, unless it is too old.
+std::optional<Sides> recall(const SidesMemory& memory, PersonId person, Timestamp instant,
+                            const SidesConfig& config) {
+  const auto known = memory.people.find(person);
+  if (known == memory.people.end()) return std::nullopt;
+  const Duration age = instant - known->second.seen;
+  if (age < Duration{0} || age > config.forget) return std::nullopt;
+  return known->second;
+}
+
+/// A pair that nobody can tell now keeps its direction.
+void keep_lost(Spans& spans, const Spans& before) {
+  for (std::size_t i = 0; i < spans.size(); ++i) {
+    if (spans[i].norm() < kMinLength) spans[i] = before[i];
+  }
+}
+
+/// Whether the view opposes the sides held.  A view that clearly tells left from right is believed;
+/// a narrow one stays as it was.
+bool opposes(const SensorView& view, double agree, const Sides& sides) {
+  if (std::abs(agree) > kClear) return agree < 0;
+  const auto before = sides.views.find(view.sensor);
+  return before != sides.views.end() && before->second.exchanged.held > 0.5;
+}
+
+void look_at_views(Instant& now, const Person& person, const Sides& sides) {
+  for (std::size_t v = 0; v < person.views.size(); ++v) {
+    now.agree.push_back(agreement_log_odds(now.views[v], sides.spans));
+    now.exchanged.push_back(opposes(person.views[v], now.agree[v], sides));
+  }
+}
+
+/// The weighted mean of the views, each reversed if it opposes the sides held.  A view whose sides
+/// are drawn together counts less.
+Spans joined(const Instant& now) {
+  Spans spans = no_spans();
+  double weights = 0.0;
+  for (std::size_t v = 0; v < now.views.size(); ++v) {
+    const double weight = size_of(now.views[v]);
+    const double sign = now.exchanged[v] ? -1.0 : 1.0;
+    for (std::size_t i = 0; i < spans.size(); ++i) spans[i] += sign * weight * now.views[v][i];
+    weights += weight;
+  }
+  if (weights > 0) {
+    for (Eigen::Vector3d& span : spans) span /= weights;
   }
   return spans;
 }
 
-struct Consensus {
-  std::vector<double> signs;  ///< Per view; -1: against the agreed sides.
-  Spans spans{};              ///< Agreed, mean over the views.
-  double agreed = 0.0;
-};
-
-/// Every view joins the side it agrees with, beginning from `start`.
-Consensus join(const std::vector<Spans>& views, const Spans& start) {
-  Consensus consensus{std::vector<double>(views.size(), 1.0), start, 0.0};
-  for (int round = 0; round < kRounds; ++round) {
-    Spans sum;
-    sum.fill(Eigen::Vector3d::Zero());
-    consensus.agreed = 0.0;
-    for (std::size_t v = 0; v < views.size(); ++v) {
-      const double found = agreement(views[v], consensus.spans);
-      consensus.signs[v] = found < 0 ? -1.0 : 1.0;
-      consensus.agreed += std::abs(found);
-      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += consensus.signs[v] * views[v][i];
-    }
-    for (Eigen::Vector3d& span : sum) span /= static_cast<double>(views.size());
-    consensus.spans = sum;
-  }
-  return consensus;
+/// A tracker that changes its mind draws the sides together, and they may then point anywhere.  No
+/// real body becomes narrower, so spans much shorter than those held have no direction.
+double trust_in(const Spans& now, const Spans& before) {
+  constexpr double kNone = 0.5;  // of the length that is held
+  constexpr double kFull = 0.8;
+  const double part = size_of(now) / std::max(size_of(before), kMinLength);
+  return std::clamp((part - kNone) / (kFull - kNone), 0.0, 1.0);
 }
 
-/// Without memory: of all beginnings the one that ends in most agreement.
-Consensus join_among_themselves(const std::vector<Spans>& views) {
-  Consensus best;
-  for (const Spans& start : views) {
-    Consensus found = join(views, start);
-    if (best.signs.empty() || found.agreed > best.agreed) best = std::move(found);
-  }
-  return best;
-}
-
-/// Where a body with these spans faces, horizontally; zero when that cannot be told.
-Eigen::Vector3d forward_of(const Spans& spans) {
-  Eigen::Vector3d left = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < kTrunkPairs; ++i) left += spans[i];
-  left.y() = 0;
-  if (left.norm() < kShortest) return Eigen::Vector3d::Zero();
-  return left.normalized().cross(Eigen::Vector3d::UnitY());
-}
-
-/// Otto's phi: how far the body faces past the sensor, in (-pi, pi]; nothing without direction.
-std::optional<double> facing_of(const SensorView& view, const Eigen::Vector3d& forward) {
-  const Joint& neck = view.skeleton[JointId::Neck];
-  const Joint& base = view.skeleton[JointId::SpineBase];
-  const Joint& stands = neck.seen() ? neck : base;
-  if (!stands.seen() || forward.isZero()) return std::nullopt;
-  const Eigen::Vector3d to_sensor = view.eye - stands.position;
-  return wrap_angle(std::atan2(forward.x(), forward.z()) -
-                    std::atan2(to_sensor.x(), to_sensor.z()));
-}
-
-/// How likely a tracker has exchanged sides of a body seen at this angle.
-double exchanged_at(double facing, const SidesConfig& config) {
-  const double past = (std::abs(facing) - config.exchange_at) / config.exchange_width;
-  return config.exception + (1.0 - 2.0 * config.exception) / (1.0 + std::exp(-past));
-}
-
-/// Log odds of the agreed sides against the opposite ones, from where each view stands.
-double odds_of_views(const Person& person, const Consensus& consensus, const SidesConfig& config) {
-  const Eigen::Vector3d forward = forward_of(consensus.spans);
-  double odds = 0.0;
-  for (std::size_t v = 0; v < person.views.size(); ++v) {
-    const auto facing = facing_of(person.views[v], forward);
-    if (!facing) continue;
-    const double here = exchanged_at(*facing, config);
-    const double opposite = exchanged_at(std::numbers::pi - std::abs(*facing), config);
-    const bool exchanged = consensus.signs[v] < 0;
-    odds += exchanged ? std::log(here / (1.0 - opposite)) : std::log((1.0 - here) / opposite);
-  }
-  return odds;
-}
-
-/// The same from which way the person walks.
-double odds_of_walking(const Motion& motion, const Consensus& consensus,
-                       const SidesConfig& config) {
-  const Eigen::Vector3d way(motion.velocity.x(), 0, motion.velocity.z());
-  const double speed = way.norm();
-  if (!(speed >= config.walking_speed)) return 0.0;
-  const double along = way.dot(forward_of(consensus.spans)) / speed;
-  return along * std::log((1.0 - config.backwards) / config.backwards);
-}
-
-/// A pair nobody can tell now points where it did.
-void keep_lost(Spans& spans, const Spans& before) {
-  for (std::size_t i = 0; i < spans.size(); ++i) {
-    if (spans[i].norm() < kShortest) spans[i] = before[i];
-  }
-}
-
-/// A single view between front and rear draws its sides together and may point anywhere: what is
-/// remembered follows over some frames.
 Spans followed(const Spans& before, const Spans& now, double share) {
   Spans spans;
   for (std::size_t i = 0; i < spans.size(); ++i)
@@ -139,9 +98,84 @@ Spans followed(const Spans& before, const Spans& now, double share) {
   return spans;
 }
 
-void turn_round(Consensus& consensus) {
-  for (double& sign : consensus.signs) sign = -sign;
-  for (Eigen::Vector3d& span : consensus.spans) span = -span;
+/// Advances each view's labels by one step.
+LabelStep step_of_view(const SensorView& view, double agree, double facing, const Sides& sides,
+                       Timestamp at, const SidesMemory& memory, const SidesConfig& config) {
+  const auto seen = sides.views.find(view.sensor);
+  std::optional<Exchanged> before;
+  Labels labels{agree, std::abs(facing), 0.0};
+  if (seen != sides.views.end()) {
+    before = seen->second.exchanged;
+    labels.elapsed = seconds(at - seen->second.seen);
+    labels.agree *= std::min(1.0, labels.elapsed / kFrameTime);
+  }
+  const auto habit = memory.habits.find(view.sensor);
+  return step_labels(before, labels, habit == memory.habits.end() ? ExchangeHabit{} : habit->second,
+                     config.habit);
+}
+
+/// A view counts from the instant when it first tells left from right clearly.
+bool counts(const SensorView& view, double agree, const Sides& sides) {
+  return std::abs(agree) > kClear || sides.views.contains(view.sensor);
+}
+
+void step_views(Instant& now, const Person& person, const Spans& spans, const Sides& sides,
+                const SidesMemory& memory, const SidesConfig& config) {
+  const Eigen::Vector3d forward = forward_of(spans);
+  for (std::size_t v = 0; v < person.views.size(); ++v) {
+    const SensorView& view = person.views[v];
+    const auto facing = facing_of(view, forward);
+    const bool known = facing && counts(view, now.agree[v], sides);
+    now.steps.push_back(
+        known ? step_of_view(view, now.agree[v], *facing, sides, now.at, memory, config)
+              : LabelStep{});
+  }
+}
+
+bool nobody_tells(const Instant& now) {
+  double sum = 0.0;
+  for (const double agree : now.agree) sum += std::abs(agree);
+  return sum < kBlind;
+}
+
+/// A first view counts in full, later ones only as far as they are new.
+Evidence evidence_of(const Instant& now, const Person& person, Sides& sides, const Spans& spans,
+                     const SidesConfig& config) {
+  const Eigen::Vector3d forward = forward_of(spans);
+  const double posture = posture_log_odds(person.views, forward, config.posture);
+  Evidence evidence;
+  evidence.news =
+      now.first ? posture : posture_news(posture, sides.posture, now.elapsed, config.posture.same);
+  for (const LabelStep& step : now.steps) evidence.news += step.log_ratio;
+  evidence.walking = sides.walk.log_odds(forward, config.walking);
+  evidence.share = now.first ? 1.0 : std::min(1.0, now.elapsed / config.walking.same);
+  sides.posture = posture;
+  return evidence;
+}
+
+void turn_round(Instant& now, Sides& sides, Spans& spans) {
+  sides.filter.turn_round();
+  sides.posture = -sides.posture;
+  for (Spans* each : {&sides.spans, &spans}) {
+    for (Eigen::Vector3d& span : *each) span = -span;
+  }
+  now.exchanged.flip();
+  for (LabelStep& step : now.steps) std::swap(step.exchanged.held, step.exchanged.opposite);
+}
+
+bool must_turn(const PersonFilter& filter, bool first, const SidesConfig& config) {
+  const double right = filter.right();
+  return std::log((1.0 - right) / right) > (first ? 0.0 : config.change_odds);
+}
+
+/// Only while the sides are certain, and only from views whose labels could have changed meanwhile.
+void learn(const Instant& now, const Person& person, const Sides& sides, SidesMemory& memory,
+           const SidesConfig& config) {
+  if (sides.filter.right() < config.learn_from) return;
+  for (std::size_t v = 0; v < person.views.size(); ++v) {
+    const Passage& passage = now.steps[v].passage;
+    if (passage.elapsed > 0) memory.habits[person.views[v].sensor].learn(passage, config.habit);
+  }
 }
 
 void exchange(Skeleton<WorldSpace>& body) {
@@ -149,52 +183,56 @@ void exchange(Skeleton<WorldSpace>& body) {
   for (Joint& joint : body.joints) joint.orientation.coeffs().setZero();
 }
 
-void apply(const Consensus& consensus, Person& person) {
-  const Eigen::Vector3d forward = forward_of(consensus.spans);
+void apply(const Instant& now, const Spans& spans, Person& person) {
+  const Eigen::Vector3d forward = forward_of(spans);
   for (std::size_t v = 0; v < person.views.size(); ++v) {
     SensorView& view = person.views[v];
-    if (consensus.signs[v] < 0) exchange(view.skeleton);
+    if (now.exchanged[v]) exchange(view.skeleton);
     if (const auto facing = facing_of(view, forward)) view.facing = *facing;
   }
 }
 
-/// What is remembered of a person, unless it is too old.
-std::optional<Sides> recall(const SidesMemory& memory, PersonId person, Timestamp instant,
-                            const SidesConfig& config) {
-  const auto known = memory.find(person);
-  if (known == memory.end()) return std::nullopt;
-  const Duration age = instant - known->second.seen;
-  if (age < Duration{0} || age > config.forget) return std::nullopt;
-  return known->second;
+void remember(const Instant& now, const Person& person, const Spans& spans, Sides& sides,
+              const SidesConfig& config) {
+  sides.seen = now.at;
+  sides.spans = now.first
+                    ? spans
+                    : followed(sides.spans, spans, now.elapsed / (now.elapsed + config.smoothing));
+  for (std::size_t v = 0; v < person.views.size(); ++v) {
+    if (counts(person.views[v], now.agree[v], sides))
+      sides.views[person.views[v].sensor] = {now.at, now.steps[v].exchanged};
+  }
 }
 
 }  // namespace
 
-void resolve_sides(Person& person, const Motion& motion, SidesMemory& memory,
+void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
                    const SidesConfig& config) {
   if (!config.resolve || person.views.empty()) return;
-  std::vector<Spans> views;
-  for (const SensorView& view : person.views) views.push_back(spans_of(view.skeleton));
-  const auto before = recall(memory, person.id, motion.instant, config);
-  const double elapsed = before ? seconds(motion.instant - before->seen) : 0.0;
-  Consensus consensus = before ? join(views, before->spans) : join_among_themselves(views);
-  if (before) keep_lost(consensus.spans, before->spans);
-  const double evidence =
-      odds_of_views(person, consensus, config) + odds_of_walking(motion, consensus, config);
-  // A first sight counts in full; later ones only as much as is new in them.
-  const double share = before ? std::min(1.0, elapsed / config.memory) : 1.0;
-  double odds = (before ? before->odds : 0.0) + share * evidence;
-  const bool wrong = odds < -(before ? config.change_odds : 0.0);
-  if (wrong) {
-    turn_round(consensus);
-    odds = -odds;
+  Instant now{instant, 0.0, true, all_spans(person), {}, {}, {}};
+  auto before = recall(memory, person.id, instant, config);
+  now.first = !before;
+  Sides sides =
+      before ? std::move(*before)
+             : Sides{instant, agreed_spans(now.views), PersonFilter(config.person), {}, 0.0, {}};
+  now.elapsed = seconds(instant - sides.seen);
+  look_at_views(now, person, sides);
+  Spans spans = joined(now);
+  spans = followed(sides.spans, spans, trust_in(spans, sides.spans));
+  keep_lost(spans, sides.spans);
+  step_views(now, person, spans, sides, memory, config);
+  sides.walk.follow(person.views, instant, config.walking);
+  sides.filter.predict(now.elapsed, nobody_tells(now), config.person);
+  sides.filter.update(evidence_of(now, person, sides, spans, config));
+  if (must_turn(sides.filter, now.first, config)) {
+    turn_round(now, sides, spans);
+  } else {
+    learn(now, person, sides, memory, config);
   }
-  apply(consensus, person);
-  Spans held = consensus.spans;
-  if (before && !wrong) {
-    held = followed(before->spans, held, elapsed / (elapsed + config.smoothing));
-  }
-  memory[person.id] = {motion.instant, held, std::clamp(odds, -config.most_odds, config.most_odds)};
+  apply(now, spans, person);
+  mend_limbs(person, sides.spans, config.limbs);
+  remember(now, person, spans, sides, config);
+  memory.people.insert_or_assign(person.id, std::move(sides));
 }
 
 }  // namespace chorus::facing

@@ -10,7 +10,7 @@
 namespace chorus::fusion {
 namespace {
 
-/// Of equals the least sensor id; null when there is no view.
+/// Among equals the smallest sensor id; null when there is no view.
 const SensorView* best_of(const Person& person) {
   const SensorView* best = nullptr;
   for (const SensorView& view : person.views) {

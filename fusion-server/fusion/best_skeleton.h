@@ -1,6 +1,6 @@
-// One view alone, as Otto et al. 5.2.5 begin: the best skeleton.  It changes hands only after
-// another view has been better for FusionConfig::hysteresis, or when its own is gone, so that two
-// equal views do not make the body flicker between them.
+// One view alone, where Otto et al. 5.2.5 begin: the best skeleton.  The view changes only after
+// another has been better for FusionConfig::hysteresis, or when it is gone, so that the body does
+// not flicker between two equal views.
 #pragma once
 
 #include <memory>

@@ -6,12 +6,12 @@
 namespace chorus::fusion {
 namespace {
 
-constexpr double kLeastSigma = 1e-4;   ///< [m] keeps a careless config from dividing by zero
-constexpr double kLeastFactor = 1.0;   ///< an inferred joint is never better than a tracked one
-constexpr double kShortestRay = 1e-3;  ///< [m] a joint in the eye has no line of sight
+constexpr double kMinSigma = 1e-4;  ///< [m] keeps a careless configuration from dividing by zero
+constexpr double kMinFactor = 1.0;  ///< an inferred joint is never better than a tracked one
+constexpr double kMinRay = 1e-3;    ///< [m] a joint in the eye has no line of sight
 
 double usable(double sigma, double factor) {
-  return sigma > kLeastSigma ? sigma * factor : kLeastSigma * factor;
+  return sigma > kMinSigma ? sigma * factor : kMinSigma * factor;
 }
 
 class LineOfSightErrors final : public ErrorModel {
@@ -22,7 +22,7 @@ class LineOfSightErrors final : public ErrorModel {
   [[nodiscard]] Eigen::Matrix3d covariance(const SensorView& view, JointId id) const override {
     const Joint& joint = view.skeleton[id];
     if (joint.covariance.known()) {
-      return joint.covariance.matrix() + kLeastSigma * kLeastSigma * Eigen::Matrix3d::Identity();
+      return joint.covariance.matrix() + kMinSigma * kMinSigma * Eigen::Matrix3d::Identity();
     }
     const auto own = of_sensors_.find(view.sensor);
     return line_of_sight_covariance(joint, view.eye,
@@ -39,13 +39,13 @@ class LineOfSightErrors final : public ErrorModel {
 Eigen::Matrix3d line_of_sight_covariance(const Joint& joint, const Eigen::Vector3d& eye,
                                          const NoiseModel& noise) {
   const bool inferred = joint.state == JointState::Inferred;
-  const double factor = inferred ? std::max(kLeastFactor, noise.inferred_factor) : kLeastFactor;
+  const double factor = inferred ? std::max(kMinFactor, noise.inferred_factor) : kMinFactor;
   const double along = usable(noise.along, factor);
   const double across = usable(noise.across, factor);
   const Eigen::Matrix3d round = across * across * Eigen::Matrix3d::Identity();
   const Eigen::Vector3d ray = joint.position - eye;
   const double length = ray.norm();
-  if (!(length > kShortestRay) || !std::isfinite(length)) return round;
+  if (!(length > kMinRay) || !std::isfinite(length)) return round;
   const Eigen::Vector3d r = ray / length;
   return round + (along * along - across * across) * r * r.transpose();
 }

@@ -1,7 +1,7 @@
-// How uncertain one view's measurement of one joint is: what every method of fusion asks.
+// How uncertain one view's measurement of one joint is, for every method of fusion.
 //
-// A measurement that brings its own covariance is believed.  Else a sensor is sharp across its line
-// of sight and blunt along it:
+// A measurement with a covariance of its own is believed.  Otherwise a sensor is sharp across its
+// line of sight and blunt along it:
 //   Sigma = across^2 I + (along^2 - across^2) r r^T,   r = unit ray eye -> joint
 #pragma once
 
@@ -16,17 +16,17 @@ namespace chorus::fusion {
 class ErrorModel {
  public:
   virtual ~ErrorModel() = default;
-  /// Of the joint's position in world axes [m^2]; positive definite.  Asked only where the view has
-  /// a place for the joint.
+  /// Of the joint's position in world axes [m^2]; positive definite.  Asked only for joints that
+  /// have a place in the view.
   [[nodiscard]] virtual Eigen::Matrix3d covariance(const SensorView& view, JointId joint) const = 0;
 };
 
-/// One noise for all sensors but those that have their own.
+/// One noise for all sensors except those that have their own.
 [[nodiscard]] std::unique_ptr<const ErrorModel> line_of_sight_errors(
     const NoiseModel& noise, const std::map<SensorId, NoiseModel>& of_sensors);
 
-/// The formula above for one joint seen from `eye`, both in world [m]; an eye in the joint, or
-/// none, leaves the noise round.
+/// The formula above for one joint seen from `eye`, both in world [m]; isotropic when the eye is in
+/// the joint or unknown.
 [[nodiscard]] Eigen::Matrix3d line_of_sight_covariance(const Joint& joint,
                                                        const Eigen::Vector3d& eye,
                                                        const NoiseModel& noise);

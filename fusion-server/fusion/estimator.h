@@ -1,7 +1,7 @@
-// The seam of fusion: whatever turns the views of one person into one body, instant after instant.
+// The seam of fusion: turns the views of one person into one body, instant after instant.
 //
-// An estimator belongs to one person and may remember; it is asked in order of time.  Pure but for
-// its memory: same views, same bodies.
+// An estimator belongs to one person and may remember; instants come in order of time.  Apart from
+// its memory it is pure: same views, same bodies.
 #pragma once
 
 #include <memory>
@@ -20,9 +20,9 @@ class Estimator {
  public:
   virtual ~Estimator() = default;
   /// A joint nobody saw is NotTracked with zero position, unless the method predicts it.  The order
-  /// of the views changes nothing but rounding.
+  /// of the views affects rounding only.
   [[nodiscard]] virtual FusedBody fuse(const Person& person, const Instant& instant) = 0;
-  /// With all it remembers.
+  /// A copy, with everything it remembers.
   [[nodiscard]] virtual std::unique_ptr<Estimator> clone() const = 0;
 };
 

@@ -1,4 +1,4 @@
-// Many views of each person -> one body each, by the configured method and what it remembers.
+// Many views of each person -> one body each, by the configured method and its memory.
 #pragma once
 
 #include <map>
@@ -13,7 +13,7 @@
 
 namespace chorus::fusion {
 
-/// One estimator per person.  A value: copies remember the same and go on apart.
+/// One estimator per person.  A value: a copy remembers the same and then goes its own way.
 class Memory {
  public:
   Memory() = default;
@@ -23,10 +23,10 @@ class Memory {
   Memory& operator=(Memory&&) noexcept = default;
   ~Memory() = default;
 
-  /// One body per person, in their order.  Another configuration than last time forgets everybody.
+  /// One body per person, in their order.  When the configuration changes, everybody is forgotten.
   [[nodiscard]] std::vector<FusedBody> fuse(const std::vector<Person>& people,
                                             const Instant& instant, const FusionConfig& config);
-  /// Forgets whoever is not tracked any more.
+  /// Forgets people who are no longer tracked.
   void keep_only(const std::set<PersonId>& tracked);
 
  private:
@@ -34,8 +34,8 @@ class Memory {
   std::map<PersonId, std::unique_ptr<Estimator>> estimators_;
 };
 
-/// One instant by itself, as a method answers that remembers nothing yet.  Permuting the views
-/// changes nothing but rounding.
+/// One instant by itself, as a method without memories answers it.  The order of the views affects
+/// rounding only.
 [[nodiscard]] FusedBody fuse(const Person& person, const std::vector<SensorId>& sensors,
                              const FusionConfig& config);
 

@@ -1,4 +1,4 @@
-// Which method fuses the views of a person, and what the methods can be told.
+// Which method fuses the views of a person, and its parameters.
 #pragma once
 
 #include <map>
@@ -10,11 +10,12 @@ namespace chorus::fusion {
 
 /// Rows of the table in methods.h.
 enum class Method {
-  Otto,      ///< Weighted mean by Eqs. (1)-(3), orientation by LERP; all-zero: docs/decisions.
-  Mean,      ///< Plain mean of the seen joints.
-  BestView,  ///< The heaviest view alone; on a tie the one with more tracked joints.
+  /// Weighted mean by Eqs. (1)-(3), orientation by LERP; if all are zero: decision 0007.
+  Otto,
+  Mean,             ///< Plain mean of the seen joints.
+  BestView,         ///< The heaviest view alone; in a tie, the one with more tracked joints.
   InverseVariance,  ///< Anisotropic inverse variance along and across the line of sight, robust.
-  BestSkeleton,     ///< One view alone, which changes hands only after a while.  Remembers.
+  BestSkeleton,     ///< One view alone; changes hands only after a while.  Remembers.
   OttoKalman,       ///< A Kalman filter per joint with Otto's weights in R.  Remembers.
 };
 

@@ -19,13 +19,13 @@ struct Estimate {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
 };
 
-Estimate solve(std::span<const Sighting> sightings, std::span<const Eigen::Matrix3d> information,
+Estimate solve(std::span<const JointView> views, std::span<const Eigen::Matrix3d> information,
                std::span<const double> trust) {
   Estimate estimate;
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < sightings.size(); ++i) {
+  for (std::size_t i = 0; i < views.size(); ++i) {
     estimate.information += trust[i] * information[i];
-    right += trust[i] * information[i] * sightings[i].joint.position;
+    right += trust[i] * information[i] * views[i].joint.position;
   }
   estimate.position = estimate.information.llt().solve(right);
   return estimate;
@@ -35,7 +35,7 @@ double huber_weight(double distance, double huber) {
   return distance <= huber || !(huber > 0) ? 1.0 : huber / distance;
 }
 
-FusedJoint finish(std::span<const Sighting> sightings, std::span<const double> trust,
+FusedJoint finish(std::span<const JointView> views, std::span<const double> trust,
                   const Estimate& estimate) {
   FusedJoint fused;
   fused.joint.position = estimate.position;
@@ -43,12 +43,12 @@ FusedJoint finish(std::span<const Sighting> sightings, std::span<const double> t
   state_covariance(fused, estimate.information.inverse());
   std::vector<Eigen::Quaterniond> rotations;
   std::vector<double> weights;
-  for (std::size_t i = 0; i < sightings.size(); ++i) {
-    fused.joint.state = std::max(fused.joint.state, sightings[i].joint.state);
-    fused.contributors |= sightings[i].contributor;
-    if (!is_unit(sightings[i].joint.orientation)) continue;
-    rotations.push_back(sightings[i].joint.orientation);
-    weights.push_back(trust[i] / mean_variance(sightings[i].covariance));
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    fused.joint.state = std::max(fused.joint.state, views[i].joint.state);
+    fused.contributors |= views[i].contributor;
+    if (!is_unit(views[i].joint.orientation)) continue;
+    rotations.push_back(views[i].joint.orientation);
+    weights.push_back(trust[i] / mean_variance(views[i].covariance));
   }
   if (!rotations.empty()) fused.joint.orientation = weighted_lerp(rotations, weights);
   return fused;
@@ -56,23 +56,23 @@ FusedJoint finish(std::span<const Sighting> sightings, std::span<const double> t
 
 }  // namespace
 
-FusedJoint inverse_variance(std::span<const Sighting> sightings, double huber) {
-  if (sightings.empty()) return {};
+FusedJoint inverse_variance(std::span<const JointView> views, double huber) {
+  if (views.empty()) return {};
   std::vector<Eigen::Matrix3d> information;
-  for (const Sighting& s : sightings) information.push_back(s.covariance.inverse());
-  std::vector<double> trust(sightings.size(), 1.0);
-  Estimate estimate = solve(sightings, information, trust);
+  for (const JointView& s : views) information.push_back(s.covariance.inverse());
+  std::vector<double> trust(views.size(), 1.0);
+  Estimate estimate = solve(views, information, trust);
   for (int i = 0; i < kIterations; ++i) {
-    for (std::size_t k = 0; k < sightings.size(); ++k) {
-      const Eigen::Vector3d off = sightings[k].joint.position - estimate.position;
+    for (std::size_t k = 0; k < views.size(); ++k) {
+      const Eigen::Vector3d off = views[k].joint.position - estimate.position;
       trust[k] = huber_weight(std::sqrt(off.dot(information[k] * off)), huber);
     }
-    const Estimate next = solve(sightings, information, trust);
+    const Estimate next = solve(views, information, trust);
     const bool settled = (next.position - estimate.position).norm() < kSettled;
     estimate = next;
     if (settled) break;
   }
-  return finish(sightings, trust, estimate);
+  return finish(views, trust, estimate);
 }
 
 }  // namespace chorus::fusion

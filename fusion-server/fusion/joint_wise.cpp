@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "fusion-server/fusion/inverse_variance.h"
-#include "fusion-server/fusion/sighting.h"
+#include "fusion-server/fusion/joint_view.h"
 #include "fusion-server/fusion/view_score.h"
 #include "fusion-server/fusion/weight.h"
 #include "fusion-server/fusion/weighted_mean.h"
@@ -13,7 +13,7 @@
 namespace chorus::fusion {
 namespace {
 
-/// Heaviest; then most tracked joints; then least sensor id, so that order never matters.
+/// Heaviest; then most tracked joints; then smallest sensor id, so that order never matters.
 Person heaviest_view_of(const Person& person) {
   const auto heavier = [](const SensorView& a, const SensorView& b) {
     const double weight_a = Weight::clamped(a.weight).value();
@@ -28,12 +28,12 @@ Person heaviest_view_of(const Person& person) {
   return {person.id, {*best}};
 }
 
-/// Decision 0007: when nobody who saw the joint has any weight, all of them have the same.
-void lift_zero_weights(std::vector<Sighting>& sightings, double floor) {
-  const bool any = std::any_of(sightings.begin(), sightings.end(),
-                               [](const Sighting& s) { return s.weight > 0; });
+/// Decision 0007: when no view that saw the joint has any weight, all of them get the same weight.
+void lift_zero_weights(std::vector<JointView>& views, double floor) {
+  const bool any =
+      std::any_of(views.begin(), views.end(), [](const JointView& s) { return s.weight > 0; });
   if (any) return;
-  for (Sighting& s : sightings) s.weight = floor;
+  for (JointView& s : views) s.weight = floor;
 }
 
 class JointWise final : public Estimator {
@@ -58,7 +58,7 @@ class JointWise final : public Estimator {
     body.id = person.id;
     for (std::size_t i = 0; i < kJointCount; ++i) {
       const FusedJoint fused =
-          fuse_joint(sightings_of(static_cast<JointId>(i), person, instant.sensors, *errors_));
+          fuse_joint(joint_views_of(static_cast<JointId>(i), person, instant.sensors, *errors_));
       body.skeleton.joints[i] = fused.joint;
       body.variance[i] = fused.variance;
       body.contributors[i] = fused.contributors;
@@ -66,15 +66,15 @@ class JointWise final : public Estimator {
     return body;
   }
 
-  [[nodiscard]] FusedJoint fuse_joint(std::vector<Sighting> sightings) const {
+  [[nodiscard]] FusedJoint fuse_joint(std::vector<JointView> views) const {
     if (config_.method == Method::Otto) {
-      lift_zero_weights(sightings, config_.zero_weight_floor);
+      lift_zero_weights(views, config_.zero_weight_floor);
     } else {
-      for (Sighting& s : sightings) s.weight = 1.0;
+      for (JointView& s : views) s.weight = 1.0;
     }
     FusedJoint fused = config_.method == Method::InverseVariance
-                           ? inverse_variance(sightings, config_.huber)
-                           : weighted_mean(sightings);
+                           ? inverse_variance(views, config_.huber)
+                           : weighted_mean(views);
     if (!fused.joint.seen()) return fused;
     const double common = config_.common_sigma * config_.common_sigma;
     state_covariance(fused, fused.joint.covariance.matrix() + common * Eigen::Matrix3d::Identity());

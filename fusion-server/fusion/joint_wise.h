@@ -1,4 +1,4 @@
-// Methods without memory that fuse each joint by itself: Otto's weighted mean, the plain mean, the
+// Methods without memory that fuse each joint separately: Otto's weighted mean, the plain mean, the
 // heaviest view, robust inverse variance (Otto et al. 5.2.5; inverse_variance.h).
 #pragma once
 

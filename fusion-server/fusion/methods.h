@@ -14,7 +14,7 @@ namespace chorus::fusion {
 struct MethodRow {
   Method method;
   std::string_view name;
-  /// For one person, remembering nothing yet.
+  /// For one person, with an empty memory.
   std::unique_ptr<Estimator> (*begin)(const FusionConfig& config);
 };
 

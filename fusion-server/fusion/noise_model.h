@@ -3,8 +3,8 @@
 
 namespace chorus::fusion {
 
-/// Standard deviations [m].  Defaults: a Kinect-like depth sensor at 2.5 m; depth is the weaker
-/// axis.
+/// Standard deviations [m].  Defaults: a Kinect-like depth sensor at 2.5 m, whose depth is the
+/// weaker axis.
 struct NoiseModel {
   double along = 0.030;
   double across = 0.015;

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "common/body/bones.h"
+#include "fusion-server/fusion/joint_view.h"
 #include "fusion-server/fusion/point_filter.h"
-#include "fusion-server/fusion/sighting.h"
 #include "fusion-server/fusion/weighted_mean.h"
 
 namespace chorus::fusion {
@@ -30,8 +30,8 @@ class OttoKalman final : public Estimator {
     FusedBody body;
     body.id = person.id;
     for (std::size_t i = 0; i < kJointCount; ++i) {
-      auto sightings = sightings_of(static_cast<JointId>(i), person, instant.sensors, *errors_);
-      const FusedJoint fused = fuse_joint(i, instant.at, sightings);
+      auto views = joint_views_of(static_cast<JointId>(i), person, instant.sensors, *errors_);
+      const FusedJoint fused = fuse_joint(i, instant.at, views);
       body.skeleton.joints[i] = fused.joint;
       body.variance[i] = fused.variance;
       body.contributors[i] = fused.contributors;
@@ -44,18 +44,18 @@ class OttoKalman final : public Estimator {
   }
 
  private:
-  FusedJoint fuse_joint(std::size_t joint, Timestamp instant, std::vector<Sighting>& sightings) {
-    for (Sighting& s : sightings) {
+  FusedJoint fuse_joint(std::size_t joint, Timestamp instant, std::vector<JointView>& views) {
+    for (JointView& s : views) {
       s.weight += kWeightFloor;
       const double sigma = config_.kalman_sigma;
       filters_[joint].update(instant, s.joint.position, sigma * sigma / s.weight);
     }
-    FusedJoint fused = weighted_mean(sightings);  // state, orientation, contributors
-    if (!sightings.empty()) seen_[joint] = instant;
+    FusedJoint fused = weighted_mean(views);  // state, orientation, contributors
+    if (!views.empty()) seen_[joint] = instant;
     const bool coasting = seen_[joint] && instant - *seen_[joint] <= config_.kalman_coast;
     const auto position = filters_[joint].at(instant);
     if (!coasting || !position) return {};
-    if (sightings.empty()) fused.joint.state = JointState::Inferred;
+    if (views.empty()) fused.joint.state = JointState::Inferred;
     fused.joint.position = *position;
     state_covariance(fused, filters_[joint].variance_at(instant) * Eigen::Matrix3d::Identity());
     return fused;

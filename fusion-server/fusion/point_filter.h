@@ -2,7 +2,7 @@
 //
 // State (p, v) per axis; process: white acceleration of density q:
 //   Q = q [dt^3/3 dt^2/2; dt^2/2 dt]
-// P is the same on every axis because all noise is round.  Metres, seconds.
+// P is the same on every axis because all noise is isotropic.  Metres, seconds.
 #pragma once
 
 #include <optional>
@@ -16,14 +16,14 @@ namespace chorus::fusion {
 /// Asynchronous: every update has its own time.
 class PointFilter {
  public:
-  /// A point unseen for longer starts afresh.
+  /// A point unseen for longer starts anew.
   static constexpr Duration kForgotten = std::chrono::milliseconds(500);
 
   explicit PointFilter(double density) : density_(density) {}  ///< [m^2 / s^3]
 
-  /// A sight of the point at `instant`, `variance` per axis [m^2].
+  /// A measurement of the point at `instant`, `variance` per axis [m^2].
   void update(Timestamp instant, const Eigen::Vector3d& position, double variance);
-  /// Where it should be at `instant`, or at its last update when that is later; none before the
+  /// Where it should be at `instant`, or at its last update if that is later; none before the
   /// first.
   [[nodiscard]] std::optional<Eigen::Vector3d> at(Timestamp instant) const;
   /// Of at(instant), per axis [m^2]; zero before the first update.

@@ -6,16 +6,16 @@
 #include "common/geometry/rotation.h"
 
 namespace chorus::fusion {
-FusedJoint weighted_mean(std::span<const Sighting> sightings) {
+FusedJoint weighted_mean(std::span<const JointView> views) {
   double total = 0.0;
-  for (const Sighting& s : sightings) total += s.weight > 0 ? s.weight : 0.0;  // drops NaN too
+  for (const JointView& s : views) total += s.weight > 0 ? s.weight : 0.0;  // drops NaN too
   if (!(total > 0)) return {};
   FusedJoint fused;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   fused.joint.state = JointState::Inferred;
   std::vector<Eigen::Quaterniond> rotations;
   std::vector<double> weights;
-  for (const Sighting& s : sightings) {
+  for (const JointView& s : views) {
     if (!(s.weight > 0)) continue;
     const double share = s.weight / total;
     fused.joint.position += share * s.joint.position;

@@ -4,13 +4,13 @@
 
 #include <span>
 
-#include "fusion-server/fusion/sighting.h"
+#include "fusion-server/fusion/joint_view.h"
 
 namespace chorus::fusion {
 
-/// Positions by sum w p / sum w, orientation by sign-aligned LERP.  Sightings with zero weight
-/// contribute nothing; when every weight is zero there is no answer (the caller decides, decision
+/// Positions by sum w p / sum w, orientation by sign-aligned LERP.  Views with zero weight
+/// contribute nothing; when every weight is zero there is no result (the caller decides, decision
 /// 0007).
-[[nodiscard]] FusedJoint weighted_mean(std::span<const Sighting> sightings);
+[[nodiscard]] FusedJoint weighted_mean(std::span<const JointView> views);
 
 }  // namespace chorus::fusion

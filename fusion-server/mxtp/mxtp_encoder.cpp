@@ -12,8 +12,8 @@
 namespace chorus::mxtp {
 namespace {
 
-/// A segment's origin: `share` of the way from one joint to another, beyond it when that is more
-/// than 1; it turns as a bone of the rig.
+/// A segment's origin: `share` of the way from one joint to another (beyond it when more than 1);
+/// it turns as a bone of the rig does.
 struct Segment {
   JointId from;
   JointId to;
@@ -67,13 +67,13 @@ std::uint32_t time_code(const outlet::TrackerFrame& frame) {
                                     1'000'000U);  // modulo 2^32, as the field is
 }
 
-/// Every datagram carries all segments, so an unseen limb hangs at its parent.
+/// Every datagram carries all segments, so an unseen limb is put at its parent.
 Eigen::Vector3d origin_of(const Segment& segment, const outlet::TrackerBody& body) {
   const auto place = [&body](JointId id) {
     return body[outlet::nearest_tracked(body, id)].position;
   };
   const bool both = body[segment.from].tracked && body[segment.to].tracked;
-  // Beyond a joint leads only a way that is seen.
+  // A segment beyond a joint needs both joints to be seen.
   const double share = both ? segment.share : std::min(segment.share, 1.0);
   return (1.0 - share) * place(segment.from) + share * place(segment.to);
 }

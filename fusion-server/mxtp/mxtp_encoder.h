@@ -1,11 +1,11 @@
 // Xsens MVN network streaming, datagram type 02: 23 segments as position and quaternion.
 //
 // Big-endian, metres, right-handed, +z up, x forward.  760 bytes per body; the character id is the
-// slot.  Segments that no joint of ours stands for lie on the line between those that do: L5, L3
-// and T8 along the spine, shoulders beside it, the head as far beyond our Neck as that is from
-// SpineShoulder.  Rotations are the rig's of humanoid.h, as MVN's
-// are: a person in T-pose who looks along +x, our +z, has identities only; a segment whose joints
-// are not tracked turns with its parent.
+// slot.  Segments without a joint of ours lie on the line between those that have one: L5, L3 and
+// T8 along the spine, shoulders beside it, the head as far beyond our Neck as that is from
+// SpineShoulder.  Rotations are those of humanoid.h's rig, as MVN's are: a person in T-pose who
+// looks along +x, our +z, has identities only; a segment whose joints are not tracked turns with
+// its parent.
 #pragma once
 
 #include <cstdint>

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/median.h"
+
 namespace chorus::natnet {
 namespace {
 
@@ -17,12 +19,6 @@ double leg_of(const BoneOffsets& offsets) {
   double both = 0.0;
   for (const std::size_t bone : kLegs) both += length_of(offsets[bone]);
   return both / 2.0;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 bool differ(const BoneOffsets& a, const BoneOffsets& b, double tolerance) {
@@ -63,8 +59,8 @@ std::optional<BoneOffsets> BoneLengths::add(PersonId person, const MotiveSkeleto
   return found;
 }
 
-/// The directions are those of the T-pose; a bone seen in less than half of the frames is an
-/// adult's, and the hip stands as high as the legs are long.
+/// The directions are those of the T-pose; a bone seen in less than half of the frames has an
+/// adult's length, and the hip is as high as the legs are long.
 BoneOffsets BoneLengths::measured() const {
   BoneOffsets offsets = adult_offsets();
   const double adult_leg = leg_of(offsets);

@@ -1,7 +1,7 @@
-// How long a person's bones are, measured while it moves: what its skeleton's description says.
+// How long a person's bones are, measured while they move, for the description of their skeleton.
 //
 // Clients build their rest pose from the description and turn its bones as frames say; with the
-// bones of an average adult a limb of somebody else ends in the wrong place.
+// bones of an average adult, the limbs of other people would end in the wrong place.
 #pragma once
 
 #include <array>
@@ -21,14 +21,14 @@ using BoneOffsets = std::array<std::array<double, 3>, kBoneCount>;
 /// Of one slot.
 class BoneLengths {
  public:
-  /// Frames of one person that its lengths are the medians of: five seconds at 30 Hz.
+  /// Lengths are the medians of this many frames of a person: five seconds at 30 Hz.
   static constexpr std::size_t kFrames = 150;
-  /// A description is changed when a bone is longer or shorter than it says by more than this [m].
+  /// A description is changed when a bone differs by more than this from what it says [m].
   static constexpr double kTolerance = 0.005;
 
   /// False: this person has been measured.
   [[nodiscard]] bool wants(PersonId person) const { return !done_ || person != person_; }
-  /// `local`: Coordinates::Local.  The new description, once there is one.
+  /// `local`: Coordinates::Local.  Returns the new description once there is one.
   [[nodiscard]] std::optional<BoneOffsets> add(PersonId person, const MotiveSkeleton& local);
 
  private:
@@ -37,7 +37,8 @@ class BoneLengths {
   PersonId person_{};
   bool done_ = false;
   std::size_t frames_ = 0;
-  std::array<std::vector<double>, kBoneCount> lengths_;  ///< Where bone and parent are tracked.
+  /// Of frames in which bone and parent are tracked.
+  std::array<std::vector<double>, kBoneCount> lengths_;
   BoneOffsets described_ = adult_offsets();
 };
 

@@ -13,9 +13,9 @@ constexpr std::string_view kTooMany =
     "there are as many clients already as outputs.natnet.max_clients allows";
 constexpr std::string_view kTooManyOfOne =
     "its address has as many clients already as outputs.natnet.max_clients_per_address allows";
-constexpr std::size_t kMostKnocks = 4096;
+constexpr std::size_t kMaxKnocks = 4096;
 
-/// Requests with one answer; a text that ends in a comma stands for all that begin with it.
+/// Requests with one answer; a text ending in a comma stands for all that begin with it.
 struct Known {
   std::string_view text;
   std::int32_t number;
@@ -23,7 +23,7 @@ struct Known {
 constexpr std::array kNumbers{
     Known{"AnalogSamplesPerMocapFrame", 0},
     Known{"UpAxis", 1},  // 0 x, 1 y, 2 z
-    // All models are sent always: that contains what is subscribed to.
+    // All models are always sent, and that contains what is subscribed to.
     Known{"SubscribeToData", 0},
     Known{"SubscribeToData,", 0},
     Known{"SubscribeByID,", 0},
@@ -34,7 +34,7 @@ bool matches(const Known& known, std::string_view text) {
   return known.text.ends_with(',') ? text.starts_with(known.text) : text == known.text;
 }
 
-std::size_t count_of(const std::map<Address, outlet::SteadyTime>& heard, std::uint32_t host) {
+std::size_t count_of(const std::map<Address, SteadyTime>& heard, std::uint32_t host) {
   constexpr std::uint16_t kLastPort = 65535;
   return static_cast<std::size_t>(
       std::distance(heard.lower_bound({host, 0}), heard.upper_bound({host, kLastPort})));
@@ -63,17 +63,16 @@ std::string_view CommandDesk::objection(const Address& from) const {
   return {};
 }
 
-void CommandDesk::knock(const Address& from, outlet::SteadyTime now) {
-  // A flood; who is real knocks again.
-  if (knocks_.size() >= kMostKnocks) knocks_.clear();
+void CommandDesk::knock(const Address& from, SteadyTime now) {
+  // A flood; a real client knocks again.
+  if (knocks_.size() >= kMaxKnocks) knocks_.clear();
   if (count_of(knocks_, from.host) >= options_.max_clients_per_address) {
     knocks_.erase(knocks_.lower_bound({from.host, 0}));
   }
   knocks_[from] = now;
 }
 
-std::string_view CommandDesk::admit(const Incoming& request, const Address& from,
-                                    outlet::SteadyTime now) {
+std::string_view CommandDesk::admit(const Incoming& request, const Address& from, SteadyTime now) {
   expire(now);
   if (request.message == Message::Disconnect) {
     heard_.erase(from);
@@ -147,7 +146,7 @@ float CommandDesk::frame_rate() const {
   return static_cast<float>(static_cast<double>(instants_.size() - 1) / span);
 }
 
-void CommandDesk::expire(outlet::SteadyTime now) {
+void CommandDesk::expire(SteadyTime now) {
   const auto silent = [&](const auto& each) { return now - each.second > options_.client_timeout; };
   std::erase_if(heard_, silent);
   if (now - tidied_ < options_.client_timeout) return;  // a flood must not cost us more
@@ -155,7 +154,7 @@ void CommandDesk::expire(outlet::SteadyTime now) {
   std::erase_if(knocks_, silent);
 }
 
-std::vector<Address> CommandDesk::clients(outlet::SteadyTime now) {
+std::vector<Address> CommandDesk::clients(SteadyTime now) {
   expire(now);
   std::vector<Address> all;
   for (const auto& [address, when] : heard_) all.push_back(address);

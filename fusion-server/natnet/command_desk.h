@@ -1,14 +1,14 @@
-// NatNet's command channel without a socket: who is a client, and what is answered to whom.
+// NatNet's command channel without a socket: who is a client, and what to answer to whom.
 //
 // Clients are those that connected or keep alive (in multicast, where connecting only asks for the
-// server's settings, those that keep alive) and then said something else.  They are few, of all
-// hosts and of each, known by address and port, and forgotten when nothing is heard of them for
-// `client_timeout`.
-// Anybody can write in anybody's name, and the protocol has no means to tell.  Answers are larger
-// than requests: all together get `answers`.  A single datagram turns on nothing and takes no
-// client's place; two in one name still send frames to that host, for `client_timeout` and on at
-// most `max_clients_per_address` ports (docs/decisions/0025).  What a
-// server says is never answered, so two servers cannot be made to talk to each other.
+// server's settings, those that keep alive) and then sent something else.  They are limited in
+// number, in total and per host, identified by address and port, and forgotten after
+// `client_timeout` without a message.
+// Anybody can send in anybody's name, and the protocol cannot tell.  Answers are larger than
+// requests, so all together are limited by `answers`.  A single datagram enables nothing and takes
+// no client's place; two in one name still send frames to that host, for `client_timeout` and to at
+// most `max_clients_per_address` ports (docs/decisions/0025).  Messages that only servers send are
+// never answered, so two servers cannot be made to talk to each other.
 #pragma once
 
 #include <chrono>
@@ -21,13 +21,13 @@
 #include <utility>
 #include <vector>
 
+#include "common/net/token_bucket.h"
 #include "common/time/timestamp.h"
 #include "fusion-server/natnet/natnet_messages.h"
-#include "fusion-server/outlet/token_bucket.h"
 
 namespace chorus::natnet {
 
-/// IPv4: the protocol knows no other.
+/// IPv4: the protocol knows nothing else.
 struct Address {
   std::uint32_t host = 0;
   std::uint16_t port = 0;
@@ -41,16 +41,16 @@ struct DeskOptions {
   std::size_t max_clients = 16;
   std::size_t max_clients_per_address = 4;
   Duration client_timeout = std::chrono::seconds(10);
-  outlet::Allowance answers{262'144.0, 524'288.0};  ///< Bytes.
+  net::Allowance answers{262'144.0, 524'288.0};  ///< Bytes.
 };
 
 struct Now {
-  outlet::SteadyTime steady{};
+  SteadyTime steady{};
   Timestamp utc{};
 };
 
 struct Reply {
-  Bytes bytes;               ///< Empty: nothing is said.
+  Bytes bytes;               ///< Empty: no answer.
   std::string_view refusal;  ///< Why it was turned away; empty: it was not.
 };
 
@@ -60,35 +60,35 @@ class CommandDesk {
 
   [[nodiscard]] Reply answer(std::span<const char> datagram, const Address& from, const Now& now);
 
-  /// The descriptions from now on: the whole message.
+  /// Sets the descriptions: the whole message.
   void describe(Bytes models) { options_.models = std::move(models); }
 
-  /// The frame that is sent to those who ask for one.
+  /// Sets the frame that is sent to those who ask for one.
   void newest(std::shared_ptr<const Bytes> frame, Timestamp instant);
 
   /// Who gets frames now.
-  [[nodiscard]] std::vector<Address> clients(outlet::SteadyTime now);
+  [[nodiscard]] std::vector<Address> clients(SteadyTime now);
 
  private:
   [[nodiscard]] Reply reply_to(const Incoming& request, const Now& now) const;
   [[nodiscard]] Bytes reply_to_text(std::string_view text) const;
-  /// Why it cannot be a client; empty: it can, or does not want to.
+  /// Why it cannot become a client; empty: it can, or does not want to.
   [[nodiscard]] std::string_view admit(const Incoming& request, const Address& from,
-                                       outlet::SteadyTime now);
+                                       SteadyTime now);
   [[nodiscard]] std::string_view objection(const Address& from) const;
-  void knock(const Address& from, outlet::SteadyTime now);
+  void knock(const Address& from, SteadyTime now);
   [[nodiscard]] float frame_rate() const;
-  void expire(outlet::SteadyTime now);
+  void expire(SteadyTime now);
 
   DeskOptions options_;
-  using Heard = std::map<Address, outlet::SteadyTime>;
+  using Heard = std::map<Address, SteadyTime>;
 
-  Heard heard_;   ///< Clients, and when something came of them last.
-  Heard knocks_;  ///< Who asked for frames once, and when; tidied once in a while.
-  outlet::SteadyTime tidied_{};
+  Heard heard_;   ///< Clients, and when each was last heard.
+  Heard knocks_;  ///< Who has asked for frames once, and when; tidied now and then.
+  SteadyTime tidied_{};
   std::shared_ptr<const Bytes> frame_;
   std::deque<Timestamp> instants_;  ///< Of the newest frames.
-  outlet::TokenBucket allowance_;
+  net::TokenBucket allowance_;
 };
 
 }  // namespace chorus::natnet

@@ -1,8 +1,8 @@
 // The body as the 21 bones that OptiTrack's Motive streams, for clients that look for them by name.
 //
-// Names, order and hierarchy are Motive's ("Hip", "Ab", "Chest", ...), its rest is the T-pose that
-// looks along +z with the left hand at +x; every bone at rest has the identity.  The rig and the
-// twists are those of humanoid.h, where UpperChest turns as Chest does and has no bone here.
+// Names, order and hierarchy are Motive's ("Hip", "Ab", "Chest", ...); its rest pose is the T-pose
+// that looks along +z with the left hand at +x; every bone at rest has the identity.  The rig and
+// the twists are those of humanoid.h, where UpperChest turns as Chest does and has no bone here.
 // World space, metres.
 #pragma once
 
@@ -21,8 +21,8 @@ inline constexpr std::size_t kBoneCount = 21;
 struct BoneDescription {
   std::string_view name;
   std::int32_t parent = 0;  ///< Id; 0: none.
-  /// From the parent's origin at rest, of an adult 1.75 m tall: what clients build their own rest
-  /// pose from.  Frames carry the person's own [m].
+  /// From the parent's origin at rest, for an adult 1.75 m tall: clients build their own rest pose
+  /// from it.  Frames carry the person's own lengths [m].
   std::array<double, 3> offset{};
 };
 
@@ -31,7 +31,7 @@ struct BoneDescription {
 struct MotiveBone {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-  /// False: its joints are not tracked; then it hangs on its parent as at rest.
+  /// False: its joints are not tracked; then it has the place at its parent that it has at rest.
   bool tracked = false;
 };
 using MotiveSkeleton = std::array<MotiveBone, kBoneCount>;
@@ -41,7 +41,7 @@ enum class Coordinates {
   Global,  ///< All in the world.
 };
 
-/// Nothing when the pelvis is not tracked or nothing says where the body faces.
+/// Empty when the pelvis is not tracked, or when it is unknown which way the body faces.
 [[nodiscard]] std::optional<MotiveSkeleton> motive_skeleton(const outlet::TrackerBody& body,
                                                             Coordinates coordinates);
 

@@ -16,7 +16,7 @@ std::string_view text_in(std::span<const char> payload) {
 }  // namespace
 
 std::optional<Incoming> read_request(std::span<const char> datagram) {
-  if (datagram.size() < kHeader || datagram.size() > kLongestRequest) return std::nullopt;
+  if (datagram.size() < kHeader || datagram.size() > kMaxRequest) return std::nullopt;
   const std::size_t announced = number_at<std::uint16_t>(datagram, 2);
   if (datagram.size() - kHeader < announced) return std::nullopt;
   const auto payload = datagram.subspan(kHeader, announced);

@@ -9,8 +9,8 @@
 //   10 keep-alive        nothing
 //   12 echo              u64 of the client                                               -> 13
 //   14 discovery         as connect                                                      -> 1
-// The vendor's own clients send bytes behind the payload they announce, and connect with 264, 271
-// or no bytes at all: what follows the payload is ignored, and of connect nothing is read.
+// The vendor's own clients send bytes after the payload they announce, and connect with 264, 271 or
+// no bytes at all: bytes after the payload are ignored, and nothing of connect is read.
 #pragma once
 
 #include <array>
@@ -44,9 +44,9 @@ enum class Message : std::uint16_t {
 
 /// The version of the layout.
 inline constexpr std::array<std::uint8_t, 4> kNatNetVersion{3, 1, 0, 0};
-/// Longer datagrams are no requests: the longest that clients send has 275 bytes.
-inline constexpr std::size_t kLongestRequest = 1024;
-/// Ticks of all time stamps: nanoseconds of UTC since 1970.
+/// Longer datagrams are not requests: the longest that clients send has 275 bytes.
+inline constexpr std::size_t kMaxRequest = 1024;
+/// The unit of all time stamps: nanoseconds of UTC since 1970.
 inline constexpr std::uint64_t kTicksPerSecond = 1'000'000'000;
 
 struct Incoming {
@@ -58,7 +58,7 @@ struct Incoming {
 /// Empty: shorter than its header or than it says, too long, an echo without its number.
 [[nodiscard]] std::optional<Incoming> read_request(std::span<const char> datagram);
 
-/// What a server sends and no client does: answering it could go on for ever.
+/// Sent by servers and never by clients: answering it could go on forever.
 [[nodiscard]] bool is_an_answer(Message message);
 
 struct ServerInfo {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/base/log.h"
-#include "common/http/asio.h"
+#include "common/net/asio.h"
 #include "fusion-server/natnet/natnet_server.h"
 
 namespace chorus::natnet {
@@ -14,13 +14,13 @@ namespace {
 
 /// The four bytes of an IPv4 multicast group.
 std::optional<std::array<std::uint8_t, 4>> group_of(const std::string& text) {
-  http::error_code error;
-  const auto address = http::net::ip::make_address_v4(text, error);
+  net::error_code error;
+  const auto address = asio::ip::make_address_v4(text, error);
   if (error || !address.is_multicast()) return std::nullopt;
   return address.to_bytes();
 }
 
-/// Frames that say that models have changed: some of them get lost.
+/// How many frames say that models have changed: some of them get lost.
 constexpr int kTellChange = 5;
 
 /// Encodes on the caller's thread, once for all clients.
@@ -81,11 +81,11 @@ void read_models(ConfigReader& reader, Models& out) {
 }  // namespace
 
 void read_settings(ConfigReader& reader, Settings& out) {
-  constexpr int kMostPort = 65535;
-  constexpr int kMostClients = 256;
-  constexpr int kMostHops = 255;
+  constexpr int kMaxPort = 65535;
+  constexpr int kMaxClients = 256;
+  constexpr int kMaxHops = 255;
   reader.read("address", out.address);
-  reader.read("command_port", out.command_port, 0, kMostPort);
+  reader.read("command_port", out.command_port, 0, kMaxPort);
   auto transmission = static_cast<std::size_t>(out.transmission);
   reader.read_choice("transmission", transmission, {"unicast", "multicast"});
   out.transmission = static_cast<Transmission>(transmission);
@@ -93,10 +93,10 @@ void read_settings(ConfigReader& reader, Settings& out) {
   if (!group_of(out.group)) {
     reader.complain("group", "must be an IPv4 multicast group, 224.0.0.0 to 239.255.255.255");
   }
-  reader.read("data_port", out.data_port, 1, kMostPort);
-  reader.read("multicast_hops", out.multicast_hops, 0, kMostHops);
-  reader.read("max_clients", out.max_clients, 1, kMostClients);
-  reader.read("max_clients_per_address", out.max_clients_per_address, 1, kMostClients);
+  reader.read("data_port", out.data_port, 1, kMaxPort);
+  reader.read("multicast_hops", out.multicast_hops, 0, kMaxHops);
+  reader.read("max_clients", out.max_clients, 1, kMaxClients);
+  reader.read("max_clients_per_address", out.max_clients_per_address, 1, kMaxClients);
   reader.read_s("client_timeout_s", out.client_timeout, std::chrono::seconds(1),
                 std::chrono::hours(1));
   read_models(reader, out.models);

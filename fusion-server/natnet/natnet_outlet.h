@@ -30,7 +30,7 @@ struct Settings {
 
 void read_settings(ConfigReader& reader, Settings& out);
 
-/// All of the slots are described.
+/// All slots are described.
 [[nodiscard]] Result<std::unique_ptr<outlet::Outlet>> open_outlet(
     const Settings& settings, const outlet::OutletContext& context);
 

@@ -7,19 +7,18 @@
 #include <utility>
 
 #include "common/base/rate_report.h"
-#include "common/http/asio.h"
-#include "common/http/event_loop.h"
-#include "common/http/listen.h"
+#include "common/net/asio.h"
+#include "common/net/event_loop.h"
+#include "common/net/listen.h"
 #include "fusion-server/outlet/newest.h"
 
 namespace chorus::natnet {
 namespace {
 
-namespace net = http::net;
-using http::error_code;
-using http::udp;
+using net::error_code;
+using net::udp;
 
-/// Frames of six persons to all clients at once, while nobody schedules us.
+/// Frames of six persons to all clients at once, in case this thread is not scheduled for a while.
 constexpr int kSendBuffer = 1 << 20;
 
 Address address_of(const udp::endpoint& endpoint) {
@@ -27,7 +26,7 @@ Address address_of(const udp::endpoint& endpoint) {
 }
 
 udp::endpoint endpoint_of(const Address& address) {
-  return {net::ip::address_v4(address.host), address.port};
+  return {asio::ip::address_v4(address.host), address.port};
 }
 
 struct Pending {
@@ -41,21 +40,21 @@ struct Server::Impl {
   explicit Impl(ServerOptions o) : options(std::move(o)), desk(options.desk) {}
 
   [[nodiscard]] Result<void> open();
-  [[nodiscard]] error_code open_group(const net::ip::address_v4& interface);
+  [[nodiscard]] error_code open_group(const asio::ip::address_v4& interface);
   void run();
   void receive();
   void on_datagram(error_code failed, std::size_t size);
   void deliver();
-  void send(http::DatagramSocket& socket, const Bytes& bytes, const udp::endpoint& to);
+  void send(net::DatagramSocket& socket, const Bytes& bytes, const udp::endpoint& to);
 
-  net::io_context io{1};  // First member: destroyed last, after everything that uses it.
+  asio::io_context io{1};  // First member: destroyed last, after everything that uses it.
   ServerOptions options;
   CommandDesk desk;
-  http::DatagramSocket commands{io.get_executor()};
-  http::DatagramSocket group{io.get_executor()};
+  net::DatagramSocket commands{io.get_executor()};
+  net::DatagramSocket group{io.get_executor()};
   udp::endpoint group_endpoint;
   RateReport turned_away{"NatNet request turned away"};
-  std::array<char, kLongestRequest + 1> incoming{};
+  std::array<char, kMaxRequest + 1> incoming{};
   udp::endpoint sender;
   bool receiving = false;
   std::uint16_t port = 0;
@@ -68,33 +67,33 @@ struct Server::Impl {
 };
 
 Result<void> Server::Impl::open() {
-  const http::ListenAt where{options.address, options.command_port, "outputs.natnet.command_port"};
+  const net::ListenAt where{options.address, options.command_port, "outputs.natnet.command_port"};
   error_code error;
-  const auto address = net::ip::make_address_v4(options.address, error);
+  const auto address = asio::ip::make_address_v4(options.address, error);
   if (error) {
     return fail(ErrorCode::InvalidArgument, options.address,
                 "the address is a numeric IPv4 address, such as 127.0.0.1 or 0.0.0.0");
   }
   commands.open(udp::v4(), error);
   if (!error) commands.non_blocking(true, error);
-  if (!error) commands.set_option(net::socket_base::send_buffer_size(kSendBuffer), error);
+  if (!error) commands.set_option(asio::socket_base::send_buffer_size(kSendBuffer), error);
   if (!error) commands.bind({address, options.command_port}, error);
   if (!error) port = commands.local_endpoint(error).port();
   if (!error && options.desk.info.multicast) error = open_group(address);
-  if (error) return http::cannot_listen(where, "UDP", error);
+  if (error) return net::cannot_listen(where, "UDP", error);
   return {};
 }
 
-error_code Server::Impl::open_group(const net::ip::address_v4& interface) {
+error_code Server::Impl::open_group(const asio::ip::address_v4& interface) {
   const ServerInfo& info = options.desk.info;
-  group_endpoint = {net::ip::address_v4(info.group), info.data_port};
+  group_endpoint = {asio::ip::address_v4(info.group), info.data_port};
   error_code error;
   group.open(udp::v4(), error);
   if (!error) group.non_blocking(true, error);
-  if (!error) group.set_option(net::ip::multicast::hops(options.multicast_hops), error);
-  if (!error) group.set_option(net::ip::multicast::enable_loopback(true), error);
+  if (!error) group.set_option(asio::ip::multicast::hops(options.multicast_hops), error);
+  if (!error) group.set_option(asio::ip::multicast::enable_loopback(true), error);
   if (!error && !interface.is_unspecified()) {
-    group.set_option(net::ip::multicast::outbound_interface(interface), error);
+    group.set_option(asio::ip::multicast::outbound_interface(interface), error);
   }
   // Not the data port: clients on this host bind that one.
   if (!error) group.bind({interface, 0}, error);
@@ -102,13 +101,13 @@ error_code Server::Impl::open_group(const net::ip::address_v4& interface) {
 }
 
 void Server::Impl::run() {
-  http::run_events(io, "NatNet handler failed", [this] {
+  net::run_events(io, "NatNet handler failed", [this] {
     if (!receiving) receive();
   });
 }
 
 void Server::Impl::receive() {
-  commands.async_receive_from(net::buffer(incoming), sender,
+  commands.async_receive_from(asio::buffer(incoming), sender,
                               [this](error_code error, std::size_t size) {
                                 receiving = false;
                                 on_datagram(error, size);
@@ -140,9 +139,9 @@ void Server::Impl::deliver() {
   clients = all.size();
 }
 
-void Server::Impl::send(http::DatagramSocket& socket, const Bytes& bytes, const udp::endpoint& to) {
+void Server::Impl::send(net::DatagramSocket& socket, const Bytes& bytes, const udp::endpoint& to) {
   error_code error;
-  socket.send_to(net::buffer(bytes), to, 0, error);
+  socket.send_to(asio::buffer(bytes), to, 0, error);
   if (error) ++failed;
 }
 
@@ -150,7 +149,7 @@ Server::Server() = default;
 
 Server::~Server() {
   if (!impl_ || !impl_->thread.joinable()) return;
-  net::post(impl_->io, [impl = impl_.get()] {
+  asio::post(impl_->io, [impl = impl_.get()] {
     error_code ignored;
     impl->commands.close(ignored);
     impl->group.close(ignored);
@@ -171,14 +170,14 @@ std::uint16_t Server::port() const { return impl_->port; }
 
 void Server::publish(std::shared_ptr<const Bytes> frame, Timestamp instant) {
   if (impl_->newest.put({std::move(frame), instant})) {
-    net::post(impl_->io, [impl = impl_.get()] { impl->deliver(); });
+    asio::post(impl_->io, [impl = impl_.get()] { impl->deliver(); });
   } else {
     ++impl_->dropped;
   }
 }
 
 void Server::describe(Bytes models) {
-  net::post(impl_->io, [impl = impl_.get(), models = std::move(models)]() mutable {
+  asio::post(impl_->io, [impl = impl_.get(), models = std::move(models)]() mutable {
     impl->desk.describe(std::move(models));
   });
 }

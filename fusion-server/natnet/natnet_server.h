@@ -1,5 +1,5 @@
-// The sockets of a NatNet server: one for commands, from which clients get their frames too, and in
-// multicast one for the group.  A thread of its own; nothing here waits for anybody.
+// The sockets of a NatNet server: one for commands, from which clients also get their frames, and
+// in multicast one for the group.  A thread of its own; nothing here waits for anybody.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 namespace chorus::natnet {
 
 struct ServerOptions {
-  /// Numeric IPv4: where we listen and what the group goes out by.
+  /// Numeric IPv4: where we listen, and the interface that the group is sent from.
   std::string address = "127.0.0.1";
   std::uint16_t command_port = 1510;  ///< 0: any.
   int multicast_hops = 1;
@@ -28,9 +28,9 @@ class Server {
   ~Server();  ///< Joins.
 
   [[nodiscard]] std::uint16_t port() const;
-  /// Sends a frame to all; one that is still waiting to be sent is dropped.  Any thread.
+  /// Sends a frame to all; a frame still waiting to be sent is dropped.  Any thread.
   void publish(std::shared_ptr<const Bytes> frame, Timestamp instant);
-  /// Describes the models so from now on.  Any thread.
+  /// Sets the description of the models.  Any thread.
   void describe(Bytes models);
   /// Any thread; all but `frames`.
   [[nodiscard]] SinkCounters counters() const;

@@ -17,7 +17,7 @@ class Message {
   explicit Message(std::string_view address) : address_(address) {}
 
   Message& integer(std::int32_t value);
-  Message& real(double value);  ///< As float32; what is not finite is sent as 0.
+  Message& real(double value);  ///< As float32; a value that is not finite is sent as 0.
   Message& text(std::string_view value);
   Message& vector(const Eigen::Vector3d& value);         ///< x y z
   Message& quaternion(const Eigen::Quaterniond& value);  ///< x y z w
@@ -30,8 +30,8 @@ class Message {
   std::vector<char> arguments_;
 };
 
-/// Gathers messages into bundles ("#bundle", time tag "now") of at most `limit` bytes each; a
-/// message that is longer by itself gets a bundle of its own.
+/// Collects messages into bundles ("#bundle", time tag "now") of at most `limit` bytes each; a
+/// message that is longer than that gets a bundle of its own.
 class Bundles {
  public:
   static constexpr std::size_t kLimit = 1400;  ///< Fits an Ethernet frame with IPv6 and UDP heads.

@@ -19,7 +19,7 @@
 namespace chorus::vmc {
 
 struct Content {
-  double seconds = 0.0;   ///< Since the performer began.
+  double seconds = 0.0;   ///< Since the performer started.
   bool trackers = false;  ///< With /VMC/Ext/Tra/Pos.
 };
 
@@ -27,7 +27,7 @@ struct Content {
 [[nodiscard]] std::vector<std::vector<char>> encode(const outlet::TrackerBody* body,
                                                     const Content& content);
 
-/// The last words: the model is not loaded any more, nothing is tracked.
+/// The last datagram: the model is not loaded any more, nothing is tracked.
 [[nodiscard]] std::vector<std::vector<char>> encode_end();
 
 }  // namespace chorus::vmc

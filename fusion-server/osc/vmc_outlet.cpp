@@ -28,7 +28,7 @@ outlet::DatagramStream stream_of(const outlet::PersonTargets& person, bool track
 
 void read_settings(ConfigReader& reader, Settings& out) {
   outlet::read_targets(reader, out.targets);
-  reader.read("slot", out.slot, 0, outlet::kMostSlots - 1);
+  reader.read("slot", out.slot, 0, outlet::kMaxSlots - 1);
   outlet::read_persons(reader, out.persons);
   reader.read("trackers", out.trackers);
 }

@@ -14,9 +14,9 @@ namespace chorus::vrchat {
 
 struct Settings {
   std::vector<std::string> targets{"127.0.0.1:9000"};
-  int slot = 0;                                ///< Whose person.
-  std::vector<outlet::PersonTargets> persons;  ///< More.
-  bool head = true;  ///< Also the head, by which VRChat aligns its space with ours.
+  int slot = 0;                                ///< Slot of the person to send.
+  std::vector<outlet::PersonTargets> persons;  ///< Further persons.
+  bool head = true;  ///< Also the head, which VRChat uses to align its space with ours.
 
   bool operator==(const Settings&) const = default;
 };

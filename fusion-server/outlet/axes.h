@@ -1,4 +1,4 @@
-// Axes and units of every output protocol.  The only file that changes them.
+// Axes and units of every output protocol.  The only file that converts them.
 //
 // Inside: world, right-handed, metres, +y up, +z where the master sensor looks (out of its room's
 // far wall), quaternions Hamilton.  wire-format facts: docs/guide/outputs.md.
@@ -40,8 +40,8 @@ struct Axes {
 /// NatNet, as Motive streams it by default: right-handed, +y up, metres.
 [[nodiscard]] const Axes& natnet_axes();
 
-/// Directions of the rig at rest (humanoid.h: it looks along -z) from those of a rest that looks
-/// along our +z, as Xsens' and Motive's do.
+/// Converts from the directions of a rest pose that looks along our +z, as Xsens' and Motive's do,
+/// to those of the rig at rest (humanoid.h: it looks along -z).
 [[nodiscard]] const Eigen::Quaterniond& rig_from_ahead_rest();
 
 /// R = Rx(eta) Ry(theta) Rz(phi), |theta| <= 90 deg (A.R.T. DTrack2 manual, App. B) [rad].

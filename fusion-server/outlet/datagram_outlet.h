@@ -16,14 +16,14 @@ using Datagrams = std::vector<std::vector<char>>;
 /// Called with each frame in turn, always on the same thread.
 using DatagramEncoder = std::function<Datagrams(const TrackerFrame&)>;
 
-/// What goes to the same targets.
+/// The datagrams that one set of targets receives.
 struct DatagramStream {
   std::vector<std::string> targets;
   DatagramEncoder encode;
   Datagrams last_words = {};  ///< Sent when the outlet ends.
 };
 
-/// `name` outlives the outlet; what is wrong with a target is named as DatagramSender does.
+/// `name` outlives the outlet; errors about a target are DatagramSender's.
 [[nodiscard]] Result<std::unique_ptr<Outlet>> open_datagram_outlet(
     std::string_view name, std::vector<DatagramStream> streams);
 

@@ -5,21 +5,20 @@
 #include <utility>
 
 #include "common/base/parse.h"
-#include "common/http/asio.h"
+#include "common/net/asio.h"
 
 namespace chorus::outlet {
 namespace {
 
-namespace net = http::net;
-using http::DatagramSocket;
-using http::error_code;
-using http::udp;
+using net::DatagramSocket;
+using net::error_code;
+using net::udp;
 
 tl::unexpected<Error> bad_target(std::string_view text, std::string reason) {
   return fail(ErrorCode::InvalidArgument, std::string(text), std::move(reason));
 }
 
-Result<udp::endpoint> resolve(net::io_context& io, const Target& target) {
+Result<udp::endpoint> resolve(asio::io_context& io, const Target& target) {
   error_code error;
   udp::resolver resolver(io);
   const auto found = resolver.resolve(target.host, std::to_string(target.port), error);
@@ -56,23 +55,23 @@ void read_targets(ConfigReader& reader, std::vector<std::string>& out) {
 }
 
 void read_multicast(ConfigReader& reader, Multicast& out) {
-  constexpr int kMostHops = 255;
+  constexpr int kMaxHops = 255;
   reader.read("multicast_address", out.address);
   error_code error;
-  (void)net::ip::make_address_v4(out.address, error);
+  (void)asio::ip::make_address_v4(out.address, error);
   if (!out.address.empty() && error) {
     reader.complain("multicast_address",
                     "must be the numeric IPv4 address of an interface, or empty");
   }
-  reader.read("multicast_hops", out.hops, 0, kMostHops);
+  reader.read("multicast_hops", out.hops, 0, kMaxHops);
 }
 
 struct DatagramSender::Sockets {
-  net::io_context io{1};
+  asio::io_context io{1};
   std::optional<DatagramSocket> v4;
   std::optional<DatagramSocket> v6;
   std::vector<udp::endpoint> targets;
-  bool loopback = true;  ///< Everybody we talk to is on this host.
+  bool loopback = true;  ///< Every target is on this host.
 
   [[nodiscard]] std::optional<DatagramSocket>& towards(const udp& protocol) {
     return protocol == udp::v6() ? v6 : v4;
@@ -95,7 +94,7 @@ Result<void> DatagramSender::Sockets::resolve_all(const DatagramOptions& options
   }
   if (options.listen_address.empty()) return {};
   error_code error;
-  const auto address = net::ip::make_address(options.listen_address, error);
+  const auto address = asio::ip::make_address(options.listen_address, error);
   if (error) return bad_target(options.listen_address, "the address must be numeric");
   loopback = loopback && address.is_loopback();
   return {};
@@ -105,8 +104,8 @@ Result<void> DatagramSender::Sockets::open(const udp& protocol, const DatagramOp
   auto& socket = towards(protocol);
   if (socket) return {};
   const bool v6_wanted = protocol == udp::v6();
-  const net::ip::address inside = v6_wanted ? net::ip::address(net::ip::address_v6::loopback())
-                                            : net::ip::address(net::ip::address_v4::loopback());
+  const asio::ip::address inside = v6_wanted ? asio::ip::address(asio::ip::address_v6::loopback())
+                                             : asio::ip::address(asio::ip::address_v4::loopback());
   const udp::endpoint source = loopback ? udp::endpoint(inside, options.source_port)
                                         : udp::endpoint(protocol, options.source_port);
   error_code error;
@@ -116,7 +115,7 @@ Result<void> DatagramSender::Sockets::open(const udp& protocol, const DatagramOp
   if (!error) socket->bind(source, error);
   if (!error) return set_multicast(*socket, protocol, options.multicast);
   const std::string advice =
-      error == net::error::address_in_use ? "; set source_port to another, or to 0 for any" : "";
+      error == asio::error::address_in_use ? "; set source_port to another, or to 0 for any" : "";
   return fail(ErrorCode::Io, "UDP port " + std::to_string(options.source_port),
               error.message() + advice);
 }
@@ -124,11 +123,11 @@ Result<void> DatagramSender::Sockets::open(const udp& protocol, const DatagramOp
 Result<void> DatagramSender::Sockets::set_multicast(DatagramSocket& socket, const udp& protocol,
                                                     const Multicast& multicast) {
   error_code error;
-  socket.set_option(net::ip::multicast::hops(multicast.hops), error);
-  if (!error) socket.set_option(net::ip::multicast::enable_loopback(true), error);
+  socket.set_option(asio::ip::multicast::hops(multicast.hops), error);
+  if (!error) socket.set_option(asio::ip::multicast::enable_loopback(true), error);
   if (!error && protocol == udp::v4() && !multicast.address.empty()) {
-    const auto interface = net::ip::make_address_v4(multicast.address, error);
-    if (!error) socket.set_option(net::ip::multicast::outbound_interface(interface), error);
+    const auto interface = asio::ip::make_address_v4(multicast.address, error);
+    if (!error) socket.set_option(asio::ip::multicast::outbound_interface(interface), error);
   }
   if (!error) return {};
   return fail(ErrorCode::Io, "multicast by " + multicast.address,
@@ -139,7 +138,7 @@ bool DatagramSender::Sockets::lost(std::span<const char> datagram, const udp::en
   auto& socket = towards(target.protocol());
   if (!socket) return true;
   error_code error;
-  socket->send_to(net::buffer(datagram.data(), datagram.size()), target, 0, error);
+  socket->send_to(asio::buffer(datagram.data(), datagram.size()), target, 0, error);
   return static_cast<bool>(error);
 }
 
@@ -165,7 +164,7 @@ void DatagramSender::send(std::span<const char> datagram) {
 
 void DatagramSender::send_to(std::span<const char> datagram, const Target& to) {
   error_code error;
-  const auto address = net::ip::make_address(to.host, error);
+  const auto address = asio::ip::make_address(to.host, error);
   count(error || sockets_->lost(datagram, udp::endpoint(address, to.port)));
 }
 
@@ -176,8 +175,8 @@ std::optional<Arrival> DatagramSender::receive() {
     std::array<char, kRead> bytes{};
     udp::endpoint from;
     error_code error;
-    const std::size_t size = (*socket)->receive_from(net::buffer(bytes), from, 0, error);
-    // An answer "port unreachable" to what we sent arrives here too; it says nothing.
+    const std::size_t size = (*socket)->receive_from(asio::buffer(bytes), from, 0, error);
+    // A "port unreachable" for something we sent arrives here too; it is ignored.
     if (error) continue;
     return Arrival{{from.address().to_string(), from.port()}, std::string(bytes.data(), size)};
   }

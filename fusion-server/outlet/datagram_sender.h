@@ -24,10 +24,10 @@ struct Target {
 /// InvalidArgument names what is wrong with it.
 [[nodiscard]] Result<Target> parse_target(std::string_view text);
 
-/// The key "targets"; each one must be as above.
+/// The key "targets"; each target as above.
 void read_targets(ConfigReader& reader, std::vector<std::string>& out);
 
-/// How datagrams to groups leave.
+/// How datagrams leave for multicast groups.
 struct Multicast {
   std::string address;  ///< Of the interface, numeric IPv4; empty: that of the default route.
   int hops = 1;         ///< Routers a datagram may pass, plus one; 0: none leaves this host.
@@ -42,7 +42,7 @@ struct DatagramOptions {
   std::vector<std::string> targets;
   /// 0: any.  Bound to loopback when all targets and `listen_address` are there.
   std::uint16_t source_port = 0;
-  /// Not empty: an IPv4 socket is open even without a target; where others may write from.
+  /// Not empty: an IPv4 socket is open even without a target, for others to write to.
   std::string listen_address = {};
   Multicast multicast = {};
 };
@@ -53,7 +53,7 @@ struct Arrival {
   std::string text;
 };
 
-/// Never blocks: what the operating system does not take at once is lost and counted.
+/// Never blocks: datagrams that the operating system does not take at once are lost and counted.
 class DatagramSender {
  public:
   /// Resolves the targets.  Io or InvalidArgument names the target.
@@ -64,7 +64,7 @@ class DatagramSender {
   void send(std::span<const char> datagram);
   /// One datagram to somebody who is not among the targets; `to` has a numeric host.
   void send_to(std::span<const char> datagram, const Target& to);
-  /// The next datagram that came to our source port, its first 64 bytes; none: nothing has come.
+  /// The next datagram that came to our source port, its first 64 bytes; none: there is none.
   [[nodiscard]] std::optional<Arrival> receive();
   /// The port we send IPv4 datagrams from; 0 before the first.
   [[nodiscard]] std::uint16_t source_port() const;

@@ -69,7 +69,7 @@ Direction direction(const TrackerBody& body, JointId from, JointId to) {
   return way.normalized();
 }
 
-/// Two directions of one thing, `along` the more exact one.
+/// Two directions of one thing; `along` is the more exact one.
 struct Cross {
   Eigen::Vector3d along;
   Eigen::Vector3d aside;
@@ -91,8 +91,8 @@ Eigen::Quaterniond swung(const Eigen::Quaterniond& before, const Eigen::Vector3d
   return (Eigen::Quaterniond::FromTwoVectors(before * rest, now) * before).normalized();
 }
 
-/// The rotation that takes the rest's directions to those now: `along` exactly, `aside` as nearly
-/// as that allows; the shortest turn from `parent` when `aside` says nothing.
+/// The rotation from the rest's directions to the present ones: `along` exactly, `aside` as nearly
+/// as that allows; the shortest turn from `parent` when `aside` gives no plane.
 Eigen::Quaterniond turned(const Cross& rest, const Cross& now, const Eigen::Quaterniond& parent) {
   const auto from = frame_of(rest);
   const auto to = frame_of(now);
@@ -186,7 +186,7 @@ bool Rig::add_hips() {
   return true;
 }
 
-/// `lateral`: where the left is.
+/// `lateral`: where left is.
 void Rig::add_upright(HumanBone bone, const Direction& along, const Eigen::Vector3d& lateral) {
   if (!along) return follow(bone, false);
   set(bone, turned({kRestUp, kRestLeft}, {*along, lateral}, turn(parent_of(bone))));

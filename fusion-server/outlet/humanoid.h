@@ -48,8 +48,8 @@ inline constexpr std::array<std::string_view, kHumanBoneCount> kHumanBoneNames{
 struct BonePose {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< The joint it turns about.
   Eigen::Quaterniond world_from_bone = Eigen::Quaterniond::Identity();
-  /// False: its joints are not tracked; then it has its parent's place and rotation, so that the
-  /// frames of its children mean the same to who never hears of it.
+  /// False: its joints are not tracked; then it has its parent's place and rotation, so that its
+  /// children's frames are right even for those who ignore this flag.
   bool known = false;
 };
 
@@ -64,14 +64,14 @@ struct Humanoid {
   }
 };
 
-/// A pose in the world, in the frame of another one there.
+/// A pose in the world, in the frame of another pose.
 [[nodiscard]] BonePose relative_to(const BonePose& parent, const BonePose& pose);
 
-/// Hips hangs on itself.
+/// Hips is its own parent.
 [[nodiscard]] HumanBone parent_of(HumanBone bone);
 
-/// Total: Hips is not known when the pelvis is not tracked or nothing says where the body faces;
-/// such a body has no known bone at all.  Every origin and rotation is finite.
+/// Total: Hips is unknown when the pelvis is not tracked or nothing says where the body faces; then
+/// no bone of the body is known.  Every origin and rotation is finite.
 [[nodiscard]] Humanoid humanoid_of(const TrackerBody& body);
 
 }  // namespace chorus::outlet

@@ -1,4 +1,4 @@
-// A place for one value between two threads: the newest replaces what has not been taken.
+// One value between two threads: the newest replaces one that has not been taken.
 #pragma once
 
 #include <mutex>
@@ -7,12 +7,13 @@
 
 namespace chorus::outlet {
 
-/// For a taker that is called (net::post) instead of waiting; compare Handover, whose taker waits.
+/// For a consumer that is called (asio::post) instead of waiting; compare Handover, whose consumer
+/// waits.
 template <class T>
 class Newest {
  public:
-  /// True: nothing was there, so the taker is to be called.  False: an older value was replaced,
-  /// and whoever was called for that one takes this one.
+  /// True: it was empty, so the consumer has to be called.  False: an older value was replaced, and
+  /// the call already made will take this one.
   [[nodiscard]] bool put(T value) {
     const std::scoped_lock lock(mutex_);
     const bool was_empty = !value_.has_value();

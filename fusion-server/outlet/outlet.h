@@ -20,18 +20,18 @@ class Outlet {
   virtual ~Outlet() = default;
   [[nodiscard]] virtual std::string_view name() const = 0;
   virtual void send(const TrackerFrame& frame) = 0;
-  /// What only the protocol knows: failed, refused, clients.  Any thread.
+  /// Counters that only the protocol knows: failed, refused, clients.  Any thread.
   [[nodiscard]] virtual SinkCounters counters() const = 0;
 };
 
-/// What every protocol is told when it is opened.
+/// Settings that every protocol gets.
 struct OutletContext {
   std::size_t slots = 6;  ///< Persons at most.
   std::shared_ptr<const Clock> clock;
 };
 
 enum class Latency {
-  Exact,      ///< The fused instant as it is, alignment delay and all.
+  Exact,      ///< The fused instant as it is, alignment delay included.
   Predicted,  ///< Moved to the time of sending at constant velocity.
 };
 
@@ -41,9 +41,9 @@ struct OutletTiming {
   std::shared_ptr<const Clock> clock;
 };
 
-/// Hands frames to the outlet on a thread of its own.  When the outlet is behind by two frames, the
-/// oldest is dropped and counted; the pipeline never waits.  What the outlet throws is logged,
-/// counted as failed, and costs that frame.
+/// Hands frames to the outlet on a thread of its own.  When the outlet is two frames behind, the
+/// oldest is dropped and counted; the pipeline never waits.  An exception from the outlet is
+/// logged, counted as failed, and costs that frame.
 class OutletSink final : public Sink {
  public:
   OutletSink(std::unique_ptr<Outlet> outlet, OutletTiming timing);

@@ -7,7 +7,7 @@ namespace chorus::outlet {
 namespace {
 
 void read_one(ConfigReader& reader, PersonTargets& out) {
-  reader.read("slot", out.slot, 0, kMostSlots - 1);
+  reader.read("slot", out.slot, 0, kMaxSlots - 1);
   read_targets(reader, out.targets);
 }
 
@@ -19,7 +19,7 @@ void read_persons(ConfigReader& reader, std::vector<PersonTargets>& out) {
     PersonTargets person;
     read_one(item, person);
     if (person.targets.empty()) item.complain("targets", "must name at least one HOST:PORT");
-    if (out.size() == kMostSlots) return reader.complain("persons", "has too many entries");
+    if (out.size() == kMaxSlots) return reader.complain("persons", "has too many entries");
     out.push_back(std::move(person));
   }
 }

@@ -1,4 +1,4 @@
-// Protocols that carry one person a stream: who goes where.
+// For protocols that carry one person per stream: which person goes where.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 namespace chorus::outlet {
 
 struct PersonTargets {
-  int slot = 0;  ///< Whose person.
+  int slot = 0;  ///< Slot of the person to send.
   std::vector<std::string> targets;
 
   bool operator==(const PersonTargets&) const = default;

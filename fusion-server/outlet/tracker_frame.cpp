@@ -7,15 +7,15 @@
 #include "common/base/duration.h"
 #include "common/body/bones.h"
 #include "common/geometry/rotation.h"
-#include "common/resource/frame_resource.h"
+#include "common/sensor/limits.h"
 
 namespace chorus::outlet {
 namespace {
 
-constexpr Duration kLongestPrediction = std::chrono::milliseconds(50);
-/// A gap longer than this is a new beginning: no velocity across it.
-constexpr Duration kLongestStep = std::chrono::milliseconds(250);
-/// Share of the newest difference in the velocity; the rest is the velocity before.
+constexpr Duration kMaxPrediction = std::chrono::milliseconds(50);
+/// After a longer gap velocities start anew.
+constexpr Duration kMaxStep = std::chrono::milliseconds(250);
+/// Share of the newest difference in the velocity; the rest is the previous velocity.
 constexpr double kNewest = 0.5;
 
 TrackerBody body_of(const FusedBody& fused, std::size_t slot) {
@@ -26,7 +26,7 @@ TrackerBody body_of(const FusedBody& fused, std::size_t slot) {
     const Joint& from = fused.skeleton.joints[i];
     TrackerJoint& to = body.joints[i];
     to.position = from.position;
-    to.tracked = from.seen() && from.position.cwiseAbs().maxCoeff() <= resource::kMaxCoordinate;
+    to.tracked = from.seen() && from.position.cwiseAbs().maxCoeff() <= kMaxCoordinate;
     if (is_unit(from.orientation)) to.orientation = from.orientation.normalized();
   }
   for (const Bone& bone : kBones) {  // parents come first
@@ -66,7 +66,7 @@ TrackerFrame TrackerState::advance(const Snapshot& snapshot) {
   frame.instant = snapshot.instant;
   frame.slots = slots_;
   const Duration step = snapshot.instant - instant_;
-  const bool continues = step > Duration{0} && step <= kLongestStep;
+  const bool continues = step > Duration{0} && step <= kMaxStep;
   for (const FusedBody& fused : snapshot.bodies) {
     if (!fused.slot || *fused.slot >= slots_) continue;
     TrackerBody body = body_of(fused, *fused.slot);
@@ -86,7 +86,7 @@ TrackerFrame TrackerState::advance(const Snapshot& snapshot) {
 }
 
 TrackerFrame predicted(TrackerFrame frame, Timestamp then) {
-  const Duration ahead = std::min<Duration>(then - frame.instant, kLongestPrediction);
+  const Duration ahead = std::min<Duration>(then - frame.instant, kMaxPrediction);
   if (ahead <= Duration{0}) return frame;
   const double dt = seconds(ahead);
   for (TrackerBody& body : frame.bodies) {

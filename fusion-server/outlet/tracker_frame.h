@@ -14,16 +14,16 @@
 namespace chorus::outlet {
 
 /// Slots a configuration may ask for.
-inline constexpr int kMostSlots = 20;
+inline constexpr int kMaxSlots = 20;
 
 struct TrackerJoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  /// Always a unit quaternion: a joint without an orientation of its own has that of the next joint
-  /// towards the pelvis that has one, else none is known and it is the identity.
+  /// Always a unit quaternion: a joint without an orientation takes that of the next joint towards
+  /// the pelvis that has one; if there is none, the identity.
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          ///< [m/s]
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< World axes [rad/s]
-  /// False: nobody knows where it is (or it is absurdly far, as in /frame); do not send a pose.
+  /// False: its place is unknown (or absurdly far, as in /frame); do not send a pose.
   bool tracked = false;
 };
 
@@ -37,25 +37,26 @@ struct TrackerBody {
 
 struct TrackerFrame {
   std::uint64_t sequence = 0;  ///< Protocols with 32 bits send it modulo 2^32.
-  Timestamp instant;      ///< What the poses stand for: the fused instant, or later if predicted.
-  std::size_t slots = 0;  ///< So many persons at most.
+  Timestamp instant;      ///< What the poses are for: the fused instant, or later if predicted.
+  std::size_t slots = 0;  ///< At most this many persons.
   std::vector<TrackerBody> bodies;  ///< In order of slot.
 };
 
 /// The joint itself when it is tracked, else the next tracked one towards the pelvis; the pelvis,
-/// tracked or not, when there is none.  Where every joint must have a place, an unseen limb hangs
+/// tracked or not, if there is none.  Where every joint must have a place, unseen limbs are put
 /// there.
 [[nodiscard]] JointId nearest_tracked(const TrackerBody& body, JointId joint);
 
 /// The body in a slot, or nullptr.
 [[nodiscard]] const TrackerBody* in_slot(const TrackerFrame& frame, std::size_t slot);
 
-/// Gives joints their velocities, snapshot after snapshot.
+/// Computes the velocities of joints, snapshot after snapshot.
 class TrackerState {
  public:
   explicit TrackerState(std::size_t slots) : slots_(slots) {}
 
-  /// Persons without a slot, and those beyond the last, are left out.  A repeated or older instant
+  /// Persons without a slot, and those beyond the last slot, are left out.  A repeated or older
+  /// instant gives zero velocities.
   /// gives zero velocities.
   [[nodiscard]] TrackerFrame advance(const Snapshot& snapshot);
 

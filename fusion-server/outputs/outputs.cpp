@@ -13,7 +13,7 @@ void read_common(ConfigReader& reader, OutputSetting& out) {
   std::size_t latency = static_cast<std::size_t>(out.latency);
   reader.read_choice("latency", latency, {"exact", "predicted"});
   out.latency = static_cast<outlet::Latency>(latency);
-  reader.read("max_persons", out.max_persons, 1, outlet::kMostSlots);
+  reader.read("max_persons", out.max_persons, 1, outlet::kMaxSlots);
 }
 
 /// The list of all outputs: their key, and where their settings are.
@@ -82,7 +82,7 @@ Result<std::vector<std::unique_ptr<Sink>>> open_outputs(const OutputsConfig& con
 }
 
 std::size_t slots_of_all(const OutputsConfig& config) {
-  int smallest = outlet::kMostSlots;
+  int smallest = outlet::kMaxSlots;
   bool any = false;
   for_each_output(config, [&](std::string_view /*key*/, const auto& output) {
     if (!output.common.enabled) return;

@@ -1,4 +1,4 @@
-// All outputs beside REST, as the configuration's section "outputs" switches them on.
+// All outputs beside REST, as enabled in the configuration's section "outputs".
 //
 // One folder per protocol: NAME_encoder.h (pure: bytes from a TrackerFrame) and NAME_outlet.h (the
 // thin sender, its settings, its factory).  outputs.cpp is the only list of them.
@@ -21,7 +21,7 @@
 
 namespace chorus::outputs {
 
-/// What every output can say.
+/// The keys that every output has.
 struct OutputSetting {
   bool enabled = false;
   outlet::Latency latency = outlet::Latency::Exact;
@@ -53,12 +53,12 @@ struct OutputsConfig {
 /// Mistakes are reported by the reader's finish().
 void read_outputs(ConfigReader reader, OutputsConfig& out);
 
-/// Opens what is enabled.  The first that cannot be opened is the error; its context begins with
-/// "outputs.NAME".
+/// Opens the enabled outputs.  The first that cannot be opened is the error; its context begins
+/// with "outputs.NAME".
 [[nodiscard]] Result<std::vector<std::unique_ptr<Sink>>> open_outputs(
     const OutputsConfig& config, const std::shared_ptr<const Clock>& clock);
 
-/// The smallest max_persons of those enabled: the slots that all of them show.
+/// The smallest max_persons of the enabled outputs: the slots that all of them show.
 [[nodiscard]] std::size_t slots_of_all(const OutputsConfig& config);
 
 }  // namespace chorus::outputs

@@ -123,7 +123,7 @@ class Replay {
   }
 
  private:
-  /// Nothing where nobody covered the instant.
+  /// Nothing if nobody covers the instant.
   std::optional<Snapshot> answer(Timestamp instant) {
     frames_.advance(instant, histories_);
     const Timestamp late = instant + config_.pipeline.align.patience + Duration(1);
@@ -135,7 +135,7 @@ class Replay {
     return std::move(next.snapshot);
   }
 
-  /// The first instant after `index` that a frame could start to cover; none at the end.
+  /// The first instant after `index` that a frame could begin to cover; none at the end.
   [[nodiscard]] Result<std::optional<std::int64_t>> after_gap(std::int64_t index) {
     const auto next = frames_.next_after(grid_.at(index));
     if (!next) return pass(next);
@@ -165,7 +165,7 @@ Result<void> read_enough(RecordedFrames& frames, RecordedWalk& walk) {
   return {};
 }
 
-/// A track in memory as a lane; it must outlive it.
+/// A track in memory as a lane; it must outlive the lane.
 FrameLane lane_of(const registration::WalkTrack& track) {
   return {track.sensor.str(),
           [&frames = track.frames,

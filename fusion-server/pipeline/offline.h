@@ -23,17 +23,17 @@ struct OfflineResult {
   std::vector<Snapshot> snapshots;
 };
 
-/// Recordings that are read as they are fused; reading them again takes new lanes.
+/// Recordings read while they are fused; reading them again takes new lanes.
 struct OfflineInput {
   std::vector<FrameLane> lanes;
-  std::vector<SensorId> sensors = {};  ///< Those known beforehand.
+  std::vector<SensorId> sensors = {};  ///< Sensors known beforehand.
 };
 
 /// An error ends the fusion.
 using TakeSnapshot = std::function<Result<void>(Snapshot)>;
 
-/// From the first minutes in which somebody is seen alone; from more of them while sensors are
-/// missing.  Conflict with the reasons when there is no registration.
+/// From the first minutes in which one person is seen alone; from more of them while sensors are
+/// missing.  Conflict, with the reasons, when there is no registration.
 [[nodiscard]] Result<Registration> register_recordings(OfflineInput input,
                                                        const OfflineConfig& config);
 
@@ -41,7 +41,7 @@ using TakeSnapshot = std::function<Result<void>(Snapshot)>;
 [[nodiscard]] Result<void> fuse_recordings(OfflineInput input, const Registration& registration,
                                            const OfflineConfig& config, const TakeSnapshot& take);
 
-/// Both in memory: registers from the whole walk unless extrinsics are given.
+/// Everything in memory: registers from the whole walk unless extrinsics are given.
 [[nodiscard]] Result<OfflineResult> fuse_offline(
     const std::vector<registration::WalkTrack>& sensors,
     const std::optional<Registration>& extrinsics, const OfflineConfig& config);

@@ -4,23 +4,22 @@
 #include <set>
 #include <utility>
 
+#include "common/sensor/limits.h"
 #include "fusion-server/align/patience.h"
 #include "fusion-server/facing/front_rear.h"
 
 namespace chorus::pipeline {
 namespace {
 
-constexpr std::size_t kMostSensors = 64;  // bits of FusedBody::contributors
-
 std::vector<SensorId> registered_sensors(const Registration& registration) {
   std::vector<SensorId> sensors;
   for (const auto& [sensor, extrinsics] : registration.sensors) {
-    if (sensors.size() < kMostSensors) sensors.push_back(sensor);
+    if (sensors.size() < kMaxSensors) sensors.push_back(sensor);
   }
   return sensors;
 }
 
-/// Of the sensors that the instant waits for: those with a place.
+/// The sensors that the instant waits for: those with a place.
 align::Patience patience_of(const Histories& histories, const Registration& registration,
                             const PipelineConfig& config) {
   std::map<SensorId, const align::History*> placed;
@@ -44,7 +43,7 @@ std::vector<AlignedSensor> align_all(const Inputs& in, const Histories& historie
 
 /// 5.2.2: how the body stands before its sensor, still in sensor space.
 SensorView view_of(const AlignedSensor& from, const BodyFrame& body) {
-  const facing::Sight seen = facing::view_of(body);
+  const facing::Standing seen = facing::standing_of(body);
   SensorView view;
   view.sensor = from.sensor;
   view.body = body.id;
@@ -55,7 +54,7 @@ SensorView view_of(const AlignedSensor& from, const BodyFrame& body) {
   return view;
 }
 
-/// 5.2.3: into the world; bodies of sensors without a place there are left out.
+/// 5.2.3: into the world; bodies of sensors without a place are left out.
 std::vector<SensorView> views_in_world(const std::vector<AlignedSensor>& aligned,
                                        const Registration& registration) {
   std::vector<SensorView> views;
@@ -73,6 +72,22 @@ std::vector<SensorView> views_in_world(const std::vector<AlignedSensor>& aligned
   return views;
 }
 
+bool has_spoken(Basis basis) { return basis == Basis::Exact || basis == Basis::Interpolated; }
+
+/// Sensors that looked at this instant.  Another fusion server, whose bodies are in world space,
+/// has no eye: its floor is y = 0.
+std::vector<associate::Observer> observers_of(const std::vector<AlignedSensor>& aligned,
+                                              const Registration& registration) {
+  std::vector<associate::Observer> observers;
+  for (const AlignedSensor& sensor : aligned) {
+    const auto place = registration.sensors.find(sensor.sensor);
+    const bool eyeless = sensor.floor && sensor.floor->offset == 0.0;
+    if (place == registration.sensors.end() || !has_spoken(sensor.basis) || eyeless) continue;
+    observers.push_back({sensor.sensor, place->second.world_from_sensor});
+  }
+  return observers;
+}
+
 /// Who is still tracked, seen now or not.
 std::set<PersonId> ids_of(const associate::Tracks& tracks) {
   std::set<PersonId> ids;
@@ -80,15 +95,10 @@ std::set<PersonId> ids_of(const associate::Tracks& tracks) {
   return ids;
 }
 
-/// 5.2.2 once more, now that it is known who is who: sides agreed between the sensors.
+/// 5.2.2 again, now that identities are known: sides agreed between the sensors.
 void resolve_sides(std::vector<Person>& people, Timestamp instant, Memory& memory,
                    const facing::SidesConfig& config) {
-  for (Person& person : people) {
-    const auto track = std::ranges::find(memory.tracks.people, person.id, &associate::Track::id);
-    const bool known = track != memory.tracks.people.end();
-    const facing::Motion motion{instant, known ? track->velocity : Eigen::Vector3d::Zero()};
-    facing::resolve_sides(person, motion, memory.sides, config);
-  }
+  for (Person& person : people) facing::resolve_sides(person, instant, memory.sides, config);
 }
 
 /// 5.2.5, Eqs. (1)-(3).
@@ -100,10 +110,11 @@ void weigh(std::vector<Person>& people, const fusion::QualityLimits& limits) {
   }
 }
 
-/// Nothing is remembered of people who are not tracked any more.
+/// Forgets people who are not tracked any more.
 void forget_the_gone(Memory& memory) {
   const std::set<PersonId> tracked = ids_of(memory.tracks);
-  std::erase_if(memory.sides, [&](const auto& entry) { return !tracked.contains(entry.first); });
+  std::erase_if(memory.sides.people,
+                [&](const auto& entry) { return !tracked.contains(entry.first); });
   memory.fusion.keep_only(tracked);
 }
 
@@ -144,8 +155,10 @@ std::vector<SensorId> awaited(const Inputs& in, const Histories& histories,
 Perceived perceive(const Inputs& in, const Histories& histories, const Registration& registration,
                    const Memory& memory, const PipelineConfig& config) {
   const auto aligned = align_all(in, histories, registration, config);  // 5.2.4
-  const auto views = views_in_world(aligned, registration);             // 5.2.2, 5.2.3
-  auto grouped = associate::group(views, in.instant, memory.tracks, config.association);
+  auto views = views_in_world(aligned, registration);                   // 5.2.2, 5.2.3
+  auto grouped =
+      associate::group({in.instant, std::move(views), observers_of(aligned, registration)},
+                       memory.tracks, config.association);
   Perceived perceived;
   perceived.memory = {std::move(grouped.tracks), memory.sides, memory.fusion, memory.seating};
   perceived.people = std::move(grouped.people);

@@ -34,7 +34,7 @@ struct Inputs {
   std::uint64_t sequence = 0;
 };
 
-/// What one instant leaves to the next.
+/// What one instant leaves for the next.
 struct Memory {
   associate::Tracks tracks;
   facing::SidesMemory sides;
@@ -42,7 +42,7 @@ struct Memory {
   Seating seating;
 };
 
-/// Everything before fusion: who is there at an instant, each with all views of them.
+/// The result of everything before fusion: who is there at an instant, each with all views.
 struct Perceived {
   std::vector<Person> people;
   std::vector<SensorReport> reports;
@@ -60,7 +60,7 @@ struct Step {
                                             const Registration& registration,
                                             const PipelineConfig& config);
 
-/// All of `step` before fusion: the views that it hands to it.
+/// Everything in `step` before fusion: the views it hands to it.
 [[nodiscard]] Perceived perceive(const Inputs& in, const Histories& histories,
                                  const Registration& registration, const Memory& memory,
                                  const PipelineConfig& config);

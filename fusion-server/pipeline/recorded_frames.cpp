@@ -13,7 +13,7 @@ namespace {
 /// How much later than its capture a frame may stand in a recording and still be used.
 constexpr Duration kAhead = std::chrono::seconds(5);
 /// 64 sensors that see 12 people each, for twice as long; some 500 MB.
-constexpr std::size_t kMostWaiting = 64 * 12 * 300;
+constexpr std::size_t kMaxWaiting = 64 * 12 * 300;
 constexpr std::size_t kNoLane = std::numeric_limits<std::size_t>::max();
 
 }  // namespace
@@ -44,7 +44,7 @@ Result<void> RecordedFrames::read_one(std::size_t number) {
   }
   bodies_ += (*frame)->bodies.size();
   stream.waiting.push_back(std::move(**frame));
-  if (bodies_ <= kMostWaiting) return {};
+  if (bodies_ <= kMaxWaiting) return {};
   return fail(ErrorCode::TooLarge, lane.from.name,
               "the clocks of its sensors are too far apart to be fused; record them one by one, or "
               "give their hosts the right time");
@@ -101,7 +101,8 @@ void RecordedFrames::advance(Timestamp instant, Histories& histories) {
       stream.waiting.pop_front();
       bodies_ -= frame.bodies.size();
       stream.played = frame.captured;
-      frame.received = Timestamp{};  // when a recording was read says nothing about its stamps
+      frame.received =
+          Timestamp{};  // The time at which a recording was read says nothing about its stamps.
       history.push(std::move(frame));
     }
   }

@@ -20,23 +20,23 @@ struct FrameLane {
   std::function<Result<std::optional<SensorFrame>>()> next;
 };
 
-/// What several lanes give, by sensor.  Holds the frames of a few seconds, not of a recording.
+/// Merges several lanes by sensor.  Holds the frames of a few seconds, not of a recording.
 class RecordedFrames {
  public:
-  /// `sensors`: known beforehand; others join with their first frame.
+  /// `sensors`: known beforehand; others are added with their first frame.
   RecordedFrames(std::vector<FrameLane> lanes, const std::vector<SensorId>& sensors);
 
-  /// Reads until every lane has passed `instant` by kAhead, or has ended.  Refuses sensors that
-  /// come from two lanes, and those whose clocks are so far apart that they cannot be held
-  /// together.
+  /// Reads until every lane has passed `instant` by kAhead, or has ended.  Refuses a sensor that
+  /// two lanes have, and sensors whose clocks are too far apart to be merged.
   [[nodiscard]] Result<void> read_to(Timestamp instant);
-  /// Reads until there is a frame captured after `instant`; its capture time, none at the end.
+  /// Reads until there is a frame captured after `instant`; returns its capture time, none at the
+  /// end.
   [[nodiscard]] Result<std::optional<Timestamp>> next_after(Timestamp instant);
 
-  /// Plays every sensor into its history, just far enough to answer for an instant.
+  /// Puts frames into every sensor's history, just far enough to answer for an instant.
   void advance(Timestamp instant, Histories& histories);
 
-  /// All that was read and not played.
+  /// Everything that was read but not played.
   [[nodiscard]] std::vector<SensorFrame> take_waiting();
 
   [[nodiscard]] bool ended() const;
@@ -51,7 +51,7 @@ class RecordedFrames {
   struct Stream {
     std::size_t lane = 0;
     std::deque<SensorFrame> waiting;
-    std::optional<Timestamp> played;  ///< Capture time of the frame that went last.
+    std::optional<Timestamp> played;  ///< Capture time of the last frame played.
   };
 
   Result<void> read_one(std::size_t lane);

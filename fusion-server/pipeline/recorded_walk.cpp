@@ -6,9 +6,10 @@
 namespace chorus::pipeline {
 namespace {
 
-constexpr std::size_t kMostBodies = 60'000;               // 100 MB
-constexpr std::size_t kMostSeveral = 10'000;              // they only tell where feet are
-constexpr Duration kNextSight = std::chrono::seconds(1);  // further apart nobody was seen between
+constexpr std::size_t kMaxWalkers = 60'000;  // 100 MB
+constexpr std::size_t kMaxSeveral = 10'000;  // they only tell where feet are
+constexpr Duration kNextSight =
+    std::chrono::seconds(1);  // Longer gaps do not count as time in which somebody was seen.
 
 }  // namespace
 
@@ -26,7 +27,7 @@ void RecordedWalk::take(SensorFrame frame) {
     const Timestamp t = frame.captured;
     if (last_alone_ < t && t - kNextSight <= last_alone_) alone_ += t - last_alone_;
     last_alone_ = std::max(last_alone_, t);
-  } else if (bodies > 1 && several_ + bodies <= kMostSeveral) {
+  } else if (bodies > 1 && several_ + bodies <= kMaxSeveral) {
     several_ += bodies;
   } else {
     frame.bodies.clear();
@@ -35,7 +36,7 @@ void RecordedWalk::take(SensorFrame frame) {
   frames.push_back(std::move(frame));
 }
 
-bool RecordedWalk::used_up() const { return bodies_ >= kMostBodies; }
+bool RecordedWalk::used_up() const { return bodies_ >= kMaxWalkers; }
 
 void RecordedWalk::go_on() { wanted_ += std::chrono::minutes(2); }
 

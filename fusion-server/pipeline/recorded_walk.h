@@ -1,4 +1,5 @@
-// What registration needs of a recording: the first minutes in which somebody was seen alone.
+// The part of a recording that registration needs: the first minutes in which one person was seen
+// alone.
 #pragma once
 
 #include <vector>
@@ -7,14 +8,14 @@
 
 namespace chorus::pipeline {
 
-/// Frames of all sensors, taken in about the order of their capture, until there are enough.
+/// Collects frames of all sensors, roughly in the order of capture, until there are enough.
 class RecordedWalk {
  public:
   void take(SensorFrame frame);
 
-  /// Somebody was seen alone for as long as was asked for, or memory is used up.
+  /// One person was seen alone for long enough, or the memory limit is reached.
   [[nodiscard]] bool enough() const { return alone_ >= wanted_ || used_up(); }
-  /// No longer walk will be taken.
+  /// A longer walk will not be taken.
   [[nodiscard]] bool used_up() const;
   /// Asks for as much again.
   void go_on();

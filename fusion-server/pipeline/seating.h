@@ -11,20 +11,20 @@
 namespace chorus::pipeline {
 
 struct SeatingConfig {
-  /// Slots that every output shows.  Who sits further back moves up when one of them is free.
+  /// Slots that every output shows.  A person in a higher slot moves up when one of these is free.
   std::size_t front = 6;
 
   bool operator==(const SeatingConfig&) const = default;
 };
 
-/// The slot of an absent person is nobody's until it has been away for longer than it is kept.  Who
-/// came meanwhile stands in a higher slot and then moves to that one: fusion may have given the
-/// same person a new id, and a protocol with one slot would show nobody any more.  A clock that is
-/// set back by more than a slot is kept begins anew, as association does.
+/// An absent person's slot stays reserved while the person may return.  A newcomer takes a higher
+/// slot and moves to the reserved one if nobody returns: fusion may have given the same person a
+/// new id, and a protocol with one slot would show nobody any more.  When the clock is set back by
+/// more than slots are kept, seating begins anew, as association does.
 class Seating {
  public:
-  /// Sets FusedBody::slot of each; bodies beyond kMaxBodies get none.  `keep`: how long the slot of
-  /// an absent person stays its own (associate::AssociationConfig::coast).
+  /// Sets FusedBody::slot of each body; bodies beyond kMaxBodies get none.  `keep`: how long an
+  /// absent person's slot stays reserved (associate::AssociationConfig::coast).
   void seat(std::vector<FusedBody>& bodies, Timestamp instant, Duration keep,
             const SeatingConfig& config = {});
 
@@ -33,7 +33,7 @@ class Seating {
     PersonId person;
     Timestamp seen;
     bool absent = false;
-    /// Its own slot, or a lower one whose person was absent when this one came.
+    /// Its own slot, or a lower one whose person was absent when this person came.
     std::size_t waits_for = 0;
   };
 

@@ -7,14 +7,14 @@
 #include <string_view>
 #include <utility>
 
+#include "common/http/status.h"
 #include "common/resource/floor_plane_resource.h"
 
 namespace chorus::poll {
 namespace {
 
-constexpr int kOk = 200;
-constexpr Duration kMostAhead = std::chrono::seconds(2);
-constexpr Duration kMostBehind = std::chrono::seconds(10);
+constexpr Duration kMaxAhead = std::chrono::seconds(2);
+constexpr Duration kMaxBehind = std::chrono::seconds(10);
 constexpr std::size_t kMaxFloorBytes = 64u << 10;
 
 std::string_view header(const http::ClientResponse& response, std::string_view name) {
@@ -51,7 +51,8 @@ std::optional<Error> stranger(const resource::FrameResource& frame, const Sensor
 
 FrameAnswer read_frame_answer(const http::ClientResponse& response, const SensorId& expected) {
   const std::string etag(header(response, "etag"));
-  if (response.status != kOk) return {FrameAnswered{response.status, etag, {}}, nullptr};
+  if (response.status != http::status::kOk)
+    return {FrameAnswered{response.status, etag, {}}, nullptr};
   const std::string_view type = without_parameters(header(response, "content-type"));
   const auto format = format_of(type);
   if (!format || *format == resource::Format::NTriples) {
@@ -64,7 +65,7 @@ FrameAnswer read_frame_answer(const http::ClientResponse& response, const Sensor
   if (!frame) return {Unreadable{frame.error()}, nullptr};
   if (auto error = stranger(*frame, expected)) return {Unreadable{std::move(*error)}, nullptr};
   auto shared = std::make_shared<const resource::FrameResource>(std::move(*frame));
-  return {FrameAnswered{kOk, etag, shared->captured}, shared};
+  return {FrameAnswered{http::status::kOk, etag, shared->captured}, shared};
 }
 
 Result<std::shared_ptr<const resource::FrameResource>> read_frame_event(std::string_view text,
@@ -77,7 +78,8 @@ Result<std::shared_ptr<const resource::FrameResource>> read_frame_event(std::str
 }
 
 std::optional<FloorPlane> read_floor_answer(const http::ClientResponse& response) {
-  if (response.status != kOk || response.body.size() > kMaxFloorBytes) return std::nullopt;
+  if (response.status != http::status::kOk || response.body.size() > kMaxFloorBytes)
+    return std::nullopt;
   const auto format = format_of(without_parameters(header(response, "content-type")));
   if (!format) return std::nullopt;
   const auto floor = resource::read_floor_plane(response.body, *format);
@@ -85,11 +87,11 @@ std::optional<FloorPlane> read_floor_answer(const http::ClientResponse& response
   return *floor;
 }
 
-std::optional<Exchange> exchange_of(const http::ClientResponse& response) {
+std::optional<ClockExchange> exchange_of(const http::ClientResponse& response) {
   const auto stamps = parse_server_stamps(header(response, "chorus-clock"));
   if (!stamps) return std::nullopt;
-  return Exchange{from_unix_ns(response.sent_ns), stamps->receipt, stamps->sending,
-                  from_unix_ns(response.received_ns)};
+  return ClockExchange{from_unix_ns(response.sent_ns), stamps->receipt, stamps->sending,
+                       from_unix_ns(response.received_ns)};
 }
 
 SensorFrame place_in_time(const resource::FrameResource& frame, const SensorId& sensor,
@@ -104,7 +106,7 @@ SensorFrame place_in_time(const resource::FrameResource& frame, const SensorId& 
 
 std::optional<Error> untimely(const SensorFrame& frame) {
   const Duration ahead = frame.captured - frame.received;
-  if (ahead <= kMostAhead && -ahead <= kMostBehind) return std::nullopt;
+  if (ahead <= kMaxAhead && -ahead <= kMaxBehind) return std::nullopt;
   const bool future = ahead > Duration{0};
   std::array<char, 64> amount{};
   std::snprintf(amount.data(), amount.size(), "%.1f s %s", std::abs(seconds(ahead)),

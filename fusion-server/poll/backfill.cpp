@@ -3,19 +3,19 @@
 namespace chorus::poll {
 namespace {
 
-constexpr std::uint64_t kMostMissing = 90;  ///< Sensors keep three seconds of frames.
-constexpr Duration kWorthwhile = std::chrono::milliseconds(700);  ///< Later nobody uses it.
-constexpr int kMostInVain = 8;
+constexpr std::uint64_t kMaxMissing = 90;  ///< Sensors keep three seconds of frames.
+constexpr Duration kWorthwhile = std::chrono::milliseconds(700);  ///< Nobody uses it later.
+constexpr int kMaxInVain = 8;
 
 }  // namespace
 
 void Backfill::saw(std::uint64_t sequence, Duration now) {
   const bool follows = last_ && sequence > *last_;
   const std::uint64_t gap = follows ? sequence - *last_ - 1 : 0;
-  if (!follows || gap > kMostMissing) missing_.clear();  // another run, or beyond all keeping
-  if (follows && gap <= kMostMissing && in_vain_ < kMostInVain) {
+  if (!follows || gap > kMaxMissing) missing_.clear();  // another run, or beyond what sensors keep
+  if (follows && gap <= kMaxMissing && in_vain_ < kMaxInVain) {
     for (std::uint64_t lost = *last_ + 1; lost < sequence; ++lost) missing_.push_back({lost, now});
-    while (missing_.size() > kMostMissing) missing_.pop_front();
+    while (missing_.size() > kMaxMissing) missing_.pop_front();
   }
   last_ = sequence;
 }
@@ -31,7 +31,7 @@ std::optional<std::uint64_t> Backfill::next(Duration now) {
 
 void Backfill::answered(bool there) {
   in_vain_ = there ? 0 : in_vain_ + 1;
-  if (in_vain_ >= kMostInVain) missing_.clear();
+  if (in_vain_ >= kMaxInVain) missing_.clear();
 }
 
 void Backfill::restart() { *this = Backfill(); }

@@ -11,18 +11,18 @@ namespace chorus::poll {
 
 class Backfill {
  public:
-  /// A frame that has come by stream, in the order of coming.
+  /// A frame that came by stream, in the order of arrival.
   void saw(std::uint64_t sequence, Duration now);
 
-  /// The oldest gap that is still worth a request, and no longer a gap: it is being fetched.
+  /// The oldest gap that is still worth a request; from now on it counts as being fetched.
   [[nodiscard]] std::optional<std::uint64_t> next(Duration now);
 
-  /// What became of the request.  A sensor that keeps no frames is not asked for ever.
+  /// The outcome of the request.  A sensor that keeps no frames is soon not asked any more.
   void answered(bool there);
 
   [[nodiscard]] bool empty() const noexcept { return missing_.empty(); }
 
-  /// Another stream, perhaps of another run of the sensor.
+  /// A new stream, perhaps of another run of the sensor.
   void restart();
 
  private:

@@ -8,19 +8,19 @@
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/http/status.h"
 
 namespace chorus::poll {
 namespace {
 
-constexpr std::size_t kMostHeld = 10;
+constexpr std::size_t kMaxHeld = 10;
 constexpr std::string_view kAccept = "text/turtle, application/json;q=0.9";
 constexpr std::string_view kAcceptStream =
     "text/event-stream, text/turtle;q=0.9, application/json;q=0.8";
-constexpr int kServerFault = 500;
 
 Duration steady_now() { return std::chrono::steady_clock::now().time_since_epoch(); }
 
-/// Of this thread: what others take from the processor is not the sensor's fault.
+/// Time of this thread: sharing the processor with others is not the sensor's fault.
 Duration cpu_now() {
   timespec spent{};
   ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &spent);
@@ -55,7 +55,7 @@ std::string target_of(const Send& send) {
 
 }  // namespace
 
-Follower::Follower(http::net::io_context& io, PolledSensor sensor, http::Url url,
+Follower::Follower(asio::io_context& io, PolledSensor sensor, http::Url url,
                    const PollerOptions& options)
     : options_(options),
       sensor_(std::move(sensor)),
@@ -90,8 +90,8 @@ PollReport Follower::report(Timestamp now) const {
   return copy;
 }
 
-/// Whatever is thrown on the way (no memory, a frame nobody thought of) is a failed poll of this
-/// sensor: it is asked again after its back-off, and the others do not notice.
+/// Any exception on the way (out of memory, an unforeseen frame) is a failed poll of this sensor:
+/// it is asked again after its back-off, and the others do not notice.
 template <class Doing>
 void Follower::survive(const Doing& doing) {
   try {
@@ -135,7 +135,7 @@ void Follower::act(const Send& send) {
 
 void Follower::act(const Sleep& sleep) {
   timer_.expires_after(sleep.duration);
-  timer_.async_wait([weak = weak_from_this()](const http::error_code& error) {
+  timer_.async_wait([weak = weak_from_this()](const net::error_code& error) {
     const auto self = weak.lock();
     if (!self || error || self->stopped_) return;
     // Expired and replaced in the same instant: what replaced it is under way.
@@ -178,7 +178,7 @@ void Follower::take(Result<http::ClientResponse> response, const Send& asked) {
   switch (asked.resource) {
     case Resource::FloorPlane: {
       floor_ = read_floor_answer(*response);
-      return feed(FloorAnswered{response->status < kServerFault});
+      return feed(FloorAnswered{response->status < http::status::kInternal});
     }
     case Resource::Clock: {
       const auto clock = clock_.at(received_);
@@ -211,7 +211,7 @@ void Follower::take_frame(const http::ClientResponse& response, Resource asked) 
   feed(answer.event);
 }
 
-/// After a rest only the newest event is read: the others are what the rest was for.
+/// After a rest only the newest event is read: skipping the others is what the rest was for.
 void Follower::take_events(const std::vector<http::ServerEvent>& events) {
   received_ = from_unix_ns(to_unix_ns(SystemClock().now()));
   const Duration before = cpu_now();
@@ -231,7 +231,7 @@ void Follower::take_event(std::string_view text) {
   }
   answered_ = Arrival{std::move(*frame), received_, false};
   const SensorFrame here = placed(*answered_);
-  const bool odd = ages_.odd(here.received - here.captured) && clock_.at(received_);
+  const bool odd = ages_.odd(here) && clock_.at(received_);
   if (const auto error = untimely_now(*answered_); error && !odd) {
     answered_.reset();
     stream_.close();  // the polling will say what is wrong
@@ -246,14 +246,14 @@ SensorFrame Follower::placed(const Arrival& arrival) const {
 }
 
 std::optional<Error> Follower::untimely_now(const Arrival& arrival) const {
-  if (clock_.doubtful()) return std::nullopt;  // judged when it is known which clock was set
+  if (clock_.doubtful()) return std::nullopt;  // judged once it is known which clock was set
   return untimely(placed(arrival));
 }
 
 void Follower::deliver(Arrival arrival) {
   if (!in_doubt()) return hand_on(arrival);
   held_.push_back(std::move(arrival));
-  if (held_.size() > kMostHeld) hand_on_held();
+  if (held_.size() > kMaxHeld) hand_on_held();
 }
 
 void Follower::hand_on_held() {

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "common/http/asio.h"
 #include "common/http/event_stream_client.h"
+#include "common/net/asio.h"
 #include "fusion-server/poll/answer.h"
 #include "fusion-server/poll/frame_tally.h"
 #include "fusion-server/poll/parse_budget.h"
@@ -18,12 +18,11 @@
 
 namespace chorus::poll {
 
-/// One connection for requests and one for the event stream.  Lives on the poll thread; report() is
-/// for any.
+/// One connection for requests and one for the event stream.  Lives on the poll thread; report()
+/// may be called from any.
 class Follower : public std::enable_shared_from_this<Follower> {
  public:
-  Follower(http::net::io_context& io, PolledSensor sensor, http::Url url,
-           const PollerOptions& options);
+  Follower(asio::io_context& io, PolledSensor sensor, http::Url url, const PollerOptions& options);
 
   void start();
   void stop();
@@ -63,7 +62,7 @@ class Follower : public std::enable_shared_from_this<Follower> {
   http::Url url_;
   http::AsyncClient client_;
   http::AsyncEventStream stream_;
-  http::Timer timer_;
+  net::Timer timer_;
   PollFsm fsm_;
   ClockFilter clock_;
   ParseBudget budget_;
@@ -71,11 +70,12 @@ class Follower : public std::enable_shared_from_this<Follower> {
   std::minstd_rand random_;
   bool stopped_ = false;
   std::uint64_t refused_ = 0;
-  bool rested_ = false;  ///< The stream was left unread: only its newest event is worth reading.
+  /// The stream was not read for a while: only its newest event is worth reading.
+  bool rested_ = false;
   Timestamp received_{};
   std::optional<FloorPlane> floor_;
-  std::optional<Arrival> answered_;  ///< What the event being fed has brought.
-  std::deque<Arrival> held_;         ///< Until it is known by what clock.
+  std::optional<Arrival> answered_;  ///< The frame that the current event has brought.
+  std::deque<Arrival> held_;         ///< Frames held back until their clock is known.
   mutable std::mutex mutex_;
   PollReport report_;  ///< Guarded by mutex_, as tally_.
   FrameTally tally_;

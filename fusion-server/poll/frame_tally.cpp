@@ -6,15 +6,17 @@ namespace chorus::poll {
 namespace {
 
 constexpr Duration kWindow = std::chrono::seconds(2);
-constexpr Duration kLeastSpan = std::chrono::milliseconds(500);
-constexpr Duration kPause = std::chrono::seconds(1);  ///< Longer, and a rate begins anew.
-constexpr std::uint64_t kMostGap = 900;               ///< Half a minute; beyond, it counts anew.
+constexpr Duration kMinSpan = std::chrono::milliseconds(500);
+/// After a longer pause the rate starts anew.
+constexpr Duration kPause = std::chrono::seconds(1);
+/// Half a minute; beyond that, counting starts anew.
+constexpr std::uint64_t kMaxGap = 900;
 
 constexpr std::size_t kAges = 32;
-constexpr std::size_t kLeastAges = 8;
+constexpr std::size_t kMinAges = 8;
 constexpr Duration kEarlier = std::chrono::milliseconds(20);
 constexpr Duration kLater = std::chrono::milliseconds(300);
-constexpr int kNewHabit = 4;  ///< Odd ones in a row that are the rule from now on.
+constexpr int kNewHabit = 4;  ///< This many odd ones in a row are the new normal.
 
 }  // namespace
 
@@ -35,7 +37,7 @@ void FrameTally::note(const SensorFrame& frame) {
   newest_ = frame.captured;
   if (last_sequence_ && frame.sequence > *last_sequence_) {
     const std::uint64_t gap = frame.sequence - *last_sequence_ - 1;
-    if (gap <= kMostGap) missed_ += gap;
+    if (gap <= kMaxGap) missed_ += gap;
   }
   last_sequence_ = frame.sequence;
 }
@@ -48,19 +50,27 @@ void FrameTally::note_late(const SensorFrame& frame) {
 double FrameTally::rate_hz(Timestamp now) const {
   if (!first_ || arrivals_.empty() || now - arrivals_.back() > kPause) return 0.0;
   const auto lately = std::lower_bound(arrivals_.begin(), arrivals_.end(), now - kWindow);
-  const Duration span = std::clamp(now - *first_, kLeastSpan, kWindow);
+  const Duration span = std::clamp(now - *first_, kMinSpan, kWindow);
   return static_cast<double>(arrivals_.end() - lately) / seconds(span);
 }
 
-bool AgeWatch::odd(Duration age) {
-  const auto [least, most] = std::minmax_element(ages_.begin(), ages_.end());
-  const bool strange =
-      ages_.size() >= kLeastAges && (age < *least - kEarlier || age > *most + kLater);
-  odd_in_row_ = strange ? odd_in_row_ + 1 : 0;
+bool AgeWatch::strange(const SensorFrame& frame) const {
+  if (ages_.size() < kMinAges) return false;
+  const auto [least, most] = std::ranges::minmax(ages_);
+  const Duration age = frame.received - frame.captured;
+  const bool backwards = frame.sequence > sequence_ && frame.captured < captured_;
+  return backwards || age < least - kEarlier || age > most + kLater;
+}
+
+bool AgeWatch::odd(const SensorFrame& frame) {
+  const bool odd = strange(frame);
+  odd_in_row_ = odd ? odd_in_row_ + 1 : 0;
   if (odd_in_row_ >= kNewHabit) ages_.clear();
-  if (!strange || ages_.empty()) ages_.push_back(age);
+  if (!odd || ages_.empty()) ages_.push_back(frame.received - frame.captured);
   if (ages_.size() > kAges) ages_.pop_front();
-  return strange;
+  sequence_ = frame.sequence;
+  captured_ = frame.captured;
+  return odd;
 }
 
 }  // namespace chorus::poll

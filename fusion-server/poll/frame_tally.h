@@ -1,4 +1,4 @@
-// What has come from one sensor, counted: nothing it says makes a count negative or a rate absurd.
+// Counts what arrives from one sensor; no input can make a count negative or a rate absurd.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace chorus::poll {
 class FrameTally {
  public:
   void note(const SensorFrame& frame);
-  /// One that was fetched after the stream had left it out: counted as missed until now.
+  /// A frame that was fetched after the stream had left it out: counted as missed until now.
   void note_late(const SensorFrame& frame);
 
   /// Frames per second that arrived lately, by our clock.
@@ -32,14 +32,19 @@ class FrameTally {
   std::uint64_t missed_ = 0;
 };
 
-/// Notices a frame whose age does not fit those before: perhaps a clock was set.
+/// Notices a frame whose time does not fit the earlier ones: perhaps a clock was set.
 class AgeWatch {
  public:
-  /// `age`: from capture to receipt, as the clocks are known.
-  [[nodiscard]] bool odd(Duration age);
+  /// Its age does not fit, from capture to receipt as the clocks are known; or it was captured
+  /// before the frame that it follows.
+  [[nodiscard]] bool odd(const SensorFrame& frame);
 
  private:
+  [[nodiscard]] bool strange(const SensorFrame& frame) const;
+
   std::deque<Duration> ages_;
+  std::uint64_t sequence_ = 0;  ///< Of the frame before.
+  Timestamp captured_{};
   int odd_in_row_ = 0;
 };
 

@@ -1,4 +1,5 @@
-// Reading a sensor's frames may cost a tenth of the poll thread: who costs t rests ten times t.
+// Reading one sensor's frames may take a tenth of the poll thread: after t of reading it rests 10
+// t.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +10,7 @@ namespace chorus::poll {
 
 class ParseBudget {
  public:
-  /// `cost` of reading has just been spent.  How long to leave the sensor alone: zero as long as
+  /// `cost` has just been spent on reading.  Returns how long to leave the sensor alone: zero while
   /// its debt is below one frame interval, so that an ordinary sensor never rests.
   [[nodiscard]] Duration spend(Duration cost, Duration now) {
     debt_ = std::max(Duration{0}, debt_ - (now - at_)) + kTimes * cost;
@@ -21,7 +22,7 @@ class ParseBudget {
   static constexpr int kTimes = 10;
   static constexpr Duration kAllowed = std::chrono::milliseconds(30);
 
-  Duration debt_{0};  ///< Time that has to pass before all that was spent is a tenth of it.
+  Duration debt_{0};  ///< Time that has to pass until everything spent is a tenth of it.
   Duration at_{0};
 };
 

@@ -4,6 +4,8 @@
 #include <string_view>
 #include <utility>
 
+#include "common/http/status.h"
+
 namespace chorus::poll {
 namespace {
 
@@ -22,10 +24,6 @@ constexpr Duration kNoClockInterval = std::chrono::seconds(5);
 constexpr Duration kWellKnown = std::chrono::microseconds(300);
 constexpr Duration kOddInterval = std::chrono::seconds(2);
 constexpr int kClockChecks = 4;  // the filter believes a step at the third
-
-constexpr int kOk = 200;
-constexpr int kNotModified = 304;
-constexpr int kServiceUnavailable = 503;
 
 Duration backoff(const PollTimings& timings, int failures_in_row, double jitter) {
   const int doublings = std::clamp(failures_in_row - 1, 0, kMaxDoublings);
@@ -67,11 +65,12 @@ Step PollFsm::on(const Started&, Duration now, double) { return go_on(now); }
 Step PollFsm::on(const Woke&, Duration now, double) { return go_on(now); }
 
 Step PollFsm::on(const FrameAnswered& answer, Duration now, double jitter) {
-  if (streaming_) return go_on(now);  // asked before the stream began; it brings the same frames
-  if (answer.status == kServiceUnavailable) {
+  if (streaming_) return go_on(now);  // asked before the stream began, which brings the same frames
+  if (answer.status == http::status::kUnavailable) {
     return fail(gone(), "the sensor service answers 503: its device delivers no frames", jitter);
   }
-  if (answer.status != kNotModified && (answer.status != kOk || !answer.captured)) {
+  if (answer.status != http::status::kNotModified &&
+      (answer.status != http::status::kOk || !answer.captured)) {
     return fail(SensorState::Refused,
                 "GET frame answers " + std::to_string(answer.status) +
                     "; check that the url is that of a sensor service",
@@ -79,7 +78,7 @@ Step PollFsm::on(const FrameAnswered& answer, Duration now, double jitter) {
   }
   failures_in_row_ = 0;
   const bool news = answer.captured && answer.captured != last_captured_;
-  if (answer.status == kOk) etag_ = answer.etag;
+  if (answer.status == http::status::kOk) etag_ = answer.etag;
   if (news) {
     last_captured_ = answer.captured;
     became_live(now);
@@ -88,7 +87,7 @@ Step PollFsm::on(const FrameAnswered& answer, Duration now, double jitter) {
     return step;
   }
   const bool waited = now - sent_at_ >= asked_wait_ / 2;
-  if (answer.status == kNotModified && waited) {
+  if (answer.status == http::status::kNotModified && waited) {
     enter(gone(), "the sensor service answers, but has no new frame");
     return {after(timings_.min_interval, now)};
   }
@@ -140,7 +139,7 @@ Step PollFsm::on(const Failed& failed, Duration now, double jitter) {
   }
   const bool close = stream_asked_;
   if (close) leave_stream(now, kStreamPause);
-  stream_due_ = now;  // who comes back may have learnt to stream
+  stream_due_ = now;  // a sensor that comes back may have learnt to stream
   floor_known_ = false;
   Step step = fail(gone(), to_string(failed.error), jitter);
   if (close) step.stream = StreamOrder::Close;
@@ -178,7 +177,7 @@ Step PollFsm::on(const StreamEnded& end, Duration now, double) {
   return step;
 }
 
-/// Whatever is due; a stream that has fallen silent is given up for the polling.
+/// The next request due; a stream that has fallen silent is given up for polling.
 Step PollFsm::go_on(Duration now) {
   const bool silent = streaming_ && now - streamed_at_ > timings_.wait;
   if (silent) leave_stream(now, kStreamPause);
@@ -198,7 +197,7 @@ SensorState PollFsm::gone() const {
   return last_captured_ ? SensorState::Lost : SensorState::Connecting;
 }
 
-/// A floor that was asked for in vain, or of an earlier run, is asked for again.
+/// A floor of an earlier run, or one asked for without success, is asked for again.
 void PollFsm::became_live(Duration now) {
   failures_in_row_ = 0;
   if (state_ != SensorState::Live && floor_due_ && !floor_known_) {

@@ -7,15 +7,15 @@
 #include <utility>
 
 #include "common/base/log.h"
-#include "common/http/asio.h"
-#include "common/http/event_loop.h"
+#include "common/net/asio.h"
+#include "common/net/event_loop.h"
 #include "fusion-server/poll/follower.h"
 
 namespace chorus::poll {
 
 struct Poller::Impl {
-  explicit Impl(PollerOptions o) : options(std::move(o)), work(http::net::make_work_guard(io)) {
-    thread = std::thread([this] { http::run_events(io, "poll handler failed"); });
+  explicit Impl(PollerOptions o) : options(std::move(o)), work(asio::make_work_guard(io)) {
+    thread = std::thread([this] { net::run_events(io, "poll handler failed"); });
   }
 
   ~Impl() { stop(); }
@@ -25,10 +25,10 @@ struct Poller::Impl {
     {
       const std::scoped_lock lock(mutex);
       for (auto& [id, follower] : followers) {
-        http::net::post(io, [follower = follower] { follower->stop(); });
+        asio::post(io, [follower = follower] { follower->stop(); });
       }
     }
-    http::net::post(io, [this] { io.stop(); });  // after the followers' own stops
+    asio::post(io, [this] { io.stop(); });  // after the followers' own stops
     thread.join();
   }
 
@@ -41,13 +41,13 @@ struct Poller::Impl {
     }
     const SensorId id = sensor.id;
     auto follower = std::make_shared<Follower>(io, std::move(sensor), std::move(*url), options);
-    http::net::post(io, [follower] { follower->start(); });
+    asio::post(io, [follower] { follower->start(); });
     followers.emplace(id, std::move(follower));
   }
 
   const PollerOptions options;
-  http::net::io_context io{1};
-  http::net::executor_work_guard<http::Executor> work;
+  asio::io_context io{1};
+  asio::executor_work_guard<net::Executor> work;
   mutable std::mutex mutex;
   std::map<SensorId, std::shared_ptr<Follower>> followers;
   std::thread thread;
@@ -65,7 +65,7 @@ void Poller::poll(std::vector<PolledSensor> sensors) {
       ++it;
       continue;
     }
-    http::net::post(impl_->io, [follower = it->second] { follower->stop(); });
+    asio::post(impl_->io, [follower = it->second] { follower->stop(); });
     it = impl_->followers.erase(it);
   }
   for (PolledSensor& sensor : sensors) {

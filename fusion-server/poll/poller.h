@@ -1,7 +1,7 @@
 // Follows every sensor: executes what PollFsm decides, reads the frames, corrects their clocks.
 //
-// One thread for all, and one or two connections per sensor; a sensor that is dead, slow or lying
-// costs the others nothing but its bytes, and a tenth of the thread for reading them.
+// One thread for all sensors, and one or two connections per sensor; a sensor that is dead, slow or
+// lying costs the others nothing but its bytes, and a tenth of the thread for reading them.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@
 #include "common/resource/frame_resource.h"
 #include "common/sensor/sensor_frame.h"
 #include "common/time/clock.h"
-#include "fusion-server/poll/clock_estimate.h"
+#include "common/time/clock_estimate.h"
 #include "fusion-server/poll/poll_fsm.h"
 
 namespace chorus::poll {
@@ -28,9 +28,10 @@ struct PolledSensor {
 };
 
 struct PolledFrame {
-  SensorFrame frame;  ///< By our clock, with the floor plane last heard of.
+  SensorFrame frame;  ///< By our clock, with the latest floor plane.
   std::shared_ptr<const resource::FrameResource> raw;  ///< As the sensor sent it.
-  std::optional<ClockEstimate> clock;                  ///< What its capture times were moved by.
+  /// What its capture times were corrected by.
+  std::optional<ClockEstimate> clock;
 };
 
 /// What a poll knows of one sensor; a copy.
@@ -44,7 +45,7 @@ struct PollReport {
   std::optional<ClockEstimate> clock;
   std::uint64_t frames = 0;
   std::uint64_t missed = 0;   ///< Gaps in the sensor's sequence that were not filled.
-  std::uint64_t refused = 0;  ///< Frames of quite another time.
+  std::uint64_t refused = 0;  ///< Frames with an implausible time.
   std::uint64_t failures = 0;
 };
 
@@ -52,7 +53,7 @@ struct PollerOptions {
   PollTimings timings;
   std::size_t max_body_bytes = 512u << 10;  ///< Of one frame; 64 bodies are about 350 kB.
   std::shared_ptr<const Clock> clock;
-  /// Called on the poll thread; must return at once.  What it throws is a failed poll.
+  /// Called on the poll thread; must return at once.  If it throws, the poll has failed.
   std::function<void(PolledFrame)> deliver;
 };
 
@@ -61,8 +62,8 @@ class Poller {
   explicit Poller(PollerOptions options);
   ~Poller();  ///< Stops and joins.
 
-  /// Starts polling these and stops polling all others; known ones are left in peace.  The urls
-  /// have passed http::parse_url.  Thread-safe.
+  /// Polls these from now on and no others; sensors polled already are left alone.  The urls have
+  /// passed http::parse_url.  Thread-safe.
   void poll(std::vector<PolledSensor> sensors);
 
   /// Ends all polling; nothing is delivered afterwards.  reports() still answers.

@@ -1,4 +1,4 @@
-// Carries covariances of a motion (omega, tau) to other frames (docs/papers/registration.md,
+// Transforms covariances of a motion (omega, tau) into other frames (docs/papers/registration.md,
 // Section 1).
 #pragma once
 

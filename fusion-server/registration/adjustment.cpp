@@ -5,33 +5,34 @@
 
 #include <Eigen/Cholesky>
 
+#include "common/base/median.h"
 #include "common/geometry/rotation.h"
 #include "fusion-server/registration/floor_prior.h"
 #include "fusion-server/registration/pairs.h"
 #include "fusion-server/registration/point_elimination.h"
+#include "fusion-server/registration/tukey.h"
 
 namespace chorus::registration {
 namespace {
 
-constexpr std::size_t kMostPoints = 1500;  // points of the walk; successive ones repeat one another
-constexpr std::size_t kLeastSights = 20;   // with fewer a sensor keeps the place its chain gave it
+constexpr std::size_t kMaxPoints = 1500;  // points of the walk; successive ones repeat one another
+constexpr std::size_t kMinMeasurements =
+    20;  // with fewer a sensor keeps the place its chain gave it
 constexpr int kIterations = 40;
-constexpr double kSettled = 1e-6;         // [rad], [m]
-constexpr double kTukey = 4.685;          // 95 % efficiency for a Gaussian
-constexpr double kMedianToSigma = 1.538;  // median of the norm of a 3-D standard Gaussian
-constexpr double kLeastScale = 0.02;      // in sigmas
-constexpr double kRidge = 1e-6;           // keeps an unobserved direction where it is
+constexpr double kSettled = 1e-6;   // [rad], [m]
+constexpr double kMinScale = 0.02;  // in sigmas
+constexpr double kRidge = 1e-6;     // keeps an unobserved direction where it is
 
 /// A sensor while it is being moved.
 struct Station {
   SensorId id;
   const Walker* walker = nullptr;
   Eigen::Isometry3d level_from_sensor = Eigen::Isometry3d::Identity();
-  Eigen::Isometry3d world_from_level =
-      Eigen::Isometry3d::Identity();  ///< World: the levelled master.
+  /// World: the levelled master.
+  Eigen::Isometry3d world_from_level = Eigen::Isometry3d::Identity();
   bool levelled = false;
   bool master = false;
-  bool fixed = false;  ///< The master, and whoever shares too few points to be moved.
+  bool fixed = false;  ///< The master, and sensors that share too few points to be moved.
 };
 
 Eigen::Isometry3d level_of(const Walker& walker, bool use_floor) {
@@ -60,9 +61,9 @@ std::vector<Station> stations_of(const Places& places, const Walkers& walkers, b
 /// Who saw which slot at one instant.
 void add_instant(const std::vector<std::optional<TrailMoment>>& moments,
                  const std::vector<Station>& stations, std::span<const Slot> slots,
-                 std::vector<PointSights>& points) {
+                 std::vector<PointMeasurements>& points) {
   for (std::size_t slot = 0; slot < slots.size(); ++slot) {
-    PointSights point;
+    PointMeasurements point;
     for (std::size_t i = 0; i < stations.size(); ++i) {
       if (!moments[i] || !moments[i]->frame.has(slot)) continue;
       const Eigen::Vector3d& x = moments[i]->frame.points[slot];
@@ -73,28 +74,28 @@ void add_instant(const std::vector<std::optional<TrailMoment>>& moments,
   }
 }
 
-/// Every sensor's own instants, thinned to what is worth the time: overlaps that only some share
-/// must not be missed.
+/// Every sensor's own instants, thinned out to save time: overlaps that only some share must not be
+/// missed.
 std::vector<Timestamp> instants_of(const std::vector<Station>& stations, std::size_t slots) {
   std::vector<Timestamp> all;
   for (const Station& station : stations) {
     for (const TrailFrame& frame : station.walker->trail.frames) all.push_back(frame.captured);
   }
   std::sort(all.begin(), all.end());
-  const std::size_t step = std::max<std::size_t>(1, all.size() * slots / kMostPoints);
+  const std::size_t step = std::max<std::size_t>(1, all.size() * slots / kMaxPoints);
   std::vector<Timestamp> instants;
   for (std::size_t i = 0; i < all.size(); i += step) instants.push_back(all[i]);
   return instants;
 }
 
-std::vector<PointSights> points_of(const std::vector<Station>& stations,
-                                   const RegistrationConfig& config) {
+std::vector<PointMeasurements> points_of(const std::vector<Station>& stations,
+                                         const RegistrationConfig& config) {
   const auto slots = slots_of(config.joints);
   std::vector<TrailReader> readers;
   for (const Station& station : stations) {
     readers.emplace_back(station.walker->trail, config.max_gap);
   }
-  std::vector<PointSights> points;
+  std::vector<PointMeasurements> points;
   for (const Timestamp instant : instants_of(stations, slots.size())) {
     std::vector<std::optional<TrailMoment>> moments;
     for (TrailReader& reader : readers) {
@@ -106,43 +107,42 @@ std::vector<PointSights> points_of(const std::vector<Station>& stations,
   return points;
 }
 
-void hold_strangers(std::vector<Station>& stations, const std::vector<PointSights>& points) {
-  std::vector<std::size_t> sights(stations.size(), 0);
-  for (const PointSights& point : points) {
-    for (const PointSight& sight : point) ++sights[sight.sensor];
+void hold_strangers(std::vector<Station>& stations, const std::vector<PointMeasurements>& points) {
+  std::vector<std::size_t> measurements(stations.size(), 0);
+  for (const PointMeasurements& point : points) {
+    for (const PointMeasurement& measured : point) ++measurements[measured.sensor];
   }
   for (std::size_t i = 0; i < stations.size(); ++i) {
-    if (sights[i] < kLeastSights) stations[i].fixed = true;
+    if (measurements[i] < kMinMeasurements) stations[i].fixed = true;
   }
 }
 
 /// The adjustment's state between iterations.
 struct Adjustment {
   std::vector<Station> stations;
-  std::vector<PointSights> points;
+  std::vector<PointMeasurements> points;
   double along_ratio = 1.0;
   double inflation = 1.0;
-  double scale = 0.0;  ///< Fixed after the first look, so that costs can be compared.
+  double scale = 0.0;  ///< Fixed after the first iteration, so that costs can be compared.
 
   [[nodiscard]] std::vector<FusedPoint> fuse_all() const {
     std::vector<Eigen::Isometry3d> places;
     for (const Station& station : stations) places.push_back(station.world_from_level);
     std::vector<FusedPoint> all;
-    for (const PointSights& sights : points) all.push_back(fuse_point(sights, places, along_ratio));
+    for (const PointMeasurements& measurements : points)
+      all.push_back(fuse_point(measurements, places, along_ratio));
     return all;
   }
   [[nodiscard]] double weight(const FusedPoint& fused) const {
     const double off = worst_norm(fused) / (kTukey * scale);
-    return off < 1.0 ? (1.0 - off * off) * (1.0 - off * off) : 0.0;
+    return tukey_weight(off * off);
   }
 };
 
 double median_norm(const std::vector<FusedPoint>& all) {
   std::vector<double> norms;
   for (const FusedPoint& fused : all) norms.push_back(worst_norm(fused));
-  const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
-  std::nth_element(norms.begin(), middle, norms.end());
-  return *middle;
+  return median(std::move(norms));
 }
 
 /// Tukey's loss, which the weights above belong to.
@@ -238,7 +238,7 @@ Places adjust_together(const Places& places, const Walkers& walkers,
   hold_strangers(adjustment.stations, adjustment.points);
   adjustment.along_ratio = config.along_ratio;
   adjustment.inflation = std::max(1.0, walkers.inflation);
-  adjustment.scale = std::max(kLeastScale, median_norm(adjustment.fuse_all()) / kMedianToSigma);
+  adjustment.scale = std::max(kMinScale, median_norm(adjustment.fuse_all()) / kMedianToSigma);
   const double before = cost_of(adjustment);
   for (int i = 0; i < kIterations && iterate(adjustment); ++i) {
   }

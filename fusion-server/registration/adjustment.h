@@ -20,10 +20,10 @@ using Places = std::map<SensorId, Eigen::Isometry3d>;
 struct Walkers {
   const std::map<SensorId, Walker>& all;
   SensorId master;         ///< Stays where it is.
-  double inflation = 1.0;  ///< Sightings per independent sighting.
+  double inflation = 1.0;  ///< Measurements per independent measurement.
 };
 
-/// Starts from `places`; gives them back unchanged when nothing gets better.
+/// Starts from `places`, and returns them unchanged if nothing gets better.
 [[nodiscard]] Places adjust_together(const Places& places, const Walkers& walkers,
                                      const RegistrationConfig& config);
 

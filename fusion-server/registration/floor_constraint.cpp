@@ -11,8 +11,8 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kLeastUp = 0.17;      // cos(80 deg): a sensor tilted further has no sense of up
-constexpr double kLeastHeight = 0.10;  // [m] of the sensor over its floor
+constexpr double kMinUp = 0.17;        // cos(80 deg): a sensor tilted further has no sense of up
+constexpr double kMinHeight = 0.10;    // [m] of the sensor over its floor
 constexpr double kFeetBelow = 0.25;    // [m] feet deeper than this contradict the plane
 constexpr double kFeetAbove = 0.60;    // [m] feet that never come lower than this contradict it too
 constexpr double kLowestShare = 0.10;  // percentile that counts as "touching the floor"
@@ -63,8 +63,8 @@ std::optional<double> lowest_feet(const WalkTrack& walk, const FloorPlane& floor
 }
 
 std::string objection_to(const FloorPlane& floor, const WalkTrack& walk) {
-  if (floor.normal.y() < kLeastUp) return "its floor plane does not point up";
-  if (floor.offset < kLeastHeight) return "its floor plane is not below it";
+  if (floor.normal.y() < kMinUp) return "its floor plane does not point up";
+  if (floor.offset < kMinHeight) return "its floor plane is not below it";
   const auto feet = lowest_feet(walk, floor);
   if (feet && *feet < -kFeetBelow) {
     return fmt::format("its floor plane lies {:.2f} m above the person's feet", -*feet);
@@ -77,7 +77,7 @@ std::string objection_to(const FloorPlane& floor, const WalkTrack& walk) {
 
 }  // namespace
 
-FloorSight floor_of(const WalkTrack& walk) {
+WalkFloor floor_of(const WalkTrack& walk) {
   const std::optional<FloorPlane> floor = median_floor(walk);
   if (!floor) return {std::nullopt, "it reports no floor plane"};
   std::string objection = objection_to(*floor, walk);

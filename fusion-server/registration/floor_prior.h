@@ -27,11 +27,11 @@ struct FloorPrior {
   double height = 0.0;
 };
 
-/// Each floor is good to 0.4 deg and 10 mm; two of them differ by sqrt(2) more.
+/// Each floor is good to 0.4 deg and 10 mm; the difference of two is worse by sqrt(2).
 inline constexpr FloorPrior kTwoFloors{deg(0.4) * std::numbers::sqrt2,
                                        mm(10) * std::numbers::sqrt2};
 
-/// Up must stay up, and the floor under the walk must stay the floor.  Both frames are levelled.
+/// Up must stay up, and the floor under the walk must stay in place.  Both frames are levelled.
 void add_prior(Normal& normal, const FloorPrior& prior, const Eigen::Isometry3d& target_from_source,
                const Eigen::Vector3d& centre_in_source);
 

@@ -23,13 +23,13 @@ using Icp = pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ, double>;
 
 constexpr int kRefineIterations = 20;
 constexpr int kSeedIterations = 40;
-constexpr int kYawSeeds = 24;             // 15 deg apart
-constexpr float kKeptShare = 0.9F;        // trimmed
-constexpr double kSettled = 1e-9;         // squared metres and 1 - cos of the last step
-constexpr std::size_t kMostPoints = 300;  // a 10 s walk at 30 Hz; more costs time and gives nothing
-constexpr std::size_t kLeastPoints = 10;
+constexpr int kYawSeeds = 24;            // 15 deg apart
+constexpr float kKeptShare = 0.9F;       // trimmed
+constexpr double kSettled = 1e-9;        // squared metres and 1 - cos of the last step
+constexpr std::size_t kMaxPoints = 300;  // a 10 s walk at 30 Hz; more costs time and gives nothing
+constexpr std::size_t kMinPoints = 10;
 
-/// Nearest neighbours in a few hundred points by looking at all of them: several times faster than
+/// Nearest neighbours among a few hundred points by checking all of them: several times faster than
 /// a tree, which spends more on locks than on such a search.
 class Scan : public pcl::search::KdTree<pcl::PointXYZ> {
  public:
@@ -60,11 +60,10 @@ class Scan : public pcl::search::KdTree<pcl::PointXYZ> {
   mutable Eigen::ArrayXf squares_;  ///< Of the last search; one thread uses one ICP.
 };
 
-/// At most kMostPoints, evenly taken.
+/// At most kMaxPoints, evenly taken.
 Points::Ptr cloud_of(Cloud points) {
   Points::Ptr cloud(new Points);
-  const std::size_t step =
-      std::max<std::size_t>(1, (points.size() + kMostPoints - 1) / kMostPoints);
+  const std::size_t step = std::max<std::size_t>(1, (points.size() + kMaxPoints - 1) / kMaxPoints);
   for (std::size_t i = 0; i < points.size(); i += step) {
     const Eigen::Vector3f p = points[i].cast<float>();
     if (p.allFinite()) cloud->push_back({p.x(), p.y(), p.z()});
@@ -145,7 +144,7 @@ std::optional<IcpFit> refine_by_icp(Cloud source, Cloud target, const Eigen::Iso
   try {
     const Points::Ptr from = cloud_of(source);
     const Points::Ptr to = cloud_of(target);
-    if (from->size() < kLeastPoints || to->size() < kLeastPoints) return std::nullopt;
+    if (from->size() < kMinPoints || to->size() < kMinPoints) return std::nullopt;
     Icp icp;
     set_up(icp, from, to, kRefineIterations);
     icp.setMaxCorrespondenceDistance(reach);
@@ -159,7 +158,7 @@ Result<IcpFit> icp_from_yaw_seeds(Cloud source, Cloud target) {
   try {
     const Points::Ptr from = cloud_of(source);
     const Points::Ptr to = cloud_of(target);
-    if (from->size() >= kLeastPoints && to->size() >= kLeastPoints) {
+    if (from->size() >= kMinPoints && to->size() >= kMinPoints) {
       if (const auto best = best_of_seeds(from, to)) return *best;
     }
   } catch (const std::exception& error) {

@@ -18,13 +18,14 @@ struct IcpFit {
   std::size_t accepted = 0;
 };
 
-/// Point-to-point refinement of a good start; points farther than `reach` from any target point are
-/// left out.  None when it does not converge.
+/// Point-to-point refinement from a good start; points farther than `reach` from every target point
+/// are left out.  None when it does not converge.
 [[nodiscard]] std::optional<IcpFit> refine_by_icp(Cloud source, Cloud target,
                                                   const Eigen::Isometry3d& start, double reach);
 
-/// The published method as far as it is stated: levelled clouds, no time, no start.  Tries 24 yaws
-/// about the centroids, keeps the best 90 % of the correspondences, takes the least residual.
+/// The published method as far as it is described: levelled clouds, without time stamps or an
+/// initial guess.  Tries 24 yaws about the centroids, keeps the best 90 % of the correspondences,
+/// takes the smallest residual.
 [[nodiscard]] Result<IcpFit> icp_from_yaw_seeds(Cloud source, Cloud target);
 
 }  // namespace chorus::registration

@@ -16,14 +16,13 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kLeastAgreement = 0.3;  // share of inliers below which nothing is believed
-constexpr double kLeastSlimness =
-    0.01;                         // lambda2 / lambda1 of the walk: a line at 10 % lateral rms
-constexpr double kBias = mm(10);  // view-dependent joint bias at 90 deg and beyond
-constexpr std::size_t kMostPairs = 6000;  // more cost time; successive frames repeat one another
-constexpr double kIcpReach = 0.10;        // [m] beyond it a neck point has no partner
+constexpr double kMinAgreement = 0.3;  // share of inliers below which nothing is believed
+constexpr double kMinSlimness = 0.01;  // lambda2 / lambda1 of the walk: a line at 10 % lateral rms
+constexpr double kBias = mm(10);       // view-dependent joint bias at 90 deg and beyond
+constexpr std::size_t kMaxPairs = 6000;  // more cost time; successive frames repeat one another
+constexpr double kIcpReach = 0.10;       // [m] beyond it a neck point has no partner
 
-/// Both sides with the floor at y = 0 where both floors are known, unchanged otherwise.
+/// Both sides levelled to y = 0 if both floors are known; unchanged otherwise.
 struct Levelled {
   bool both = false;
   Eigen::Isometry3d level_from_target = Eigen::Isometry3d::Identity();
@@ -62,7 +61,7 @@ Result<void> enough(const Pairing& pairing, const std::string& both,
 
 /// Whole instants are dropped evenly, never single joints.
 std::vector<Pair> thinned(const Pairing& pairing) {
-  const std::size_t keep_every = (pairing.pairs.size() + kMostPairs - 1) / kMostPairs;
+  const std::size_t keep_every = (pairing.pairs.size() + kMaxPairs - 1) / kMaxPairs;
   if (keep_every <= 1) return pairing.pairs;
   std::vector<Pair> kept;
   for (const Pair& pair : pairing.pairs) {
@@ -80,7 +79,7 @@ void apply(std::vector<Pair>& pairs, const Levelled& levelled) {
   }
 }
 
-/// The extent of the walk: the two largest principal axes, of the slot seen most (or the first of
+/// The extent of the walk: the two largest principal axes, for the slot seen most (the first among
 /// equals).
 struct Extent {
   double spread = 0.0;    ///< [m]
@@ -109,7 +108,7 @@ Extent extent_of(const std::vector<Pair>& pairs, const std::vector<double>& weig
   return {std::sqrt(major + minor), major > 0 ? minor / major : 0.0};
 }
 
-/// The neck clouds of the pairs, or whatever slot comes first.
+/// The neck clouds of the pairs, or those of the first slot there is.
 void clouds_of(const std::vector<Pair>& pairs, std::vector<Eigen::Vector3d>& target,
                std::vector<Eigen::Vector3d>& source) {
   const std::size_t slot = pairs.front().slot;
@@ -120,8 +119,8 @@ void clouds_of(const std::vector<Pair>& pairs, std::vector<Eigen::Vector3d>& tar
   }
 }
 
-/// Otto 5.2: ICP on the neck clouds.  Returns its residual.  Kept only where the timed pairs, which
-/// know more, do not object.
+/// Otto 5.2: ICP on the neck clouds.  Returns its residual.  Its result is used only if the timed
+/// pairs, which know more, do not contradict it.
 double refine_with_icp(const std::vector<Pair>& pairs, Refined& refined, double along_ratio) {
   std::vector<Eigen::Vector3d> target;
   std::vector<Eigen::Vector3d> source;
@@ -153,7 +152,7 @@ Result<void> believable(const PairwiseRegistration& edge, const Extent& extent,
                             both, extent.spread, config.min_spread));
   }
   const double agreement = static_cast<double>(edge.inliers) / static_cast<double>(edge.pairs);
-  if (edge.rms <= config.max_edge_rms && agreement >= kLeastAgreement) return {};
+  if (edge.rms <= config.max_edge_rms && agreement >= kMinAgreement) return {};
   return fail(
       ErrorCode::Conflict, both,
       fmt::format(
@@ -162,10 +161,10 @@ Result<void> believable(const PairwiseRegistration& edge, const Extent& extent,
           both, 100.0 * agreement, edge.rms));
 }
 
-/// A line tells nothing about the turn around it, unless the floor or the body's height does.
+/// A line does not determine the turn around it, unless the floor or the body's height does.
 Result<void> determined(const Extent& extent, bool levelled, const std::string& both,
                         JointChoice joints) {
-  if (extent.slimness >= kLeastSlimness || levelled || joints != JointChoice::Neck) return {};
+  if (extent.slimness >= kMinSlimness || levelled || joints != JointChoice::Neck) return {};
   return fail(
       ErrorCode::Unavailable, both,
       fmt::format("{}: the walk was one line; walk across too, or let both see the floor", both));
@@ -212,12 +211,20 @@ std::vector<Eigen::Vector3d> neck_cloud(const Trail& trail,
   return cloud;
 }
 
+Eigen::Vector3d middle_of(const std::vector<Eigen::Vector3d>& cloud) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& x : cloud) sum += x;
+  return sum / static_cast<double>(std::max<std::size_t>(1, cloud.size()));
+}
+
 /// The floor fixes height, pitch and roll after the fact, as the paper's "floor plane estimation
-/// compensates".
-Eigen::Isometry3d on_the_floor(const Eigen::Isometry3d& level_from_level) {
+/// compensates".  What ICP fitted are the clouds: their middle stays where it put it, whatever tilt
+/// is taken out.
+Eigen::Isometry3d on_the_floor(const Eigen::Isometry3d& level_from_level,
+                               const Eigen::Vector3d& middle) {
   Eigen::Isometry3d flat = Eigen::Isometry3d::Identity();
   flat.linear() = about_y(yaw_of(level_from_level.linear())).toRotationMatrix();
-  flat.translation() = level_from_level.translation();
+  flat.translation() = level_from_level * middle - flat.linear() * middle;
   flat.translation().y() = 0;
   return flat;
 }
@@ -231,7 +238,8 @@ Result<PairwiseRegistration> untimed(const Walker& target, const Walker& source,
   const auto fit = icp_from_yaw_seeds(from, to);
   if (!fit) return fail(ErrorCode::Unavailable, both, both + ": " + fit.error().message);
   const Eigen::Isometry3d level_from_level =
-      levelled.both ? on_the_floor(fit->target_from_source) : fit->target_from_source;
+      levelled.both ? on_the_floor(fit->target_from_source, middle_of(from))
+                    : fit->target_from_source;
   PairwiseRegistration edge{target.trail.sensor, source.trail.sensor};
   edge.rms = edge.icp_rms = fit->rms;
   edge.pairs = from.size();

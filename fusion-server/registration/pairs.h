@@ -1,4 +1,4 @@
-// Time-paired correspondences: where was the same joint for the other sensor at that very instant?
+// Time-paired correspondences: where the other sensor saw the same joint at that very instant.
 //
 // The target's trail is interpolated at the source's capture times (Otto 5.2.4), so unsynchronised
 // sensors give simultaneous points.  docs/papers/registration.md, Section 2.
@@ -22,7 +22,7 @@ class TrailReader {
  public:
   TrailReader(const Trail& trail, Duration max_gap) : frames_(trail.frames), max_gap_(max_gap) {}
 
-  /// Instants must not go back.  None where no narrow bracket of one body holds the instant.
+  /// Instants must not go back.  None unless a narrow bracket of one body holds the instant.
   std::optional<TrailMoment> at(Timestamp instant);
 
  private:
@@ -36,10 +36,10 @@ struct Pair {
   Eigen::Vector3d x_in_source;
   Eigen::Vector3d ray_in_target;  ///< Unit line of sight of the target sensor.
   Eigen::Vector3d ray_in_source;
-  double sigma = 0.0;  ///< Of the difference, as far as the slot tells [m].
+  double sigma = 0.0;  ///< Of the difference, as far as the slot determines it [m].
   std::size_t slot = 0;
-  std::size_t instant =
-      0;  ///< Counts the source frames that were paired; groups simultaneous pairs.
+  /// Number of the source frame among the paired ones; groups simultaneous pairs.
+  std::size_t instant = 0;
 };
 
 struct Pairing {

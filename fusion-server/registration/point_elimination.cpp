@@ -7,7 +7,7 @@
 
 namespace chorus::registration {
 
-FusedPoint fuse_point(const PointSights& sights,
+FusedPoint fuse_point(const PointMeasurements& measurements,
                       std::span<const Eigen::Isometry3d> world_from_level, double along_ratio) {
   // (I + e r r^T)^-1 = I - e / (1 + e) r r^T
   const double extra = std::max(0.0, along_ratio * along_ratio - 1.0);
@@ -15,12 +15,12 @@ FusedPoint fuse_point(const PointSights& sights,
   FusedPoint fused;
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  for (const PointSight& sight : sights) {
-    const Eigen::Isometry3d& place = world_from_level[sight.sensor];
-    const Eigen::Vector3d ray = place.linear() * sight.ray;
-    fused.seen.push_back(place * sight.x);
+  for (const PointMeasurement& measured : measurements) {
+    const Eigen::Isometry3d& place = world_from_level[measured.sensor];
+    const Eigen::Vector3d ray = place.linear() * measured.ray;
+    fused.seen.push_back(place * measured.x);
     fused.information.push_back((Eigen::Matrix3d::Identity() - blunt * ray * ray.transpose()) /
-                                (sight.sigma * sight.sigma));
+                                (measured.sigma * measured.sigma));
     sum += fused.information.back();
     right += fused.information.back() * fused.seen.back();
   }
@@ -38,21 +38,21 @@ double worst_norm(const FusedPoint& fused) {
   return std::sqrt(worst);
 }
 
-void add_point(PlaceEquations& equations, const PointSights& sights, const FusedPoint& fused,
-               double weight) {
+void add_point(PlaceEquations& equations, const PointMeasurements& measurements,
+               const FusedPoint& fused, double weight) {
   std::vector<Eigen::Matrix<double, 3, 6>> rows;
-  for (std::size_t i = 0; i < sights.size(); ++i) {
+  for (std::size_t i = 0; i < measurements.size(); ++i) {
     const Eigen::Matrix<double, 3, 6> motion = at_point(fused.seen[i]).bottomRows<3>();
     rows.push_back(fused.information[i] * motion);
-    const auto at = static_cast<Eigen::Index>(6 * sights[i].sensor);
+    const auto at = static_cast<Eigen::Index>(6 * measurements[i].sensor);
     equations.information.block<6, 6>(at, at) += weight * motion.transpose() * rows[i];
     equations.right.segment<6>(at) += weight * rows[i].transpose() * (fused.x - fused.seen[i]);
   }
-  for (std::size_t i = 0; i < sights.size(); ++i) {
+  for (std::size_t i = 0; i < measurements.size(); ++i) {
     const Eigen::Matrix<double, 6, 3> left = weight * rows[i].transpose() * fused.covariance;
-    for (std::size_t j = 0; j < sights.size(); ++j) {
-      equations.information.block<6, 6>(static_cast<Eigen::Index>(6 * sights[i].sensor),
-                                        static_cast<Eigen::Index>(6 * sights[j].sensor)) -=
+    for (std::size_t j = 0; j < measurements.size(); ++j) {
+      equations.information.block<6, 6>(static_cast<Eigen::Index>(6 * measurements[i].sensor),
+                                        static_cast<Eigen::Index>(6 * measurements[j].sensor)) -=
           left * rows[j];
     }
   }

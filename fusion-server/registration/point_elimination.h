@@ -1,6 +1,7 @@
 // One point of the walk seen by several sensors, eliminated from the adjustment's equations.
 //
-// Sensor i sees the point at m_i; T_i is the sensor's place, S_i^-1 the information of its sight:
+// Sensor i sees the point at m_i; T_i is the sensor's place, S_i^-1 the information of its
+// measurement:
 //   E(T) = min_x sum_i (T_i m_i - x)^T S_i^-1 (T_i m_i - x)
 //   x = C sum_i S_i^-1 T_i m_i,   C = (sum_i S_i^-1)^-1,   S_i = sigma_i^2 (I + e r_i r_i^T)
 // With a small motion (omega, tau) of T_i on the world's side and J_i = [-[T_i m_i]x  I], the Schur
@@ -17,30 +18,30 @@
 
 namespace chorus::registration {
 
-/// One sensor's sight of one point, in its levelled frame.
-struct PointSight {
+/// One sensor's measurement of one point, in its levelled frame.
+struct PointMeasurement {
   std::size_t sensor = 0;  ///< Index into the places.
   Eigen::Vector3d x;       ///< [m]
   Eigen::Vector3d ray;     ///< Unit line of sight.
   double sigma = 0.0;      ///< Across the line of sight [m].
 };
 
-using PointSights = std::vector<PointSight>;  ///< Of at least two sensors.
+using PointMeasurements = std::vector<PointMeasurement>;  ///< Of at least two sensors.
 
 /// A point at the present places.
 struct FusedPoint {
-  std::vector<Eigen::Vector3d> seen;            ///< Each sight in the world.
-  std::vector<Eigen::Matrix3d> information;     ///< S^-1 of each sight.
+  std::vector<Eigen::Vector3d> seen;            ///< Each measurement in the world.
+  std::vector<Eigen::Matrix3d> information;     ///< S^-1 of each measurement.
   Eigen::Vector3d x = Eigen::Vector3d::Zero();  ///< Inverse-variance mean.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
 /// `along_ratio`: error along the line of sight over the error across it.
-[[nodiscard]] FusedPoint fuse_point(const PointSights& sights,
+[[nodiscard]] FusedPoint fuse_point(const PointMeasurements& measurements,
                                     std::span<const Eigen::Isometry3d> world_from_level,
                                     double along_ratio);
 
-/// Whole points are believed or not: in units of sigma, the worst sight counts.
+/// Whole points are believed or not: the worst measurement decides, in units of sigma.
 [[nodiscard]] double worst_norm(const FusedPoint& fused);
 
 /// information * (omega, tau of every sensor) = right.
@@ -50,7 +51,7 @@ struct PlaceEquations {
 };
 
 /// Adds H and g of one point, times `weight`.
-void add_point(PlaceEquations& equations, const PointSights& sights, const FusedPoint& fused,
-               double weight);
+void add_point(PlaceEquations& equations, const PointMeasurements& measurements,
+               const FusedPoint& fused, double weight);
 
 }  // namespace chorus::registration

@@ -5,18 +5,18 @@
 
 #include <Eigen/Cholesky>
 
+#include "common/base/median.h"
 #include "common/geometry/rotation.h"
+#include "fusion-server/registration/tukey.h"
 
 namespace chorus::registration {
 namespace {
 
 constexpr int kIterations = 15;
-constexpr double kSettled = 1e-7;         // [rad], [m]
-constexpr double kMostCorrelated = 0.98;  // rho beyond this says "constant error", not "no samples"
+constexpr double kSettled = 1e-7;        // [rad], [m]
+constexpr double kMaxCorrelated = 0.98;  // rho beyond this says "constant error", not "no samples"
 constexpr double kTiny = 1e-12;
-constexpr double kTukey = 4.685;          // 95 % efficiency for a Gaussian
-constexpr double kMedianToSigma = 1.538;  // median of the norm of a 3-D standard Gaussian
-constexpr double kLeastScale = 0.02;      // in sigmas; perfect pairs must not divide by zero
+constexpr double kMinScale = 0.02;  // in sigmas; perfect pairs must not divide by zero
 constexpr double kAxes = 3.0;
 
 /// One pair at the present place: what is left, and S^-1.
@@ -56,13 +56,10 @@ void reweigh(const std::vector<Residual>& residuals, Refined& refined) {
     if (refined.weights[i] > 0) norms.push_back(std::sqrt(residuals[i].squared()));
   }
   if (norms.empty()) return;
-  const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
-  std::nth_element(norms.begin(), middle, norms.end());
-  refined.scale = std::max(kLeastScale, *middle / kMedianToSigma);
+  refined.scale = std::max(kMinScale, median(std::move(norms)) / kMedianToSigma);
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     const double limit = kTukey * refined.scale;
-    const double off = residuals[i].squared() / (limit * limit);
-    refined.weights[i] = off < 1.0 ? (1.0 - off) * (1.0 - off) : 0.0;
+    refined.weights[i] = tukey_weight(residuals[i].squared() / (limit * limit));
   }
 }
 
@@ -84,7 +81,7 @@ Eigen::Vector3d centre_of(const std::vector<Pair>& pairs, const std::vector<doub
   return total > 0 ? Eigen::Vector3d(sum / total) : sum;
 }
 
-/// Mean whitened residual of each instant, and what one pair alone scatters.
+/// The mean whitened residual of each instant, and how much a single pair scatters.
 struct Instants {
   std::vector<Eigen::Vector3d> means;
   double squares = 0.0;
@@ -124,7 +121,7 @@ double inflation_of(const Instants& instants) {
     if (i > 0) next += instants.means[i].dot(instants.means[i - 1]);
   }
   if (!(same > kTiny) || !(instants.squares > kTiny)) return 1.0;
-  const double rho = std::clamp(next / same, 0.0, kMostCorrelated);
+  const double rho = std::clamp(next / same, 0.0, kMaxCorrelated);
   const double used = static_cast<double>(instants.used);
   const double count = static_cast<double>(instants.means.size());
   const double pair_variance = instants.squares / (kAxes * used);

@@ -1,7 +1,7 @@
 // Six degrees of freedom with the floor as a prior, and a covariance that does not flatter.
 //
-// The closed form holds the floor for exact and errors for equal in all directions.  Here a floor
-// that is a little wrong yields to the walk, and each sensor is blunt along its line of sight:
+// The closed form takes the floor as exact and errors as equal in all directions.  Here a slightly
+// wrong floor yields to the walk, and each sensor is blunt along its line of sight:
 //   minimise sum w r^T S^-1 r / (s^2 kappa) + |tilt|^2 / sigma_tilt^2 + |height|^2 / sigma_height^2
 //   S = sigma^2 / 2 (A_target + R A_source R^T),   A = I + (ratio^2 - 1) ray ray^T
 // with Tukey weights w.  kappa = (1 + rho) / (1 - rho) because successive residuals are not
@@ -26,7 +26,7 @@ struct Refined {
 [[nodiscard]] Refined refine(const std::vector<Pair>& pairs, const RobustFit& fit,
                              const FloorPrior& prior, double along_ratio);
 
-/// sum w r^T S^-1 r at another place: tells whether that place suits the timed pairs better.
+/// sum w r^T S^-1 r at another place: shows whether that place fits the timed pairs better.
 [[nodiscard]] double cost_of(const std::vector<Pair>& pairs, const Refined& at, double along_ratio);
 
 /// rms residual over the pairs with positive weight [m]; for people and thresholds.

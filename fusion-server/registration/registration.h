@@ -1,6 +1,6 @@
 // From a walk to extrinsics (Otto 5.2.1, 5.2.3): tracks -> pairs -> graph -> Registration.
 //
-// Pure and deterministic; may take a second, so the server runs it on a worker thread.
+// Pure and deterministic.  It may take a second, so the server runs it on a worker thread.
 #pragma once
 
 #include <map>
@@ -27,7 +27,7 @@ enum class JointChoice {
   Neck,  ///< Otto: the neck alone.
   Core,  ///< Neck, SpineShoulder, Head, SpineMid and the flip-invariant shoulder and hip
          ///< mid-points.
-  All,  ///< Every joint: for sensors that label left and right themselves, and walks that are none.
+  All,  ///< Every joint: for sensors that tell left from right, and for motions other than walking.
 };
 
 struct RegistrationConfig {
@@ -35,17 +35,17 @@ struct RegistrationConfig {
   JointChoice joints = JointChoice::Core;
   bool use_floor = true;  ///< Pitch, roll and height from the floor plane where there is one.
   /// Error along a sensor's line of sight over the error across it: 1.5-2 for a depth sensor, 5-10
-  /// for a single camera that knows depth from the size of the person.
+  /// for a single camera that infers depth from the size of the person.
   double along_ratio = 2.0;
   Duration max_gap = std::chrono::milliseconds(60);  ///< Widest bracket for a correspondence.
   double min_distance = 0.5;                         ///< [m]
   double max_distance = 6.0;                         ///< [m]
   double max_speed = 2.5;      ///< Person faster than this is not paired [m/s].
-  std::size_t min_pairs = 60;  ///< Fewer correspondences make no edge.
+  std::size_t min_pairs = 60;  ///< With fewer correspondences there is no edge.
   double min_spread = 0.25;    ///< Narrower walks are refused [m].
-  double max_edge_rms = 0.15;  ///< Wider residuals make no edge [m].
-  bool adjust_together =
-      true;                ///< Three sensors and more: one adjustment over all of them at the end.
+  double max_edge_rms = 0.15;  ///< With larger residuals there is no edge [m].
+  /// Three sensors and more: one adjustment over all of them at the end.
+  bool adjust_together = true;
   double good_rms = 0.08;  ///< Above this the verdict is provisional [m].
   Duration good_duration = std::chrono::seconds(20);  ///< Shorter walks stay provisional.
   /// Above this 95 % radius of a sensor's place on the floor the verdict is provisional [m].
@@ -60,8 +60,8 @@ struct RegistrationConfig {
                                                          const WalkTrack& source,
                                                          const RegistrationConfig& config);
 
-/// All tracks to one registration.  Verdict and reasons are always filled; sensors that could not
-/// be linked are missing from `sensors` and named in `reasons` ("sensors s3 and s4 never saw the
+/// All tracks to one registration.  Verdict and reasons are always set; sensors that could not be
+/// linked are missing from `sensors` and named in `reasons` ("sensors s3 and s4 never saw the
 /// person together").
 [[nodiscard]] Registration solve(const std::vector<WalkTrack>& walk, Timestamp now,
                                  const RegistrationConfig& config);

@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/median.h"
+#include "fusion-server/registration/tukey.h"
+
 namespace chorus::registration {
 namespace {
 
-constexpr double kCutoff = 3.0;   // c of Geman-McClure in standard deviations
-constexpr double kAnneal = 1.4;   // mu <- mu / 1.4
-constexpr double kTukey = 4.685;  // 95 % efficiency for a Gaussian
+constexpr double kCutoff = 3.0;  // c of Geman-McClure in standard deviations
+constexpr double kAnneal = 1.4;  // mu <- mu / 1.4
 constexpr int kTukeyIterations = 8;
-constexpr double kMedianToSigma = 1.538;  // median of the norm of a 3-D standard Gaussian
-constexpr double kLeastScale = 0.02;      // in sigmas; perfect pairs must not divide by zero
+constexpr double kMinScale = 0.02;  // in sigmas; perfect pairs must not divide by zero
 constexpr double kAgreeingShare = 0.5;
-constexpr int kMostDoublings = 5;
+constexpr int kMaxDoublings = 5;
 
 /// The pairs as the columns that the closed form wants.
 struct Columns {
@@ -52,12 +53,6 @@ std::vector<double> residuals(const Columns& columns, const Eigen::Isometry3d& t
     norms[i] = off.norm() / columns.sigma[i];
   }
   return norms;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Geman-McClure with graduated non-convexity; `cutoff` in the pairs' sigmas.
@@ -109,10 +104,10 @@ Result<RobustFit> polish(const Columns& columns, Freedom freedom, RigidFit fit, 
   for (int i = 0; i < kTukeyIterations; ++i) {
     const std::vector<double> norms = residuals(columns, fit.target_from_source);
     const double typical = std::min(median(norms) / kMedianToSigma, cutoff / kCutoff);
-    scale = std::max(kLeastScale, typical);
+    scale = std::max(kMinScale, typical);
     for (std::size_t k = 0; k < norms.size(); ++k) {
       const double off = norms[k] / (kTukey * scale);
-      weights[k] = off < 1.0 ? (1.0 - off * off) * (1.0 - off * off) : 0.0;
+      weights[k] = tukey_weight(off * off);
     }
     const Result<RigidFit> next = fit_once(columns, weights, freedom);
     if (!next) return pass(next);
@@ -130,7 +125,7 @@ Result<RobustFit> fit_robustly(const std::vector<Pair>& pairs, Freedom freedom,
   const Columns columns = columns_of(pairs);
   double cutoff = kCutoff * sigma_factor;
   Result<RigidFit> fit = anneal(columns, freedom, cutoff);
-  for (int i = 0; fit && i < kMostDoublings; ++i) {
+  for (int i = 0; fit && i < kMaxDoublings; ++i) {
     const std::vector<double> norms = residuals(columns, fit->target_from_source);
     if (share_within(norms, cutoff) >= kAgreeingShare) break;
     cutoff *= 2.0;

@@ -1,7 +1,7 @@
 // Closed-form rigid fit made robust: graduated non-convexity, then Tukey re-weighting.
 //
-// Starts from nothing (no initial guess) and survives more than half of the pairs being wrong in
-// incoherent ways.  Derived in docs/papers/registration.md, Section 3.
+// Needs no initial guess and survives more than half of the pairs being wrong in incoherent ways.
+// Derived in docs/papers/registration.md, Section 3.
 #pragma once
 
 #include <vector>

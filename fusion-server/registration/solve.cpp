@@ -1,3 +1,4 @@
+#include "common/base/median.h"
 #include "fusion-server/registration/registration.h"
 
 #include <algorithm>
@@ -17,9 +18,9 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kRadius95 = 2.4477;   // sqrt of chi^2 with 2 degrees of freedom at 95 %
-constexpr double kLeastUpright = 0.0;  // cos of the tilt beyond which a sensor would hang head down
-constexpr double kLeastHeight = 0.0;   // [m] a sensor under the floor is a wrong solution
+constexpr double kRadius95 = 2.4477;  // sqrt of chi^2 with 2 degrees of freedom at 95 %
+constexpr double kMinUpright = 0.0;   // cos of the tilt beyond which a sensor would hang head down
+constexpr double kMinHeight = 0.0;    // [m] a sensor under the floor is a wrong solution
 
 /// Why two sensors have no edge.
 struct Refusal {
@@ -76,7 +77,8 @@ void register_pairs(Work& work, const PairEstimator& estimate) {
   }
 }
 
-/// Reaches most sensors; then least total error; then least id.
+/// The sensor that reaches the most others; of equals, the one with the smallest total error, then
+/// with the lowest id.
 SensorId best_master(const Work& work) {
   SensorId best;
   std::size_t most = 0;
@@ -105,11 +107,11 @@ void choose_master(Work& work) {
   work.result.master = best_master(work);
 }
 
-/// The floor that all linked sensors together mean; without any, the upright body's.
+/// The common floor of all linked sensors; without any, from the upright body.
 FloorPlane floor_in_master(Work& work, const std::map<SensorId, Chain>& chains) {
   std::vector<PlacedFloor> floors;
   for (const auto& [sensor, chain] : chains) {
-    const FloorSight& own = work.walkers.at(sensor).floor;
+    const WalkFloor& own = work.walkers.at(sensor).floor;
     if (!work.config.use_floor || !own.floor) continue;
     const Eigen::Isometry3d& master_from_sensor = chain.master_from_sensor;
     const Eigen::Vector3d normal = master_from_sensor.linear() * own.floor->normal;
@@ -124,9 +126,9 @@ FloorPlane floor_in_master(Work& work, const std::map<SensorId, Chain>& chains) 
 /// "would hang head down", or nothing when the place is possible.
 std::optional<std::string> impossible(const Eigen::Isometry3d& world_from_sensor) {
   if (!world_from_sensor.matrix().allFinite()) return "has no finite place";
-  if (world_from_sensor.linear()(1, 1) < kLeastUpright) return "would hang head down";
+  if (world_from_sensor.linear()(1, 1) < kMinUpright) return "would hang head down";
   const double height = world_from_sensor.translation().y();
-  if (height < kLeastHeight) return fmt::format("would stand {:.2f} m below the floor", -height);
+  if (height < kMinHeight) return fmt::format("would stand {:.2f} m below the floor", -height);
   return std::nullopt;
 }
 
@@ -134,8 +136,7 @@ double median_inflation(const std::vector<PairwiseRegistration>& edges) {
   std::vector<double> all;
   for (const PairwiseRegistration& edge : edges) all.push_back(edge.inflation);
   if (all.empty()) return 1.0;
-  std::sort(all.begin(), all.end());
-  return all[all.size() / 2];
+  return median(std::move(all));
 }
 
 /// Chains first; from three sensors on, all of them once more together.  The covariance stays the
@@ -178,7 +179,7 @@ bool linked(const Work& work, const SensorId& sensor) {
   return work.result.sensors.contains(sensor);
 }
 
-/// What keeps this sensor out: the reasons of its pairs with linked sensors, "never together"
+/// Why this sensor is left out: the reasons of its pairs with linked sensors, with "never together"
 /// summed up.
 void explain_unlinked(Work& work, const SensorId& sensor) {
   std::vector<std::string> strangers;
@@ -206,7 +207,7 @@ void explain_unlinked(Work& work, const SensorId& sensor) {
 }
 
 void explain_floor(Work& work, const SensorId& sensor) {
-  const FloorSight& floor = work.walkers.at(sensor).floor;
+  const WalkFloor& floor = work.walkers.at(sensor).floor;
   if (!work.config.use_floor || floor.floor) return;
   work.doubt(sensor,
              fmt::format("sensor {}: {}, so its pitch, roll and height come from the walk alone",
@@ -269,7 +270,7 @@ void judge_accuracy(Work& work) {
   }
 }
 
-/// Each sensor by what speaks against it; all together by those that have a place.
+/// A verdict for each sensor by what speaks against it, and for all sensors with a place together.
 void pass_sentence(Work& work) {
   work.result.verdict = work.doubtful ? Verdict::Provisional : Verdict::Good;
   for (const auto& [sensor, walker] : work.walkers) {

@@ -10,12 +10,12 @@
 
 namespace chorus::registration {
 
-/// A joint, or the middle of two.  The middle of a mirror pair is the same whichever side the
+/// A joint, or the midpoint of two.  The midpoint of a mirror pair is the same whichever side the
 /// sensor calls left, so it survives front/rear flips.
 struct Slot {
   JointId first;
   JointId second;
-  double sigma;  ///< Error of one sensor's sight, to weigh the slots against one another [m].
+  double sigma;  ///< Error of one sensor's measurement, to weigh the slots against one another [m].
 };
 
 [[nodiscard]] std::span<const Slot> slots_of(JointChoice choice);
@@ -35,8 +35,8 @@ struct Trail {
   std::vector<TrailFrame> frames;  ///< Strictly increasing in time.
 };
 
-/// Frames with exactly one body, tracked joints only.  Frames with several bodies wait for
-/// association across sensors; `sole_body` is the place where it will come in.
+/// Frames with exactly one body, tracked joints only.  Frames with several bodies need association
+/// across sensors first; `sole_body` is where that would go.
 [[nodiscard]] Trail trail_of(const WalkTrack& walk, JointChoice choice);
 
 }  // namespace chorus::registration

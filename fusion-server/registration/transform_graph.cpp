@@ -9,9 +9,9 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kEdgeFloor = 0.002;   // [m] what no walk, however long, gets below per hop
-constexpr double kLever = 2.5;         // [m] sensor to walk; Otto Eq. (1)'s best distance
-constexpr double kLeastSpread = 0.01;  // [m]
+constexpr double kEdgeFloor = 0.002;  // [m] what no walk, however long, gets below per hop
+constexpr double kLever = 2.5;        // [m] sensor to walk; Otto Eq. (1)'s best distance
+constexpr double kMinSpread = 0.01;   // [m]
 
 /// An edge seen from one of its ends.
 struct Hop {
@@ -55,7 +55,7 @@ Chain extend(const Chain& chain, const Hop& hop) {
 
 double edge_error(const PairwiseRegistration& edge) {
   const double inliers = static_cast<double>(std::max<std::size_t>(1, edge.inliers));
-  const double lever = kLever / std::max(kLeastSpread, edge.spread);
+  const double lever = kLever / std::max(kMinSpread, edge.spread);
   return kEdgeFloor + edge.rms / std::sqrt(inliers) * std::sqrt(1.0 + lever * lever);
 }
 

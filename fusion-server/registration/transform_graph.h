@@ -23,7 +23,7 @@ struct Chain {
 [[nodiscard]] std::map<SensorId, Chain> best_chains(const SensorId& master,
                                                     const std::vector<PairwiseRegistration>& edges);
 
-/// Weight of an edge in the graph: rms / sqrt(inliers) plus a floor that makes short chains win
+/// Weight of an edge in the graph: rms / sqrt(inliers) plus a constant, so that shorter chains win
 /// ties [m].
 [[nodiscard]] double edge_error(const PairwiseRegistration& edge);
 

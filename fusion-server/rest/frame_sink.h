@@ -1,4 +1,4 @@
-// Snapshots into the frames that REST shows.
+// Turns snapshots into the frames that REST shows.
 #pragma once
 
 #include "common/service/frame_resources.h"

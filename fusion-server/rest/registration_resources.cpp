@@ -5,25 +5,21 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/base/json.h"
 #include "common/base/log.h"
-#include "common/resource/json_guard.h"
-#include "fusion-server/wire/registration_resource.h"
+#include "common/http/status.h"
+#include "fusion-server/wire/registration_nodes.h"
 
 namespace chorus::rest {
-namespace {
-
-constexpr int kAccepted = 202;
-constexpr int kNoContent = 204;
-
-}  // namespace
+namespace {}  // namespace
 
 Result<Duration> parse_session_request(std::string_view body, Duration fallback) {
   const auto wrong = [](std::string message) {
     return fail(ErrorCode::InvalidArgument, "registration", std::move(message));
   };
   if (body.find_first_not_of(" \t\r\n") == std::string_view::npos) return fallback;
-  constexpr resource::JsonLimits kLimits{4096, 4};
-  const auto json = resource::parse_json(body, kLimits);
+  constexpr JsonLimits kLimits{4096, 4};
+  const auto json = parse_json(body, kLimits);
   if (!json || !json->is_object()) {
     const std::string reason = json ? "" : "; " + to_string(json.error());
     return wrong("send a JSON object, such as {\"seconds\": 30}" + reason);
@@ -34,9 +30,9 @@ Result<Duration> parse_session_request(std::string_view body, Duration fallback)
   if (json->empty()) return fallback;
   const auto& value = json->at("seconds");
   const double wanted = value.is_number() ? value.get<double>() : std::nan("");
-  if (!(wanted >= kShortestSession && wanted <= kLongestSession)) {
-    return wrong("\"seconds\" is a number from " + log::number_text(kShortestSession) + " to " +
-                 log::number_text(kLongestSession));
+  if (!(wanted >= kMinSession && wanted <= kMaxSession)) {
+    return wrong("\"seconds\" is a number from " + log::number_text(kMinSession) + " to " +
+                 log::number_text(kMaxSession));
   }
   return from_seconds(wanted);
 }
@@ -87,7 +83,7 @@ Result<http::ActionResult> RegistrationResources::post(const http::Request& requ
   const std::uint64_t id = sessions.front().id;
   control_.start(*target, id, ++asked_);
   show();
-  return http::ActionResult{kAccepted, live_->current(), wire::session_path(id)};
+  return http::ActionResult{http::status::kAccepted, live_->current(), wire::session_path(id)};
 }
 
 void RegistrationResources::end_newest() {
@@ -104,7 +100,7 @@ http::ActionResult RegistrationResources::forget() {
   registration_.version = version;
   control_.forget(++asked_);
   show();
-  return {kNoContent, nullptr, {}};
+  return {http::status::kNoContent, nullptr, {}};
 }
 
 Result<SessionStatus> RegistrationResources::find(const std::string& id) const {
@@ -124,7 +120,7 @@ Result<http::ActionResult> RegistrationResources::cancel(const std::string& id) 
   end_newest();
   control_.cancel(session->id, ++asked_);
   show();
-  return http::ActionResult{kNoContent, nullptr, {}};
+  return http::ActionResult{http::status::kNoContent, nullptr, {}};
 }
 
 Result<http::DocumentPtr> RegistrationResources::session(const std::string& id) const {

@@ -13,23 +13,22 @@
 
 namespace chorus::rest {
 
-/// How long a session may be asked to collect [s]: shorter walks cannot be solved, longer ones only
-/// take memory.
-inline constexpr double kShortestSession = 8.0;
-inline constexpr double kLongestSession = 300.0;
+/// How long a session may collect [s]: shorter walks cannot be solved, longer ones only use memory.
+inline constexpr double kMinSession = 8.0;
+inline constexpr double kMaxSession = 300.0;
 
-/// What the routes ask of whoever owns the registration; must only post.  `ticket` counts the
-/// wishes: RegistrationProgress::commands says which have been obeyed.
+/// What the routes ask of the owner of the registration; must only post.  `ticket` counts the
+/// requests: RegistrationProgress::commands says which have been carried out.
 struct RegistrationControl {
   std::function<void(Duration target, std::uint64_t session, std::uint64_t ticket)> start;
   std::function<void(std::uint64_t session, std::uint64_t ticket)> cancel;
   std::function<void(std::uint64_t ticket)> forget;
-  /// How long a session collects when the request does not say.
+  /// How long a session collects unless the request says otherwise.
   std::function<Duration()> default_target = [] { return std::chrono::seconds(30); };
 };
 
-/// Thread-safe.  What a client asked for is shown from its answer on: until the owner has obeyed,
-/// what is known of the outcome stands in, and older news is not shown any more.
+/// Thread-safe.  A client's request shows in every answer after its own: until the owner has
+/// carried it out, its expected outcome is shown, and older states are not shown any more.
 class RegistrationResources {
  public:
   RegistrationResources(service::Serving serving, RegistrationControl control);
@@ -56,7 +55,7 @@ class RegistrationResources {
   std::uint64_t version_ = 0;
 };
 
-/// "{"seconds": 30}" or an empty body -> the target; anything else is InvalidArgument and says so.
+/// "{"seconds": 30}" or an empty body -> the target; InvalidArgument for anything else.
 [[nodiscard]] Result<Duration> parse_session_request(std::string_view body, Duration fallback);
 
 }  // namespace chorus::rest

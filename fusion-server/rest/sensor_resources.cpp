@@ -61,14 +61,13 @@ void SensorResources::publish(const std::vector<SensorStatus>& sensors) {
   node.properties.emplace_back("contains", std::move(contains));
   node.properties.emplace_back("sensors", std::move(members));
   http::DocumentOptions options;
-  options.container = true;
   {
     const std::scoped_lock lock(mutex_);
     sensors_ = sensors;
     options.version = serving_.run + "-" + std::to_string(++version_);
   }
-  list_->publish(
-      resource::document_of(std::move(node), std::move(options), serving_.place("sensors/")));
+  list_->publish(resource::document_of(std::move(node), std::move(options),
+                                       serving_.place("sensors/"), resource::Kind::Container));
 }
 
 std::shared_ptr<http::LiveDocument> SensorResources::live_of(const SensorId& sensor) {

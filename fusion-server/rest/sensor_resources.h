@@ -21,13 +21,14 @@ namespace chorus::rest {
 /// Thread-safe: published from the pipeline's and the poller's thread, read by the server's.
 class SensorResources {
  public:
-  /// These get a live (long-poll) relay of their frames; sensors added later answer plain GETs.
+  /// These sensors get a live (long-poll) relay of their frames; those added later answer plain
+  /// GETs.
   SensorResources(service::Serving serving, const std::vector<SensorId>& sensors);
 
   void publish(const std::vector<SensorStatus>& sensors);
   /// The frame as the sensor sent it: its own space, its own clock.
   void relay(const SensorId& sensor, resource::FramePtr frame);
-  /// Its floor plane, in its own space; none: it has said nothing of one.
+  /// Its floor plane, in its own space; none: it has reported none.
   void floor(const SensorId& sensor, const std::optional<FloorPlane>& floor);
 
   void add_routes(http::Router& router);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "common/resource/floor_plane_resource.h"
+#include "common/resource/link_lines.h"
 
 namespace chorus::rest {
 namespace {
@@ -38,7 +39,9 @@ void add_description_routes(http::Router& router, const service::Serving& servin
   router.get("/", [root](const http::Request&, const http::PathParams&) { return root; });
   router.get("/floor-plane",
              [floor](const http::Request&, const http::PathParams&) { return floor; });
-  if (!viewer_dir.empty()) router.files("/viewer/", viewer_dir);
+  if (!viewer_dir.empty()) {
+    router.files("/viewer/", viewer_dir, resource::link_lines(resource::Kind::Other));
+  }
 }
 
 }  // namespace chorus::rest

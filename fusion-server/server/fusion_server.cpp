@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/base/log.h"
+#include "common/resource/link_lines.h"
 #include "common/service/common_resources.h"
 #include "fusion-server/rest/frame_sink.h"
 #include "fusion-server/rest/metrics.h"
@@ -43,7 +44,7 @@ core::CoreConfig core_config(const FusionSettings& settings) {
   return core;
 }
 
-/// Says which sensors the stored places do not fit.
+/// Logs which sensors the stored places do not fit.
 void report_fit(const Registration& registration, const std::vector<SensorId>& configured) {
   for (const SensorId& sensor : configured) {
     if (!registration.sensors.contains(sensor)) {
@@ -94,7 +95,7 @@ service::Health health_of(const Status& status) {
   return {true, {}};
 }
 
-/// Says of each folder that cannot be used what is wrong with it; the tracker goes on without.
+/// Logs for each unusable folder what is wrong with it; the tracker runs without it.
 std::string probe_folders(const StartSettings& config, const std::string& state_folder) {
   const auto told = [](const char* what, const Result<void>& probe) {
     if (!probe) log::error(what, {{"reason", to_string(probe.error())}});
@@ -227,10 +228,11 @@ void FusionServer::Impl::take_status(const Status& next) {
 LoopOptions FusionServer::Impl::loop_options(Registration places) {
   LoopOptions options;
   options.core = core_config(config);
-  // Sequences rise across restarts (no output is faster than 1 kHz), so that /frames/{seq} and
-  // ETags of an earlier run are never taken for ours by a cache.
+  // Sequences rise across restarts (no output is faster than 1 kHz), so that a cache never takes
+  // /frames/{seq} and ETags of an earlier run for ours.
   options.core.first_sequence = static_cast<std::uint64_t>(to_unix_ns(clock->now()) / 1'000'000);
-  // So do ids of sessions (none is shorter than a second), so that nobody follows another run's.
+  // Ids of sessions rise too (none is shorter than a second), so that nobody follows a session of
+  // another run.
   options.core.first_session = static_cast<std::uint64_t>(to_unix_ns(clock->now()) / 1'000'000'000);
   options.core.first_person = first_person(store);
   options.registration = std::move(places);
@@ -286,6 +288,7 @@ Result<void> FusionServer::start() {
   http::ServerConfig http = s.config.at_start.http;
   http.bearer_token = s.config.live.bearer_token;
   http.clock = s.clock;
+  http.policy = resource::answer_policy();
   s.http = std::make_unique<http::Server>(http, s.make_router());
 
   s.loop = std::make_unique<PipelineLoop>(s.loop_options(std::move(*registration)));
@@ -311,7 +314,7 @@ void FusionServer::take(const LiveSettings& live) {
 
 void FusionServer::stop() {
   Impl& s = *impl_;
-  // From the rim inwards: nobody asks any more, nothing arrives any more, then the pipeline ends.
+  // From the rim inwards: first nobody asks any more, then nothing arrives, then the pipeline ends.
   if (s.http) s.http->stop();
   if (s.poller) s.poller->stop();
   s.loop.reset();

@@ -8,13 +8,13 @@
 #include "common/base/result.h"
 #include "common/service/command_line.h"
 #include "common/time/clock.h"
-#include "fusion-server/server/fusion_config.h"
+#include "fusion-server/server/fusion_settings.h"
 
 namespace chorus::server {
 
 class FusionServer {
  public:
-  /// On the host's clock.  Binds nothing yet.
+  /// Uses the host's clock.  Binds nothing yet.
   [[nodiscard]] static Result<std::unique_ptr<FusionServer>> make(const FusionSettings& settings);
   FusionServer(FusionSettings settings, std::shared_ptr<const Clock> clock);
   ~FusionServer();  ///< stop()s.
@@ -34,7 +34,7 @@ class FusionServer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// What chorus-fusion says of itself.
+/// What chorus-fusion says about itself.
 [[nodiscard]] service::About about_fusion();
 
 }  // namespace chorus::server

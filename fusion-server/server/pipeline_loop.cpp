@@ -6,21 +6,21 @@
 
 #include "common/base/log.h"
 #include "fusion-server/server/solver.h"
-#include "fusion-server/wire/registration_resource.h"
+#include "fusion-server/wire/registration_nodes.h"
 
 namespace chorus::server {
 namespace {
 
-constexpr std::size_t kMostFrames = 4096;   // 64 sensors at 30 Hz for two seconds
-constexpr std::size_t kMostCommands = 256;  // people, not frames, send these
-constexpr Duration kMostIdle = std::chrono::milliseconds(20);
+constexpr std::size_t kMaxFrames = 4096;   // 64 sensors at 30 Hz for two seconds
+constexpr std::size_t kMaxCommands = 256;  // people, not frames, send these
+constexpr Duration kMaxIdle = std::chrono::milliseconds(20);
 constexpr Duration kGathering = std::chrono::milliseconds(2);
 constexpr Duration kStatusInterval = std::chrono::milliseconds(200);
 /// What broke may break again at once, at every turn.
 constexpr Duration kAfterFailure = std::chrono::milliseconds(10);
 constexpr Duration kStale = std::chrono::milliseconds(1500);
 
-/// Around one frame interval, the alignment delay, and what nobody should see [s].
+/// Bounds around one frame interval, around the alignment delay, and of what nobody should see [s].
 const std::vector<double> kAgeBounds{0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.08, 0.1, 0.15, 0.2, 0.5};
 
 std::string joined(const std::vector<std::string>& reasons) {
@@ -33,13 +33,18 @@ std::string_view name_of(core::SolveKind kind) {
   return kind == core::SolveKind::Final ? "final" : "provisional";
 }
 
+std::string stale(Duration age) {
+  return "its newest frame was captured " + log::number_text(seconds(age)) +
+         " s ago by our clock; it delivers nothing, or the clock of its host is wrong";
+}
+
 }  // namespace
 
 PipelineLoop::PipelineLoop(LoopOptions options)
     : options_(std::move(options)),
       core_(options_.core, options_.registration),
-      frames_(kMostFrames),
-      commands_(kMostCommands),
+      frames_(kMaxFrames),
+      commands_(kMaxCommands),
       solutions_(1),
       age_(kAgeBounds),
       keeper_(options_.store, options_.store_trouble) {}
@@ -68,7 +73,7 @@ void PipelineLoop::run(const std::stop_token& stop) {
 }
 
 void PipelineLoop::turn() {
-  gather(std::min(core_.idle(options_.clock->now()), kMostIdle));
+  gather(std::min(core_.idle(options_.clock->now()), kMaxIdle));
   for (Command& command : commands_.take(Duration{0})) obey(std::move(command));
   take_solutions();
   const auto begun = std::chrono::steady_clock::now();
@@ -82,8 +87,8 @@ void PipelineLoop::turn() {
   if (now - status_at_ >= kStatusInterval || now < status_at_) publish_status(now);
 }
 
-/// Takes the frames that are there, or the first that comes.  Of many sensors one comes every other
-/// millisecond: those are left to gather, so that not each of them wakes this thread.
+/// Takes the frames that are there, or waits for the first.  With many sensors one arrives every
+/// other millisecond: they are left to gather, so that not each of them wakes this thread.
 void PipelineLoop::gather(Duration idle) {
   const auto since = std::chrono::steady_clock::now() - gathered_at_;
   if (since < kGathering) {
@@ -113,7 +118,7 @@ void PipelineLoop::start_session(const StartSession& wish) {
   obeyed_ = wish.ticket;
   const Timestamp now = options_.clock->now();
   const auto progress = core_.progress(now);
-  // The one that ran by itself when the client asked may be over by now: then that is its answer.
+  // The session that ran when the client asked may be over by now; then that is its answer.
   const bool over =
       wish.session < progress.next_session &&
       !(running(progress.sessions.front()) && progress.sessions.front().id == wish.session);
@@ -168,7 +173,7 @@ void PipelineLoop::take_solutions() {
                                                     : "registration not adopted",
                 {{"reasons", joined(sessions.front().reasons)}});
     }
-    // What a session puts into use before its end is taken back if the end is refused.
+    // What a session puts into use before its end is withdrawn if the end is refused.
     if (outcome == core::Outcome::Adopted && kind == core::SolveKind::Final)
       keeper_.keep(worker_, now);
     publish_status(moment);
@@ -184,11 +189,7 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
   status.state = poll::name_of(silent ? poll::SensorState::Lost : report.state);
   status.last_error = report.last_error;
   if (status.last_error.empty()) status.last_error = core_.complaint(report.sensor.id, now);
-  if (status.last_error.empty() && silent) {
-    status.last_error =
-        "its newest frame was captured " + log::number_text(seconds(*status.age)) +
-        " s ago by our clock; it delivers nothing, or the clock of its host is wrong";
-  }
+  if (status.last_error.empty() && silent) status.last_error = stale(*status.age);
   status.streaming = report.streaming;
   status.rate_hz = report.rate_hz;
   status.frames = report.frames;
@@ -202,7 +203,7 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
   if (report.clock) {
     status.clock_offset = report.clock->ours_minus_theirs;
     status.clock_uncertainty = report.clock->uncertainty;
-    status.clock_corrected = poll::correction(report.clock) != Duration{0};
+    status.clock_corrected = correction(report.clock) != Duration{0};
   }
   const auto& reports = core_.reports();
   const auto own = std::find_if(reports.begin(), reports.end(), [&](const SensorReport& r) {
@@ -213,7 +214,7 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
   return status;
 }
 
-/// Says once what the pipeline refuses of a sensor that is live; the poller tells the rest.
+/// Logs once what the pipeline refuses of a live sensor; the poller logs the rest.
 void PipelineLoop::complain(const SensorStatus& sensor) {
   std::string& told = told_[sensor.id];
   const bool news = sensor.state == "live" && !sensor.last_error.empty();

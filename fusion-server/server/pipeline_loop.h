@@ -21,7 +21,7 @@
 
 namespace chorus::server {
 
-// What other threads may ask of the pipeline.  Tickets rise; Status tells the last one obeyed.
+// What other threads may ask of the pipeline.  Tickets rise; Status names the last one carried out.
 struct StartSession {
   Duration target{0};
   std::uint64_t session = 0;  ///< The id that the client was told.
@@ -40,7 +40,7 @@ struct LoopOptions {
   core::CoreConfig core;
   Registration registration;
   RegistrationStore store{""};
-  std::string store_trouble;  ///< Why the store's folder cannot be used; empty: it can.
+  std::string store_trouble;  ///< Why the store's folder cannot be used; empty: it can be.
   std::shared_ptr<const Clock> clock;
   std::vector<Sink*> sinks;  ///< Outlive the loop.
   /// Called a few times a second and whenever the registration has changed, on the pipeline's
@@ -58,9 +58,9 @@ class PipelineLoop {
 
   void start();
 
-  /// Never blocks; the oldest frames are dropped when the pipeline does not keep up.
+  /// Never blocks; the oldest frames are dropped when the pipeline falls behind.
   void give(SensorFrame frame) { frames_.give(std::move(frame)); }
-  /// Taken within one output interval.
+  /// Takes effect within one output interval.
   void ask(Command command) { commands_.give(std::move(command)); }
 
  private:
@@ -88,7 +88,7 @@ class PipelineLoop {
   Histogram age_;  ///< Instant to publication [s].
   Timestamp status_at_{};
   std::chrono::steady_clock::time_point gathered_at_{};
-  std::uint64_t obeyed_ = 0;  ///< Ticket.
+  std::uint64_t obeyed_ = 0;  ///< Ticket of the last command obeyed.
   StateKeeper keeper_;
   RateReport trouble_{"pipeline step failed", log::Level::Error};
   Worker worker_;

@@ -1,7 +1,7 @@
-// Hands what goes through the fusion server to the recording under way, if there is one.
+// Passes what goes through the fusion server to the recording in progress, if there is one.
 //
-// Nothing here waits, encodes or touches the disk: the recorder does, on its own thread, and counts
-// what it had to drop (common/record/recorder.h).
+// Nothing here waits, encodes or touches the disk: the recorder does that on its own thread, and
+// counts what it had to drop (common/record/recorder.h).
 #pragma once
 
 #include <memory>
@@ -23,8 +23,8 @@ class RecordingTap final : public Sink {
 
   /// Any thread.
   void raw(record::RawFrame frame);
-  /// The registration in use, told as often as one likes; recorded when it or the recording is new.
-  /// One thread.
+  /// The registration in use; may be told repeatedly, and is recorded when it or the recording is
+  /// new. One thread.
   void places(const Registration& registration);
 
  private:

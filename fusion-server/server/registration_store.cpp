@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/file.h"
+#include "common/base/json.h"
 #include "fusion-server/wire/registration_file.h"
 
 namespace chorus::server {
@@ -16,8 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kMostBytes = 16u << 20;
-constexpr std::uint64_t kMostPeople = 1ULL << 53U;  // what JSON readers can hold
+constexpr std::uintmax_t kMaxBytes = 16u << 20;
+constexpr std::uint64_t kMaxPeople = 1ULL << 53U;  // what JSON readers can hold
 
 }  // namespace
 
@@ -48,12 +49,12 @@ Result<void> RegistrationStore::save(const Registration& registration) const {
 Result<std::uint64_t> RegistrationStore::load_next_person() const {
   std::error_code ignored;
   if (folder_.empty() || !fs::exists(people_path(), ignored)) return 1;
-  const auto text = read_file(people_path(), kMostBytes);
+  const auto text = read_file(people_path(), kMaxBytes);
   if (!text) return pass(text);
-  const auto json = nlohmann::json::parse(*text, nullptr, false);
+  const auto json = parse_json(*text).value_or(nlohmann::json());
   const auto next = json.is_object() ? json.find("nextPerson") : json.end();
   const bool known = json.is_object() && next != json.end() && next->is_number_unsigned();
-  if (!known || next->get<std::uint64_t>() > kMostPeople)
+  if (!known || next->get<std::uint64_t>() > kMaxPeople)
     return fail(ErrorCode::Malformed, people_path(), "{\"nextPerson\": NUMBER} is wanted");
   return std::max<std::uint64_t>(1, next->get<std::uint64_t>());
 }
@@ -73,7 +74,7 @@ Result<void> RegistrationStore::forget() const {
 }
 
 Result<Registration> load_registration_file(const std::string& path) {
-  const auto text = read_file(path, kMostBytes);
+  const auto text = read_file(path, kMaxBytes);
   if (!text) return fail(ErrorCode::Io, path, "cannot be read: " + text.error().message);
   auto registration = wire::read_registration(*text);
   if (!registration) {

@@ -1,4 +1,4 @@
-// What survives a restart: the registration and how far the ids of people have come, a file each,
+// What survives a restart: the registration and the highest id of people so far, one file each,
 // replaced atomically.
 #pragma once
 
@@ -13,21 +13,20 @@ namespace chorus::server {
 
 class RegistrationStore {
  public:
-  /// An empty folder keeps nothing.
+  /// With an empty folder nothing is kept.
   explicit RegistrationStore(std::string folder) : folder_(std::move(folder)) {}
 
-  /// The stored registration; none when there is none.  A file that cannot be read is an error and
-  /// stays.
+  /// The stored registration; none when there is none.  An unreadable file is an error and is left
+  /// alone.
   [[nodiscard]] Result<std::optional<Registration>> load() const;
 
-  /// Writes a temporary file, syncs it, renames it.  A failure leaves the stored one untouched.
+  /// Writes a temporary file, syncs it, renames it.  After a failure the stored one is unchanged.
   [[nodiscard]] Result<void> save(const Registration& registration) const;
 
-  /// Moves the stored one aside as registration.json.old, so that forgetting by mistake can be
-  /// undone.
+  /// Moves the stored one to registration.json.old, so that forgetting by mistake can be undone.
   [[nodiscard]] Result<void> forget() const;
 
-  /// The first id of a person that no earlier run may have given; 1 when none is known.
+  /// The first person id that no earlier run can have used; 1 when none is known.
   [[nodiscard]] Result<std::uint64_t> load_next_person() const;
   [[nodiscard]] Result<void> save_next_person(std::uint64_t next) const;
 

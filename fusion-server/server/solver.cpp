@@ -22,7 +22,7 @@ namespace {
 using registration::Walker;
 using registration::WalkTrack;
 
-/// Behind the pipeline and the network, which have deadlines.
+/// Lower than the pipeline and the network, which have deadlines.
 constexpr int kNiceness = 10;
 
 struct Pair {

@@ -13,16 +13,16 @@ namespace chorus::server {
 /// The value of an environment variable; null when it is not set.
 using Environment = std::function<const char*(const char* name)>;
 
-/// `configured` as it is, unless it is "auto": then the first of $STATE_DIRECTORY (systemd's),
-/// $XDG_STATE_HOME/chorus/fusion-PORT and $HOME/.local/state/chorus/fusion-PORT; empty when there
-/// is none of them, or no port to tell this server from another (0: any).
+/// `configured` unchanged, unless it is "auto": then the first of $STATE_DIRECTORY (systemd's),
+/// $XDG_STATE_HOME/chorus/fusion-PORT and $HOME/.local/state/chorus/fusion-PORT; empty when none is
+/// set, or there is no port to tell this server from another (0: any).
 [[nodiscard]] std::string state_folder(std::string_view configured, std::uint16_t port,
                                        const Environment& environment);
 
-/// Makes the folder if need be and writes a file into it; the error says what is wrong with it.
+/// Creates the folder if necessary and writes a file into it; the error says what is wrong with it.
 [[nodiscard]] Result<void> probe_folder(const std::string& folder);
 
-/// The viewer's files are there, with what they need.
+/// Whether the viewer's files are there, with everything they need.
 [[nodiscard]] Result<void> probe_viewer(const std::string& folder);
 
 }  // namespace chorus::server

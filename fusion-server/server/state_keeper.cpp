@@ -8,7 +8,7 @@ namespace chorus::server {
 namespace {
 
 constexpr std::uint64_t kReserve = 100;  // ids of people that a crash may skip
-constexpr std::uint64_t kLeastLeft = kReserve / 2;
+constexpr std::uint64_t kMinLeft = kReserve / 2;
 
 }  // namespace
 
@@ -38,7 +38,7 @@ void StateKeeper::forget(Worker& worker) {
 }
 
 void StateKeeper::people(Worker& worker, std::uint64_t next) {
-  if (next + kLeastLeft < reserved_) return;
+  if (next + kMinLeft < reserved_) return;
   reserved_ = next + kReserve;
   post(worker, [reserved = reserved_](const RegistrationStore& store) {
     return store.save_next_person(reserved);

@@ -1,4 +1,4 @@
-// The thread for what takes long: solving a registration, writing it to disk.
+// The thread for slow work: solving a registration, writing it to disk.
 #pragma once
 
 #include <atomic>
@@ -15,8 +15,8 @@
 
 namespace chorus::server {
 
-/// Runs jobs one after the other.  The owner bounds how many are out; stopping drops those not
-/// begun.  What a job throws is logged and counted.
+/// Runs jobs one after the other.  The owner bounds how many are queued; stopping drops those not
+/// begun.  Exceptions from a job are logged and counted.
 class Worker {
  public:
   Worker() : thread_([this](const std::stop_token& stop) { run(stop); }) {}
@@ -29,7 +29,7 @@ class Worker {
     arrived_.notify_one();
   }
 
-  /// Jobs that threw.  Any thread.
+  /// Jobs that threw an exception.  Any thread.
   [[nodiscard]] std::uint64_t failed() const noexcept { return failed_; }
 
  private:

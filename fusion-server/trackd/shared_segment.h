@@ -10,9 +10,9 @@ namespace chorus::trackd {
 
 class SharedSegment {
  public:
-  /// Made anew, mode 0666, zero; or the one of this size that an earlier run of this user left,
-  /// with what stands in it: readers attached to that one stay with us.  Conflict names the one
-  /// that is in the way: of another size, of another user, or in use by a program that still runs.
+  /// A new segment, mode 0666, zeroed; or the one of the same size that an earlier run of this user
+  /// left, with its content: readers attached to it stay with us.  Conflict names the segment in
+  /// the way: of another size, of another user, or in use by a program that still runs.
   [[nodiscard]] static Result<SharedSegment> create(int key, std::size_t bytes);
 
   SharedSegment(SharedSegment&& other) noexcept
@@ -27,7 +27,7 @@ class SharedSegment {
  private:
   explicit SharedSegment(int held) : held_(held) {}
 
-  int held_;  ///< Says to other trackers that the key is in use.
+  int held_;  ///< Tells other trackers that the key is in use.
   int id_ = -1;
   std::span<char> bytes_;
 };

@@ -6,10 +6,10 @@
 //               i32 calibrated, frame
 //   controller  32 bytes: u32 version 1, button offset, valuator offset, counts, time s, us,
 //               command; then i32 buttons, f32 valuators (all zero: bodies have no buttons)
-// Right-handed, +y up, R = Ry(azimuth) Rx(elevation) Rz(roll); feet by CAVELib's habit.
+// Right-handed, +y up, R = Ry(azimuth) Rx(elevation) Rz(roll); in feet, as CAVELib programs expect.
 // Sensor 25 * slot + n: n = 0 the head, 1 the right hand (the wand), 2 the left hand, then all
-// other joints in our order.  A sensor nobody sees keeps its pose, is not calibrated, and stands
-// still.
+// other joints in our order.  A sensor that nobody sees keeps its pose, is not calibrated, and does
+// not move.
 #pragma once
 
 #include <span>
@@ -21,7 +21,7 @@ namespace chorus::trackd {
 
 inline constexpr std::size_t kHeaderBytes = 28;
 inline constexpr std::size_t kSensorBytes = 40;
-inline constexpr std::size_t kButtons = 20;  ///< As many as readers expect to be reserved.
+inline constexpr std::size_t kButtons = 20;  ///< As many as readers expect.
 inline constexpr std::size_t kValuators = 20;
 
 enum class LengthUnit { Feet, Metres };
@@ -29,12 +29,12 @@ enum class LengthUnit { Feet, Metres };
 /// Which sensor of its body a joint is, 0 .. 24.
 [[nodiscard]] std::size_t sensor_of(JointId joint);
 
-/// The whole tracker block before anybody is seen.
+/// The whole tracker block before anybody has been seen.
 [[nodiscard]] std::vector<char> tracker_block(std::size_t sensors);
 [[nodiscard]] std::vector<char> controller_block();
 
-/// Into a block of tracker_block's form.  Sensors the block has no room for are left out.  The
-/// header's time is not touched: call write_stamp() afterwards, so that whoever sees a new time
+/// Writes into a block made by tracker_block.  Sensors beyond the end of the block are left out.
+/// The header's time is not changed: call write_stamp() afterwards, so that whoever sees a new time
 /// sees new sensors.
 void write_sensors(const outlet::TrackerFrame& frame, LengthUnit unit, std::span<char> block);
 void write_stamp(Timestamp instant, std::span<char> block);

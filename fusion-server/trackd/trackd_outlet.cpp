@@ -9,14 +9,14 @@
 namespace chorus::trackd {
 namespace {
 
-constexpr int kMostSensors = 25 * outlet::kMostSlots;
+constexpr int kMaxTrackdSensors = 25 * outlet::kMaxSlots;
 
 class TrackdOutlet final : public outlet::Outlet {
  public:
   TrackdOutlet(LengthUnit unit, SharedSegment tracker, SharedSegment controller)
       : unit_(unit), tracker_(std::move(tracker)), controller_(std::move(controller)) {}
 
-  /// Readers that stay attached see nobody instead of the last pose for ever.
+  /// Readers that stay attached see nobody, not the last pose forever.
   ~TrackdOutlet() override { write_sensors({}, unit_, tracker_.bytes()); }
 
   [[nodiscard]] std::string_view name() const override { return "trackd"; }
@@ -42,13 +42,13 @@ Result<SharedSegment> segment_of(int key, const std::vector<char>& content) {
 }  // namespace
 
 void read_settings(ConfigReader& reader, Settings& out) {
-  constexpr int kLargestKey = 0x7FFF'FFFF;
-  reader.read("tracker_key", out.tracker_key, 1, kLargestKey);
-  reader.read("controller_key", out.controller_key, 1, kLargestKey);
+  constexpr int kMaxKey = 0x7FFF'FFFF;
+  reader.read("tracker_key", out.tracker_key, 1, kMaxKey);
+  reader.read("controller_key", out.controller_key, 1, kMaxKey);
   if (out.tracker_key == out.controller_key) {
     reader.complain("controller_key", "must differ from tracker_key");
   }
-  reader.read("sensors", out.sensors, 1, kMostSensors);
+  reader.read("sensors", out.sensors, 1, kMaxTrackdSensors);
   auto unit = static_cast<std::size_t>(out.unit);
   reader.read_choice("unit", unit, {"feet", "metres"});
   out.unit = static_cast<LengthUnit>(unit);

@@ -9,7 +9,7 @@ constexpr std::chrono::seconds kTidyInterval{1};
 
 }  // namespace
 
-RequestGate::Verdict RequestGate::ask(const Asker& asker, outlet::SteadyTime now) {
+RequestGate::Verdict RequestGate::ask(const Asker& asker, SteadyTime now) {
   if (known_.contains(asker)) return Verdict::Repeated;
   if (under_way_.size() >= limits_.most_under_way || !all_.has(1.0, now)) return Verdict::Refused;
   const std::string& name = name_of_source(asker.address, now);
@@ -24,17 +24,17 @@ RequestGate::Verdict RequestGate::ask(const Asker& asker, outlet::SteadyTime now
   return Verdict::Connect;
 }
 
-/// By which it is found in the table; afterwards it is there.
-const std::string& RequestGate::name_of_source(const std::string& address, outlet::SteadyTime now) {
+/// The key under which it is stored; afterwards it is stored.
+const std::string& RequestGate::name_of_source(const std::string& address, SteadyTime now) {
   if (const auto known = sources_.find(address); known != sources_.end()) return known->first;
   if (sources_.size() >= limits_.most_sources) tidy(now);
   const bool room = sources_.size() < limits_.most_sources;
-  const Source fresh{outlet::TokenBucket(limits_.source)};
+  const Source fresh{net::TokenBucket(limits_.source)};
   return sources_.try_emplace(room ? address : std::string(), fresh).first->first;
 }
 
-/// An address that has its whole allowance is like one that never asked.
-void RequestGate::tidy(outlet::SteadyTime now) {
+/// An address with its whole allowance is the same as one that never asked.
+void RequestGate::tidy(SteadyTime now) {
   if (now - tidied_ < kTidyInterval) return;  // a flood of addresses must not cost us more
   tidied_ = now;
   std::erase_if(sources_, [now](const auto& entry) {

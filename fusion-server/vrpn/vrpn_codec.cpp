@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <utility>
 
+#include "common/base/parse.h"
 #include "fusion-server/outlet/big_endian.h"
 
 namespace chorus::vrpn {
@@ -14,8 +14,8 @@ namespace {
 constexpr std::string_view kCookieText = "vrpn: ver. 07.38  0";
 constexpr std::string_view kVersion = "vrpn: ver. 07.";
 constexpr std::size_t kAlignment = 8;
-constexpr int kLeastPort = 1024;
-constexpr std::size_t kLongestRequest = 300;
+constexpr int kMinPort = 1024;
+constexpr std::size_t kMaxRequest = 300;
 
 std::uint32_t integer_at(std::string_view bytes, std::size_t at) {
   std::uint32_t value = 0;
@@ -83,7 +83,7 @@ void set_sequence(char* message, std::uint32_t sequence) {
 }
 
 void append_description(std::string& out, SystemType kind, std::int32_t id, std::string_view name) {
-  name = name.substr(0, kLongestName);
+  name = name.substr(0, kMaxName);
   Payload payload;
   payload.integer(static_cast<std::uint32_t>(name.size() + 1)).text(name);
   append_message(out, {{}, id, static_cast<std::int32_t>(kind), 0}, payload.bytes());
@@ -94,7 +94,7 @@ Result<std::string_view> read_description(std::string_view payload) {
   if (payload.size() < kCount) return malformed("a description without a count");
   const std::size_t count = integer_at(payload, 0);
   const std::string_view rest = payload.substr(kCount);
-  if (count == 0 || count > rest.size() || count > kLongestName + 1) {
+  if (count == 0 || count > rest.size() || count > kMaxName + 1) {
     return malformed("a description whose name is longer than it may be");
   }
   const std::string_view name = rest.substr(0, count);
@@ -111,7 +111,7 @@ Result<std::optional<Message>> MessageReader::next() {
   if (unread.size() < sizeof(std::uint32_t)) return std::nullopt;
   const std::size_t length = integer_at(unread, 0);
   if (length < kHeaderBytes) return malformed("a message shorter than its header");
-  if (length > kLongestMessage) return malformed("a message of more than 64000 bytes");
+  if (length > kMaxMessage) return malformed("a message of more than 64000 bytes");
   if (unread.size() < padded(length)) return std::nullopt;
   begin_ += padded(length);
   return Message{static_cast<std::int32_t>(integer_at(unread, 12)),
@@ -120,7 +120,7 @@ Result<std::optional<Message>> MessageReader::next() {
 }
 
 Result<std::uint16_t> read_request(std::string_view datagram) {
-  if (datagram.size() > kLongestRequest) return malformed("a request of more than 300 bytes");
+  if (datagram.size() > kMaxRequest) return malformed("a request of more than 300 bytes");
   if (datagram.ends_with('\0')) datagram.remove_suffix(1);
   const std::size_t space = datagram.find(' ');
   if (space == 0 || space == std::string_view::npos ||
@@ -128,13 +128,10 @@ Result<std::uint16_t> read_request(std::string_view datagram) {
                    may_be_in_a_host)) {
     return malformed("a request is \"HOST PORT\"");
   }
-  const char* const end = datagram.data() + datagram.size();
-  int port = 0;
-  const auto [read_to, error] = std::from_chars(datagram.data() + space + 1, end, port);
-  if (error != std::errc{} || read_to != end || port < kLeastPort || port > 65535) {
+  const auto port = parse_number<int>(datagram.substr(space + 1));
+  if (!port || *port < kMinPort || *port > 65535)
     return malformed("a request's port is 1024 to 65535");
-  }
-  return static_cast<std::uint16_t>(port);
+  return static_cast<std::uint16_t>(*port);
 }
 
 }  // namespace chorus::vrpn

@@ -16,16 +16,16 @@ namespace chorus::vrpn {
 
 inline constexpr std::size_t kCookieBytes = 24;
 inline constexpr std::size_t kHeaderBytes = 24;
-inline constexpr std::size_t kSequenceOffset = 20;     ///< Of the sequence number in a message.
-inline constexpr std::size_t kLongestMessage = 64000;  ///< Of the length field.
-inline constexpr std::size_t kLongestDatagram = 1472;  ///< A client's buffer.
-inline constexpr std::size_t kLongestName = 95;        ///< Description payloads hold 100 bytes.
-inline constexpr std::int32_t kMostNames = 2000;       ///< Senders, and types, of one side.
+inline constexpr std::size_t kSequenceOffset = 20;  ///< Of the sequence number in a message.
+inline constexpr std::size_t kMaxMessage = 64000;   ///< Of the length field.
+inline constexpr std::size_t kMaxDatagram = 1472;   ///< A client's buffer.
+inline constexpr std::size_t kMaxName = 95;         ///< Description payloads hold 100 bytes.
+inline constexpr std::int32_t kMaxNames = 2000;     ///< Senders, and types, of one side.
 
 /// Types below zero belong to the connection itself.
 enum class SystemType : std::int32_t { Sender = -1, Type = -2, Datagrams = -3, Log = -4 };
 
-/// What either side sends first; it says version 07.38 and that nothing is to be logged.
+/// What either side sends first; ours says version 07.38 and that nothing is to be logged.
 [[nodiscard]] std::string cookie();
 /// Malformed unless the first kCookieBytes are a cookie of a version 07.
 [[nodiscard]] Result<void> check_cookie(std::string_view bytes);
@@ -51,7 +51,7 @@ struct MessageHead {
 
 /// Appends one whole message, padding included.
 void append_message(std::string& out, const MessageHead& head, std::string_view payload);
-/// Another sequence number in a message that append_message made.
+/// Changes the sequence number in a message made by append_message.
 void set_sequence(char* message, std::uint32_t sequence);
 
 /// Appends "sender (or type) `id` is called `name`".
@@ -70,16 +70,16 @@ class MessageReader {
  public:
   void add(std::string_view bytes);
   /// The next whole message, valid until the next call; none: more bytes are needed.  Malformed:
-  /// the stream cannot be followed any further.
+  /// the rest of the stream cannot be read.
   [[nodiscard]] Result<std::optional<Message>> next();
 
  private:
   std::string bytes_;
-  std::size_t begin_ = 0;  ///< Of what has not been read yet.
+  std::size_t begin_ = 0;  ///< Start of the unread bytes.
 };
 
-/// The TCP port in a datagram "<host> <port>\0" that asks us to connect; the host is ignored, for
-/// it could be anybody's.
+/// The TCP port in a datagram "<host> <port>\0" that asks us to connect; the host is ignored,
+/// because it could be anybody's.
 [[nodiscard]] Result<std::uint16_t> read_request(std::string_view datagram);
 
 }  // namespace chorus::vrpn

@@ -7,10 +7,9 @@
 namespace chorus::vrpn {
 namespace {
 
-namespace net = http::net;
-using http::error_code;
+using net::error_code;
 
-/// Old poses are worth nothing: the kernel holds one or two frames, not seconds of them.
+/// Old poses are worthless: the kernel should hold one or two frames, not seconds of them.
 constexpr int kSendBuffer = 128 * 1024;
 
 /// An int option that Asio has no name for.
@@ -40,11 +39,11 @@ class TcpOption {
 };
 
 /// A client that takes datagrams is silent on TCP; a host that is gone is noticed after 25 s.
-void set_options(http::Socket& socket) {
+void set_options(net::Socket& socket) {
   error_code ignored;
-  socket.set_option(http::tcp::no_delay(true), ignored);
-  socket.set_option(net::socket_base::send_buffer_size(kSendBuffer), ignored);
-  socket.set_option(net::socket_base::keep_alive(true), ignored);
+  socket.set_option(net::tcp::no_delay(true), ignored);
+  socket.set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
+  socket.set_option(asio::socket_base::keep_alive(true), ignored);
   socket.set_option(TcpOption(TCP_KEEPIDLE, 10), ignored);
   socket.set_option(TcpOption(TCP_KEEPINTVL, 5), ignored);
   socket.set_option(TcpOption(TCP_KEEPCNT, 3), ignored);
@@ -52,25 +51,25 @@ void set_options(http::Socket& socket) {
 
 }  // namespace
 
-Connection::Connection(ConnectionContext context, http::Socket socket, Session session,
+Connection::Connection(ConnectionContext context, net::Socket socket, Conversation conversation,
                        Closed closed)
     : context_(context),
       socket_(std::move(socket)),
-      session_(std::move(session)),
+      conversation_(std::move(conversation)),
       closed_(std::move(closed)),
       deadline_(std::chrono::steady_clock::now() + context.limits.handshake) {}
 
 void Connection::start() {
   set_options(socket_);
-  answers_ = Session::greeting();
+  answers_ = Conversation::greeting();
   write();
   read();
 }
 
 void Connection::read() {
-  if (reading_ || answers_.size() >= kMostAnswers || !socket_.is_open()) return;
+  if (reading_ || answers_.size() >= kMaxAnswers || !socket_.is_open()) return;
   reading_ = true;
-  socket_.async_read_some(net::buffer(input_),
+  socket_.async_read_some(asio::buffer(input_),
                           [self = shared_from_this()](error_code failed, std::size_t size) {
                             self->reading_ = false;
                             self->on_read(failed, size);
@@ -80,9 +79,9 @@ void Connection::read() {
 void Connection::on_read(error_code failed, std::size_t size) {
   if (!socket_.is_open()) return;
   if (failed) return close();
-  auto answer = session_.receive({input_.data(), size}, context_.clock->now());
+  auto answer = conversation_.receive({input_.data(), size}, context_.clock->now());
   if (!answer) return refuse(answer.error().message);
-  if (const auto port = session_.datagram_port()) {
+  if (const auto port = conversation_.datagram_port()) {
     error_code gone;
     datagrams_to_ = {socket_.remote_endpoint(gone).address(), *port};
     if (gone) return close();
@@ -95,17 +94,18 @@ void Connection::on_read(error_code failed, std::size_t size) {
 void Connection::write() {
   if (writing_ || !socket_.is_open()) return;
   output_ = std::exchange(answers_, {});
-  if (const auto reports = std::exchange(waiting_, nullptr)) output_ += session_.stream(*reports);
+  if (const auto reports = std::exchange(waiting_, nullptr))
+    output_ += conversation_.stream(*reports);
   if (output_.empty()) return;
   writing_ = true;
-  if (session_.established()) {
+  if (conversation_.established()) {
     deadline_ = std::chrono::steady_clock::now() + context_.limits.stall;
   }
-  net::async_write(socket_, net::buffer(output_),
-                   [self = shared_from_this()](error_code failed, std::size_t) {
-                     self->writing_ = false;
-                     self->on_written(failed);
-                   });
+  asio::async_write(socket_, asio::buffer(output_),
+                    [self = shared_from_this()](error_code failed, std::size_t) {
+                      self->writing_ = false;
+                      self->on_written(failed);
+                    });
 }
 
 void Connection::on_written(error_code failed) {
@@ -116,24 +116,24 @@ void Connection::on_written(error_code failed) {
 }
 
 void Connection::publish(const std::shared_ptr<const Reports>& reports) {
-  if (!session_.established()) return;
-  if (session_.datagram_port()) return send_datagrams(*reports);
+  if (!conversation_.established()) return;
+  if (conversation_.datagram_port()) return send_datagrams(*reports);
   if (waiting_) ++context_.counters->dropped;
   waiting_ = reports;
   write();
 }
 
 void Connection::send_datagrams(const Reports& reports) {
-  for (const std::string& datagram : session_.datagrams(reports)) {
+  for (const std::string& datagram : conversation_.datagrams(reports)) {
     error_code failed;
-    context_.datagrams->send_to(net::buffer(datagram), datagrams_to_, 0, failed);
+    context_.datagrams->send_to(asio::buffer(datagram), datagrams_to_, 0, failed);
     if (failed) ++context_.counters->failed;
   }
 }
 
-void Connection::sweep(outlet::SteadyTime now) {
+void Connection::sweep(SteadyTime now) {
   if (now < deadline_) return;
-  if (!session_.established())
+  if (!conversation_.established())
     refuse("no cookie in time");
   else if (writing_)
     refuse("the client does not read");

@@ -8,10 +8,10 @@
 #include <string>
 
 #include "common/base/rate_report.h"
-#include "common/http/asio.h"
+#include "common/net/asio.h"
 #include "common/time/clock.h"
 #include "fusion-server/vrpn/request_gate.h"
-#include "fusion-server/vrpn/vrpn_session.h"
+#include "fusion-server/vrpn/vrpn_conversation.h"
 
 namespace chorus::vrpn {
 
@@ -30,42 +30,43 @@ struct ClientLimits {
 
 /// What all connections of a server use; outlives them.
 struct ConnectionContext {
-  http::DatagramSocket* datagrams = nullptr;
+  net::DatagramSocket* datagrams = nullptr;
   const Clock* clock = nullptr;
   ServerCounters* counters = nullptr;
   RateReport* turned_away = nullptr;
   ClientLimits limits;
 };
 
-/// A client that does not read costs one frame of memory: while a write is under way only the
+/// A client that does not read costs one frame of memory: while a write is in progress only the
 /// newest frame waits, older ones are dropped; after ClientLimits::stall it is closed.  Its answers
-/// are bounded too: with kMostAnswers waiting, nothing more is read from it.
+/// are bounded too: with kMaxAnswers waiting, nothing more is read from it.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   using Closed = std::function<void(const Connection*)>;
 
-  Connection(ConnectionContext context, http::Socket socket, Session session, Closed closed);
+  Connection(ConnectionContext context, net::Socket socket, Conversation conversation,
+             Closed closed);
 
   void start();
   void publish(const std::shared_ptr<const Reports>& reports);
   /// Closes it when a deadline has passed.
-  void sweep(outlet::SteadyTime now);
+  void sweep(SteadyTime now);
   void close();
 
  private:
-  static constexpr std::size_t kMostAnswers = 65536;
+  static constexpr std::size_t kMaxAnswers = 65536;
 
   void read();
-  void on_read(http::error_code failed, std::size_t size);
+  void on_read(net::error_code failed, std::size_t size);
   void write();
-  void on_written(http::error_code failed);
+  void on_written(net::error_code failed);
   void send_datagrams(const Reports& reports);
   void refuse(const std::string& reason);
 
   ConnectionContext context_;
-  http::Socket socket_;
-  http::udp::endpoint datagrams_to_;
-  Session session_;
+  net::Socket socket_;
+  net::udp::endpoint datagrams_to_;
+  Conversation conversation_;
   Closed closed_;
   std::array<char, 4096> input_{};
   bool reading_ = false;
@@ -73,7 +74,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::shared_ptr<const Reports> waiting_;  ///< The newest frame not written.
   std::string output_;                      ///< Being written.
   bool writing_ = false;
-  outlet::SteadyTime deadline_;  ///< Of the cookie, then of the write under way.
+  SteadyTime deadline_;  ///< For the cookie, then for the write in progress.
 };
 
 }  // namespace chorus::vrpn

@@ -8,7 +8,7 @@
 namespace chorus::vrpn {
 namespace {
 
-constexpr int kMostClients = 1000;
+constexpr int kMaxClients = 1000;
 
 /// Encodes on the caller's thread, once for all clients.
 class VrpnOutlet final : public outlet::Outlet {
@@ -35,8 +35,8 @@ void read_settings(ConfigReader& reader, Settings& out) {
   reader.read("address", out.address);
   reader.read("port", out.port, 0, 65535);
   reader.read("joint_trackers", out.joint_trackers);
-  reader.read("max_clients", out.max_clients, 1, kMostClients);
-  reader.read("max_clients_per_address", out.max_clients_per_address, 1, kMostClients);
+  reader.read("max_clients", out.max_clients, 1, kMaxClients);
+  reader.read("max_clients_per_address", out.max_clients_per_address, 1, kMaxClients);
 }
 
 Result<std::unique_ptr<outlet::Outlet>> open_outlet(const Settings& settings,

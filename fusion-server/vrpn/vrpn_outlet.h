@@ -22,7 +22,7 @@ struct Settings {
 
 void read_settings(ConfigReader& reader, Settings& out);
 
-/// All of the slots are announced.
+/// All slots are announced.
 [[nodiscard]] Result<std::unique_ptr<outlet::Outlet>> open_outlet(
     const Settings& settings, const outlet::OutletContext& context);
 

@@ -23,7 +23,8 @@ void add_vectors(Payload& out, const Eigen::Vector3d& v, const Eigen::Quaternion
   for (const double value : {v.x(), v.y(), v.z(), q.x(), q.y(), q.z(), q.w()}) out.real(value);
 }
 
-/// What both trackers of a joint say of it: their payloads behind the sensor's number.
+/// What a joint reports, through its body's tracker and through its own: the payloads after the
+/// sensor number.
 struct JointNumbers {
   Payload pose;
   Payload velocity;

@@ -1,8 +1,8 @@
-// What a tracked frame is in VRPN: which trackers there are, and their reports.  Pure.
+// A tracked frame in VRPN: which trackers there are, and their reports.  Pure.
 //
-// Body0 has the joints as sensors 0..24 (numbers of the Kinect v2 SDK); Body0_Head and its like
-// have one sensor, 0, for clients that know no others.  World axes, metres, quaternions x y z w;
-// one time stamp per frame, that of the poses.
+// Body0 has the joints as sensors 0..24 (numbers of the Kinect v2 SDK).  Body0_Head and the like
+// have one sensor, 0, for clients that can only read that one.  World axes, metres, quaternions x y
+// z w; one time stamp per frame, that of the poses.
 #pragma once
 
 #include <cstdint>
@@ -46,7 +46,7 @@ struct Report {
   std::size_t size = 0;
 };
 
-/// A frame's messages, made once for all clients; their sequence numbers are still zero.
+/// A frame's messages, encoded once for all clients; their sequence numbers are still zero.
 struct Reports {
   std::string bytes;
   std::vector<Report> messages;

@@ -5,28 +5,28 @@
 #include <unordered_map>
 #include <utility>
 
-#include "common/http/event_loop.h"
-#include "common/http/every.h"
-#include "common/http/listen.h"
+#include "common/net/capacity.h"
+#include "common/net/event_loop.h"
+#include "common/net/every.h"
+#include "common/net/listen.h"
 #include "fusion-server/outlet/newest.h"
 
 namespace chorus::vrpn {
 namespace {
 
-namespace net = http::net;
-using http::error_code;
-using http::tcp;
-using http::udp;
+using net::error_code;
+using net::tcp;
+using net::udp;
 
 constexpr std::chrono::milliseconds kSweepInterval{250};
 constexpr std::chrono::milliseconds kConnectTime{2000};
 constexpr int kPortAttempts = 16;
-constexpr std::size_t kLongestRequest = 512;
+constexpr std::size_t kMaxRequest = 512;
 
-/// A dotted quad for IPv4 whichever socket it came through: clients spell their address so.
-std::string text_of(const net::ip::address& address) {
+/// An IPv4 address as a dotted quad whichever socket it came through, as clients write it.
+std::string text_of(const asio::ip::address& address) {
   if (address.is_v6() && address.to_v6().is_v4_mapped()) {
-    return net::ip::make_address_v4(net::ip::v4_mapped, address.to_v6()).to_string();
+    return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6()).to_string();
   }
   return address.to_string();
 }
@@ -34,11 +34,11 @@ std::string text_of(const net::ip::address& address) {
 }  // namespace
 
 struct Server::Impl {
-  /// A connection that a datagram asked for and that is not made yet.
+  /// A connection that a datagram asked for and that is not established yet.
   struct Attempt {
-    http::Socket socket;
+    net::Socket socket;
     Asker asker;
-    outlet::SteadyTime deadline;
+    SteadyTime deadline;
   };
 
   Impl(ServerOptions o, std::shared_ptr<const Trackers> t)
@@ -46,22 +46,22 @@ struct Server::Impl {
 
   Result<void> bind(std::uint16_t port);
   Result<void> listen();
-  /// Starts what must always be under way, as far as it is not.
+  /// Starts whatever must always be running and is not.
   void ensure();
-  void on_accepted(http::Socket socket);
+  void on_accepted(net::Socket socket);
   void receive_request();
   void on_request(error_code failed, std::size_t size);
   void answer_request(const tcp::endpoint& to);
   void connect_back(const tcp::endpoint& to, const Asker& asker);
   void on_connected(error_code failed, const std::shared_ptr<Attempt>& attempt);
-  /// `asker`: it asked to be connected to; none: it came by itself.
-  void welcome(http::Socket socket, const std::optional<Asker>& asker);
+  /// `asker`: it asked to be connected to; none: it connected by itself.
+  void welcome(net::Socket socket, const std::optional<Asker>& asker);
   void forget(const Connection* connection);
   void sweep();
   void deliver();
   void stop();
   void turn_away(const std::string& reason);
-  /// Why one more of this address is not taken; empty: it is.
+  /// Why another client of this address is refused; empty: it is accepted.
   [[nodiscard]] std::string objection(const std::string& address) const;
 
   struct Client {
@@ -70,18 +70,18 @@ struct Server::Impl {
     std::optional<Asker> asker;
   };
 
-  net::io_context io{1};  // First member: destroyed last, after everything that uses it.
+  asio::io_context io{1};  // First member: destroyed last, after everything that uses it.
   ServerOptions options;
   std::shared_ptr<const Trackers> trackers;
-  http::AcceptLoop accepting{io, "VRPN accept failed",
-                             [this](http::Socket socket) { on_accepted(std::move(socket)); }};
-  http::Every sweeping{io, kSweepInterval, [this] { sweep(); }};
-  http::DatagramSocket datagrams{io.get_executor()};
+  net::AcceptLoop accepting{io, "VRPN accept failed",
+                            [this](net::Socket socket) { on_accepted(std::move(socket)); }};
+  net::Every sweeping{io, kSweepInterval, [this] { sweep(); }};
+  net::DatagramSocket datagrams{io.get_executor()};
   bool receiving = false;
   RateReport turned_away{"VRPN client turned away"};
   ServerCounters counters;
   RequestGate gate;
-  std::array<char, kLongestRequest> request{};
+  std::array<char, kMaxRequest> request{};
   udp::endpoint requester;
   std::vector<std::shared_ptr<Attempt>> attempts;
   std::unordered_map<const Connection*, Client> clients;
@@ -91,8 +91,8 @@ struct Server::Impl {
 };
 
 Result<void> Server::Impl::bind(std::uint16_t port) {
-  const http::ListenAt where{options.address, port, "outputs.vrpn.port"};
-  const auto address = http::numeric_address(where);
+  const net::ListenAt where{options.address, port, "outputs.vrpn.port"};
+  const auto address = net::numeric_address(where);
   if (!address) return pass(address);
   if (auto bound = accepting.listen(where); !bound) return bound;
   const udp::endpoint same(*address, accepting.port());
@@ -101,7 +101,7 @@ Result<void> Server::Impl::bind(std::uint16_t port) {
   datagrams.open(same.protocol(), failed);
   if (!failed) datagrams.non_blocking(true, failed);
   if (!failed) datagrams.bind(same, failed);
-  if (failed) return http::cannot_listen(where, "UDP", failed);
+  if (failed) return net::cannot_listen(where, "UDP", failed);
   return {};
 }
 
@@ -123,22 +123,17 @@ void Server::Impl::ensure() {
 }
 
 std::string Server::Impl::objection(const std::string& address) const {
-  const auto text = [](std::size_t count, std::string_view of, std::string_view key) {
-    return "there are " + std::to_string(count) + " already" + std::string(of) +
-           ", as many as outputs.vrpn." + std::string(key) + " allows";
-  };
-  if (clients.size() + attempts.size() >= options.max_clients) {
-    return text(options.max_clients, "", "max_clients");
-  }
   const auto connected = std::ranges::count_if(
       clients, [&](const auto& entry) { return entry.second.address == address; });
   const auto under_way = std::ranges::count_if(
       attempts, [&](const auto& attempt) { return attempt->asker.address == address; });
-  if (static_cast<std::size_t>(connected + under_way) < options.max_clients_per_address) return {};
-  return text(options.max_clients_per_address, " of " + address, "max_clients_per_address");
+  return net::objection(
+      {options.max_clients, options.max_clients_per_address, "outputs.vrpn.max_clients",
+       "outputs.vrpn.max_clients_per_address"},
+      {clients.size() + attempts.size(), static_cast<std::size_t>(connected + under_way)}, address);
 }
 
-void Server::Impl::on_accepted(http::Socket socket) {
+void Server::Impl::on_accepted(net::Socket socket) {
   error_code gone;
   const auto remote = socket.remote_endpoint(gone);
   if (gone) return;
@@ -149,7 +144,7 @@ void Server::Impl::on_accepted(http::Socket socket) {
 }
 
 void Server::Impl::receive_request() {
-  datagrams.async_receive_from(net::buffer(request), requester,
+  datagrams.async_receive_from(asio::buffer(request), requester,
                                [this](error_code failed, std::size_t size) {
                                  receiving = false;
                                  on_request(failed, size);
@@ -180,7 +175,7 @@ void Server::Impl::answer_request(const tcp::endpoint& to) {
 
 void Server::Impl::connect_back(const tcp::endpoint& to, const Asker& asker) {
   auto attempt = std::make_shared<Attempt>(Attempt{
-      http::Socket(io.get_executor()), asker, std::chrono::steady_clock::now() + kConnectTime});
+      net::Socket(io.get_executor()), asker, std::chrono::steady_clock::now() + kConnectTime});
   attempts.push_back(attempt);
   attempt->socket.async_connect(
       to, [this, attempt](error_code failed) { on_connected(failed, attempt); });
@@ -202,7 +197,7 @@ void Server::Impl::on_connected(error_code failed, const std::shared_ptr<Attempt
   }
 }
 
-void Server::Impl::welcome(http::Socket socket, const std::optional<Asker>& asker) {
+void Server::Impl::welcome(net::Socket socket, const std::optional<Asker>& asker) {
   error_code gone;
   const auto remote = socket.remote_endpoint(gone);
   if (gone) {
@@ -210,11 +205,11 @@ void Server::Impl::welcome(http::Socket socket, const std::optional<Asker>& aske
     return;
   }
   const std::string address = text_of(remote.address());
-  Session session(trackers, {address, asker.has_value()});
+  Conversation conversation(trackers, {address, asker.has_value()});
   const ConnectionContext context{&datagrams, options.clock.get(), &counters, &turned_away,
                                   options.limits};
   auto connection =
-      std::make_shared<Connection>(context, std::move(socket), std::move(session),
+      std::make_shared<Connection>(context, std::move(socket), std::move(conversation),
                                    [this](const Connection* closed) { forget(closed); });
   clients.emplace(connection.get(), Client{connection, address, asker});
   counters.clients = clients.size();
@@ -230,7 +225,7 @@ void Server::Impl::forget(const Connection* connection) {
 }
 
 void Server::Impl::sweep() {
-  const outlet::SteadyTime now = std::chrono::steady_clock::now();
+  const SteadyTime now = std::chrono::steady_clock::now();
   for (const auto& attempt : attempts) {
     error_code ignored;
     if (attempt->deadline <= now) attempt->socket.close(ignored);  // on_connected() learns of it
@@ -266,7 +261,7 @@ Server::Server(ServerOptions options, std::shared_ptr<const Trackers> trackers)
 
 Server::~Server() {
   if (!impl_->thread.joinable()) return;
-  net::post(impl_->io, [impl = impl_.get()] { impl->stop(); });
+  asio::post(impl_->io, [impl = impl_.get()] { impl->stop(); });
   impl_->thread.join();
 }
 
@@ -274,7 +269,7 @@ Result<void> Server::start() {
   Impl& s = *impl_;
   if (auto bound = s.listen(); !bound) return bound;
   s.thread =
-      std::thread([&s] { http::run_events(s.io, "VRPN handler failed", [&s] { s.ensure(); }); });
+      std::thread([&s] { net::run_events(s.io, "VRPN handler failed", [&s] { s.ensure(); }); });
   return {};
 }
 
@@ -282,7 +277,7 @@ std::uint16_t Server::port() const { return impl_->accepting.port(); }
 
 void Server::publish(std::shared_ptr<const Reports> reports) {
   if (impl_->newest.put(std::move(reports))) {
-    net::post(impl_->io, [impl = impl_.get()] { impl->deliver(); });
+    asio::post(impl_->io, [impl = impl_.get()] { impl->deliver(); });
   } else {
     ++impl_->counters.dropped;
   }

@@ -1,4 +1,4 @@
-// VRPN's listening end: TCP clients, and UDP requests to connect back.  One thread for all sockets.
+// VRPN's server: TCP clients, and UDP requests to connect back.  One thread for all sockets.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct ServerOptions {
   std::string address = "127.0.0.1";
   std::uint16_t port = 3883;  ///< TCP and UDP; 0: any that is free for both.
   std::size_t max_clients = 128;
-  std::size_t max_clients_per_address = 64;  ///< So that one host does not take all.
+  std::size_t max_clients_per_address = 64;  ///< So that one host cannot take all places.
   ClientLimits limits = {};
   std::shared_ptr<const Clock> clock;  ///< What pings are answered with.
 };
@@ -30,7 +30,7 @@ class Server {
   [[nodiscard]] Result<void> start();
   [[nodiscard]] std::uint16_t port() const;
 
-  /// Any one thread.  Never waits: a frame that has not been taken when the next one comes is
+  /// From any one thread.  Never waits: a frame that has not been taken when the next one comes is
   /// dropped and counted.
   void publish(std::shared_ptr<const Reports> reports);
   /// dropped, failed, refused, clients.  Any thread.

@@ -8,19 +8,17 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/resource/contributors.h"
-#include "common/resource/json_guard.h"
-#include "fusion-server/wire/registration_resource.h"
+#include "common/base/json.h"
+#include "common/sensor/limits.h"
+#include "fusion-server/wire/registration_nodes.h"
 
 namespace chorus::wire {
 namespace {
 
 using nlohmann::json;
 
-using resource::kMaxSensors;
-
 // All sensors with covariance and all edges are below 1 MB.
-constexpr resource::JsonLimits kLimits{4U << 20U, 16};
+constexpr JsonLimits kLimits{4U << 20U, 16};
 constexpr double kMaxPlace = 1000.0;    // [m]
 constexpr double kMaxNormError = 0.01;  // written with 5 digits
 
@@ -33,7 +31,7 @@ json verdict_json(const SensorVerdict& own) {
 }
 
 json sensor_json(const SensorId& id, const Extrinsics& place) {
-  // The quaternion is for people and other programs; the matrix comes back to the bit.
+  // The quaternion is for people and other programs; the matrix restores every bit.
   json rotation = json::array();
   for (const double value : place.world_from_sensor.linear().reshaped()) rotation.push_back(value);
   const Eigen::Vector3d p = place.world_from_sensor.translation();
@@ -122,7 +120,7 @@ Result<void> read_matrix(const json& object, const std::string& where, const cha
   return {};
 }
 
-/// Where there is a matrix beside the quaternion, it is the more exact of the two.
+/// If there is a matrix beside the quaternion, the matrix is the more exact of the two.
 Result<void> read_rotation(const json& object, const std::string& where, Eigen::Isometry3d& pose) {
   Eigen::Matrix3d rotation = pose.linear();
   if (auto ok = read_matrix(object, where, "rotation", rotation); !ok) return ok;
@@ -175,10 +173,10 @@ Result<PairwiseRegistration> edge_of(const json& object) {
     if (!id) return tl::unexpected(wrong(std::string("edges.") + key, id.error().message));
     *out = std::move(*id);
   }
-  constexpr double kMostPairs = 1e9;
+  constexpr double kMaxPairs = 1e9;
   const auto rms = number(object, "edges", "rms", kMaxPlace, 0.0);
-  const auto pairs = number(object, "edges", "pairs", kMostPairs, 0.0);
-  const auto inliers = number(object, "edges", "inliers", kMostPairs, 0.0);
+  const auto pairs = number(object, "edges", "pairs", kMaxPairs, 0.0);
+  const auto inliers = number(object, "edges", "inliers", kMaxPairs, 0.0);
   if (!rms) return pass(rms);
   if (!pairs) return pass(pairs);
   if (!inliers) return pass(inliers);
@@ -207,7 +205,7 @@ Result<void> read_sensors(const json& root, Registration& out) {
   return {};
 }
 
-/// Verdicts per sensor, where the file has them; a file without believes its own for all.
+/// Verdicts per sensor, if the file has them; otherwise its one verdict applies to all.
 Result<void> read_verdicts(const json& root, const char* key, Verdict fallback, Registration& out) {
   const auto it = root.find(key);
   if (it == root.end() || !it->is_object()) return {};
@@ -307,7 +305,7 @@ std::string write_registration(const Registration& registration) {
 }
 
 Result<Registration> read_registration(std::string_view text) {
-  const auto document = resource::parse_json(text, kLimits);
+  const auto document = parse_json(text, kLimits);
   if (!document) return tl::unexpected(wrong("document", to_string(document.error())));
   try {
     return registration_of(*document);

@@ -1,4 +1,4 @@
-// The registration on disk: what survives a restart, and how given extrinsics come in.
+// The registration on disk: what survives a restart, and how given extrinsics are read.
 #pragma once
 
 #include <string>
@@ -13,12 +13,12 @@ namespace chorus::wire {
 /// JSON with the keys of /registration, plus what only a restart needs (covariance).
 [[nodiscard]] std::string write_registration(const Registration& registration);
 
-/// Reads that, a saved answer of GET /registration, or just {"sensors": {"s1": {"x": ..}}} with
-/// given extrinsics.  Refuses, naming the sensor: missing or non-finite numbers, rotations that are
-/// none, places further away than 1 km, more than 64 sensors.
+/// Reads such a file, a saved answer of GET /registration, or just {"sensors": {"s1": {"x": ..}}}
+/// with given extrinsics.  Refuses, naming the sensor: missing or non-finite numbers, invalid
+/// rotations, places farther away than 1 km, more than 64 sensors.
 [[nodiscard]] Result<Registration> read_registration(std::string_view json);
 
-/// What a recording keeps of a registration, from `at` on.
+/// What a recording stores of a registration, valid from `at` on.
 [[nodiscard]] record::PlacesChanged places_changed(Timestamp at, const Registration& registration);
 
 }  // namespace chorus::wire

@@ -6,7 +6,7 @@
 
 namespace chorus::wire {
 
-/// What /frame of a fusion server says in `source`.
+/// The `source` of a fusion server's /frame.
 inline constexpr std::string_view kFusionSource = "fusion";
 
 [[nodiscard]] resource::FrameResource to_resource(const Snapshot& snapshot);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kExecFailed = 127;  // as shells say
 
-/// The signals that end the wait, kept back while we are in run_children.
+/// The signals that end the wait, blocked while we are in run_children.
 class HeldSignals {
  public:
   HeldSignals() {
@@ -84,7 +84,7 @@ Result<void> verdict_on(const std::string& label, int status) {
   return fail(ErrorCode::Unavailable, label, how + "; its own message is above.");
 }
 
-/// Until a child ends or we are told to stop.
+/// Waits until a child ends or we are told to stop.
 Result<void> wait_for_end(Running& running, const HeldSignals& signals) {
   while (!running.empty()) {
     if (signals.wait() != SIGCHLD) return {};

@@ -1,4 +1,4 @@
-// Processes that live and die with us.
+// Child processes that end when we end.
 #pragma once
 
 #include <sys/types.h>
@@ -11,7 +11,8 @@
 
 namespace chorus::ctl {
 
-/// The program next to ours, else the bare name for $PATH.
+/// The program of this name in the folder of our own; if there is none, just the name, to be looked
+/// up in $PATH.
 [[nodiscard]] std::filesystem::path sibling_program(const std::string& name);
 
 struct Child {
@@ -19,8 +20,8 @@ struct Child {
   std::vector<std::string> command;
 };
 
-/// Starts all and waits.  SIGINT or SIGTERM to us stops all of them: success.  As soon as one ends
-/// by itself the others are stopped: success when it ended with 0, else an error that names it.
+/// Starts all and waits.  SIGINT or SIGTERM to us stops all of them: success.  When one ends by
+/// itself, the others are stopped: success if it ended with 0, else an error that names it.
 [[nodiscard]] Result<void> run_children(const std::vector<Child>& children);
 
 }  // namespace chorus::ctl

@@ -14,7 +14,7 @@ class App;
 namespace chorus::ctl {
 
 inline constexpr int kExitOk = 0;
-inline constexpr int kExitFailed = 1;  ///< Understood, tried, did not work out.
+inline constexpr int kExitFailed = 1;  ///< The command was valid but failed.
 inline constexpr int kExitUsage = 2;   ///< The command line itself is wrong.
 
 /// The exit code, or the error that is printed and becomes kExitFailed.

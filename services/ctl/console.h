@@ -1,5 +1,4 @@
-// What people see: aligned tables, and progress that is a bar on a terminal and plain lines
-// elsewhere.
+// Output for people: aligned tables, and progress as a bar on a terminal and plain lines elsewhere.
 #pragma once
 
 #include <iosfwd>
@@ -11,10 +10,10 @@
 
 namespace chorus::ctl {
 
-/// One line without control and escape characters, whatever somebody else wrote: they become "?".
+/// One line without control and escape characters, whoever wrote it: they become "?".
 [[nodiscard]] std::string printable(std::string_view text);
 
-/// The strings of an array member, each printable; none where there is no such array.
+/// The strings of an array member, each printable; empty when there is no such array.
 [[nodiscard]] std::vector<std::string> lines_at(const nlohmann::json& object, const char* key);
 
 /// Indented, with a newline; everything that is not ASCII escaped.

@@ -32,7 +32,7 @@ struct FuseArguments {
   bool json = false;
 };
 
-/// As asked for: from the person, from a file, or as recorded; none: from the person after all.
+/// As asked for: from the walk, from a file, or as recorded; none: from the walk after all.
 Result<std::optional<Registration>> given_extrinsics(const FuseArguments& arguments,
                                                      const RecordedCell& cell) {
   if (arguments.from_walk) return std::nullopt;
@@ -51,7 +51,7 @@ Result<Registration> extrinsics(const FuseArguments& arguments, RecordedCell& ce
   return pipeline::register_recordings(cell.input(), config);
 }
 
-/// What writing must not destroy: all that is read.
+/// Files that writing must not destroy: everything that is read.
 Result<void> check_outputs(const FuseArguments& arguments,
                            std::vector<std::filesystem::path> read) {
   read.emplace_back(arguments.registration);
@@ -125,7 +125,7 @@ Result<int> run_fuse(const FuseArguments& arguments) {
     if (!saved) return pass(saved);
   }
   print_summary(summary_of(*fused), arguments);
-  // A file of empty frames is not what anybody asked for; the report says why.
+  // Nobody wants a file of empty frames; the report says why there is none.
   return fused->with_bodies > 0 ? kExitOk : kExitFailed;
 }
 

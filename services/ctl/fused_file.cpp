@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "common/base/file.h"
-#include "common/record/session_writer.h"
+#include "common/record/cell_writer.h"
 #include "fusion-server/client/fused_frames.h"
 #include "fusion-server/wire/registration_file.h"
 #include "fusion-server/wire/snapshot_resource.h"
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file beside the one that is meant, gone unless it takes its place.
+/// A file beside the target, removed unless it takes the target's place.
 class Partial {
  public:
   explicit Partial(std::string file) : file_(std::move(file)), path_(file_ + ".partial") {
@@ -56,8 +56,7 @@ class FusedRecording final : public FusedFile {
       : partial_(file), registration_(std::move(registration)) {}
 
   Result<void> begin() {
-    auto writer =
-        record::SessionWriter::create(partial_.path(), {{{"title", "chorus fuse"}}, false});
+    auto writer = record::CellWriter::create(partial_.path(), {{{"title", "chorus fuse"}}, false});
     if (!writer) return pass(writer);
     writer_.emplace(std::move(*writer));
     return {};
@@ -82,7 +81,7 @@ class FusedRecording final : public FusedFile {
 
   Partial partial_;
   Registration registration_;
-  std::optional<record::SessionWriter> writer_;
+  std::optional<record::CellWriter> writer_;
   bool placed_ = false;
 };
 
@@ -96,7 +95,7 @@ class FusedLines final : public FusedFile {
     const fs::path folder = fs::path(file_).parent_path();
     if (!folder.empty() && !fs::is_directory(folder, ignored))
       return fail(ErrorCode::Io, file_, "cannot be written; is its folder there?");
-    // A pipe or a device is written to as it is.
+    // A pipe or a device is written to directly.
     const bool plain = !fs::exists(file_, ignored) || fs::is_regular_file(file_, ignored);
     if (plain) partial_.emplace(file_);
     out_.open(plain ? partial_->path() : file_, std::ios::binary | std::ios::trunc);

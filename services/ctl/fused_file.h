@@ -1,4 +1,4 @@
-// Fused frames into a file as they come: a recording (.mcap), or lines of JSON.
+// Writes fused frames to a file as they come: a recording (.mcap), or lines of JSON.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace chorus::ctl {
 
-/// What was there is replaced only by finish(); without it, nothing is left behind.  "-" is
-/// standard output.  Nothing in the file depends on when or where it is made.
+/// An existing file is replaced only by finish(); without it, nothing is left behind.  "-" is
+/// standard output.  Nothing in the file depends on when or where it is written.
 class FusedFile {
  public:
   virtual ~FusedFile() = default;

@@ -70,10 +70,8 @@ resource::BodyResource truth_body(const importers::TruthFrame& truth, Timestamp 
   resource::BodyResource body;
   body.id = truth.person;
   body.captured = captured;
-  for (std::size_t j = 0; j < kJointCount; ++j) {
-    const Joint& joint = truth.skeleton.joints[j];
-    body.joints[j] = {joint.position, joint.orientation, joint.state, std::nullopt, 0};
-  }
+  for (std::size_t j = 0; j < kJointCount; ++j)
+    body.joints[j] = {truth.skeleton.joints[j], std::nullopt, 0};
   return body;
 }
 
@@ -103,7 +101,7 @@ bool made_by_a_recorder(const fs::path& file) {
   return found != metadata.end() && found->second.contains("recording");
 }
 
-/// An import can be made again, and may be replaced by a later one; what was recorded cannot.
+/// An import can be repeated, so a later one may replace it; a recording cannot.
 Result<void> spare_recordings(const fs::path& folder, const importers::ImportedSet& set) {
   for (const auto& recording : set.recordings) {
     const fs::path file = folder / (recording.sensor.str() + ".mcap");
@@ -139,7 +137,7 @@ Result<std::vector<fs::path>> write_set(const fs::path& folder, const importers:
   return written;
 }
 
-/// Recordings that lie in the folder but are not of this import would be fused along with it.
+/// Recordings in the folder that are not of this import would be fused along with it.
 void warn_of_strangers(const fs::path& folder, const std::vector<fs::path>& written) {
   const std::set<fs::path> ours(written.begin(), written.end());
   std::error_code ignored;
@@ -150,7 +148,7 @@ void warn_of_strangers(const fs::path& folder, const std::vector<fs::path>& writ
   }
 }
 
-/// Damaged ends, and inputs that hold nothing: the rest was imported all the same.
+/// Damaged ends, and inputs that hold nothing: everything else was imported all the same.
 void tell_what_is_missing(const importers::ImportedSet& set) {
   for (const auto& recording : set.recordings) {
     const auto damage = recording.notes.find("damage.1");

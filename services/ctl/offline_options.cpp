@@ -5,7 +5,7 @@
 
 #include "common/service/config_source.h"
 #include "fusion-server/fusion/methods.h"
-#include "fusion-server/server/fusion_config.h"
+#include "fusion-server/server/fusion_settings.h"
 
 namespace chorus::ctl {
 

@@ -1,5 +1,4 @@
-// The options by which offline fusion is configured: the fusion server's own config file and
-// overrides.
+// The options that configure offline fusion: the fusion server's own config file, and overrides.
 #pragma once
 
 #include <string>

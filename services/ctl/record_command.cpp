@@ -1,4 +1,4 @@
-// chorus record URL --out FILE: what a running sensor or fusion server says, into a file on this
+// chorus record URL --out FILE: records a running sensor or fusion server into a file on this
 // machine.
 #include <csignal>
 #include <iostream>
@@ -35,11 +35,10 @@ struct RecordArguments {
 /// How it ended.
 enum class End { Asked, TimeIsUp, Gone };
 
-/// Looks a few times a second whether it is over; runs the polling meanwhile.
+/// Checks a few times a second whether it is over; runs the polling meanwhile.
 class Watch {
  public:
-  Watch(http::net::io_context& io, const client::LiveRecording& live,
-        const RecordArguments& arguments)
+  Watch(asio::io_context& io, const client::LiveRecording& live, const RecordArguments& arguments)
       : io_(io),
         live_(live),
         arguments_(arguments),
@@ -48,7 +47,7 @@ class Watch {
         progress_(std::cerr, on_terminal(), "recording") {}
 
   End run() {
-    signals_.async_wait([this](const http::error_code& error, int) {
+    signals_.async_wait([this](const net::error_code& error, int) {
       if (!error) finish(End::Asked);
     });
     look();
@@ -60,7 +59,7 @@ class Watch {
  private:
   void look() {
     timer_.expires_after(kLook);
-    timer_.async_wait([this](const http::error_code& error) {
+    timer_.async_wait([this](const net::error_code& error) {
       if (error) return;
       const double elapsed = std::chrono::duration<double>(SteadyClock::now() - begun_).count();
       if (arguments_.seconds > 0.0) {
@@ -78,11 +77,11 @@ class Watch {
     io_.stop();
   }
 
-  http::net::io_context& io_;
+  asio::io_context& io_;
   const client::LiveRecording& live_;
   const RecordArguments& arguments_;
-  http::Timer timer_;
-  http::net::signal_set signals_;
+  net::Timer timer_;
+  asio::signal_set signals_;
   Progress progress_;
   SteadyClock::time_point begun_ = SteadyClock::now();
   End end_ = End::Asked;
@@ -134,7 +133,7 @@ void print_summary(const nlohmann::json& summary, bool json) {
     std::cerr << fmt::format("{}: the last error: {}\n", path, trouble.get<std::string>());
 }
 
-/// Announced by the service, and never a frame of it.
+/// A stream announced by the service that never had a frame.
 std::vector<std::string> silent_streams(const client::LiveRecording& live) {
   std::vector<std::string> silent;
   for (const auto& [topic, count] : live.counts()) {
@@ -171,7 +170,7 @@ Result<int> run_record(const RecordArguments& arguments) {
   options.file = arguments.out;
   options.raw = arguments.raw || !arguments.fused;  // neither named: both
   options.fused = arguments.fused || !arguments.raw;
-  http::net::io_context io{1};
+  asio::io_context io{1};
   const auto live = client::LiveRecording::start(io, options);
   if (!live) return pass(live);
   const End end = Watch(io, **live, arguments).run();

@@ -8,8 +8,8 @@
 namespace chorus::ctl {
 namespace {
 
-/// The sensors' frames of a session; whatever else is in it is passed over.
-Result<std::optional<SensorFrame>> next_frame(record::SessionStream& stream) {
+/// The sensors' frames of a cell; everything else in it is skipped.
+Result<std::optional<SensorFrame>> next_frame(record::CellStream& stream) {
   for (auto item = stream.next(); true; item = stream.next()) {
     if (!item) return pass(item);
     if (!*item) return std::nullopt;
@@ -20,7 +20,7 @@ Result<std::optional<SensorFrame>> next_frame(record::SessionStream& stream) {
 }  // namespace
 
 Result<RecordedCell> RecordedCell::open(const std::vector<std::filesystem::path>& files) {
-  auto lines = record::session_lines(files);
+  auto lines = record::cell_lines(files);
   if (!lines) return pass(lines);
   return RecordedCell(std::move(*lines));
 }
@@ -38,8 +38,8 @@ Result<std::optional<Registration>> RecordedCell::registration() const {
 pipeline::OfflineInput RecordedCell::input() {
   pipeline::OfflineInput input;
   streams_.clear();
-  for (const record::SessionLine& line : lines_) {
-    const auto stream = std::make_shared<record::SessionStream>(line.files);
+  for (const record::CellLine& line : lines_) {
+    const auto stream = std::make_shared<record::CellStream>(line.files);
     streams_.push_back(stream);
     input.lanes.push_back({line.files.front().string(), [stream] { return next_frame(*stream); }});
     input.sensors.insert(input.sensors.end(), line.sensors.begin(), line.sensors.end());
@@ -50,9 +50,9 @@ pipeline::OfflineInput RecordedCell::input() {
 RecordedCell::Told RecordedCell::told() {
   Told told;
   for (const auto& stream : streams_) {
-    const record::Session session = stream->finish();
-    told.sensors += session.sensors.size();
-    for (std::string& note : client::notes_of(session)) told.notes.push_back(std::move(note));
+    const record::CellRecording cell = stream->finish();
+    told.sensors += cell.sensors.size();
+    for (std::string& note : client::notes_of(cell)) told.notes.push_back(std::move(note));
   }
   return told;
 }

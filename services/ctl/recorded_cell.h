@@ -7,24 +7,25 @@
 #include <string>
 #include <vector>
 
-#include "common/record/session_outline.h"
-#include "common/record/session_stream.h"
+#include "common/record/cell_outline.h"
+#include "common/record/cell_stream.h"
 #include "fusion-server/pipeline/offline.h"
 
 namespace chorus::ctl {
 
 class RecordedCell {
  public:
-  /// Looks at the files without reading them through; their errors say which file.
+  /// Looks at the files without reading them through; errors name the file.
   [[nodiscard]] static Result<RecordedCell> open(const std::vector<std::filesystem::path>& files);
 
   /// The last registration that was recorded.
   [[nodiscard]] Result<std::optional<Registration>> registration() const;
 
-  /// From the beginning.
+  /// Starts from the beginning.
   [[nodiscard]] pipeline::OfflineInput input();
 
-  /// What reading the newest input to its end left out, a line each; and how many sensors it had.
+  /// What had to be left out when the newest input was read to its end, one line each; and how many
+  /// sensors it had.
   struct Told {
     std::vector<std::string> notes;
     std::size_t sensors = 0;
@@ -32,10 +33,10 @@ class RecordedCell {
   [[nodiscard]] Told told();
 
  private:
-  explicit RecordedCell(std::vector<record::SessionLine> lines) : lines_(std::move(lines)) {}
+  explicit RecordedCell(std::vector<record::CellLine> lines) : lines_(std::move(lines)) {}
 
-  std::vector<record::SessionLine> lines_;
-  std::vector<std::shared_ptr<record::SessionStream>> streams_;
+  std::vector<record::CellLine> lines_;
+  std::vector<std::shared_ptr<record::CellStream>> streams_;
 };
 
 }  // namespace chorus::ctl

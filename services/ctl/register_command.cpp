@@ -23,8 +23,8 @@ using client::ServiceClient;
 using client::text_at;
 
 constexpr std::chrono::milliseconds kAskEvery{250};
-/// The server counts only time in which somebody is seen; after this long without any, nobody will
-/// come.
+/// The server counts only time in which somebody is seen; after this long without anybody, nobody
+/// will come.
 constexpr std::chrono::seconds kPatience{60};
 
 struct RegisterArguments {
@@ -60,7 +60,7 @@ Result<std::string> start(const ServiceClient& server, const RegisterArguments& 
   return session_of(*registration, arguments.url);
 }
 
-/// What is missing, told when it changes; how long is still to walk is the bar's business.
+/// What is missing, told when it changes; the bar shows how long is still to walk.
 class Advice {
  public:
   void tell(const nlohmann::json& session, Progress& progress) {
@@ -109,7 +109,7 @@ Result<nlohmann::json> follow(const ServiceClient& server, const std::string& pa
               "it, chorus register --cancel ends it)");
 }
 
-/// The session's own verdict: what was in use before it does not count.
+/// The session's own verdict: what was in use before does not count.
 int report(const nlohmann::json& session, const nlohmann::json& registration, bool json) {
   const std::string verdict = text_at(session, "verdict");
   const auto adopted = session.find("adopted");
@@ -166,7 +166,7 @@ Run add_register(CLI::App& options) {
   const auto arguments = std::make_shared<RegisterArguments>();
   add_server_option(options, arguments->url, "The fusion server");
   options.add_option("--seconds", arguments->seconds, "Length of the walk")
-      ->check(CLI::Range(rest::kShortestSession, rest::kLongestSession))
+      ->check(CLI::Range(rest::kMinSession, rest::kMaxSession))
       ->capture_default_str();
   auto* fresh = options.add_flag("--fresh", arguments->fresh,
                                  "Forget the registration there is before starting");

@@ -1,4 +1,4 @@
-// A registration as people read it: the verdict, the reasons, where each sensor stands.
+// A registration printed for people: the verdict, the reasons, where each sensor stands.
 #pragma once
 
 #include <string>

@@ -1,8 +1,8 @@
-// chorus replay: one chorus-sensor process per recorded sensor, so that what runs is what runs with
-// hardware.
+// chorus replay: one chorus-sensor process per recorded sensor, so that the same programs run as
+// with hardware.
 //
-// All of them count from the same instant, a second from now, so that recordings of one set stay in
-// step.
+// All of them count from the same instant, a second from now, so that the recordings of one set
+// stay in step.
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include "common/record/session_outline.h"
+#include "common/record/cell_outline.h"
 #include "common/time/clock.h"
 #include "fusion-server/client/recordings.h"
 #include "services/ctl/child_processes.h"
@@ -73,8 +73,8 @@ void share(const Round& round, Child& child) {
   }
 }
 
-/// What there is to play; a broken recording, or two of one sensor, should not start half a cell.
-Result<std::vector<record::SensorStay>> stays_of(const std::vector<record::SessionLine>& lines) {
+/// What there is to play; a broken recording, or two of one sensor, must not start half a cell.
+Result<std::vector<record::SensorStay>> stays_of(const std::vector<record::CellLine>& lines) {
   for (const auto& line : lines) {
     for (const std::string& damage : line.damage) std::cerr << "note: " << damage << '\n';
   }
@@ -85,8 +85,8 @@ Result<std::vector<record::SensorStay>> stays_of(const std::vector<record::Sessi
   return stays;
 }
 
-/// The sensors' places are part of a recording; who replays it need not find them again.
-Result<void> hand_on_registration(const std::vector<record::SessionLine>& lines,
+/// The sensors' places are part of a recording, so that nobody has to find them again.
+Result<void> hand_on_registration(const std::vector<record::CellLine>& lines,
                                   const std::string& file) {
   const auto recorded = record::last_registration(lines);
   if (!recorded) return pass(recorded);
@@ -125,7 +125,7 @@ Result<int> run_replay(const ReplayArguments& arguments) {
   const auto files = client::find_recordings({arguments.inputs.begin(), arguments.inputs.end()});
   if (!files) return pass(files);
   if (auto ok = may_write(arguments.save_registration, *files); !ok) return pass(ok);
-  const auto lines = record::session_lines(*files);
+  const auto lines = record::cell_lines(*files);
   if (!lines) return pass(lines);
   const auto stays = stays_of(*lines);
   if (!stays) return pass(stays);

@@ -47,7 +47,7 @@ bool one_import(const Stays& stays) {
   });
 }
 
-/// What we recorded is in UTC; what was imported says whether it is.
+/// What we recorded is in UTC; an imported recording says whether it is.
 bool knows_utc(const record::SensorStay& stay) {
   const std::string time = noted(stay, "time");
   return time.empty() || time.starts_with("UTC");

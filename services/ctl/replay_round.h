@@ -1,15 +1,15 @@
-// How the streams of a recording stay in step while each is played by a process of its own.
+// Keeps the streams of a recording in step while each is played by a process of its own.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "common/record/session_outline.h"
+#include "common/record/cell_outline.h"
 
 namespace chorus::ctl {
 
-/// Where a set begins and how long one round of it lasts.
+/// When a set begins and how long one round of it lasts.
 struct Round {
   Timestamp origin;
   Duration period{0};
@@ -18,7 +18,7 @@ struct Round {
 };
 
 struct RoundPlan {
-  /// None for one stream alone, for files of one import (they note their set themselves), and for
+  /// None for a single stream, for files of one import (their notes name their set), and for
   /// recordings whose times do not tell how they belong together.
   std::optional<Round> round;
   std::string note;  ///< Why recordings are not in step, for people.

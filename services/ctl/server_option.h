@@ -9,7 +9,7 @@ class App;
 
 namespace chorus::ctl {
 
-/// `names`: those of the option; "url,--url" takes it as an argument without a name, too.
+/// `names`: of the option; "url,--url" also takes it as an argument without a name.
 void add_server_option(CLI::App& app, std::string& url, const std::string& what,
                        const std::string& names = "--url");
 

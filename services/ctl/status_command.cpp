@@ -1,11 +1,14 @@
 // chorus status: sensors, registration and fused bodies of a fusion server, once.
 #include <algorithm>
+#include <chrono>
 #include <iostream>
 #include <memory>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "common/http/client.h"
+#include "common/http/status.h"
 #include "fusion-server/client/service_client.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
@@ -39,6 +42,29 @@ std::string sensors_report(const nlohmann::json& sensors) {
   return text;
 }
 
+/// What a sensor's service itself says is wrong with its device; empty when it says nothing.
+std::string own_words(const std::string& sensor_url) {
+  constexpr http::ClientLimits kBrief{1 << 16, std::chrono::seconds(1), std::chrono::seconds(1)};
+  const auto url = http::parse_url(sensor_url);
+  if (!url) return {};
+  http::ClientRequest request;
+  request.target = url->target + (url->target.ends_with('/') ? "healthz" : "/healthz");
+  request.headers = client::authorization();
+  const auto answer = http::fetch(*url, request, kBrief);
+  if (!answer || answer->status < http::status::kBadRequest) return {};
+  return client::text_at(nlohmann::json::parse(answer->body, nullptr, false), "detail", "");
+}
+
+/// Where a sensor answers the server and has no frames, its own reason is added to that.
+void ask_the_silent(nlohmann::json& sensors) {
+  for (auto& sensor : sensors) {
+    const std::string error = client::text_at(sensor, "lastError", "");
+    if (!error.starts_with("the sensor service answers")) continue;
+    const std::string words = own_words(client::text_at(sensor, "url", ""));
+    if (!words.empty()) sensor["lastError"] = error + ": " + words;
+  }
+}
+
 bool any_live(const nlohmann::json& sensors) {
   return std::any_of(sensors.begin(), sensors.end(), [](const nlohmann::json& sensor) {
     return client::text_at(sensor, "state") == "live";
@@ -69,7 +95,8 @@ Result<int> run_status(const StatusArguments& arguments) {
   // Before the first fused frame the server has none to give (503): that is a state, not a failure.
   const auto frame = server->get("/frame");
   const nlohmann::json shown_frame = frame ? *frame : nlohmann::json();
-  const nlohmann::json& polled = client::part_at(*sensors, "sensors");
+  nlohmann::json polled = client::part_at(*sensors, "sensors");
+  ask_the_silent(polled);
   const bool alive = any_live(polled);
   if (arguments.json) {
     std::cout << json_text(

@@ -1,4 +1,4 @@
-// What a command writes as whole files; "-" is standard output.
+// Files that a command writes whole; "-" is standard output.
 #pragma once
 
 #include <filesystem>
@@ -10,11 +10,11 @@
 
 namespace chorus::ctl {
 
-/// Replaces what was there only when all is written.
+/// Replaces an existing file only when everything has been written.
 [[nodiscard]] Result<void> write_text(const std::string& file, std::string_view text);
 
-/// Asked before the work begins: refuses a file that is one of the inputs, and any recording that
-/// is there already.  Inputs that are no files ("-", a URL, "") are none.
+/// Called before the work begins: refuses a file that is one of the inputs, and any recording that
+/// exists already.  Inputs that are not files ("-", a URL, "") do not count.
 [[nodiscard]] Result<void> may_write(const std::string& file,
                                      const std::vector<std::filesystem::path>& inputs);
 

@@ -5,14 +5,14 @@ namespace {
 
 constexpr Duration kLargest = std::chrono::hours(24);
 constexpr double kMillion = 1e6;
-constexpr double kMostPpm = 10'000;  // no oscillator is off by a percent
+constexpr double kMaxPpm = 10'000;  // no oscillator is off by a percent
 
 }  // namespace
 
 void read_clock_errors(ConfigReader config, ClockErrors& out) {
   double ppm = out.drift * kMillion;
   config.read_ms("offset_ms", out.offset, -kLargest, kLargest);
-  config.read("drift_ppm", ppm, -kMostPpm, kMostPpm);
+  config.read("drift_ppm", ppm, -kMaxPpm, kMaxPpm);
   config.read_ms("step_ms", out.step, -kLargest, kLargest);
   config.read_s("step_after_s", out.step_after, Duration::zero(), 365 * kLargest);
   out.drift = ppm / kMillion;

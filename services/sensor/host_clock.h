@@ -1,4 +1,4 @@
-// The clock of a host that is badly set, for tests of everything that has to live with such hosts.
+// A host clock that is badly set, for testing everything that has to cope with such hosts.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace chorus::sensor_service {
 
-/// What is wrong with it, counted from the start of the service.
+/// Its errors, counted from the start of the service.
 struct ClockErrors {
   Duration offset{0};
   double drift = 0.0;  ///< [s/s]
@@ -24,7 +24,7 @@ void read_clock_errors(ConfigReader config, ClockErrors& out);
 
 [[nodiscard]] synthetic::HostClock host_clock(const ClockErrors& errors, Timestamp start);
 
-/// What a host's clock shows while the world's shows the true time.
+/// What a host's clock shows when the true time is the world's.
 class ErringClock final : public Clock {
  public:
   ErringClock(std::shared_ptr<const Clock> world, const synthetic::HostClock& host)

@@ -6,8 +6,9 @@ namespace chorus::sensor_service {
 
 namespace {
 
-constexpr std::chrono::seconds kDemandLasts{2};  // a client that asked may ask again so soon
-constexpr std::chrono::seconds kIdlePace{1};     // how old an image may get while nobody asks
+constexpr std::chrono::seconds kDemandLasts{
+    2};                                       // a client that asked may ask again within this time
+constexpr std::chrono::seconds kIdlePace{1};  // how old an image may get while nobody asks
 
 }  // namespace
 
@@ -23,13 +24,13 @@ bool ImageDesk::allowed() const {
   return on_;
 }
 
-void ImageDesk::offer(SightPtr sight) {
+void ImageDesk::offer(LatestCapturePtr latest) {
   const std::lock_guard lock(mutex_);
-  offered_ = std::move(sight);
+  offered_ = std::move(latest);
   if (on_) changed_.notify_all();
 }
 
-Result<SightPtr> ImageDesk::ask() {
+Result<LatestCapturePtr> ImageDesk::ask() {
   const std::lock_guard lock(mutex_);
   if (!on_) {
     return fail(ErrorCode::NotFound, "images", "images are switched off; set images: true");
@@ -50,23 +51,23 @@ bool ImageDesk::due() const {
 }
 
 bool ImageDesk::encode_next(const std::stop_token& stop) {
-  SightPtr sight;
+  LatestCapturePtr latest;
   {
     std::unique_lock lock(mutex_);
     if (!changed_.wait(lock, stop, [this] { return due(); })) return false;
-    sight = offered_;
+    latest = offered_;
   }
   try {
-    if (sight->color) (void)sight->color->get();
-    if (sight->depth) (void)sight->depth->get();
+    if (latest->color) (void)latest->color->get();
+    if (latest->depth) (void)latest->depth->get();
   } catch (...) {
     const std::lock_guard lock(mutex_);
-    if (offered_ == sight) offered_ = nullptr;  // not again and again
+    if (offered_ == latest) offered_ = nullptr;  // not again and again
     throw;
   }
   const std::lock_guard lock(mutex_);
   encoded_ = steady_now_();
-  if (on_) pictured_ = std::move(sight);
+  if (on_) pictured_ = std::move(latest);
   return true;
 }
 

@@ -1,9 +1,8 @@
-// Camera images, encoded beside the server's thread: rendering and packing takes tens of
-// milliseconds, and nobody who waits for a frame should wait for a picture.
+// Camera images, encoded off the server's thread: rendering and packing takes tens of milliseconds,
+// and nobody who waits for a frame should have to wait for an image.
 //
-// While somebody asks, every capture that comes is pictured as fast as it goes; otherwise one a
-// second, so that the first answer is not old.  Switched off, nothing is encoded and nothing is
-// kept.
+// While somebody asks, captures are encoded as fast as possible; otherwise one a second, so that
+// the first answer is not old.  Switched off, nothing is encoded and nothing is kept.
 #pragma once
 
 #include <chrono>
@@ -13,7 +12,7 @@
 #include <stop_token>
 
 #include "common/base/result.h"
-#include "services/sensor/sight.h"
+#include "services/sensor/latest_capture.h"
 
 namespace chorus::sensor_service {
 
@@ -28,15 +27,15 @@ class ImageDesk {
   void allow(bool on);
   [[nodiscard]] bool allowed() const;
 
-  /// The latest capture; an earlier one that was not pictured yet is dropped.
-  void offer(SightPtr sight);
+  /// The latest capture; an earlier one that has not been encoded yet is dropped.
+  void offer(LatestCapturePtr latest);
 
-  /// For a request: the latest sight whose images are encoded.  NotFound when switched off,
+  /// For a request: the latest capture whose images are encoded.  NotFound when switched off,
   /// Unavailable before the first.
-  [[nodiscard]] Result<SightPtr> ask();
+  [[nodiscard]] Result<LatestCapturePtr> ask();
 
-  /// Blocks until images are due, encodes them, and says true; false when asked to stop.  What an
-  /// encoder throws is in its image; what is thrown all the same costs this capture, not the next.
+  /// Blocks until images are due, encodes them, and returns true; false when asked to stop.  An
+  /// encoder's exception ends up in its image; any other costs this capture, not the next.
   bool encode_next(const std::stop_token& stop);
 
  private:
@@ -46,8 +45,8 @@ class ImageDesk {
   mutable std::mutex mutex_;  ///< Guards what follows.
   std::condition_variable_any changed_;
   bool on_;
-  SightPtr offered_;
-  SightPtr pictured_;
+  LatestCapturePtr offered_;
+  LatestCapturePtr pictured_;
   std::chrono::steady_clock::time_point asked_{};
   std::chrono::steady_clock::time_point encoded_{};
 };

@@ -20,8 +20,8 @@ class LazyImage {
 
  private:
   mutable std::once_flag once_;
-  mutable std::function<Result<CameraImage>()>
-      encode_;  ///< Emptied after use: frees what it holds.
+  /// Emptied after use: frees what it holds.
+  mutable std::function<Result<CameraImage>()> encode_;
   mutable Result<CameraImage> image_;
 };
 

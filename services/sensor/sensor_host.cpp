@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/record/frame_recording.h"
+#include "common/resource/link_lines.h"
 #include "services/sensor/metrics_text.h"
 
 namespace chorus::sensor_service {
@@ -52,6 +53,7 @@ http::ServerConfig server_config(const Setup& setup) {
   http::ServerConfig config = setup.settings.at_start.http;
   config.bearer_token = setup.settings.live.bearer_token;
   config.clock = setup.clock;
+  config.policy = resource::answer_policy();
   return config;
 }
 
@@ -71,10 +73,12 @@ Result<std::unique_ptr<SensorHost>> SensorHost::make(const SensorSettings& setti
   const StartSettings& at_start = settings.at_start;
   const auto world = std::make_shared<SystemClock>();
   const HostTime time{world, host_clock(at_start.clock, world->now())};
-  auto device = make_device(at_start.device, {at_start.id, time});
+  auto router = std::make_shared<http::Router>();
+  auto device = make_device(at_start.device, {at_start.id, time, *router});
   if (!device) return pass(device);
-  return std::make_unique<SensorHost>(
-      Setup{settings, std::make_shared<ErringClock>(time.world, time.host), std::move(*device)});
+  return std::make_unique<SensorHost>(Setup{settings,
+                                            std::make_shared<ErringClock>(time.world, time.host),
+                                            std::move(*device), std::move(router)});
 }
 
 SensorHost::SensorHost(Setup setup)
@@ -82,13 +86,14 @@ SensorHost::SensorHost(Setup setup)
       recordings_(recordings_options(setup_, service_options(setup_))),
       service_([this] {
         ServiceOptions options = service_options(setup_);
-        options.record = [this](const Sight& sight) { record(sight); };
+        options.record = [this](const LatestCapture& latest) { record(latest); };
+        options.trouble = [this] { return setup_.device->trouble(); };
         return options;
       }()),
       server_(server_config(setup_), routes()) {}
 
 std::shared_ptr<http::Router> SensorHost::routes() {
-  auto router = std::make_shared<http::Router>();
+  const auto& router = setup_.router;
   service_.add_routes(*router);
   recordings_.add_routes(*router);
   service::CommonResources options;
@@ -117,11 +122,11 @@ Result<void> SensorHost::start() {
   return {};
 }
 
-void SensorHost::record(const Sight& sight) {
+void SensorHost::record(const LatestCapture& latest) {
   const auto recorder = recordings_.recorder(service::Recordings::Stream::Raw);
   if (!recorder) return;
   recorder->offer(record::RawFrame{
-      setup_.settings.at_start.id, sight.frame, setup_.clock->now(), sight.floor, {}});
+      setup_.settings.at_start.id, latest.frame, setup_.clock->now(), latest.floor, {}});
 }
 
 /// How a run of the device ended; nothing when it threw, which a new run may not do again.
@@ -177,7 +182,8 @@ service::About about_sensor() {
           "Without options: a simulated sensor on http://127.0.0.1:8081/.",
           "  chorus-sensor --config deploy/config/sensor.json\n"
           "  chorus-sensor --port 8082 --id s2 --set device.simulated.ring.index=1\n"
-          "  chorus-sensor --recording walk.mcap --set device.replay.speed=0.5\n",
+          "  chorus-sensor --recording walk.mcap --set device.replay.speed=0.5\n"
+          "  chorus-sensor --device bridge    (then push frames to /push: docs/guide/bridge.md)\n",
           {{"--id", "id", "Sensor id (id)"},
            {"--recording", "device.replay.recording", "Replays this file (device.replay.recording)",
             true, "device.kind=\"replay\""},

@@ -9,8 +9,8 @@
 #include "common/http/server.h"
 #include "common/service/command_line.h"
 #include "common/service/recordings.h"
-#include "services/sensor/sensor_config.h"
 #include "services/sensor/sensor_service.h"
+#include "services/sensor/sensor_settings.h"
 
 namespace chorus::sensor_service {
 
@@ -19,6 +19,7 @@ struct Setup {
   SensorSettings settings;
   std::shared_ptr<const Clock> clock;  ///< The host's, errors included.
   std::unique_ptr<FrameSource> device;
+  std::shared_ptr<http::Router> router = std::make_shared<http::Router>();  ///< With its resources.
 };
 
 class SensorHost {
@@ -32,7 +33,7 @@ class SensorHost {
 
   /// Binds, serves, and starts the device.
   [[nodiscard]] Result<void> start();
-  /// Stops device and server; harmless when repeated.
+  /// Stops device and server; may be repeated.
   void stop();
 
   /// Everything that can change while running.
@@ -42,7 +43,7 @@ class SensorHost {
 
  private:
   [[nodiscard]] std::shared_ptr<http::Router> routes();
-  void record(const Sight& sight);
+  void record(const LatestCapture& latest);
   void run_device(const std::stop_token& stop);
   std::optional<Result<void>> run_once(const std::stop_token& stop, const FrameSource::Sink& sink);
 
@@ -54,7 +55,7 @@ class SensorHost {
   std::jthread encoder_;  ///< Idle unless images are switched on.
 };
 
-/// What chorus-sensor says of itself.
+/// What chorus-sensor says about itself.
 [[nodiscard]] service::About about_sensor();
 
 }  // namespace chorus::sensor_service

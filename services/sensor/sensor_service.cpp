@@ -12,8 +12,8 @@ using http::Request;
 namespace {
 
 // A capture time that goes back by more than this means that the host's clock was set; by less,
-// that the device repeats itself.  The fusion server draws the line at the same place.
-constexpr Duration kLongestRepeat = std::chrono::seconds(1);
+// that the device repeats itself.  The fusion server uses the same limit.
+constexpr Duration kMaxRepeat = std::chrono::seconds(1);
 
 }  // namespace
 
@@ -29,12 +29,14 @@ std::string SensorService::objection(const SensorFrame& frame) const {
   for (const BodyFrame& body : frame.bodies) {
     if (!ids.insert(body.id.value).second) return "two bodies have one id";
   }
-  if (!sight_) return {};
-  const Duration behind = sight_->frame->captured - frame.captured;
-  if (behind >= Duration::zero() && behind <= kLongestRepeat) {
+  if (!latest_) return {};
+  const Duration behind = latest_->frame->captured - frame.captured;
+  const bool goes_on_from_there =  // the clock was set back
+      behind > Duration::zero() && refused_capture_ && frame.captured > *refused_capture_;
+  if (behind >= Duration::zero() && behind <= kMaxRepeat && !goes_on_from_there) {
     return "its capture time does not advance";
   }
-  if (frame.sequence <= sight_->frame->sequence) return "its sequence number does not advance";
+  if (frame.sequence <= latest_->frame->sequence) return "its sequence number does not advance";
   return {};
 }
 
@@ -69,24 +71,26 @@ bool SensorService::encode_next(const std::stop_token& stop) noexcept {
 }
 
 void SensorService::publish(Capture capture) {
-  SightPtr before;
+  LatestCapturePtr before;
   {
     const std::lock_guard lock(mutex_);
     if (const std::string reason = objection(capture.frame); !reason.empty()) {
       ++counters_.refused;
       refused_.hit(reason);
+      refused_capture_ = capture.frame.captured;
       return;
     }
-    before = sight_;
+    refused_capture_.reset();
+    before = latest_;
   }
-  const SightPtr now = see(std::move(capture), before.get());
+  const LatestCapturePtr now = latest_capture(std::move(capture), before.get());
   const std::uint64_t sequence = now->frame->sequence;
   {
     const std::lock_guard lock(mutex_);
     counters_.captured += 1;
     counters_.bodies = now->frame->bodies.size();
     if (before) counters_.lost += sequence - before->frame->sequence - 1;
-    sight_ = now;
+    latest_ = now;
     last_capture_ = options_.steady_now();
   }
   frames_.publish(now->frame);
@@ -99,14 +103,20 @@ void SensorService::on_device_end(const Result<void>& how) {
   ended_ = how ? "the device has come to its end" : "the device failed: " + to_string(how.error());
 }
 
+/// The device's own reason is better than ours.
+std::string SensorService::or_trouble(std::string reason) const {
+  std::string known = options_.trouble();
+  return known.empty() ? reason : known;
+}
+
 service::Health SensorService::health() const {
   const std::lock_guard lock(mutex_);
   if (!ended_.empty()) return {false, ended_};
-  if (!sight_) return {false, "no frame has been captured yet"};
+  if (!latest_) return {false, or_trouble("no frame has been captured yet")};
   const Duration silent = options_.steady_now() - last_capture_;
   if (silent > options_.stall_after) {
-    return {false, "the device has been silent for " +
-                       std::to_string(static_cast<long>(seconds(silent))) + " s"};
+    return {false, or_trouble("the device has been silent for " +
+                              std::to_string(static_cast<long>(seconds(silent))) + " s")};
   }
   return {};
 }
@@ -114,14 +124,15 @@ service::Health SensorService::health() const {
 ServiceCounters SensorService::counters() const {
   const std::lock_guard lock(mutex_);
   ServiceCounters counters = counters_;
-  if (sight_) counters.age_s = seconds(options_.steady_now() - last_capture_);
+  if (latest_) counters.age_s = seconds(options_.steady_now() - last_capture_);
   return counters;
 }
 
-Result<SightPtr> SensorService::sight() const {
+Result<LatestCapturePtr> SensorService::latest() const {
   const std::lock_guard lock(mutex_);
-  if (!sight_) return fail(ErrorCode::Unavailable, "sensor", "no frame has been captured yet");
-  return sight_;
+  if (!latest_)
+    return fail(ErrorCode::Unavailable, "sensor", or_trouble("no frame has been captured yet"));
+  return latest_;
 }
 
 service::Self self_of(const ServiceOptions& options, bool with_images) {
@@ -136,6 +147,8 @@ service::Self self_of(const ServiceOptions& options, bool with_images) {
   self.resources = {{"frame", "frame", "the latest frame: all bodies with their joints, live"},
                     {"skeletons/", "skeletons", "the bodies in the latest frame, one by one"},
                     {"floor-plane", "floorPlane", "where the floor is"}};
+  for (const DeviceResource& own : options.device.resources)
+    self.resources.push_back({own.path, "", own.what});
   if (!with_images) return self;
   self.resources.insert(
       self.resources.end(),
@@ -151,7 +164,7 @@ SensorService::Answer SensorService::self() const {
                                 images ? "images" : "plain");
 }
 
-SensorService::Answer SensorService::image(std::shared_ptr<const LazyImage> Sight::*which) {
+SensorService::Answer SensorService::image(std::shared_ptr<const LazyImage> LatestCapture::*which) {
   const auto pictured = images_.ask();
   if (!pictured) return pass(pictured);
   const auto& image = **pictured.*which;
@@ -162,22 +175,22 @@ SensorService::Answer SensorService::image(std::shared_ptr<const LazyImage> Sigh
 void SensorService::add_image_routes(http::Router& router) {
   router.get("/images/", [this](const Request&, const PathParams&) -> Answer {
     return images_.ask().map(
-        [this](const SightPtr& now) { return image_list(*now, options_.serving); });
+        [this](const LatestCapturePtr& now) { return image_list(*now, options_.serving); });
   });
   router.shows_people("/images/color");
   router.shows_people("/images/depth");
   router.get("/images/color",
-             [this](const Request&, const PathParams&) { return image(&Sight::color); });
+             [this](const Request&, const PathParams&) { return image(&LatestCapture::color); });
   router.get("/images/depth",
-             [this](const Request&, const PathParams&) { return image(&Sight::depth); });
+             [this](const Request&, const PathParams&) { return image(&LatestCapture::depth); });
 }
 
 void SensorService::add_routes(http::Router& router) {
   frames_.add_routes(router);
   router.get("/", [this](const Request&, const PathParams&) { return self(); });
   router.get("/floor-plane", [this](const Request&, const PathParams&) -> Answer {
-    return sight().and_then(
-        [&](const SightPtr& now) { return floor_plane(*now, options_.serving); });
+    return latest().and_then(
+        [&](const LatestCapturePtr& now) { return floor_plane(*now, options_.serving); });
   });
   add_image_routes(router);
 }

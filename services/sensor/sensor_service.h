@@ -1,13 +1,14 @@
 // One device as resources.  Captures in, documents out; no socket, no thread of its own.
 //
 // on_capture() runs on the device's thread, the routes on the server's; they meet at one immutable
-// Sight.
+// LatestCapture.
 #pragma once
 
 #include <chrono>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "common/base/rate_report.h"
@@ -17,7 +18,7 @@
 #include "common/service/frame_resources.h"
 #include "common/service/self_description.h"
 #include "services/sensor/image_desk.h"
-#include "services/sensor/sight.h"
+#include "services/sensor/latest_capture.h"
 
 namespace chorus::sensor_service {
 
@@ -25,10 +26,13 @@ struct ServiceOptions {
   SensorId id;
   DeviceDescription device;
   service::FrameHistory history;
-  bool images = false;  ///< They show people: off unless somebody wants them.
-  Duration stall_after = std::chrono::seconds(2);  ///< Without a capture for so long: not ready.
+  bool images = false;                             ///< They show people: off unless enabled.
+  Duration stall_after = std::chrono::seconds(2);  ///< Not ready after this time without a capture.
   service::Serving serving;
-  std::function<void(const Sight&)> record = {};  ///< Told of each sight; must return at once.
+  /// Why the device delivers nothing just now, for people; empty when it does not know.
+  std::function<std::string()> trouble = [] { return std::string(); };
+  /// Told of each capture; must return at once.
+  std::function<void(const LatestCapture&)> record = {};
   SteadyNow steady_now = [] { return std::chrono::steady_clock::now(); };
 };
 
@@ -36,7 +40,7 @@ struct ServiceCounters {
   std::uint64_t captured = 0;  ///< Frames published.
   std::uint64_t lost = 0;      ///< Gaps in the device's numbering.
   std::uint64_t refused = 0;   ///< Captures that could not be true (see on_capture).
-  std::uint64_t failures = 0;  ///< Of the device, of a capture's way to its documents, of images.
+  std::uint64_t failures = 0;  ///< Failures of the device, of publishing a capture, of images.
   std::uint64_t bodies = 0;    ///< In the latest frame.
   double age_s = 0.0;          ///< Since the latest capture arrived; 0 before the first.
 };
@@ -48,12 +52,12 @@ class SensorService {
  public:
   explicit SensorService(ServiceOptions options);
 
-  /// Publishes one capture.  Refused and counted: time or numbering that does not advance, two
-  /// bodies with one id, too many bodies.  Time that goes back by more than a second is a clock
-  /// that was set, and goes on from there.
-  /// An exception on the way is logged and counted; the next capture is another chance.
+  /// Publishes one capture.  Refused and counted: a time or number that does not advance, two
+  /// bodies with one id, too many bodies.  A time that goes back by more than a second means that
+  /// the clock was set; it counts from there.
+  /// An exception is logged and counted; the next capture is published as usual.
   void on_capture(Capture capture) noexcept;
-  /// The device, or whatever else is at work for this service, threw: logged and counted.
+  /// Logs and counts an exception from the device or from another thread of this service.
   void on_failure(std::string_view reason) noexcept;
   /// The device will deliver nothing more; health() says why.
   void on_device_end(const Result<void>& how);
@@ -74,9 +78,10 @@ class SensorService {
 
   void publish(Capture capture);
   [[nodiscard]] std::string objection(const SensorFrame& frame) const;
-  [[nodiscard]] Result<SightPtr> sight() const;
+  [[nodiscard]] Result<LatestCapturePtr> latest() const;
+  [[nodiscard]] std::string or_trouble(std::string reason) const;
   [[nodiscard]] Answer self() const;
-  [[nodiscard]] Answer image(std::shared_ptr<const LazyImage> Sight::*which);
+  [[nodiscard]] Answer image(std::shared_ptr<const LazyImage> LatestCapture::*which);
   void add_image_routes(http::Router& router);
 
   const ServiceOptions options_;
@@ -86,7 +91,8 @@ class SensorService {
   ImageDesk images_;
 
   mutable std::mutex mutex_;  ///< Guards what follows.
-  SightPtr sight_;
+  LatestCapturePtr latest_;
+  std::optional<Timestamp> refused_capture_;  ///< Of the capture before, when it was refused.
   ServiceCounters counters_;
   std::chrono::steady_clock::time_point last_capture_{};
   std::string ended_;  ///< Why the device delivers nothing more; empty while it runs.

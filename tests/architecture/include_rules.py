@@ -9,9 +9,10 @@ from pathlib import Path
 ROWS = [
     ["common/base"],
     ["common/time", "common/geometry"],
-    ["common/rdf", "common/http"],
+    ["common/rdf", "common/net"],
+    ["common/http"],
     ["common/body"],
-    ["common/sensor"],
+    ["common/sensor", "common/layout"],
     ["common/motion", "common/resource"],
     ["common/record"],
     ["common/synthetic", "common/service", "common/importers", "common/exporters"],
@@ -36,15 +37,18 @@ STAGES = {f"fusion-server/{stage}" for stage in ("align", "facing", "associate",
 FUSION_SERVER = {room for room in ROW_OF if room.startswith("fusion-server/")}
 # Callable without a network: neither included nor linked, not even through others.
 NO_SOCKET = {"fusion-server/core", "fusion-server/pipeline"} | VALUE_HEADERS | STAGES
+# They speak protocols of their own: sockets, but no HTTP.
+NO_HTTP = {f"fusion-server/{room}" for room in ("outlet", "vrpn", "dtrack", "natnet", "trackd", "osc", "mxtp")}
 
 # (who, what they may not include, why)
 FORBIDDEN_ROOMS = [
     (FUSION_SERVER, {"common/synthetic"}, "what judges an algorithm must not feed it"),
-    (STAGES, {"common/http", "common/resource", "common/record", "common/service", "common/rdf"},
+    (STAGES, {"common/net", "common/http", "common/resource", "common/record", "common/service", "common/rdf"},
      "stages know values, not their wire forms"),
     (STAGES - {"fusion-server/registration"}, STAGES, "stages meet in flow.h only"),
     ({"fusion-server/registration"}, STAGES - {"fusion-server/align"}, "registration may use align only"),
-    (NO_SOCKET, {"common/http", "common/service"}, "no socket here"),
+    (NO_SOCKET, {"common/net", "common/http", "common/service"}, "no socket here"),
+    (NO_HTTP, {"common/http", "common/service"}, "a tracker protocol needs sockets, not HTTP"),
     ({"services/sensor"}, FUSION_SERVER, "running services meet over HTTP"),
     (FUSION_SERVER, {"services/sensor"}, "running services meet over HTTP"),
 ]
@@ -54,7 +58,10 @@ STAGE_HEADERS = re.compile(
 STAGE_CLOCKS = re.compile(r"common/time/clock\.h|(system|steady|high_resolution)_clock::now")
 ASIO = re.compile(r"<boost/(asio|beast)")
 POINT_CLOUDS_AND_IMAGES = re.compile(r"<(pcl|opencv2)/")
-ASIO_DOORS = {"common/http/asio.h", "common/http/beast.h", "common/http/beast_websocket.h"}
+ASIO_DOORS = {"common/net/asio.h", "common/net/asio_local.h", "common/http/beast.h", "common/http/beast_websocket.h"}
+
+# Policy of linked data is given to HTTP (common/resource/link_lines.h), never known by it.
+LINKED_DATA = re.compile(r"/ns/ldp|openapi|context\.jsonld|</shapes>|Chorus-Clock")
 
 MAX_LINES = 400
 SOURCE_ENDINGS = {".h", ".cpp", ".py", ".mjs", ".js", ".sh"}
@@ -108,11 +115,13 @@ def header_violations(file, text):
         if own in STAGES and STAGE_HEADERS.match(included):
             yield Violation(file, f"includes {included}: stages are pure")
         if ASIO.match(included) and file not in ASIO_DOORS:
-            yield Violation(file, f"includes {included}: only common/http/asio.h and beast.h do")
+            yield Violation(file, f"includes {included}: only common/net/asio.h and common/http/beast.h do")
         if POINT_CLOUDS_AND_IMAGES.match(included) and file.endswith(".h"):
             yield Violation(file, f"includes {included}: in .cpp files only")
     if own in STAGES and STAGE_CLOCKS.search(text):
         yield Violation(file, "reads a clock: time is an argument of a stage")
+    if own == "common/http" and LINKED_DATA.search(text):
+        yield Violation(file, f"says {LINKED_DATA.search(text).group()}: HTTP knows no linked data")
     if file.endswith(".h") and "#pragma once" not in text:
         yield Violation(file, "has no #pragma once")
 
@@ -171,8 +180,11 @@ def link_violations(file, text, reach):
 
 def socket_violations(reach):
     for room in sorted(NO_SOCKET & reach.keys()):
+        if "common/net" in reach[room]:
+            yield Violation(room, "links common/net: no socket here")
+    for room in sorted(NO_HTTP & reach.keys()):
         if "common/http" in reach[room]:
-            yield Violation(room, "links common/http: no socket here")
+            yield Violation(room, "links common/http: a tracker protocol needs sockets, not HTTP")
 
 
 def violations(root):

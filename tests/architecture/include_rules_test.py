@@ -81,10 +81,22 @@ class BrokenRules(unittest.TestCase):
 
     def test_core_links_no_socket(self):
         cmake = "chorus_library(NAME {} SRCS a.cpp DEPS {})\n".format
-        tree = {"common/http/CMakeLists.txt": cmake("http", "chorus::base"),
-                "fusion-server/pipeline/CMakeLists.txt": cmake("pipeline", "chorus::http"),
+        tree = {"common/net/CMakeLists.txt": cmake("net", "chorus::base"),
+                "fusion-server/pipeline/CMakeLists.txt": cmake("pipeline", "chorus::net"),
                 "fusion-server/core/CMakeLists.txt": cmake("core", "chorus::pipeline")}
-        self.assertTrue(any("links common/http" in message for message in messages_for(tree)))
+        self.assertTrue(any("links common/net" in message for message in messages_for(tree)))
+
+    def test_http_knows_no_resource(self):
+        self.assert_caught("common/http/a.cpp", '#include "common/resource/node.h"\n', "below or beside")
+        self.assert_caught("common/http/a.cpp", 'auto link = "<http://www.w3.org/ns/ldp#Resource>";\n', "linked data")
+
+    def test_tracker_protocols_know_no_http(self):
+        for room in ("outlet", "vrpn", "dtrack", "natnet"):
+            self.assert_caught(f"fusion-server/{room}/a.cpp", '#include "common/http/server.h"\n', "not HTTP")
+            cmake = "chorus_library(NAME {} SRCS a.cpp DEPS {})\n".format
+            tree = {"common/http/CMakeLists.txt": cmake("http", "chorus::base"),
+                    f"fusion-server/{room}/CMakeLists.txt": cmake(room, "chorus::http")}
+            self.assertTrue(any("links common/http" in message for message in messages_for(tree)))
 
     def test_services_meet_over_http_only(self):
         self.assert_caught("services/sensor/a.cpp", '#include "fusion-server/fusion/fuse.h"\n', "over HTTP")
@@ -92,7 +104,7 @@ class BrokenRules(unittest.TestCase):
 
     def test_asio_and_point_clouds_stay_behind_their_doors(self):
         self.assert_caught("common/http/server.cpp", "#include <boost/asio/post.hpp>\n", "asio.h")
-        self.assertEqual(messages_for({"common/http/asio.h": "#pragma once\n#include <boost/asio/post.hpp>\n"}), [])
+        self.assertEqual(messages_for({"common/net/asio.h": "#pragma once\n#include <boost/asio/post.hpp>\n"}), [])
         self.assert_caught("fusion-server/registration/icp.h", "#include <pcl/point_types.h>\n", ".cpp files only")
         self.assert_caught("common/synthetic/depth.h", "#include <opencv2/core.hpp>\n", ".cpp files only")
 

@@ -5,7 +5,7 @@
 #include <iostream>
 
 #include "common/base/version.h"
-#include "tests/bench/report.h"
+#include "tests/bench/report/report.h"
 
 namespace chorus::bench {
 #define CHORUS_BENCH_CASE(name, summary) Result<void> run_##name(Report&);
@@ -73,7 +73,8 @@ int main(int argc, char** argv) {
     if (each.name == nullptr) continue;
     auto* command = app.add_subcommand(each.name, each.summary);
     command->callback([&chosen, &each] { chosen = &each; });
-    if (std::string_view(each.name) != "faults") continue;
+    const std::string_view name = each.name;
+    if (name != "faults" && name != "fusion") continue;
     command->add_option("--only", options.only, "Run this case alone");
     command->add_flag("--list", options.list, "Name the cases and run none");
   }

@@ -36,19 +36,19 @@ class Readers(unittest.TestCase):
                  if not line.startswith(("rapper: Parsing", "rapper: Serializing", "rapper: Parsing returned"))]
         self.assertEqual((done.returncode, noise), (0, []))
 
-    @unittest.skipUnless(shutil.which("rapper"), "rapper (raptor2-utils) is not installed")
+    @unittest.skipUnless(shutil.which("rapper"), "runs where rapper is installed (Debian: raptor2-utils)")
     def test_rapper(self):
         for url, answer in all_turtle():
             with self.subTest(url=url):
                 self.complaint_free(["rapper", "-i", "turtle", "-c"], answer.body)
 
-    @unittest.skipUnless(shutil.which("serdi"), "serdi is not installed")
+    @unittest.skipUnless(shutil.which("serdi"), "runs where serdi is installed (Debian: serdi)")
     def test_serdi(self):
         for url, answer in all_turtle():
             with self.subTest(url=url):
                 self.complaint_free(["serdi", "-i", "turtle", "-e"], answer.body)
 
-    @unittest.skipUnless(rdflib, "rdflib (python3-rdflib) is not installed")
+    @unittest.skipUnless(rdflib, "runs where rdflib is installed (Debian: python3-rdflib)")
     def test_rdflib_reads_the_same_graph_from_turtle_and_n_triples(self):
         for base in URLS.values():
             location = "/" + get(base + "/frame").headers["Content-Location"].lstrip("/")
@@ -63,7 +63,7 @@ class Readers(unittest.TestCase):
                     self.assertGreater(len(one), 2)
                     self.assertTrue(isomorphic(one, two), f"{len(one)} and {len(two)} triples")
 
-    @unittest.skipUnless(rdflib, "rdflib (python3-rdflib) is not installed")
+    @unittest.skipUnless(rdflib, "runs where rdflib is installed (Debian: python3-rdflib)")
     def test_every_term_in_use_is_defined(self):
         base = URLS["fusion"]
         vocabulary = rdflib.Graph().parse(data=get(base + "/ns").body, format="turtle", publicID=base + "/ns")

@@ -65,7 +65,7 @@ def datagrams(path):
         at += size
 
 
-@unittest.skipUnless(CAPTURE.is_dir(), f"needs the whole capture: {CAPTURE}")
+@unittest.skipUnless(CAPTURE.is_dir(), f"runs where the whole capture is there: {CAPTURE}")
 class WholeCapture(unittest.TestCase):
     """Against what the vendor's own sample client printed of the same frames."""
 

@@ -91,7 +91,8 @@ TEST(GoldenOutputs, Mxtp) {
 }
 
 TEST(GoldenOutputs, Trackd) {
-  if (std::endian::native != std::endian::little) GTEST_SKIP() << "the block is in native order";
+  if (std::endian::native != std::endian::little)
+    GTEST_SKIP() << "runs on little-endian machines: the block is in native order";
   auto block = trackd::tracker_block(50);
   const outlet::TrackerFrame frame = golden_frame();
   trackd::write_sensors(frame, trackd::LengthUnit::Feet, block);

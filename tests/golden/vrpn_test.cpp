@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "fusion-server/vrpn/vrpn_session.h"
+#include "fusion-server/vrpn/vrpn_conversation.h"
 #include "tests/support/matchers.h"
 #include "tests/support/vrpn/vrpn_client.h"
 
@@ -38,16 +38,17 @@ outlet::TrackerFrame frame() {
   return frame;
 }
 
-Session greeted() {
-  Session session(one_person(), {"127.0.0.1", true});
-  EXPECT_THAT(session.receive(testing::vrpn_cookie(), kTime), testing::IsOk());
-  return session;
+Conversation greeted() {
+  Conversation conversation(one_person(), {"127.0.0.1", true});
+  EXPECT_THAT(conversation.receive(testing::vrpn_cookie(), kTime), testing::IsOk());
+  return conversation;
 }
 
 TEST(VrpnGolden, CookieAndDescriptions) {
-  EXPECT_EQ(Session::greeting(), golden("cookie"));
-  Session session(one_person(), {});
-  EXPECT_EQ(session.receive(testing::vrpn_cookie(), kTime).value_or(""), golden("descriptions"));
+  EXPECT_EQ(Conversation::greeting(), golden("cookie"));
+  Conversation conversation(one_person(), {});
+  EXPECT_EQ(conversation.receive(testing::vrpn_cookie(), kTime).value_or(""),
+            golden("descriptions"));
 }
 
 TEST(VrpnGolden, AFrameInTheStreamAndAsADatagram) {
@@ -57,12 +58,12 @@ TEST(VrpnGolden, AFrameInTheStreamAndAsADatagram) {
 }
 
 TEST(VrpnGolden, Pong) {
-  Session session = greeted();
+  Conversation conversation = greeted();
   const auto answer =
-      session.receive(testing::vrpn_description(-1, 3, "Body0") +
-                          testing::vrpn_description(-2, 1, "vrpn_Base ping_message") +
-                          testing::vrpn_message(3, 1, ""),
-                      kTime);
+      conversation.receive(testing::vrpn_description(-1, 3, "Body0") +
+                               testing::vrpn_description(-2, 1, "vrpn_Base ping_message") +
+                               testing::vrpn_message(3, 1, ""),
+                           kTime);
   EXPECT_EQ(answer.value_or(""), golden("pong"));
 }
 

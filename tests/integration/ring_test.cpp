@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "common/base/units.h"
-#include "tests/bench/judge.h"
-#include "tests/bench/place_error.h"
+#include "tests/judge/judge.h"
+#include "tests/judge/place_error.h"
 
 namespace chorus::bench {
 namespace {

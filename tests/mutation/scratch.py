@@ -12,7 +12,8 @@ from schema import HEADER, merged
 
 ROOMS = ("registration", "fusion", "facing", "associate", "align")
 # For files of other rooms that a named mutant is in: file -> tests.
-OTHER_TESTS = {"fusion-server/poll/clock_estimate.cpp": ["poll.clock_estimate_test"]}
+OTHER_TESTS = {"common/time/clock_estimate.cpp": ["time.clock_estimate_test"],
+               "common/body/interpolate.cpp": ["body.interpolate_test"]}
 SLOW = ("solve_test", "pair_test", "covariance_test")  # asked last
 FAILED = re.compile(r"\[  FAILED  \] (\S+)")
 BROKEN = ".broken.h"

@@ -18,6 +18,7 @@ void scale(Visibility& visibility, double factor) {
 
 /// Towards half a turn below 1, towards the reliable angle above.
 double flip_angle(double angle, double reliable, double factor) {
+  if (angle >= deg(180)) return angle;  // never stays never
   if (factor < 1) return angle + (1.0 - factor) * (deg(180) - angle);
   return reliable + (angle - reliable) / factor;
 }
@@ -26,6 +27,7 @@ void scale(YawBehaviour& yaw, double factor) {
   yaw.shoulder_slope = std::pow(yaw.shoulder_slope, factor);
   yaw.hip_slope = std::pow(yaw.hip_slope, factor);
   yaw.flip_to_front = flip_angle(yaw.flip_to_front, yaw.reliable, factor);
+  for (double* own : {&yaw.flip_own, &yaw.flip_back_own}) *own /= std::max(1.0, factor);
   yaw.flip_to_rear =
       factor > 0 ? flip_angle(yaw.flip_to_rear, yaw.reliable, factor) : deg(360);  // never
 }

@@ -31,4 +31,8 @@ using PersonHarmonics = std::array<Harmonics, kJointCount>;
 [[nodiscard]] Eigen::Vector3d joint_bias(JointId id, const Eigen::Vector3d& joint, double facing,
                                          const JointBias& bias, const PersonHarmonics& harmonics);
 
+/// Its mean square over people and SDKs [m^2].
+[[nodiscard]] Eigen::Matrix3d bias_moment(JointId id, const Eigen::Vector3d& joint, double facing,
+                                          const JointBias& bias);
+
 }  // namespace chorus::synthetic::kinect

@@ -171,14 +171,16 @@ Eigen::Vector3d stretched(const Eigen::Vector3d& unit, const Eigen::Vector3d& ra
   return unit + (factor - 1.0) * ray.dot(unit) * ray;
 }
 
-Eigen::Vector3d hidden_error(std::size_t i, const ColouredState& state, const Stand& stand,
-                             const Visibility& visibility, const Eigen::Vector3d& ray) {
-  const double sigma = mm(kJointNoise[i].hidden) * visibility.hidden_scale * stand.hidden[i];
-  return sigma * stretched(state.hidden[i].value(), ray, visibility.hidden_depth);
-}
+/// The sizes of what a seen joint errs by at random, and the ray to it.
+struct Sizes {
+  double coloured = 0.0;                            ///< Across the ray [m]
+  double hidden = 0.0;                              ///< Across the ray [m]
+  Eigen::Vector3d white = Eigen::Vector3d::Zero();  ///< Along the axes [m]
+  Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();
+};
 
-Eigen::Vector3d white_error(std::size_t i, const Stand& stand, const Profile& profile, bool guessed,
-                            const Eigen::Vector3d& draw) {
+Eigen::Vector3d white_sigma(std::size_t i, const Stand& stand, const Profile& profile,
+                            bool guessed) {
   const JointNoise& row = kJointNoise[i];
   const double size = std::abs(stand.view.facing);
   const double side = std::sin(std::min(size, deg(180)));
@@ -192,7 +194,31 @@ Eigen::Vector3d white_error(std::size_t i, const Stand& stand, const Profile& pr
     const double more = moving * profile.white_inferred;
     sigma = (sigma.array().square() + more * more).sqrt();
   }
-  return profile.white_scale * sigma.cwiseProduct(draw);
+  return profile.white_scale * sigma;
+}
+
+Sizes sizes_of(std::size_t i, const Joint& joint, const Stand& stand, double time,
+               const Profile& profile, const ErrorKeys& keys) {
+  const ColouredError& coloured = profile.coloured;
+  const bool guessed = joint.state == JointState::Inferred;
+  double sigma = mm(kJointNoise[i].coloured) * coloured.scale *
+                 growth(static_cast<JointId>(i), stand, coloured);
+  if (guessed) sigma = std::max(sigma * coloured.inferred_factor, coloured.inferred_least);
+  return {sigma * tail_scale(coloured, time, keys, i),
+          mm(kJointNoise[i].hidden) * profile.visibility.hidden_scale * stand.hidden[i],
+          white_sigma(i, stand, profile, guessed), joint.position.stableNormalized()};
+}
+
+/// Covariance of a stretched unit error.
+Eigen::Matrix3d stretched_covariance(double sigma, const Eigen::Vector3d& ray, double factor) {
+  return sigma * sigma *
+         (Eigen::Matrix3d::Identity() + (factor * factor - 1.0) * ray * ray.transpose());
+}
+
+/// How a guess is drawn to where it would hang.
+Eigen::Vector3d pull(JointId id, const Skeleton<SensorSpace>& body, const ColouredError& coloured) {
+  if (body[id].state != JointState::Inferred) return Eigen::Vector3d::Zero();
+  return coloured.inferred_pull * (resting_place(body, id) - body[id].position);
 }
 
 }  // namespace
@@ -208,19 +234,29 @@ void add_errors(Skeleton<SensorSpace>& body, const ColouredState& state, const S
     const Eigen::Vector3d white_draw = white.gauss3();
     Joint& joint = body.joints[i];
     if (!joint.seen()) continue;
-    const bool guessed = joint.state == JointState::Inferred;
-    double sigma = mm(kJointNoise[i].coloured) * coloured.scale * growth(id, stand, coloured);
-    if (guessed) {
-      sigma = std::max(sigma * coloured.inferred_factor, coloured.inferred_least);
-      joint.position += coloured.inferred_pull * (resting_place(exact, id) - joint.position);
-    }
-    const Eigen::Vector3d ray = exact.joints[i].position.stableNormalized();
-    joint.position += sigma * tail_scale(coloured, time, keys, i) *
-                      stretched(coloured_unit(i, state, coloured), ray, coloured.depth_factor);
-    joint.position += hidden_error(i, state, stand, profile.visibility, ray);
-    joint.position += white_error(i, stand, profile, guessed, white_draw);
+    const Sizes sizes = sizes_of(i, exact.joints[i], stand, time, profile, keys);
+    joint.position += pull(id, exact, coloured);
+    joint.position += sizes.coloured * stretched(coloured_unit(i, state, coloured), sizes.ray,
+                                                 coloured.depth_factor);
+    joint.position += sizes.hidden * stretched(state.hidden[i].value(), sizes.ray,
+                                               profile.visibility.hidden_depth);
+    joint.position += sizes.white.cwiseProduct(white_draw);
     joint.position += teleport(id, time, profile.gross, keys);
   }
+}
+
+Eigen::Matrix3d error_moment(JointId id, const Skeleton<SensorSpace>& body, const Stand& stand,
+                             double time, const Profile& profile, const ErrorKeys& keys) {
+  const std::size_t i = index_of(id);
+  const Sizes sizes = sizes_of(i, body[id], stand, time, profile, keys);
+  const Eigen::Vector3d drawn = pull(id, body, profile.coloured);
+  const Eigen::Vector3d thrown = teleport(id, time, profile.gross, keys);
+  Eigen::Matrix3d moment =
+      stretched_covariance(sizes.coloured, sizes.ray, profile.coloured.depth_factor) +
+      stretched_covariance(sizes.hidden, sizes.ray, profile.visibility.hidden_depth) +
+      drawn * drawn.transpose() + thrown * thrown.transpose();
+  moment.diagonal() += sizes.white.cwiseAbs2();
+  return moment;
 }
 
 }  // namespace chorus::synthetic::kinect

@@ -80,4 +80,10 @@ void advance(ColouredState& state, const Stand& stand, const Moment& moment, con
 void add_errors(Skeleton<SensorSpace>& body, const ColouredState& state, const Stand& stand,
                 double time, const Profile& profile, const ErrorKeys& keys);
 
+/// The true mean square, about nothing, of what add_errors() adds to a seen joint of this body
+/// [m^2]: the covariance of what is random, and what is not.
+[[nodiscard]] Eigen::Matrix3d error_moment(JointId id, const Skeleton<SensorSpace>& body,
+                                           const Stand& stand, double time, const Profile& profile,
+                                           const ErrorKeys& keys);
+
 }  // namespace chorus::synthetic::kinect

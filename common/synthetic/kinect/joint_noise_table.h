@@ -29,7 +29,7 @@ struct JointNoise {
 inline constexpr std::array<JointNoise, kJointCount> kJointNoise{{
     {17, 0, 3.5, 2.7, 5.2, 0.15, 1.7, 0.5},  // SpineBase
     {14, 0, 1.8, 1.6, 4.1, 0.15, 1.7, 0.5},  // SpineMid
-    {4.8, 0, 1.2, 1.3, 3.4, 0.075, 0.15, 0.20},  // Neck
+    {5.1, 0, 1.2, 1.3, 3.4, 0.075, 0.15, 0.20},  // Neck
     {9, 0, 1.5, 1.5, 3.0, 0.022, 0.022, 0.022},  // Head
     {7, 18, 2.5, 2.2, 4.5, 0.4, 1.0, 0.8},  // ShoulderLeft
     {10, 18, 3.0, 3.0, 5.0, 0.8, 1.6, 1.6},  // ElbowLeft

@@ -7,6 +7,7 @@
 
 #include "common/body/bones.h"
 #include "common/body/facing.h"
+#include "common/synthetic/kinect/error_moment.h"
 #include "common/synthetic/kinect/floor_estimate.h"
 
 namespace chorus::synthetic::kinect {
@@ -54,8 +55,10 @@ KinectSensor::KinectSensor(const Scene& scene, KinectSetting setting, Timestamp 
       number_(first_frame(setting_.profile.delivery, start, keys(0))),
       memory_(scene.people.size()),
       ids_(keys(0), scene.people.size()) {
+  setting_.profile.yaw = own_behaviour(setting_.profile.yaw, setting_.seed, setting_.place);
   for (std::size_t person = 0; person < memory_.size(); ++person) {
     memory_[person].bias = harmonics_of(setting_.profile.bias, {setting_.bias_seed, person});
+    memory_[person].proportions = proportions_of(setting_.profile.fit, keys(person));
   }
 }
 
@@ -98,7 +101,9 @@ std::optional<Skeleton<SensorSpace>> KinectSensor::shown(std::size_t person, Tim
   advance(memory.flip, facing, profile.delivery.period, profile.yaw);
   stand.misjudged = misjudged_yaw(facing, memory.flip, profile.yaw);
   stand.hidden = as_labelled(memory.hidden, memory.flip);
-  advance(memory.coloured, stand, {time, profile.delivery.period}, profile, keys(person));
+  const Moment moment{time, profile.delivery.period};
+  advance(memory.coloured, stand, moment, profile, keys(person));
+  advance(memory.fit, stand, moment, profile, keys(person));
   memory.before = exact;
 
   Skeleton<SensorSpace> labelled = exact;
@@ -111,10 +116,30 @@ std::optional<Skeleton<SensorSpace>> KinectSensor::shown(std::size_t person, Tim
   }
   Skeleton<SensorSpace> body = as_shown(labelled, facing, memory.flip, profile.yaw);
   limit(body, profile.view);
-  if (!is_reported(body) || is_lost(profile.delivery, time, keys(person))) return std::nullopt;
+  if (!is_reported(body) || is_lost(profile.delivery, time, keys(person))) {
+    memory.flip = {};  // whom it finds again, it meets anew
+    return std::nullopt;
+  }
   merge_legs(body, profile.gross);
-  add_errors(body, memory.coloured, stand, time, profile, keys(person));
+  err(body, person, stand, time);
   return body;
+}
+
+void KinectSensor::err(Skeleton<SensorSpace>& body, std::size_t person, const Stand& stand,
+                       double time) const {
+  const Profile& profile = setting_.profile;
+  const Memory& memory = memory_[person];
+  const bool fits = profile.fit.bones > 0;
+  Moments moments;
+  if (setting_.confides) {
+    moments = moments_of({bodies_[person], body, memory.flip, stand}, time, profile, keys(person));
+  }
+  add_errors(body, memory.coloured, stand, time, profile, keys(person));
+  if (fits) {
+    const double scale = scale_of(memory.fit, time, profile.fit, keys(person));
+    body = fitted(body, bodies_[person], scale, memory.proportions);
+  }
+  if (setting_.confides) confide(body, moments);
 }
 
 Stand KinectSensor::stand_of(std::size_t person) const {

@@ -1,7 +1,7 @@
 // One body-tracking depth sensor of the workshop: every layer of error, in order, frame by frame.
 //
 //   truth -> visibility -> yaw behaviour and flip -> view limits -> states -> bias
-//         -> coloured and white error -> gross errors -> drops, gaps, latency, clock
+//         -> coloured and white error -> fitted body -> gross errors -> drops, gaps, latency, clock
 //
 // Deterministic: the same room, place, profile, seed and start
 // give the same frames.
@@ -12,6 +12,7 @@
 
 #include "common/synthetic/body_sensor.h"
 #include "common/synthetic/kinect/delivery.h"
+#include "common/synthetic/kinect/fitted_body.h"
 #include "common/synthetic/kinect/gross_error.h"
 #include "common/synthetic/kinect/joint_bias.h"
 #include "common/synthetic/kinect/profile.h"
@@ -28,6 +29,9 @@ struct KinectSetting {
   std::uint64_t seed = 1;       ///< The same for all sensors of a room: shared errors are shared.
   std::uint64_t bias_seed = 1;  ///< SDK and people: the same person errs the same way in every run.
   bool own_clock = true;        ///< Stamps by the host's erring clock; false: true time.
+  /// Joints bring the true mean square of their error as their covariance, which no sensor knows:
+  /// for bounds.
+  bool confides = false;
 };
 
 class KinectSensor final : public BodySensor {
@@ -44,11 +48,14 @@ class KinectSensor final : public BodySensor {
     FlipState flip;
     std::array<double, kJointCount> hidden{};  ///< Noticed share of each joint.
     ColouredState coloured;
+    FitState fit;
     PersonHarmonics bias{};
+    Proportions proportions{};
     std::optional<Skeleton<SensorSpace>> before;  ///< One frame ago, exactly.
   };
   void look(Timestamp exposed);
   [[nodiscard]] std::optional<Skeleton<SensorSpace>> shown(std::size_t person, Timestamp exposed);
+  void err(Skeleton<SensorSpace>& body, std::size_t person, const Stand& stand, double time) const;
   [[nodiscard]] Stand stand_of(std::size_t person) const;
   [[nodiscard]] ErrorKeys keys(std::size_t person) const;
 

@@ -43,7 +43,8 @@ struct Visibility {
 struct YawBehaviour {
   double reliable = 0;  ///< [rad]
   double shoulder_slope = 0, hip_slope = 0;
-  double flip_to_rear = 0, flip_to_front = 0;  ///< [rad]
+  double flip_to_rear = 0, flip_to_front = 0;  ///< Out and back; from half a turn on never [rad]
+  double flip_own = 0, flip_back_own = 0;      ///< How far one sensor's are off: both, back [rad]
   double flip_time = 0;                        ///< [s]
 };
 
@@ -70,6 +71,15 @@ struct ColouredError {
   double best_distance = 0, good_depth = 0;  ///< [m]
   double student_nu = 0;                     ///< 0: Gaussian.
   double tail_time = 0, most_tail = 0;       ///< How long a bad spell lasts [s]; its limit.
+};
+
+/// A tracker that fits a body of fixed proportions.
+struct BodyFit {
+  double bones = 0;        ///< 1: bones have their lengths times one scale; 0: joints err freely.
+  double scale = 0;        ///< Standard deviation of the scale.
+  double scale_tau = 0;    ///< While moving [s]
+  double scale_white = 0;  ///< Standard deviation from frame to frame.
+  double proportion = 0;   ///< Standard deviation of a bone's share, for good.
 };
 
 struct GrossError {
@@ -109,12 +119,13 @@ struct Profile {
   ColouredError coloured;
   double white_scale = 1.0;
   double white_inferred = 0.0;  ///< What inferred joints jitter more [m]
+  BodyFit fit;
   GrossError gross;
   ClockError clock;
   FloorError floor;
 };
 
-/// The nominal values of "A" or "B".
+/// The nominal values of "A", "B" or "D".
 [[nodiscard]] Profile nominal_profile(std::string_view name);
 
 /// Every parameter drawn uniformly from its interval; the same seed gives the same draw.

@@ -6,11 +6,13 @@
 
 #include "common/body/bones.h"
 #include "common/geometry/rotation.h"
+#include "common/synthetic/draw.h"
 
 namespace chorus::synthetic::kinect {
 namespace {
 
 constexpr double kHalfTurn = std::numbers::pi;
+constexpr std::uint64_t kPurpose = 931;
 
 bool is_leg(JointId id) { return id >= JointId::HipLeft && id <= JointId::FootRight; }
 
@@ -43,8 +45,22 @@ double shown_yaw(double yaw, double slope, const YawBehaviour& behaviour) {
   return std::copysign(behaviour.reliable + slope * (size - behaviour.reliable), yaw);
 }
 
+YawBehaviour own_behaviour(YawBehaviour behaviour, std::uint64_t seed, std::uint64_t sensor) {
+  Draw draw{kPurpose, seed, sensor};
+  const double both = behaviour.flip_own * draw.uniform(-1.0, 1.0);
+  const double back = behaviour.flip_back_own * draw.uniform(-1.0, 1.0);
+  behaviour.flip_to_rear += both;
+  behaviour.flip_to_front = std::min(behaviour.flip_to_front + both + back, behaviour.flip_to_rear);
+  return behaviour;
+}
+
 void advance(FlipState& state, double facing, double dt, const YawBehaviour& behaviour) {
   const double size = std::abs(facing);
+  if (!state.met) {
+    state.rear = size > 0.5 * (behaviour.flip_to_rear + behaviour.flip_to_front);
+    state.blend = state.rear ? 1.0 : 0.0;
+    state.met = true;
+  }
   if (!state.rear && size > behaviour.flip_to_rear) state.rear = true;
   if (state.rear && size < behaviour.flip_to_front) state.rear = false;
   const double step = behaviour.flip_time > 0 ? dt / behaviour.flip_time : 1.0;

@@ -3,8 +3,11 @@
 //
 // Up to `reliable` the yaw is right; beyond, shoulders and hips lag; past flip_to_rear the skeleton
 // is shown as if it faced the sensor, so left and right are exchanged, and it stays so until the
-// yaw is back below flip_to_front (hysteresis).
+// yaw is back below flip_to_front (hysteresis).  Whom it sees for the first time it takes to face
+// it: nothing of the person's past holds it to an earlier view.
 #pragma once
+
+#include <cstdint>
 
 #include "common/body/skeleton.h"
 #include "common/synthetic/kinect/profile.h"
@@ -15,10 +18,15 @@ namespace chorus::synthetic::kinect {
 struct FlipState {
   bool rear = false;   ///< Labels are exchanged.
   double blend = 0.0;  ///< 0 front ... 1 rear, moving while the SDK changes its mind.
+  bool met = false;    ///< Has been decided once.
 };
 
 /// The yaw the SDK shows for a true yaw [rad] with this slope; odd, continuous, front only.
 [[nodiscard]] double shown_yaw(double yaw, double slope, const YawBehaviour& behaviour);
+
+/// One sensor's own angles: the profile's, each off by up to flip_own and flip_back_own.
+[[nodiscard]] YawBehaviour own_behaviour(YawBehaviour behaviour, std::uint64_t seed,
+                                         std::uint64_t sensor);
 
 /// One frame further: decides the flip from the true facing angle (0 = squarely facing).
 void advance(FlipState& state, double facing, double dt, const YawBehaviour& behaviour);

@@ -4,6 +4,8 @@
 #include <array>
 #include <vector>
 
+#include "services/sensor/device/bridge/bridge.h"
+#include "services/sensor/device/bridge/bridge_settings.h"
 #include "services/sensor/device/replay/replay.h"
 #include "services/sensor/device/simulated/simulated.h"
 #include "services/sensor/device/simulated/simulated_settings.h"
@@ -24,6 +26,10 @@ constexpr std::array kKinds{
                [](ConfigReader& section, const DeviceContext& context) {
                  return open_replay(section, context.sensor, context.time);
                }},
+    DeviceKind{
+        "bridge",
+        [](ConfigReader& section, const SensorId&) { (void)bridge::read_bridge_settings(section); },
+        &bridge::make_bridge},
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The kinds of devices there are, one row each: the section "device" of the configuration.
+// The kinds of devices, one row each: the section "device" of the configuration.
 //
 // A new kind is a folder beside this file and a row in device_kinds.cpp.
 #pragma once
@@ -10,21 +10,23 @@
 
 #include "common/base/config_reader.h"
 #include "common/base/strong_id.h"
+#include "common/http/router.h"
 #include "common/sensor/frame_source.h"
 #include "services/sensor/device/host_time.h"
 
 namespace chorus::sensor_service {
 
-/// What a device is made with beside its own section.
+/// What a device is made from beside its own section.
 struct DeviceContext {
   SensorId sensor;
   HostTime time;
+  http::Router& router;  ///< Where a device adds resources of its own, while it is made.
 };
 
 struct DeviceKind {
   std::string_view name;  ///< device.kind, and the section device.NAME.
-  /// Complains about every mistake in the section, also when another kind is chosen, so that a file
-  /// may describe all of them.
+  /// Complains about every mistake in the section, also when another kind is selected, so that a
+  /// file may describe all of them.
   void (*read)(ConfigReader& section, const SensorId& sensor);
   /// The device, ready to run.
   Result<std::unique_ptr<FrameSource>> (*make)(ConfigReader& section, const DeviceContext& context);
@@ -33,7 +35,7 @@ struct DeviceKind {
 /// The first is the default.
 [[nodiscard]] std::span<const DeviceKind> device_kinds();
 
-/// Which device is asked for.  Two are equal when the same kind is told the same.
+/// Which device is wanted.  Two are equal when kind and settings are.
 struct DeviceChoice {
   std::string kind;
   std::string section;  ///< JSON, assignments of the command line included.
@@ -44,7 +46,7 @@ struct DeviceChoice {
 /// The section "device"; mistakes are reported by the reader's finish().
 void read_device(ConfigReader config, const SensorId& sensor, DeviceChoice& out);
 
-/// Only the kind that is chosen is made.
+/// Makes only the kind that is selected.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> make_device(const DeviceChoice& choice,
                                                                const DeviceContext& context);
 

@@ -16,9 +16,9 @@
 #include "common/base/result.h"
 #include "common/http/client.h"
 #include "common/time/timestamp.h"
-#include "tests/bench/child_process.h"
 #include "tests/bench/faults/link.h"
-#include "tests/bench/scratch_folder.h"
+#include "tests/bench/live/child_process.h"
+#include "tests/bench/live/scratch_folder.h"
 
 namespace chorus::bench {
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/resource/frame_resource.h"
+#include "common/resource/link_lines.h"
 #include "common/synthetic/scene.h"
 #include "common/time/clock.h"
 #include "tests/support/builders.h"
@@ -45,7 +46,8 @@ Guest::Said honest(const Eigen::Isometry3d& world_from_sensor, Timestamp now) {
 Guest::Guest(std::string id, Script script) : id_(std::move(id)), script_(std::move(script)) {
   auto router = std::make_shared<http::Router>();
   router->live("/frame", document_);
-  server_ = std::make_unique<http::Server>(http::ServerConfig{}, router);
+  server_ = std::make_unique<http::Server>(http::ServerConfig{.policy = resource::answer_policy()},
+                                           router);
   if (!server_->start()) std::abort();  // loopback, any port
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }

@@ -8,7 +8,7 @@
 
 #include "tests/bench/faults/guest.h"
 #include "tests/bench/faults/trial.h"
-#include "tests/bench/statistics.h"
+#include "tests/judge/statistics.h"
 
 namespace chorus::bench {
 namespace {
@@ -147,7 +147,7 @@ Result<void> ghost_far(Trial& trial) {
 }
 
 Result<void> liar(Trial& trial, double by) {
-  constexpr double kMostWorse = 0.030;  // p95 [m]
+  constexpr double kMaxWorse = 0.030;  // p95 [m]
   Liars liars(1, [by](Timestamp, Guest::Said truth) {
     for (BodyFrame& body : truth.bodies) body = moved(body, {by, 0, 0});
     return truth;
@@ -156,7 +156,7 @@ Result<void> liar(Trial& trial, double by) {
   if (!lied) return pass(lied);
   const double before = percentile(errors(lied->seen, lied->calm, lied->begun), 0.95);
   const double after = percentile(errors(lied->seen, lied->begun, lied->end), 0.95);
-  trial.check(after - before <= kMostWorse,
+  trial.check(after - before <= kMaxWorse,
               fmt::format("the pelvis is off by {:.0f} mm more (p95): {:.0f} to {:.0f}",
                           1e3 * (after - before), 1e3 * before, 1e3 * after));
   return {};
@@ -185,7 +185,7 @@ Result<void> crowds(Trial& trial) {
 
 /// It never moves: no registration can place the sensor that sees it, however often it is tried.
 Result<void> coat_stand(Trial& trial) {
-  constexpr std::int64_t kMostVersions = 3;
+  constexpr std::int64_t kMaxVersions = 3;
   const auto place = place_of(3, kRing);
   Guest guest("x", [&](Timestamp when) {
     auto said = honest(place, Timestamp(std::chrono::hours(1)));  // as it stood then
@@ -207,7 +207,7 @@ Result<void> coat_stand(Trial& trial) {
   const auto versions = told.value("version", std::int64_t{0}) - before;
   trial.check(told.value("verdict", "") == "Good",
               fmt::format("the verdict stays Good: {}", told.value("verdict", "none")));
-  trial.check(versions <= kMostVersions, fmt::format("versions in 14 s: {}", versions));
+  trial.check(versions <= kMaxVersions, fmt::format("versions in 14 s: {}", versions));
   trial.check_others(*cell, account_of(watch.seen(), begun, now()), {"s1", "s2", "s3"});
   return {};
 }

@@ -9,17 +9,17 @@
 #include <vector>
 
 #include "common/base/duration.h"
-#include "common/http/asio.h"
+#include "common/net/asio.h"
 
 namespace chorus::bench {
 namespace {
 
-using http::error_code;
-using http::net::buffer;
+using asio::buffer;
+using net::error_code;
 using Instant = std::chrono::steady_clock::time_point;
 
 constexpr std::size_t kMessageBytes = 16 * 1024;
-constexpr std::size_t kMostWaiting = 8u << 20;  // [bytes] under way per direction
+constexpr std::size_t kMaxWaiting = 8u << 20;  // [bytes] under way per direction
 constexpr auto kFrozenLook = std::chrono::milliseconds(20);
 
 struct Switches {
@@ -36,7 +36,7 @@ struct Surroundings {
 /// One direction of one connection: reads, holds back, writes.
 class Direction {
  public:
-  Direction(http::Socket& from, http::Socket& to, Surroundings around, bool answers)
+  Direction(net::Socket& from, net::Socket& to, Surroundings around, bool answers)
       : from_(from), to_(to), around_(around), answers_(answers), timer_(from.get_executor()) {}
 
   void start(std::shared_ptr<void> keep) {
@@ -61,11 +61,11 @@ class Direction {
   void write();
   void end();
 
-  http::Socket& from_;
-  http::Socket& to_;
+  net::Socket& from_;
+  net::Socket& to_;
   Surroundings around_;
   bool answers_;
-  http::Timer timer_;
+  net::Timer timer_;
   std::shared_ptr<void> keep_;
   std::array<char, kMessageBytes> bytes_{};
   std::deque<Message> waiting_;
@@ -76,7 +76,7 @@ class Direction {
 };
 
 void Direction::read() {
-  if (reading_ || over_ || waiting_bytes_ > kMostWaiting) return;
+  if (reading_ || over_ || waiting_bytes_ > kMaxWaiting) return;
   reading_ = true;
   from_.async_read_some(buffer(bytes_),
                         [this, keep = keep_](const error_code& failed, std::size_t size) {
@@ -126,30 +126,30 @@ void Direction::write() {
     size = std::min(size, static_cast<std::size_t>(left));
     passes = left - static_cast<std::int64_t>(size);
   }
-  http::net::async_write(to_, buffer(bytes.data(), size),
-                         [this, keep = keep_](const error_code& failed, std::size_t written) {
-                           if (failed) return end();
-                           waiting_bytes_ -= written;
-                           Message& first = waiting_.front();
-                           if (written < first.bytes.size()) {
-                             first.bytes.erase(0, written);
-                           } else {
-                             waiting_.pop_front();
-                           }
-                           write_next();
-                         });
+  asio::async_write(to_, buffer(bytes.data(), size),
+                    [this, keep = keep_](const error_code& failed, std::size_t written) {
+                      if (failed) return end();
+                      waiting_bytes_ -= written;
+                      Message& first = waiting_.front();
+                      if (written < first.bytes.size()) {
+                        first.bytes.erase(0, written);
+                      } else {
+                        waiting_.pop_front();
+                      }
+                      write_next();
+                    });
 }
 
 void Direction::end() {
   error_code ignored;
   over_ = true;
-  to_.shutdown(http::tcp::socket::shutdown_send, ignored);
-  from_.shutdown(http::tcp::socket::shutdown_receive, ignored);
+  to_.shutdown(net::tcp::socket::shutdown_send, ignored);
+  from_.shutdown(net::tcp::socket::shutdown_receive, ignored);
   stop();
 }
 
 struct Connection : std::enable_shared_from_this<Connection> {
-  Connection(http::Socket accepted, Surroundings around)
+  Connection(net::Socket accepted, Surroundings around)
       : client(std::move(accepted)),
         server(client.get_executor()),
         requests(client, server, around, false),
@@ -163,8 +163,8 @@ struct Connection : std::enable_shared_from_this<Connection> {
     server.close(ignored);
   }
 
-  http::Socket client;
-  http::Socket server;
+  net::Socket client;
+  net::Socket server;
   Direction requests;
   Direction answers;
 };
@@ -178,7 +178,7 @@ enum class Standing { Alone, AtTheEnd, Followed };
 double stall(const LinkModel& link, Standing standing, std::mt19937& random) {
   constexpr double kTimeout = 0.2;  // Linux: the shortest retransmission timeout [s]
   constexpr double kProbe = 2.0;    // a tail loss probe goes after so many round trips
-  constexpr int kMostTries = 6;
+  constexpr int kMaxTries = 6;
   std::bernoulli_distribution lost(link.loss);
   const double round_trip = 2 * link.delay + link.jitter;
   const double timeout = kTimeout + round_trip;
@@ -186,7 +186,7 @@ double stall(const LinkModel& link, Standing standing, std::mt19937& random) {
   double wait = standing == Standing::Alone      ? timeout
                 : standing == Standing::AtTheEnd ? (kProbe + 1) * round_trip
                                                  : round_trip;
-  for (int i = 0; i < kMostTries && lost(random); ++i) {
+  for (int i = 0; i < kMaxTries && lost(random); ++i) {
     out += wait;
     wait = std::max(timeout, 2 * wait);
   }
@@ -216,19 +216,19 @@ struct Pump::Impl {
       : model(first),
         random(seed),
         around{&model, &switches, &random},
-        target(http::net::ip::address_v4::loopback(), to),
-        acceptor(io, {http::net::ip::address_v4::loopback(), 0}) {}
+        target(asio::ip::address_v4::loopback(), to),
+        acceptor(io, {asio::ip::address_v4::loopback(), 0}) {}
 
   void accept() {
-    acceptor.async_accept([this](const error_code& failed, http::Socket socket) {
+    acceptor.async_accept([this](const error_code& failed, net::Socket socket) {
       if (failed) return;
       auto connection = std::make_shared<Connection>(std::move(socket), around);
       connections.push_back(connection);
       connection->server.async_connect(target, [connection](const error_code& refused) {
         if (refused) return connection->cut();
         error_code ignored;
-        for (http::Socket* each : {&connection->client, &connection->server})
-          each->set_option(http::tcp::no_delay(true), ignored);
+        for (net::Socket* each : {&connection->client, &connection->server})
+          each->set_option(net::tcp::no_delay(true), ignored);
         connection->requests.start(connection);
         connection->answers.start(connection);
       });
@@ -246,13 +246,13 @@ struct Pump::Impl {
     io.stop();
   }
 
-  http::net::io_context io{1};
+  asio::io_context io{1};
   LinkModel model;  ///< Changed on the io_context's thread.
   Switches switches;
   std::mt19937 random;
   Surroundings around;
-  http::tcp::endpoint target;
-  http::Acceptor acceptor;
+  net::tcp::endpoint target;
+  net::Acceptor acceptor;
   std::list<std::weak_ptr<Connection>> connections;
   std::jthread thread;
 };
@@ -264,13 +264,13 @@ Pump::Pump(std::uint16_t target, const LinkModel& model, std::uint32_t seed)
 }
 
 Pump::~Pump() {
-  http::net::post(impl_->io, [impl = impl_.get()] { impl->stop(); });
+  asio::post(impl_->io, [impl = impl_.get()] { impl->stop(); });
 }
 
 std::uint16_t Pump::port() const { return impl_->acceptor.local_endpoint().port(); }
 
 void Pump::become(const LinkModel& model) {
-  http::net::post(impl_->io, [impl = impl_.get(), model] { impl->model = model; });
+  asio::post(impl_->io, [impl = impl_.get(), model] { impl->model = model; });
 }
 
 void Pump::freeze(bool frozen) {

@@ -123,7 +123,7 @@ Result<void> natnet_seats(Trial& trial) {
 
 /// Anybody can write a datagram in anybody's name: one must not turn on a flood.
 Result<void> natnet_one_datagram(Trial& trial) {
-  constexpr std::size_t kMost = 2048;
+  constexpr std::size_t kMax = 2048;
   auto rig = crowded(trial, natnet_settings(), "outputs.natnet.command_port");
   if (!rig) return pass(rig);
   const auto victim = datagrams_to({rig->host, rig->port});
@@ -131,7 +131,7 @@ Result<void> natnet_one_datagram(Trial& trial) {
   std::size_t bytes = 0;
   const Timestamp begun = now();
   while (seconds(now() - begun) < kPatience) bytes += victim.hear(0.1).size();
-  trial.check(bytes > 0 && bytes <= kMost,
+  trial.check(bytes > 0 && bytes <= kMax,
               fmt::format("4 bytes asked, {} answered within 3 s", bytes));
   trial.check(natnet_serves({.port = rig->port}), "a client that goes on asking gets frames");
   check_rest(trial, *rig->cell);

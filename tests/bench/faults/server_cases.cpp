@@ -3,10 +3,13 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <optional>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -67,14 +70,15 @@ Result<void> server_killed(Trial& trial) {
   return kill_and_return(trial, *cell);
 }
 
-/// Nothing is said about folders, as in the configuration we ship; a walk, then the server dies.
+/// The state folder of the configuration we ship, in a home of its own; a walk, then the server
+/// dies.
 Result<void> default_folders(Trial& trial) {
   auto home = ScratchFolder::make();
   if (!home) return pass(home);
   const std::string folder = home->path().string();
   CellPlan plan;
   plan.placed = false;
-  plan.fusion = {"registration.seconds=10", "registration.first_solve_s=4"};
+  plan.fusion = {"state_dir=auto", "registration.seconds=10", "registration.first_solve_s=4"};
   plan.surroundings.environment = {"HOME=" + folder, "XDG_STATE_HOME=" + folder + "/state",
                                    "STATE_DIRECTORY=" + folder + "/state"};
   for (int i = 0; i < 3; ++i) plan.of_sensor[i] = {"device.simulated.scene.reach_m=1.2"};
@@ -174,6 +178,59 @@ Result<void> full_disk(Trial& trial) {
   return {};
 }
 
+/// What the program writes before it ends, and how it ends; nothing when it runs.
+struct Ending {
+  int code = 0;
+  std::string said;
+};
+Result<std::optional<Ending>> start_with_memory(std::size_t bytes) {
+  constexpr double kPatience = 3.0;
+  constexpr int kRuns = -1;
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return fail(ErrorCode::Io, "pipe", "there is none");
+  ChildSurroundings surroundings;
+  surroundings.address_space = bytes;
+  surroundings.error_output = ends[1];
+  auto fusion = ChildProcess::start("chorus-fusion",
+                                    {"--config", "deploy/config/fusion.json", "--set",
+                                     "http.port=0", "--set", "state_dir=", "--set", "viewer_dir="},
+                                    surroundings);
+  ::close(ends[1]);
+  if (!fusion) {
+    ::close(ends[0]);
+    return pass(fusion);
+  }
+  Ending ending{fusion->wait(kPatience), {}};
+  std::array<char, 4096> text{};
+  if (ending.code != kRuns) {
+    const ssize_t got = ::read(ends[0], text.data(), text.size());
+    ending.said.assign(text.data(), static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+  }
+  ::close(ends[0]);
+  if (ending.code == kRuns) return std::optional<Ending>{};
+  return std::optional(ending);
+}
+
+/// From far too little to enough, it runs or says why it does not.
+Result<void> little_memory(Trial& trial) {
+  constexpr std::size_t kMegabyte = 1U << 20U;
+  constexpr int kSignalled = 128;
+  int refused = 0;
+  bool runs = false;
+  for (std::size_t mb = 24; mb <= 1024 && !runs; mb += mb / 6) {
+    const auto ending = start_with_memory(mb * kMegabyte);
+    if (!ending) return pass(ending);
+    runs = !*ending;
+    if (runs) break;
+    ++refused;
+    trial.check((*ending)->code < kSignalled && !(*ending)->said.empty(),
+                fmt::format("with {} MB it ends with {} and says: {}", mb, (*ending)->code,
+                            (*ending)->said));
+  }
+  trial.check(runs && refused > 0, fmt::format("{} starts were refused, then one runs", refused));
+  return {};
+}
+
 }  // namespace
 
 FaultCases server_cases() {
@@ -184,6 +241,7 @@ FaultCases server_cases() {
       {"folder-not-writable", "the state folder cannot be made", folder_not_writable},
       {"unread-log", "stderr is a full pipe that nobody reads, and a sensor dies", unread_log},
       {"full-disk", "POST /recordings/ on a full disk", full_disk},
+      {"little-memory", "started with too little memory, then with enough", little_memory},
   };
 }
 

@@ -23,7 +23,7 @@ bool readable(int descriptor, double patience) {
 }
 
 RawSocket socket_to(const End& end, int kind, bool small_buffer) {
-  const int descriptor = ::socket(AF_INET, kind, 0);
+  const int descriptor = ::socket(AF_INET, kind | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(end.port);
@@ -51,9 +51,9 @@ bool RawSocket::say(std::string_view bytes) const {
 }
 
 std::string RawSocket::hear(double patience) const {
-  constexpr std::size_t kMost = 65536;
+  constexpr std::size_t kMax = 65536;
   if (!readable(descriptor_, patience)) return {};
-  std::string bytes(kMost, '\0');
+  std::string bytes(kMax, '\0');
   const ssize_t got = ::recv(descriptor_, bytes.data(), bytes.size(), MSG_DONTWAIT);
   bytes.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
   return bytes;

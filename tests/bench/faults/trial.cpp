@@ -8,10 +8,10 @@
 namespace chorus::bench {
 namespace {
 
-constexpr double kRate = 30.0;        // [Hz]
-constexpr double kMostOff = 3.0;      // frames, of what is due: at the ends of what is counted
-constexpr double kLeastShare = 97.0;  // [percent]
-constexpr double kLongestGap = 0.35;  // between two frames: the alignment delay and some [s]
+constexpr double kRate = 30.0;      // [Hz]
+constexpr double kMaxOff = 3.0;     // frames, of what is due: at the ends of what is counted
+constexpr double kMinShare = 97.0;  // [percent]
+constexpr double kMaxGap = 0.35;    // between two frames: the alignment delay and some [s]
 
 }  // namespace
 
@@ -26,14 +26,14 @@ void Trial::check_others(Cell& cell, const Account& account,
   const double off = account.hz == 0.0
                          ? kRate
                          : (account.hz - kRate) * static_cast<double>(account.frames) / account.hz;
-  check(std::abs(off) <= kMostOff, fmt::format("30 Hz: {:.1f}", account.hz));
+  check(std::abs(off) <= kMaxOff, fmt::format("30 Hz: {:.1f}", account.hz));
   check(account.lost == 0, fmt::format("no instant without its body: {}", account.lost));
-  check(account.longest_gap < kLongestGap,
-        fmt::format("no pause above {} s: {:.2f}", kLongestGap, account.longest_gap));
+  check(account.longest_gap < kMaxGap,
+        fmt::format("no pause above {} s: {:.2f}", kMaxGap, account.longest_gap));
   for (const std::string& name : others) {
     const double share = account.share_of(name);
     others_percent = std::isnan(others_percent) ? share : std::min(others_percent, share);
-    check(share >= kLeastShare, fmt::format("{} is in {:.0f} % of the frames", name, share));
+    check(share >= kMinShare, fmt::format("{} is in {:.0f} % of the frames", name, share));
   }
 }
 

@@ -6,11 +6,12 @@
 #include <mutex>
 #include <thread>
 
-#include "common/http/asio.h"
 #include "common/http/client.h"
+#include "common/http/status.h"
+#include "common/net/asio.h"
 #include "common/resource/frame_resource.h"
 #include "common/time/clock.h"
-#include "tests/bench/statistics.h"
+#include "tests/judge/statistics.h"
 
 namespace chorus::bench {
 namespace {
@@ -51,19 +52,18 @@ struct Watch::Impl {
   }
 
   void take(const Result<http::ClientResponse>& answer) {
-    constexpr int kOk = 200;
-    constexpr int kNotModified = 304;
-    if (!answer || (answer->status != kOk && answer->status != kNotModified)) {
+    if (!answer ||
+        (answer->status != http::status::kOk && answer->status != http::status::kNotModified)) {
       etag.clear();
       timer.expires_after(std::chrono::milliseconds(5));
-      timer.async_wait([this](const http::error_code& stopped) {
+      timer.async_wait([this](const net::error_code& stopped) {
         if (!stopped) ask();
       });
       return;
     }
     if (const auto it = answer->headers.find("etag"); it != answer->headers.end())
       etag = it->second;
-    if (answer->status == kOk) keep(*answer);
+    if (answer->status == http::status::kOk) keep(*answer);
     ask();
   }
 
@@ -86,9 +86,9 @@ struct Watch::Impl {
   }
 
   std::uint16_t port;
-  http::net::io_context io{1};
+  asio::io_context io{1};
   http::AsyncClient client;
-  http::Timer timer;
+  net::Timer timer;
   std::string etag;
   mutable std::mutex mutex;  ///< Guards what was seen.
   std::vector<FusedInstant> seen;
@@ -112,10 +112,10 @@ std::vector<FusedInstant> Watch::seen() const {
     seen = impl_->seen;
   }
   std::vector<FusedInstant> out;
-  constexpr std::int64_t kMost = 60;  // more are gone, or a restart
+  constexpr std::int64_t kMax = 60;  // more are gone, or a restart
   for (const FusedInstant& each : seen) {
     const std::int64_t last = out.empty() ? each.sequence - 1 : out.back().sequence;
-    if (each.sequence - last <= kMost) {
+    if (each.sequence - last <= kMax) {
       for (std::int64_t missed = last + 1; missed < each.sequence; ++missed)
         impl_->fetch(missed, each.received, out);
     }

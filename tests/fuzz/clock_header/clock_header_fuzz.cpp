@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "fusion-server/poll/clock_estimate.h"
+#include "common/time/clock_estimate.h"
 
 namespace {
 
@@ -22,18 +22,18 @@ void require(bool holds) {
 
 /// What was read can be written and read again.
 void check_header(std::string_view text) {
-  const auto stamps = poll::parse_server_stamps(text);
+  const auto stamps = parse_server_stamps(text);
   if (!stamps) return;
   const std::string again = std::to_string(to_unix_ns(stamps->receipt)) + " " +
                             std::to_string(to_unix_ns(stamps->sending));
-  const auto same = poll::parse_server_stamps(again);
+  const auto same = parse_server_stamps(again);
   require(same && same->receipt == stamps->receipt && same->sending == stamps->sending);
 }
 
 /// The bytes as exchanges of four stamps, one after the other.
 void check_filter(std::string_view bytes) {
   constexpr std::size_t kStamps = 4;
-  poll::ClockFilter filter;
+  ClockFilter filter;
   Timestamp newest{};
   while (bytes.size() >= kStamps * sizeof(std::int64_t)) {
     std::int64_t stamps[kStamps];
@@ -44,7 +44,7 @@ void check_filter(std::string_view bytes) {
     if (newest < kEarliest || newest > kLatest) continue;  // our own clock is no stranger's
     const auto estimate = filter.at(newest);
     if (estimate) require(estimate->uncertainty >= Duration::zero());
-    (void)poll::correction(estimate);
+    (void)correction(estimate);
   }
 }
 

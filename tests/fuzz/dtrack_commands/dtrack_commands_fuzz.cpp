@@ -28,7 +28,7 @@ Outcome read(std::string_view bytes, std::size_t step) {
     outcome.readable = reader.feed(bytes.substr(at, step));
     std::string command;
     while (outcome.readable && reader.next(command)) {
-      require(command.size() <= kMostCommandBytes);
+      require(command.size() <= kMaxCommandBytes);
       require(command.find('\0') == std::string::npos);
       outcome.commands.push_back(command);
     }
@@ -41,7 +41,7 @@ void check_answers(const std::vector<std::string>& commands, bool in_control) {
   Device device;
   for (const std::string& command : commands) {
     const std::string said = answer(command, conversation, device);
-    require(said.size() <= kMostCommandBytes + 1 && said.find('\0') == said.size() - 1);
+    require(said.size() <= kMaxCommandBytes + 1 && said.find('\0') == said.size() - 1);
     require(said.starts_with("dtrack2 "));
     require(in_control || !device.measuring);
   }

@@ -44,7 +44,7 @@ void check(const Reply& reply, std::span<const char> datagram) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   if (size < 1) return 0;
   CommandDesk made = desk((bytes[0] & 1) != 0);
-  Now now{outlet::SteadyTime{} + std::chrono::hours(1), Timestamp{}};
+  Now now{SteadyTime{} + std::chrono::hours(1), Timestamp{}};
   std::span<const char> left(reinterpret_cast<const char*>(bytes + 1), size - 1);
   while (left.size() >= 2) {
     const auto from = static_cast<std::uint8_t>(left[0]);

@@ -9,15 +9,15 @@
 #include <string_view>
 #include <vector>
 
-#include "common/http/asio.h"
 #include "common/http/client.h"
 #include "common/http/event_reader.h"
+#include "common/net/asio.h"
 #include "fusion-server/poll/answer.h"
 
 namespace {
 
 using namespace chorus;
-using http::net::ip::address_v4;
+using asio::ip::address_v4;
 
 void require(bool holds) {
   if (!holds) std::abort();
@@ -26,42 +26,41 @@ void require(bool holds) {
 /// Answers the first request with these bytes and hangs up.
 class Sensor {
  public:
-  Sensor(http::net::io_context& io, std::string_view answer)
+  Sensor(asio::io_context& io, std::string_view answer)
       : acceptor_(io), socket_(io), answer_(answer) {
-    const http::tcp::endpoint any(address_v4::loopback(), 0);
+    const net::tcp::endpoint any(address_v4::loopback(), 0);
     acceptor_.open(any.protocol());
-    acceptor_.set_option(http::net::socket_base::reuse_address(true));
+    acceptor_.set_option(asio::socket_base::reuse_address(true));
     acceptor_.bind(any);
     acceptor_.listen();
-    acceptor_.async_accept(socket_, [this](http::error_code failed) {
+    acceptor_.async_accept(socket_, [this](net::error_code failed) {
       if (!failed) hear();
     });
   }
   [[nodiscard]] std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
   void close() {
-    http::error_code ignored;
+    net::error_code ignored;
     acceptor_.close(ignored);
     socket_.close(ignored);
   }
 
  private:
   void hear() {
-    socket_.async_read_some(
-        http::net::buffer(asked_), [this](http::error_code failed, std::size_t) {
-          if (failed) return close();
-          http::net::async_write(socket_, http::net::buffer(answer_),
-                                 [this](http::error_code, std::size_t) { close(); });
-        });
+    socket_.async_read_some(asio::buffer(asked_), [this](net::error_code failed, std::size_t) {
+      if (failed) return close();
+      asio::async_write(socket_, asio::buffer(answer_),
+                        [this](net::error_code, std::size_t) { close(); });
+    });
   }
 
-  http::Acceptor acceptor_;
-  http::Socket socket_;
+  net::Acceptor acceptor_;
+  net::Socket socket_;
   std::string_view answer_;
   std::array<char, 4096> asked_{};
 };
 
 std::optional<http::ClientResponse> ask(std::string_view answer) {
-  http::net::io_context io{1};
+  asio::io_context io{1};
   Sensor sensor(io, answer);
   http::AsyncClient client(io, "127.0.0.1", sensor.port(), {.max_body_bytes = 2u << 20});
   std::optional<http::ClientResponse> out;
@@ -94,9 +93,9 @@ void check_answer(std::string_view bytes) {
 
 /// However the stream is cut, the same events come out of it.
 void check_events(std::string_view bytes) {
-  constexpr std::size_t kMost = 2u << 20;
-  http::EventReader whole(kMost);
-  http::EventReader parts(kMost);
+  constexpr std::size_t kMax = 2u << 20;
+  http::EventReader whole(kMax);
+  http::EventReader parts(kMax);
   const auto at_once = whole.take(bytes);
   std::vector<http::ServerEvent> one_by_one;
   for (const char& each : bytes) {

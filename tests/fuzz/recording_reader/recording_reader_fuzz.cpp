@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "common/record/session_reader.h"
+#include "common/record/cell_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   const chorus::record::ReadLimits limits{
@@ -16,7 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   }
   if (read->notes.size() > chorus::record::kMaxNotes) __builtin_trap();
   // And whatever was read, as a recording of a cell: frames of every stream rise in time.
-  const auto session = chorus::record::session_of(*read, "fuzz", {.fused = true});
+  const auto session = chorus::record::cell_of(*read, "fuzz", {.fused = true});
   if (!session) return 0;
   for (const auto& sensor : session->sensors) {
     for (std::size_t i = 1; i < sensor.frames.size(); ++i) {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "fusion-server/vrpn/vrpn_session.h"
+#include "fusion-server/vrpn/vrpn_conversation.h"
 
 namespace {
 
@@ -24,10 +24,10 @@ struct Spoken {
   bool ended = false;
 };
 
-Spoken speak(Session& session, std::string_view bytes, std::size_t piece) {
+Spoken speak(Conversation& conversation, std::string_view bytes, std::size_t piece) {
   Spoken out;
   while (!bytes.empty() && !out.ended) {
-    const auto answer = session.receive(bytes.substr(0, piece), chorus::from_unix_ns(1));
+    const auto answer = conversation.receive(bytes.substr(0, piece), chorus::from_unix_ns(1));
     out.ended = !answer;
     if (answer) out.answers += *answer;
     bytes.remove_prefix(std::min(piece, bytes.size()));
@@ -62,8 +62,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   const std::string_view text(reinterpret_cast<const char*>(bytes), size);
   (void)read_request(text);
   static const Reports kReports = one_pose();
-  Session whole(trackers(), {"127.0.0.1", true});
-  Session pieces(trackers(), {"127.0.0.1", true});
+  Conversation whole(trackers(), {"127.0.0.1", true});
+  Conversation pieces(trackers(), {"127.0.0.1", true});
   const Spoken at_once = speak(whole, text, text.size());
   const Spoken bit_by_bit = speak(pieces, text, 7);
   require(at_once.ended == bit_by_bit.ended);
@@ -73,7 +73,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   check_messages(at_once.answers);
   check_messages(whole.stream(kReports));
   for (const std::string& datagram : whole.datagrams(kReports)) {
-    require(datagram.size() <= kLongestDatagram);
+    require(datagram.size() <= kMaxDatagram);
     check_messages(datagram);
   }
   return 0;

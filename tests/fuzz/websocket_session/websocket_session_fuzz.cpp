@@ -73,8 +73,8 @@ class Client {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  constexpr int kPatience = 2000;  // [ms]
-  constexpr int kSilence = 2;      // what has not come by then does not come [ms]
+  constexpr int kPatience = 10000;  // [ms] a busy machine is no finding
+  constexpr int kSilence = 2;       // what has not come by then does not come [ms]
   const std::string_view text(reinterpret_cast<const char*>(bytes), size);
   const std::size_t line = std::min(text.find('\n'), text.size());
   const Client client;

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "common/http/asio.h"
+#include "common/net/asio.h"
 #include "tests/integration/http/scripted_server.h"
 #include "tests/integration/http/test_server.h"
 
@@ -93,7 +93,7 @@ class AsyncClientTest : public testing::Test {
     EXPECT_TRUE(answer);
     return answer ? *answer : fail(ErrorCode::Internal, "", "no callback");
   }
-  net::io_context io_{1};
+  asio::io_context io_{1};
 };
 
 TEST_F(AsyncClientTest, KeepsItsConnection) {
@@ -139,7 +139,7 @@ TEST_F(AsyncClientTest, NoCallbackAfterCloseOrDestruction) {
     auto client = std::make_unique<AsyncClient>(io_, "127.0.0.1", service.server.port());
     client->send({"GET", "/frame", {{"Prefer", "wait=30"}, {"If-None-Match", "\"1-ttl\""}}},
                  milliseconds(60000), [](auto) { FAIL() << "called back"; });
-    net::post(io_, [&] { destroy ? client.reset() : client->close(); });
+    asio::post(io_, [&] { destroy ? client.reset() : client->close(); });
     io_.restart();
     io_.run();
   }

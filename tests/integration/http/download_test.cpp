@@ -28,7 +28,6 @@ class Download : public ::testing::Test {
       if (!body) return pass(body);
       DocumentOptions options;
       options.version = std::to_string((*body)->size());
-      options.rdf_source = false;
       options.file = std::move(*body);
       return make_document("application/octet-stream", {}, std::move(options));
     });

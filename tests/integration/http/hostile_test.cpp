@@ -118,8 +118,7 @@ TEST_F(HostileTest, IsRefusedWithAReasonAndCutOff) {
   for (const Refused& c : refused_requests()) {
     const std::string answer = refused(c.request + std::string(kGood));
     EXPECT_EQ(status_in(answer), c.status) << c.name << "\n" << answer;
-    EXPECT_EQ(times(answer, "Chorus-Clock: "), 1u)
-        << c.name << ": nothing after it may be answered";
+    EXPECT_EQ(times(answer, "Test-Clock: "), 1u) << c.name << ": nothing after it may be answered";
     EXPECT_THAT(answer, HasSubstr("Connection: close")) << c.name;
     EXPECT_THAT(answer, HasSubstr("application/problem+json")) << c.name;
     EXPECT_THAT(answer, HasSubstr("\"detail\":\"")) << c.name;
@@ -233,7 +232,7 @@ TEST_F(HostileTest, ConnectionCloseAndHttp10AreHonoured) {
 
 TEST_F(HostileTest, RunningOutOfDescriptorsDoesNotEndTheServer) {
 #ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "the sanitizers need a descriptor themselves to look at memory";
+  GTEST_SKIP() << "runs without AddressSanitizer, which needs a descriptor itself";
 #endif
   rlimit before{};
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/http/asio.h"
+#include "common/net/asio.h"
 
 namespace chorus::http::test {
 
@@ -16,7 +16,7 @@ namespace chorus::http::test {
 class ScriptedServer {
  public:
   explicit ScriptedServer(std::vector<std::string> answers)
-      : acceptor_(io_, tcp::endpoint(net::ip::address_v4::loopback(), 0)),
+      : acceptor_(io_, net::tcp::endpoint(asio::ip::address_v4::loopback(), 0)),
         port_(acceptor_.local_endpoint().port()),
         thread_([this, script = std::move(answers)] {
           for (const std::string& answer : script) serve(answer);
@@ -26,17 +26,17 @@ class ScriptedServer {
 
  private:
   void serve(const std::string& answer) {
-    tcp::socket socket(io_);
-    error_code failed;
+    net::tcp::socket socket(io_);
+    net::error_code failed;
     acceptor_.accept(socket, failed);
     std::array<char, 4096> bytes;
-    socket.read_some(net::buffer(bytes), failed);
-    net::write(socket, net::buffer(answer), failed);
-    if (answer.empty()) socket.read_some(net::buffer(bytes), failed);
+    socket.read_some(asio::buffer(bytes), failed);
+    asio::write(socket, asio::buffer(answer), failed);
+    if (answer.empty()) socket.read_some(asio::buffer(bytes), failed);
   }
 
-  net::io_context io_;
-  net::basic_socket_acceptor<tcp> acceptor_;
+  asio::io_context io_;
+  asio::basic_socket_acceptor<net::tcp> acceptor_;
   std::uint16_t port_;
   std::thread thread_;
 };

@@ -26,8 +26,14 @@ namespace chorus::http::test {
       options);
 }
 
+/// The owner of the test server.
+[[nodiscard]] inline AnswerPolicy test_policy() {
+  return {"Test-Clock", "Link: </kind>; rel=\"type\"\r\n",
+          "Link: </description>; rel=\"service-desc\"\r\n", "test"};
+}
+
 struct TestServer {
-  explicit TestServer(ServerConfig config = {}) : server(std::move(config), routes()) {
+  explicit TestServer(ServerConfig config = {}) : server(with_policy(std::move(config)), routes()) {
     const auto started = server.start();
     EXPECT_TRUE(started) << to_string(started.error());
   }
@@ -50,6 +56,10 @@ struct TestServer {
   Server server;
 
  private:
+  static ServerConfig with_policy(ServerConfig config) {
+    config.policy = test_policy();
+    return config;
+  }
   std::shared_ptr<const Router> routes() {
     auto router = std::make_shared<Router>();
     router->live("/frame", frame);

@@ -136,10 +136,10 @@ std::size_t bytes_taken(http::test::RawClient& client, std::string_view repeated
 
 class PatientVrpn : public test::VrpnRig {};
 
-// Closing the client is the stall limit's work, reading no more from it is kMostAnswers': with an
+// Closing the client is the stall limit's work, reading no more from it is kMaxAnswers': with an
 // hour of patience only the second keeps its answers from growing without end.
 TEST_F(PatientVrpn, FromAClientThatPingsAndNeverReadsNoMoreIsRead) {
-  constexpr std::size_t kMost = 32U << 20U;  // The system's own buffers take less than half of it.
+  constexpr std::size_t kMax = 32U << 20U;  // The system's own buffers take less than half of it.
   ServerOptions options;
   options.limits.stall = std::chrono::hours(1);
   serve(options);
@@ -148,11 +148,11 @@ TEST_F(PatientVrpn, FromAClientThatPingsAndNeverReadsNoMoreIsRead) {
                        vrpn_description(-2, 0, "vrpn_Base ping_message")));
   std::string pings;
   for (int i = 0; i < 1000; ++i) pings += vrpn_message(0, 0, "");
-  EXPECT_LT(bytes_taken(deaf, pings, kMost), kMost);
+  EXPECT_LT(bytes_taken(deaf, pings, kMax), kMax);
   EXPECT_EQ(server->counters().clients, 1u);
   // Its answers begin to be read, so it is heard again.
   std::size_t heard = 0;
-  while (deaf.say_some(pings.substr(0, 24), std::chrono::milliseconds(0)) == 0 && heard < kMost) {
+  while (deaf.say_some(pings.substr(0, 24), std::chrono::milliseconds(0)) == 0 && heard < kMax) {
     const std::size_t more = deaf.hear_some(std::chrono::seconds(10)).size();
     ASSERT_GT(more, 0u);
     heard += more;

@@ -14,8 +14,8 @@ using rdf::Term;
 using rdf::TermKind;
 using rdf::Triple;
 
-using Colours =
-    std::map<std::string, std::string>;  ///< Blank node label to what is known about it.
+/// Blank node label to what is known about it.
+using Colours = std::map<std::string, std::string>;
 
 std::string text_of(const Term& term, const Colours& colours) {
   switch (term.kind) {

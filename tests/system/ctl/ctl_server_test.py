@@ -244,7 +244,7 @@ def eventually(look, seconds=20):
         time.sleep(0.1)
 
 
-@unittest.skipUnless((BIN / "chorus-sensor").exists(), "chorus-sensor is not part of this build")
+@unittest.skipUnless((BIN / "chorus-sensor").exists(), "runs in builds with chorus-sensor")
 class Replay(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()

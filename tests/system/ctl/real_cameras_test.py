@@ -63,7 +63,7 @@ class Pose:
 
 
 @unittest.skipUnless(all((BIN / name).exists() for name in ("chorus-sensor", "chorus-fusion")),
-                     "chorus-sensor and chorus-fusion are not part of this build")
+                     "runs in builds with chorus-sensor and chorus-fusion")
 class RealCameras(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()

@@ -158,7 +158,7 @@ class NatNet(Rig):
             member.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP,
                               socket.inet_aton("239.255.42.99") + socket.inet_aton("127.0.0.1"))
         except OSError as error:
-            self.skipTest(f"this machine has no multicast on loopback: {error}")
+            self.skipTest(f"runs where loopback has multicast: {error}")
         fusion = self.tracker(**{"outputs.natnet.transmission": "multicast", "outputs.natnet.data_port": data_port})
         client = Client(self, self.port)
         server = natnet.server_info(client.ask(CONNECT, natnet.SERVER_INFO))

@@ -186,7 +186,7 @@ class Outputs(Rig):
                 for a, b in rows:
                     self.assert_near(a, b, 1e-4, name)
 
-    @unittest.skipUnless(shutil.which("oscdump"), "needs oscdump (Debian: liblo-tools)")
+    @unittest.skipUnless(shutil.which("oscdump"), "runs where oscdump is installed (Debian: liblo-tools)")
     def test_oscdump_reads_vmc_and_vrchat(self):
         ports = {"vmc": free_port(), "vrchat": free_port()}
         logs = {name: open(f"{self.folder.name}/{name}.txt", "w+") for name in ports}

@@ -33,7 +33,7 @@ def ask(port, method, path, token=None, body=b"", host=None):
         connection.close()
 
 
-@unittest.skipUnless(NGINX, "needs nginx (Debian package nginx)")
+@unittest.skipUnless(NGINX, "runs where nginx is installed (Debian: nginx)")
 class BehindAProxy(Rig):
     def proxy(self, behind, more=""):
         folder = pathlib.Path(self.folder.name) / f"nginx-{behind}"

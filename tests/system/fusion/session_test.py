@@ -52,7 +52,7 @@ class Sessions(Rig):
 
     def test_the_command_line_registers_afresh_and_joins_what_runs_by_itself(self):
         if not CHORUS.exists():
-            self.skipTest("chorus is not part of this build")
+            self.skipTest("runs in builds with the program chorus")
         fusion = self.start()
         wait_for("a session by itself", lambda: self.registration(fusion)["session"]["state"] == "collecting")
         for arguments in (("--seconds", "9"), ("--seconds", "8", "--fresh", "--json")):

@@ -87,7 +87,7 @@ class Vrpn(Rig):
                      in get(self.server.url + "metrics", accept="*/*")[2].decode())
         self.assertEqual(self.server.stop(), 0)
 
-    @unittest.skipUnless(shutil.which("vrpn_print_devices"), "vrpn_print_devices is not installed; see docs/guide/verify.md")
+    @unittest.skipUnless(shutil.which("vrpn_print_devices"), "runs where vrpn_print_devices is installed; see docs/guide/verify.md")
     def test_vrpn_reads_it_without_a_warning(self):
         for name in (f"Body0@127.0.0.1:{self.port}", f"Body0@tcp://127.0.0.1:{self.port}",
                      f"Body0_Head@127.0.0.1:{self.port}"):

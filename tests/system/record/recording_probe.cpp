@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "common/record/session_writer.h"
+#include "common/record/cell_writer.h"
 #include "tests/support/builders.h"
 
 namespace {
@@ -38,7 +38,7 @@ Result<void> write_known(const char* path) {
 
 /// Two sensors of a ring of two, one person, for two seconds.
 Result<void> write_session(const char* path) {
-  auto writer = SessionWriter::create(path, {{{"title", "probe"}}, false});
+  auto writer = CellWriter::create(path, {{{"title", "probe"}}, false});
   if (!writer) return pass(writer);
   PlacesChanged places{testing::kStart, R"({"version":1,"verdict":"Good","sensors":{}})", {}};
   for (int s = 0; s < 2; ++s)

@@ -18,7 +18,7 @@ def may_mount():
         return subprocess.run([*in_a_mount_namespace(folder), "true"], capture_output=True).returncode == 0
 
 
-@unittest.skipUnless(may_mount(), "needs a mount namespace")
+@unittest.skipUnless(may_mount(), "runs where a mount namespace may be made (root, or user namespaces)")
 class FullDisk(unittest.TestCase):
     def test_it_is_unavailable(self):
         folder = temporary_folder()

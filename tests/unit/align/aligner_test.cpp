@@ -1,12 +1,8 @@
 #include "fusion-server/align/aligner.h"
 
-#include <limits>
 #include <optional>
 
 #include <gtest/gtest.h>
-
-#include "common/base/units.h"
-#include "common/geometry/rotation.h"
 
 namespace chorus::align {
 namespace {
@@ -85,7 +81,7 @@ History habitual(Duration delay, int frames = 30) {
 TEST(Align, ASensorIsWaitedForAsLongAsItsFramesUsuallyTake) {
   const Duration instant = milliseconds(33 * 29 + 10);
   // One period, its delay, and a little grace.
-  EXPECT_EQ(usual_wait(habitual(milliseconds(2))), milliseconds(33 + 2 + 15));
+  EXPECT_EQ(longest_wait(habitual(milliseconds(2))), milliseconds(33 + 2 + 15));
   EXPECT_EQ(ask(habitual(milliseconds(2)), instant, milliseconds(45)).basis, Basis::Pending);
   EXPECT_EQ(ask(habitual(milliseconds(2)), instant, milliseconds(55)).basis, Basis::Lost);
   EXPECT_EQ(ask(habitual(milliseconds(110)), instant, milliseconds(150)).basis, Basis::Pending);
@@ -95,10 +91,10 @@ TEST(Align, ASensorIsWaitedForAsLongAsItsFramesUsuallyTake) {
 }
 
 TEST(Align, AFewFramesOrUnknownArrivalsMakeNoHabit) {
-  EXPECT_EQ(usual_wait(habitual(milliseconds(2), 9)), std::nullopt);
+  EXPECT_EQ(longest_wait(habitual(milliseconds(2), 9)), std::nullopt);
   History unknown = two_frames(milliseconds(30));
   for (int i = 2; i < 20; ++i) unknown.push(frame_at(milliseconds(30 * i), 0.0));
-  EXPECT_EQ(usual_wait(unknown), std::nullopt);
+  EXPECT_EQ(longest_wait(unknown), std::nullopt);
 }
 
 TEST(Align, AnEmptyHistoryIsPendingThenLost) {
@@ -133,65 +129,6 @@ TEST(Align, BasisAtAgreesWithTheFullAnswer) {
     EXPECT_EQ(basis_at(instant, instant + milliseconds(50), history, {}),
               ask(history, milliseconds(ms)).basis);
   }
-}
-
-TEST(Interpolate, TheWorseStateAndTheNearerSignWin) {
-  Skeleton<SensorSpace> a = body_at(kStart, 0).skeleton;
-  Skeleton<SensorSpace> b = body_at(kStart, 1).skeleton;
-  b[JointId::Neck].state = JointState::Inferred;
-  b[JointId::Neck].orientation.coeffs() = -about_y(deg(20)).coeffs();
-  const Joint neck = interpolate(a, b, 0.5)[JointId::Neck];
-  EXPECT_EQ(neck.state, JointState::Inferred);
-  EXPECT_NEAR(angular_distance(neck.orientation, about_y(deg(10))), 0.0, 1e-9);
-}
-
-TEST(Interpolate, AJointUnseenAtOneEndIsNotTracked) {
-  const Skeleton<SensorSpace> a = body_at(kStart, 0).skeleton;
-  Skeleton<SensorSpace> b = a;
-  b[JointId::Neck].position.x() = std::numeric_limits<double>::quiet_NaN();
-  const Joint neck = interpolate(a, b, 0.5)[JointId::Neck];
-  EXPECT_EQ(neck.state, JointState::NotTracked);
-  EXPECT_EQ(neck.position, Eigen::Vector3d::Zero());
-}
-
-TEST(Interpolate, AMissingOrientationStaysMissing) {
-  const Skeleton<SensorSpace> a = body_at(kStart, 0).skeleton;
-  Skeleton<SensorSpace> b = a;
-  b[JointId::Neck].orientation = Eigen::Quaterniond(0, 0, 0, 0);
-  EXPECT_EQ(interpolate(a, b, 0.5)[JointId::Neck].orientation.coeffs().norm(), 0.0);
-}
-
-TEST(Interpolate, RaysStayUnitVectorsAndCovariancesAreMixed) {
-  Skeleton<SensorSpace> a;
-  a[JointId::Neck] = {Eigen::Vector3d::UnitX(), Eigen::Quaterniond(0, 0, 0, 0), JointState::Tracked,
-                      Measurement::Ray};
-  a[JointId::Neck].covariance = Covariance(Eigen::Matrix3d(1e-4 * Eigen::Matrix3d::Identity()));
-  Skeleton<SensorSpace> b = a;
-  b[JointId::Neck].position = Eigen::Vector3d::UnitY();
-  b[JointId::Neck].covariance = Covariance(Eigen::Matrix3d(3e-4 * Eigen::Matrix3d::Identity()));
-  const Joint neck = interpolate(a, b, 0.5)[JointId::Neck];
-  EXPECT_TRUE(neck.bears());
-  EXPECT_NEAR(neck.position.norm(), 1.0, 1e-12);
-  EXPECT_NEAR(neck.position.x(), neck.position.y(), 1e-12);
-  EXPECT_NEAR(neck.covariance.matrix()(1, 1), 2e-4, 1e-9);
-}
-
-TEST(Interpolate, APointAndARayHaveNothingBetweenThem) {
-  Skeleton<SensorSpace> a;
-  a[JointId::Neck] = {Eigen::Vector3d::UnitX(), Eigen::Quaterniond(0, 0, 0, 0), JointState::Tracked,
-                      Measurement::Ray};
-  Skeleton<SensorSpace> b = a;
-  b[JointId::Neck].measurement = Measurement::Point;
-  EXPECT_EQ(interpolate(a, b, 0.5)[JointId::Neck].state, JointState::NotTracked);
-}
-
-TEST(Interpolate, NeverExtrapolates) {
-  const Skeleton<SensorSpace> a = body_at(kStart, 0).skeleton;
-  const Skeleton<SensorSpace> b = body_at(kStart, 1).skeleton;
-  EXPECT_DOUBLE_EQ(interpolate(a, b, 2.0)[JointId::Neck].position.x(), 1.0);
-  EXPECT_DOUBLE_EQ(interpolate(a, b, -1.0)[JointId::Neck].position.x(), 0.0);
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_DOUBLE_EQ(interpolate(a, b, nan)[JointId::Neck].position.x(), 0.0);
 }
 
 }  // namespace

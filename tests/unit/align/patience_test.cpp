@@ -1,6 +1,8 @@
 // One bad link does not make everybody wait.
 #include "fusion-server/align/patience.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "tests/support/builders.h"
@@ -12,14 +14,17 @@ using std::chrono::milliseconds;
 using testing::kStart;
 using testing::sensor_id;
 
-/// Thirty frames a second whose delay to us goes from `least` to `most` and back.
+/// Thirty frames a second whose delay to us goes from `least` to `most` again and again; none
+/// overtakes another.
 History sensor(Duration least, Duration most, int frames = 60) {
   History history;
+  Timestamp before{};
   for (int i = 0; i < frames; ++i) {
     SensorFrame frame;
     frame.sequence = static_cast<std::uint64_t>(i);
     frame.captured = kStart + milliseconds(33 * i);
-    frame.received = frame.captured + least + (most - least) * (i % 8) / 7;
+    frame.received = std::max(before, frame.captured + least + (most - least) * (i % 8) / 7);
+    before = frame.received;
     history.push(frame);
   }
   return history;
@@ -45,10 +50,45 @@ TEST(Patience, ASteadyOneIsGivenWhatItNeeds) {
   EXPECT_EQ(patience.of(slow).patience, AlignConfig{}.patience);
 }
 
-TEST(Patience, WhereAllAreUnsteadyTheMiddleOneRules) {
+/// Its last frame but `later` was held up on the way.
+History held_up(Duration delay, int later = 5) {
+  History history;
+  for (int i = 0; i < 60; ++i) {
+    SensorFrame frame;
+    frame.sequence = static_cast<std::uint64_t>(i);
+    frame.captured = kStart + milliseconds(33 * i);
+    frame.received = frame.captured + (i == 60 - later ? delay : milliseconds(3));
+    history.push(frame);
+  }
+  return history;
+}
+
+TEST(Patience, OneThatWasHeldUpOnceIsSteadyAndMakesNoRoomForTheUnsteadyOne) {
+  const History once = held_up(milliseconds(30), 1);
+  const History long_ago = held_up(milliseconds(150));
+  const History bad = sensor(milliseconds(0), milliseconds(400));
+  const Patience patience(
+      {{sensor_id("s1"), &once}, {sensor_id("s2"), &long_ago}, {sensor_id("s3"), &bad}}, {});
+  EXPECT_EQ(patience.of(once).patience, AlignConfig{}.patience);
+  EXPECT_LT(patience.of(bad).patience, milliseconds(60));
+}
+
+TEST(Patience, WhereAllAreAlikeNobodyIsUnsteady) {
   const History bad = sensor(milliseconds(0), milliseconds(100));
   const Patience patience({{sensor_id("s1"), &bad}, {sensor_id("s2"), &bad}}, {});
-  EXPECT_EQ(patience.of(bad).patience, *usual_wait(bad));
+  EXPECT_EQ(patience.of(bad).patience, AlignConfig{}.patience);
+}
+
+TEST(Patience, OnABusyMachineTheWorstOfAllIsUnsteady) {
+  const History busy = sensor(milliseconds(5), milliseconds(80));
+  const History bad = sensor(milliseconds(0), milliseconds(400));
+  const Patience patience({{sensor_id("s1"), &busy},
+                           {sensor_id("s2"), &busy},
+                           {sensor_id("s3"), &busy},
+                           {sensor_id("s4"), &bad}},
+                          {});
+  EXPECT_EQ(patience.of(busy).patience, AlignConfig{}.patience);
+  EXPECT_EQ(patience.of(bad).patience, *usual_wait(busy));
 }
 
 TEST(Patience, OfNewSensorsNothingIsKnown) {
@@ -57,7 +97,7 @@ TEST(Patience, OfNewSensorsNothingIsKnown) {
   EXPECT_EQ(patience.of(young).patience, AlignConfig{}.patience);
 }
 
-TEST(Habit, FramesThatFilledAGapTellNothingOfIt) {
+TEST(Habit, FramesThatCameAfterLaterOnesTellNothing) {
   History history = sensor(milliseconds(2), milliseconds(5), 20);
   SensorFrame ahead;
   ahead.sequence = 22;
@@ -72,8 +112,9 @@ TEST(Habit, FramesThatFilledAGapTellNothingOfIt) {
     EXPECT_EQ(history.push(late), PushVerdict::Late);
   }
   ASSERT_EQ(history.frames().size(), 23u);
-  EXPECT_LE(history.habit()->most_delay, milliseconds(5));
-  EXPECT_EQ(history.habit()->gap, milliseconds(33));
+  EXPECT_LE(history.habit()->late_delay, milliseconds(5));
+  // Just behind frame 19, until frame 22 was there.
+  EXPECT_EQ(history.habit()->longest_wait, milliseconds(3 * 33 + 4));
 }
 
 }  // namespace

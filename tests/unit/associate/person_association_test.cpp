@@ -30,7 +30,7 @@ struct Room {
 
   std::vector<Person> see(std::vector<SensorView> views) {
     instant += kFrame;
-    Grouping grouping = group(std::move(views), instant, tracks, config);
+    Grouping grouping = group({instant, std::move(views)}, tracks, config);
     tracks = grouping.tracks;
     return grouping.people;
   }

@@ -29,7 +29,7 @@ struct Floor {
 
   std::vector<Person> see(std::vector<SensorView> views) {
     instant += kFrame;
-    Grouping grouping = group(std::move(views), instant, tracks, {});
+    Grouping grouping = group({instant, std::move(views)}, tracks, {});
     tracks = grouping.tracks;
     return grouping.people;
   }

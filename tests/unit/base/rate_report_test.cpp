@@ -42,7 +42,6 @@ TEST(RateReport, ManyHitsGiveFewLinesAndEveryHitIsCountedOnce) {
   {
     RateReport dropped("frame dropped");
     for (int i = 0; i < kHits; ++i) dropped.hit();
-    EXPECT_EQ(dropped.total(), static_cast<std::uint64_t>(kHits));
   }
   const auto whole_seconds =
       std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now() - start);
@@ -75,7 +74,6 @@ TEST(RateReport, CountsFromManyThreads) {
       });
     }
     threads.clear();
-    EXPECT_EQ(dropped.total(), static_cast<std::uint64_t>(kThreads * kHits));
   }
   EXPECT_EQ(read_lines(::testing::internal::GetCapturedStderr()).events,
             static_cast<std::uint64_t>(kThreads * kHits));

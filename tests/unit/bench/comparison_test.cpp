@@ -1,11 +1,11 @@
-#include "tests/bench/comparison.h"
+#include "tests/bench/methods/comparison.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <sstream>
 
-#include "tests/bench/over_draws.h"
+#include "tests/bench/methods/over_draws.h"
 
 namespace chorus::bench {
 namespace {

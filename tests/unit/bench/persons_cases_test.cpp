@@ -1,4 +1,4 @@
-#include "tests/bench/persons_cases.h"
+#include "tests/bench/accuracy/persons_cases.h"
 
 #include <algorithm>
 

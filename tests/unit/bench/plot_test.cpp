@@ -1,4 +1,4 @@
-#include "tests/bench/plot.h"
+#include "tests/bench/report/plot.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,12 @@
-#include "tests/bench/registration_methods.h"
+#include "tests/bench/methods/registration_methods.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "common/base/units.h"
-#include "tests/bench/baselines/pair_estimators.h"
-#include "tests/bench/exchange.h"
-#include "tests/bench/place_error.h"
+#include "tests/bench/methods/pair_estimators.h"
+#include "tests/judge/place_error.h"
 
 namespace chorus::bench {
 namespace {
@@ -92,30 +91,6 @@ TEST(RowOfFour, OnlyNeighboursEverShareTheWalk) {
       const auto edge = register_pair(workshop.tracks[i], workshop.tracks[k], config);
       EXPECT_EQ(edge.has_value(), k == i + 1) << i << " and " << k;
     }
-  }
-}
-
-TEST(Exchange, ItsStampsAreInOrderAndTheHostsAreItsOwn) {
-  const Timestamp now = from_unix_ns(1'795'000'000'000'000'000);
-  const Link link{Network{}, synthetic::HostClock{2.0, 0.0, 0.0, now}, 1};
-  const poll::Exchange exchange = exchange_at(link, now, std::chrono::milliseconds(20));
-  EXPECT_LT(exchange.sent, exchange.received);
-  EXPECT_EQ(exchange.their_sending - exchange.their_receipt, std::chrono::milliseconds(20));
-  EXPECT_EQ(exchange.their_sending, now + std::chrono::seconds(2));
-  EXPECT_GE(exchange.received - now, from_seconds(Network{}.least));
-}
-
-TEST(Exchange, CorrectedStampsAreNearTrueTime) {
-  Setting setting = white_noise(pair_places(deg(90)), 5);
-  setting.clock_offset = 0.5;
-  const Workshop workshop = draw_workshop(setting);
-  const auto corrected = with_corrected_clocks(workshop, Network{});
-  for (std::size_t i = 0; i < 2; ++i) {
-    const Timestamp shown = workshop.tracks[i].frames.back().captured;
-    const Timestamp right = true_time(workshop.clocks[i], shown);
-    EXPECT_GT(std::chrono::abs(shown - right), std::chrono::milliseconds(20));
-    EXPECT_LT(std::chrono::abs(corrected[i].frames.back().captured - right),
-              std::chrono::milliseconds(3));
   }
 }
 

@@ -1,11 +1,11 @@
-#include "tests/bench/report.h"
+#include "tests/bench/report/report.h"
 
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "tests/bench/statistics.h"
+#include "tests/judge/statistics.h"
 
 namespace chorus::bench {
 namespace {

@@ -1,4 +1,4 @@
-#include "tests/bench/scratch_folder.h"
+#include "tests/bench/live/scratch_folder.h"
 
 #include <fstream>
 #include <utility>

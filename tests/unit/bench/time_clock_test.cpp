@@ -1,6 +1,8 @@
-#include "tests/bench/time_clock.h"
+#include "tests/bench/accuracy/time_clock.h"
 
 #include <gtest/gtest.h>
+
+#include "common/base/units.h"
 
 namespace chorus::bench {
 namespace {
@@ -41,6 +43,62 @@ TEST(ClockAblations, WithoutAgeingADriftingClockIsWorse) {
   ASSERT_EQ(methods.at(2).name, "without-ageing");
   const ClockCase drifting = clock_case("device-390ppm");
   EXPECT_GT(p95_of(drifting, methods, 2), 1.5 * p95_of(drifting, methods, 0));
+}
+
+TEST(Exchange, ItsStampsAreInOrderAndTheHostsAreItsOwn) {
+  const Timestamp now = from_unix_ns(1'795'000'000'000'000'000);
+  const Link link{Network{}, synthetic::HostClock{2.0, 0.0, 0.0, now}, 1};
+  constexpr Duration kHeld = std::chrono::milliseconds(20);
+  const ClockExchange exchange = exchange_of(link, {now, kHeld});
+  EXPECT_EQ(exchange.sent, now);
+  EXPECT_EQ(exchange.their_sending - exchange.their_receipt, kHeld);
+  EXPECT_GE(exchange.their_receipt - now, std::chrono::seconds(2) + from_seconds(Network{}.least));
+  EXPECT_GE(exchange.received - now, kHeld + 2 * from_seconds(Network{}.least));
+}
+
+TEST(Exchange, IsAnsweredWhenTheAnswerIsReady) {
+  const Timestamp now = from_unix_ns(1'795'000'000'000'000'000);
+  const Link link{Network{}, synthetic::HostClock{0.0, 0.0, 0.0, now}, 1};
+  const Timestamp ready = now + std::chrono::seconds(1);
+  EXPECT_EQ(exchange_of(link, {now, Duration{0}, ready}).their_sending, ready);
+}
+
+/// Keeps the exchanges that a method is shown.
+NamedClock listener(std::vector<ClockExchange>& heard) {
+  return {"listener", [&heard] {
+            return ClockMethod([&heard](const ClockExchange& each) {
+              heard.push_back(each);
+              return Duration{0};
+            });
+          }};
+}
+
+TEST(ClockErrors, HaveOneRequestUnderWayAtATime) {
+  std::vector<ClockExchange> heard;
+  ClockCase each = clock_case("wifi");
+  each.network.spike_share = 0.3;  // 60 ms spikes, 33 ms from one turn to the next
+  (void)clock_errors(each, {listener(heard)}, 1);
+  ASSERT_GT(heard.size(), 1000u);
+  for (std::size_t i = 1; i < heard.size(); ++i) {
+    ASSERT_GE(heard[i].sent, heard[i - 1].received) << i;
+  }
+}
+
+TEST(CorrectedClocks, MakeStampsNearTrueTime) {
+  Setting setting;
+  setting.profile = "gauss";
+  setting.places = pair_places(deg(90));
+  setting.length = std::chrono::seconds(5);
+  setting.clock_offset = 0.5;
+  const Workshop workshop = draw_workshop(setting);
+  const auto corrected = with_corrected_clocks(workshop, Network{});
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Timestamp shown = workshop.tracks[i].frames.back().captured;
+    const Timestamp right = true_time(workshop.clocks[i], shown);
+    EXPECT_GT(std::chrono::abs(shown - right), std::chrono::milliseconds(20));
+    EXPECT_LT(std::chrono::abs(corrected[i].frames.back().captured - right),
+              std::chrono::milliseconds(3));
+  }
 }
 
 }  // namespace

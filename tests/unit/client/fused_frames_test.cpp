@@ -32,10 +32,7 @@ std::string frame_text(int i, resource::SpaceKind space = resource::SpaceKind::W
   body.id = 4;
   body.captured = frame.captured;
   const auto person = testing::standing_person({0.1 * i, 0, 0});
-  for (std::size_t j = 0; j < kJointCount; ++j) {
-    body.joints[j] = {person.joints[j].position, person.joints[j].orientation,
-                      person.joints[j].state, 2.5e-4, 0};
-  }
+  for (std::size_t j = 0; j < kJointCount; ++j) body.joints[j] = {person.joints[j], 2.5e-4, 0};
   std::string text = resource::write(frame, resource::Format::Json);
   while (text.ends_with('\n')) text.pop_back();
   return text;

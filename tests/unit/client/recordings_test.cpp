@@ -5,8 +5,8 @@
 
 #include <sstream>
 
+#include "common/record/cell_writer.h"
 #include "common/record/frame_recording.h"
-#include "common/record/session_writer.h"
 #include "tests/support/builders.h"
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -24,7 +24,7 @@ using ::testing::HasSubstr;
 
 std::filesystem::path walk_in(const TemporaryFolder& folder) {
   const auto file = folder / "walk.mcap";
-  auto writer = record::SessionWriter::create(file, {}).value();
+  auto writer = record::CellWriter::create(file, {}).value();
   for (const int i : {0, 1, 2, 1, 3}) {
     auto frame = std::make_shared<resource::FrameResource>();
     frame->sequence = static_cast<std::uint64_t>(i) + 1;
@@ -44,11 +44,11 @@ TEST(ReadRecordings, TellWhatWasDamagedAndLeftOut) {
   const std::string bytes = bytes_of(file);
   std::ofstream(file, std::ios::binary | std::ios::trunc) << bytes.substr(0, bytes.size() - 30);
   std::ostringstream told;
-  const auto session = read_recordings({file}, &told);
-  ASSERT_THAT(session, IsOk());
+  const auto cell = read_recordings({file}, &told);
+  ASSERT_THAT(cell, IsOk());
   EXPECT_THAT(told.str(), HasSubstr("note: walk.mcap: the end is missing"));
   EXPECT_THAT(told.str(), HasSubstr("note: s1: left out 1 frames"));
-  EXPECT_THAT(notes_of(*session),
+  EXPECT_THAT(notes_of(*cell),
               ElementsAre(HasSubstr("the end is missing"), HasSubstr("left out 1")));
 }
 

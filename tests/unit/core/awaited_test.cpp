@@ -20,18 +20,18 @@ class Awaited : public ::testing::Test {
   void see(const char* sensor, std::size_t bodies) {
     SensorFrame frame = testing::sensor_frame(sensor, kStart, std::vector<BodyFrame>(bodies));
     frame.received = kStart;
-    sightings_.add(frame);
+    last_seen_.add(frame);
   }
   void place(const char* sensor) { registration_.sensors[sensor_id(sensor)] = Extrinsics{}; }
   std::vector<std::string> said() {
-    Situation s{sensors_, registration_, sightings_, nullptr, automatic_, retry_, kStart};
+    Situation s{sensors_, registration_, last_seen_, nullptr, automatic_, retry_, kStart};
     if (session_) s.session = &*session_;
     return awaited(s);
   }
 
   std::set<SensorId> sensors_{sensor_id("s1"), sensor_id("s2"), sensor_id("s3")};
   Registration registration_;
-  Sightings sightings_;
+  LastSeen last_seen_;
   std::optional<SessionStatus> session_;
   bool automatic_ = true;
   std::optional<Duration> retry_;
@@ -84,18 +84,18 @@ TEST_F(Awaited, NothingWhenAllHaveAPlaceAndTheMissingOneWhenOneHasNot) {
   EXPECT_THAT(said(), IsEmpty());
 }
 
-TEST(Sightings, AreOfTheNewestFrameAndGrowOld) {
-  Sightings sightings;
+TEST(LastSeen, AreOfTheNewestFrameAndGrowOld) {
+  LastSeen last_seen;
   SensorFrame frame = testing::sensor_frame("s1", kStart, std::vector<BodyFrame>(2));
   frame.received = kStart;
-  sightings.add(frame);
-  EXPECT_EQ(sightings.bodies(sensor_id("s1"), kStart + std::chrono::seconds(1)), 2u);
-  EXPECT_EQ(sightings.bodies(sensor_id("s1"), kStart + std::chrono::seconds(3)), 0u);
-  EXPECT_FALSE(sightings.delivers(sensor_id("s1"), kStart + std::chrono::seconds(3)));
-  EXPECT_EQ(sightings.bodies(sensor_id("s2"), kStart), 0u);
-  EXPECT_EQ(sightings.seeing(kStart), std::set{sensor_id("s1")});
-  sightings.keep({});
-  EXPECT_TRUE(sightings.seeing(kStart).empty());
+  last_seen.add(frame);
+  EXPECT_EQ(last_seen.bodies(sensor_id("s1"), kStart + std::chrono::seconds(1)), 2u);
+  EXPECT_EQ(last_seen.bodies(sensor_id("s1"), kStart + std::chrono::seconds(3)), 0u);
+  EXPECT_FALSE(last_seen.delivers(sensor_id("s1"), kStart + std::chrono::seconds(3)));
+  EXPECT_EQ(last_seen.bodies(sensor_id("s2"), kStart), 0u);
+  EXPECT_EQ(last_seen.seeing(kStart), std::set{sensor_id("s1")});
+  last_seen.keep({});
+  EXPECT_TRUE(last_seen.seeing(kStart).empty());
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/builders.h"
+#include "tests/unit/core/ring_of_three.h"
 
 namespace chorus::core {
 namespace {
@@ -18,26 +19,7 @@ using testing::kFrameInterval;
 using testing::kStart;
 using testing::sensor_id;
 
-constexpr int kSensors = 3;
-
-std::string name(int sensor) { return "s" + std::to_string(sensor + 1); }
-
-CoreConfig config() {
-  CoreConfig c;
-  for (int i = 0; i < kSensors; ++i) c.sensors.insert(sensor_id(name(i)));
-  return c;
-}
-
-Registration ring(int count = kSensors, Verdict verdict = Verdict::Good) {
-  Registration r;
-  r.verdict = verdict;
-  r.version = 4;
-  r.master = sensor_id("s1");
-  for (int i = 0; i < count; ++i) {
-    r.sensors[sensor_id(name(i))].world_from_sensor = testing::ring_sensor(i, kSensors);
-  }
-  return r;
-}
+CoreConfig config() { return of_three<CoreConfig>(); }
 
 /// Sensor's view of a person walking a small circle, `t` after the start.
 SensorFrame sight(int sensor, Duration t) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/builders.h"
+#include "tests/unit/core/ring_of_three.h"
 
 namespace chorus::core {
 namespace {
@@ -16,27 +17,7 @@ using ::testing::HasSubstr;
 using testing::kStart;
 using testing::sensor_id;
 
-constexpr int kSensors = 3;
-
-std::string name(int sensor) { return "s" + std::to_string(sensor + 1); }
-
-RegistrarConfig config() {
-  RegistrarConfig c;
-  for (int i = 0; i < kSensors; ++i) c.sensors.insert(sensor_id(name(i)));
-  return c;
-}
-
-Registration ring(int count = kSensors, Verdict verdict = Verdict::Good) {
-  Registration r;
-  r.verdict = verdict;
-  r.version = 4;
-  r.master = sensor_id("s1");
-  for (int i = 0; i < count; ++i) {
-    r.sensors[sensor_id(name(i))].world_from_sensor = testing::ring_sensor(i, kSensors);
-    r.verdicts[sensor_id(name(i))] = {verdict, {}};
-  }
-  return r;
-}
+RegistrarConfig config() { return of_three<RegistrarConfig>(); }
 
 Registration refused(const std::string& reason = "sensors s1 and s2 disagree") {
   Registration r;

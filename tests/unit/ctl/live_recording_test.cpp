@@ -71,7 +71,7 @@ class BrokenCell : public ::testing::Test {
 };
 
 TEST_F(BrokenCell, CountsWhatFailedAndWhatCouldNotBeReadFromTheBeginning) {
-  http::net::io_context io{1};
+  asio::io_context io{1};
   LiveRecordingOptions options;
   options.service = http::parse_url(url()).value();
   options.file = (folder_ / "a.mcap").string();

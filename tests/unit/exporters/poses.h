@@ -44,7 +44,10 @@ inline Take take_of(const std::vector<std::vector<Skeleton<WorldSpace>>>& person
 inline std::vector<Skeleton<WorldSpace>> walk() {
   const auto& shipped = motion::cmu_walk();
   const auto captured = motion::motion_from_amc(shipped.skeleton, shipped.takes.front()).value();
-  return motion::resampled(captured, 30.0).frames;
+  std::vector<Skeleton<WorldSpace>> frames;
+  const double last_s = static_cast<double>(captured.frames.size() - 1) / captured.rate_hz;
+  for (int i = 0; i / 30.0 <= last_s; ++i) frames.push_back(motion::at(captured, i / 30.0));
+  return frames;
 }
 
 /// The same with 20 mm of noise on every joint, as fused joints have it; the same every time.

@@ -23,31 +23,29 @@ BodyFrame person(const Eigen::Vector3d& neck, double yaw) {
   return body;
 }
 
-TEST(ViewOf, APersonSquarelyBeforeTheSensor) {
-  const Sight sight = view_of(person({0, 0, 2.5}, 0));
-  EXPECT_NEAR(sight.distance, 2.5, 1e-9);
-  EXPECT_NEAR(sight.facing, 0.0, 1e-9);
-  EXPECT_NEAR(sight.bearing, 0.0, 1e-9);
-  EXPECT_FALSE(from_behind(sight));
+TEST(StandingOf, APersonSquarelyBeforeTheSensor) {
+  const Standing standing = standing_of(person({0, 0, 2.5}, 0));
+  EXPECT_NEAR(standing.distance, 2.5, 1e-9);
+  EXPECT_NEAR(standing.facing, 0.0, 1e-9);
+  EXPECT_NEAR(standing.bearing, 0.0, 1e-9);
 }
 
-TEST(ViewOf, TurningIsFacing) {
-  EXPECT_NEAR(std::abs(view_of(person({0, 0, 2.5}, deg(30))).facing), deg(30), 1e-9);
-  EXPECT_TRUE(from_behind(view_of(person({0, 0, 2.5}, deg(120)))));
+TEST(StandingOf, TurningIsFacing) {
+  EXPECT_NEAR(std::abs(standing_of(person({0, 0, 2.5}, deg(30))).facing), deg(30), 1e-9);
+  EXPECT_NEAR(std::abs(standing_of(person({0, 0, 2.5}, deg(120))).facing), deg(120), 1e-9);
 }
 
-TEST(ViewOf, StandingAsideIsBearing) {
-  const Sight sight = view_of(person({1.0, 0, 1.0}, 0));
-  EXPECT_NEAR(std::abs(sight.bearing), deg(45), 1e-9);
-  EXPECT_NEAR(std::abs(sight.facing), deg(45), 1e-9);
+TEST(StandingOf, StandingAsideIsBearing) {
+  const Standing standing = standing_of(person({1.0, 0, 1.0}, 0));
+  EXPECT_NEAR(std::abs(standing.bearing), deg(45), 1e-9);
+  EXPECT_NEAR(std::abs(standing.facing), deg(45), 1e-9);
 }
 
-TEST(ViewOf, WhatCannotBeToldIsNaN) {
-  const Sight sight = view_of(BodyFrame{});
-  EXPECT_TRUE(std::isnan(sight.distance));
-  EXPECT_TRUE(std::isnan(sight.facing));
-  EXPECT_TRUE(std::isnan(sight.bearing));
-  EXPECT_FALSE(from_behind(sight));
+TEST(StandingOf, WhatCannotBeToldIsNaN) {
+  const Standing standing = standing_of(BodyFrame{});
+  EXPECT_TRUE(std::isnan(standing.distance));
+  EXPECT_TRUE(std::isnan(standing.facing));
+  EXPECT_TRUE(std::isnan(standing.bearing));
 }
 
 }  // namespace

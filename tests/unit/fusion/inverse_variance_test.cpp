@@ -7,20 +7,20 @@ namespace {
 
 constexpr double kHuber = 1.5;
 
-Sighting from(const Eigen::Vector3d& eye, const Eigen::Vector3d& position, NoiseModel noise = {},
-              JointState state = JointState::Tracked) {
-  Sighting sighting;
-  sighting.joint.position = position;
-  sighting.joint.state = state;
-  sighting.covariance = line_of_sight_covariance(sighting.joint, eye, noise);
-  return sighting;
+JointView from(const Eigen::Vector3d& eye, const Eigen::Vector3d& position, NoiseModel noise = {},
+               JointState state = JointState::Tracked) {
+  JointView view;
+  view.joint.position = position;
+  view.joint.state = state;
+  view.covariance = line_of_sight_covariance(view.joint, eye, noise);
+  return view;
 }
 
 TEST(InverseVariance, SensorsAtRightAnglesReplaceEachOthersDepth) {
   const NoiseModel blunt{.along = 0.2, .across = 0.01};
-  const std::vector sightings{from({0, 0, 100}, {0.00, 0, 0.05}, blunt),
-                              from({100, 0, 0}, {0.05, 0, 0.00}, blunt)};
-  const FusedJoint fused = inverse_variance(sightings, kHuber);
+  const std::vector views{from({0, 0, 100}, {0.00, 0, 0.05}, blunt),
+                          from({100, 0, 0}, {0.05, 0, 0.00}, blunt)};
+  const FusedJoint fused = inverse_variance(views, kHuber);
   // By hand, per axis: 0.05 (1/0.2^2) / (1/0.2^2 + 1/0.01^2) = 0.000125.
   EXPECT_NEAR(fused.joint.position.x(), 0.000125, 1e-5);
   EXPECT_NEAR(fused.joint.position.z(), 0.000125, 1e-5);
@@ -33,18 +33,18 @@ TEST(InverseVariance, OneViewIsItselfWithItsOwnVariance) {
 }
 
 TEST(InverseVariance, OneGrossOutlierAmongFourBarelyPulls) {
-  std::vector<Sighting> sightings;
-  for (const double x : {0.0, 0.004, -0.004}) sightings.push_back(from({0, 0, 100}, {x, 0, 0}));
-  sightings.push_back(from({0, 0, 100}, {1.0, 0, 0}));
-  EXPECT_LT(inverse_variance(sightings, kHuber).joint.position.norm(), 0.03);
-  EXPECT_NEAR(inverse_variance(sightings, 0).joint.position.x(), 0.25, 1e-3);  // no robust loss
+  std::vector<JointView> views;
+  for (const double x : {0.0, 0.004, -0.004}) views.push_back(from({0, 0, 100}, {x, 0, 0}));
+  views.push_back(from({0, 0, 100}, {1.0, 0, 0}));
+  EXPECT_LT(inverse_variance(views, kHuber).joint.position.norm(), 0.03);
+  EXPECT_NEAR(inverse_variance(views, 0).joint.position.x(), 0.25, 1e-3);  // no robust loss
 }
 
 TEST(InverseVariance, InferredCountsLess) {
-  std::vector<Sighting> sightings{from({0, 0, 5}, {0, 0, 0}),
-                                  from({0, 0, 5}, {0.01, 0, 0}, {}, JointState::Inferred)};
+  std::vector<JointView> views{from({0, 0, 5}, {0, 0, 0}),
+                               from({0, 0, 5}, {0.01, 0, 0}, {}, JointState::Inferred)};
   // Factor 3 in sigma is 9 in weight: 0.01 / (1 + 9).
-  EXPECT_NEAR(inverse_variance(sightings, kHuber).joint.position.x(), 0.001, 1e-5);
+  EXPECT_NEAR(inverse_variance(views, kHuber).joint.position.x(), 0.001, 1e-5);
 }
 
 TEST(InverseVariance, IsTotal) {

@@ -54,32 +54,20 @@ TEST(Document, NotModifiedHasTheValidatorsAndNoBody) {
   const std::string& lines = (*document.choose(""))->not_modified;
   EXPECT_THAT(lines, HasSubstr("ETag: \"42-ttl\"\r\n"));
   EXPECT_THAT(lines, HasSubstr("Content-Location"));
-  EXPECT_THAT(lines, HasSubstr("Link: "));
   EXPECT_THAT(lines, Not(HasSubstr("Content-Length")));
   EXPECT_TRUE(lines.ends_with("\r\n\r\n"));
 }
 
-TEST(Document, LinksSayWhatKindOfResourceItIs) {
-  DocumentOptions container;
-  container.container = true;
-  DocumentOptions image;
-  image.rdf_source = false;
-  const auto head = [](const DocumentOptions& options) {
-    return std::string((*make_document("text/plain", "", options)->choose(""))->head());
-  };
-  EXPECT_THAT(head({}), HasSubstr("ldp#RDFSource>; rel=\"type\""));
-  EXPECT_THAT(head({}), HasSubstr("</shapes>; rel=\"describedby\""));
-  EXPECT_THAT(head(container), HasSubstr("ldp#BasicContainer>; rel=\"type\""));
-  EXPECT_THAT(head(image), HasSubstr("ldp#NonRDFSource>; rel=\"type\""));
-  EXPECT_THAT(head(image), Not(HasSubstr("shapes")));
-}
-
-TEST(Document, PlainJsonNamesItsContextAndJsonLdDoesNot) {
-  const Document document = frame();
-  EXPECT_THAT(std::string((*document.choose("application/json"))->head()),
-              HasSubstr("json-ld#context"));
-  EXPECT_THAT(std::string((*document.choose("application/ld+json"))->head()),
-              Not(HasSubstr("json-ld#context")));
+TEST(Document, AVariantHasLinesOfItsOwnBeforeThoseOfAll) {
+  DocumentOptions options;
+  options.headers = {{"Accept-Post", "text/plain"}};
+  const Document document({{"text/turtle", [] { return std::string(); }, "", "Link: <a>\r\n"},
+                           {"application/json", [] { return std::string(); }}},
+                          options);
+  EXPECT_THAT(std::string((*document.choose(""))->head()),
+              HasSubstr("Link: <a>\r\nAccept-Post: text/plain\r\n"));
+  EXPECT_THAT((*document.choose(""))->not_modified, HasSubstr("Link: <a>\r\n"));
+  EXPECT_THAT(std::string((*document.choose("application/json"))->head()), Not(HasSubstr("Link")));
 }
 
 TEST(Document, ErrorsNameWhatThereIs) {

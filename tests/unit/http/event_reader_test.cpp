@@ -6,10 +6,10 @@
 namespace chorus::http {
 namespace {
 
-constexpr std::size_t kMost = 1000;
+constexpr std::size_t kMax = 1000;
 
 std::vector<ServerEvent> read(std::string_view text, std::size_t piece) {
-  EventReader reader(kMost);
+  EventReader reader(kMax);
   std::vector<ServerEvent> all;
   for (std::size_t i = 0; i < text.size(); i += piece) {
     auto some = reader.take(text.substr(i, piece));
@@ -46,20 +46,20 @@ TEST(EventReader, AByteOrderMarkIsTextEverywhereButAtTheBeginning) {
 }
 
 TEST(EventReader, WhatGrowsBeyondTheBoundIsRefused) {
-  EventReader endless_line(kMost);
-  EXPECT_TRUE(endless_line.take("data: " + std::string(kMost - 10, 'x')));
+  EventReader endless_line(kMax);
+  EXPECT_TRUE(endless_line.take("data: " + std::string(kMax - 10, 'x')));
   const auto refused = endless_line.take(std::string(20, 'x'));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::TooLarge);
-  EventReader many_lines(kMost);
+  EventReader many_lines(kMax);
   bool held = true;
-  for (std::size_t i = 0; i < kMost && held; ++i) held = many_lines.take("data: x\n").has_value();
+  for (std::size_t i = 0; i < kMax && held; ++i) held = many_lines.take("data: x\n").has_value();
   EXPECT_FALSE(held);
 }
 
 TEST(EventReader, ManySmallEventsAreNoLargeOne) {
-  EventReader reader(kMost);
-  for (std::size_t i = 0; i < kMost; ++i) {
+  EventReader reader(kMax);
+  for (std::size_t i = 0; i < kMax; ++i) {
     const auto some = reader.take("data: " + std::to_string(i) + "\n\n");
     ASSERT_TRUE(some);
     ASSERT_EQ(some->size(), 1u);

@@ -6,9 +6,9 @@
 namespace chorus::http {
 namespace {
 
-class Sleeper final : public Session {
+class Sleeper final : public Connection {
  public:
-  Sleeper() : Session("192.0.2.1") {}
+  Sleeper() : Connection("192.0.2.1") {}
   void wake() override { ++woken; }
   void expire() override {}
   void stop() override {}

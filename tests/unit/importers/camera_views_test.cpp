@@ -61,7 +61,7 @@ TEST(CameraViews, ImportTheShippedFolderInStep) {
   }
 }
 
-/// Ceilings of the committed measurement (tests/bench/real_bench.cpp) plus a tenth.
+/// Ceilings of the committed measurement (tests/bench/accuracy/real_bench.cpp) plus a tenth.
 TEST(CameraViews, LieNearTheTriangulationAndBestAcrossTheLineOfSight) {
   const auto set = import_files(FileFormat::Pose2Sim, {kFolder});
   ASSERT_THAT(set, IsOk());
@@ -116,22 +116,23 @@ TEST(LandmarkFit, RecoversAKnownPose) {
   camera.fx = camera.fy = 900.0;
   camera.cx = 640.0;
   camera.cy = 360.0;
-  LandmarkSight sight;
+  DetectedLandmarks detected;
   const Eigen::Isometry3d camera_from_body =
       Eigen::Translation3d(0.4, -0.2, 3.1) *
       Eigen::AngleAxisd(0.5, Eigen::Vector3d(0.2, 1.0, 0.1).normalized());
   for (std::size_t i = 0; i < kLandmarkCount; ++i) {
     const double t = static_cast<double>(i);
-    sight.in_body[i] = {0.3 * std::sin(t), 0.8 * std::cos(1.7 * t), 0.25 * std::sin(2.3 * t)};
-    const Eigen::Vector3d x = camera_from_body * sight.in_body[i];
-    sight.pixel[i] = {camera.fx * x.x() / x.z() + camera.cx, camera.fy * x.y() / x.z() + camera.cy};
-    sight.visibility[i] = i == 16 ? 0.3 : 0.9;
+    detected.in_body[i] = {0.3 * std::sin(t), 0.8 * std::cos(1.7 * t), 0.25 * std::sin(2.3 * t)};
+    const Eigen::Vector3d x = camera_from_body * detected.in_body[i];
+    detected.pixel[i] = {camera.fx * x.x() / x.z() + camera.cx,
+                         camera.fy * x.y() / x.z() + camera.cy};
+    detected.visibility[i] = i == 16 ? 0.3 : 0.9;
   }
   for (const Lateral lateral : {Lateral::PixelRay, Lateral::RigidBody}) {
-    const auto landmarks = fit_landmarks(sight, camera, lateral);
+    const auto landmarks = fit_landmarks(detected, camera, lateral);
     ASSERT_THAT(landmarks, IsOk());
     for (std::size_t i = 0; i < kLandmarkCount; ++i) {
-      const Eigen::Vector3d x = camera_from_body * sight.in_body[i];
+      const Eigen::Vector3d x = camera_from_body * detected.in_body[i];
       EXPECT_THAT((*landmarks)[i].position,
                   testing::VectorNear(Eigen::Vector3d(-x.x(), -x.y(), x.z()), 1e-4));
     }
@@ -141,31 +142,14 @@ TEST(LandmarkFit, RecoversAKnownPose) {
 }
 
 TEST(LandmarkFit, RefusesSightsThatFitNoBody) {
-  LandmarkSight sight;
+  DetectedLandmarks detected;
   for (std::size_t i = 0; i < kLandmarkCount; ++i) {
-    sight.in_body[i].setZero();
-    sight.pixel[i].setConstant(100.0);
+    detected.in_body[i].setZero();
+    detected.pixel[i].setConstant(100.0);
   }
-  EXPECT_FALSE(fit_landmarks(sight, Intrinsics{}).has_value());
-  for (auto& pixel : sight.pixel) pixel.setConstant(std::nan(""));
-  EXPECT_FALSE(fit_landmarks(sight, Intrinsics{}).has_value());
-}
-
-TEST(LandmarkJoints, AreMeansAsSureAsTheirLeastSureLandmark) {
-  Landmarks landmarks;
-  for (std::size_t i = 0; i < kLandmarkCount; ++i)
-    landmarks[i] = {Eigen::Vector3d(double(i), 1.0, 2.0), JointState::Tracked};
-  landmarks[24].state = JointState::Inferred;
-  landmarks[31].state = JointState::NotTracked;
-  const auto joints = joints_of(landmarks);
-  const Joint& base = joints[index_of(JointId::SpineBase)];
-  EXPECT_DOUBLE_EQ(base.position.x(), 23.5);
-  EXPECT_EQ(base.state, JointState::Inferred);
-  EXPECT_EQ(joints[index_of(JointId::FootLeft)].state, JointState::NotTracked);
-  for (const Joint& joint : joints) {
-    if (joint.state == JointState::NotTracked) continue;
-    EXPECT_NEAR(joint.position.y(), 1.0, 1e-9) << "weights sum to one";
-  }
+  EXPECT_FALSE(fit_landmarks(detected, Intrinsics{}).has_value());
+  for (auto& pixel : detected.pixel) pixel.setConstant(std::nan(""));
+  EXPECT_FALSE(fit_landmarks(detected, Intrinsics{}).has_value());
 }
 
 TEST(CameraViews, RefuseBadCalibrations) {

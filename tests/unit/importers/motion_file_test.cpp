@@ -161,7 +161,8 @@ TEST(MotionFile, NumbersThatNoMotionHasAreRefused) {
 
 TEST(MotionFile, RealSuitTakeIsARecording) {
   const auto file = shared_recordings() / "xsens_mvnx_bvh/test_mocap.mvnx";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "shared recordings are not here";
+  if (!std::filesystem::exists(file))
+    GTEST_SKIP() << "runs where ../shared/data stands beside the checkout";
   const auto read = read_motion_file(file, MotionFormat::Mvnx);
   ASSERT_THAT(read, IsOk());
   EXPECT_EQ(read->recording.frames.size(), 112u);

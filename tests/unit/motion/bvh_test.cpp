@@ -116,7 +116,7 @@ class RealBvh : public testing::TestWithParam<Dialect> {};
 TEST_P(RealBvh, LooksLikeAPerson) {
   const auto path = std::filesystem::path("../shared/data") / GetParam().path;
   std::ifstream file(path);
-  if (!file) GTEST_SKIP() << path << " is not here";
+  if (!file) GTEST_SKIP() << "runs where " << path << " is there";
   std::stringstream text;
   text << file.rdbuf();
   const auto bvh = parse_bvh(text.str(), path.filename().string(), GetParam().metres_per_unit);

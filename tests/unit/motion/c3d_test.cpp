@@ -179,7 +179,7 @@ std::string shared_bytes(const std::string& name) {
 
 TEST(RealC3d, TreadmillWalkStandsUprightWithItsLeftOnTheLeft) {
   const auto bytes = shared_bytes("opensense_xsens/OpenSim/Sandbox/MatlabScripts/test_walking.c3d");
-  if (bytes.empty()) GTEST_SKIP() << "shared recordings are not here";
+  if (bytes.empty()) GTEST_SKIP() << "runs where ../shared/data stands beside the checkout";
   const auto read = parse_c3d(bytes, "test_walking.c3d");
   ASSERT_THAT(read, IsOk());
   EXPECT_EQ(read->frames.size(), 806u);
@@ -201,7 +201,7 @@ TEST(RealC3d, TreadmillWalkStandsUprightWithItsLeftOnTheLeft) {
 
 TEST(RealC3d, GaitLabFileGivesItsJointCentres) {
   const auto bytes = shared_bytes("gait_imu_vicon/S02-Trial-Walk-1-vicon.c3d");
-  if (bytes.empty()) GTEST_SKIP() << "shared recordings are not here";
+  if (bytes.empty()) GTEST_SKIP() << "runs where ../shared/data stands beside the checkout";
   const auto found = motion_from_c3d(parse_c3d(bytes, "walk.c3d").value());
   ASSERT_THAT(found, IsOk());
   const auto& body = found->subjects[0].motion.frames[1500];

@@ -103,15 +103,5 @@ TEST(At, InterpolatesAndHoldsTheEnds) {
   EXPECT_FALSE(at(Motion{}, 1.0)[JointId::Head].seen());
 }
 
-TEST(Resampled, KeepsDurationAndPlaces) {
-  const Motion motion = take(0);
-  const Motion slow = resampled(motion, 30);
-  EXPECT_EQ(slow.frames.size(), (motion.frames.size() - 1) / 4 + 1);
-  EXPECT_TRUE(slow.frames[7][JointId::Neck].position.isApprox(
-      motion.frames[28][JointId::Neck].position, 1e-9));
-  EXPECT_TRUE(resampled(motion, 0).frames.empty());
-  EXPECT_TRUE(resampled(Motion{}, 30).frames.empty());
-}
-
 }  // namespace
 }  // namespace chorus::motion

@@ -140,7 +140,7 @@ TEST(RealMvnx, AgreesWithTheBvhTheSuitsSoftwareMadeOfTheSameTake) {
     return std::string(std::istreambuf_iterator<char>(in), {});
   };
   const std::string xml = text("test_mocap.mvnx");
-  if (xml.empty()) GTEST_SKIP() << "shared recordings are not here";
+  if (xml.empty()) GTEST_SKIP() << "runs where ../shared/data stands beside the checkout";
   const auto suit = motion_from_mvnx(parse_mvnx(xml, "test_mocap.mvnx").value()).value();
   const auto bvh =
       motion_from_bvh(parse_bvh(text("test_mocap.bvh"), "test_mocap.bvh").value()).value();

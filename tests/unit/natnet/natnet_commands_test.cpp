@@ -19,7 +19,7 @@ using namespace std::literals;
 
 const Address kSomebody{0x7F000001, 40000};
 
-Now at(Duration since) { return {outlet::SteadyTime{} + 1h + since, kStart + since}; }
+Now at(Duration since) { return {SteadyTime{} + 1h + since, kStart + since}; }
 
 std::string request(int message, std::string_view payload = {}) {
   std::string out{static_cast<char>(message), '\0', static_cast<char>(payload.size() & 0xFF),

@@ -139,12 +139,12 @@ TEST(NatNetFrame, WhatIsSwitchedOffIsNotThere) {
 }
 
 TEST(NatNet, TheMostPersonsFitIntoADatagram) {
-  constexpr std::size_t kLargestDatagram = 65507;
+  constexpr std::size_t kMaxDatagram = 65507;
   std::vector<outlet::TrackerBody> bodies;
-  for (std::size_t slot = 0; slot < outlet::kMostSlots; ++slot)
+  for (std::size_t slot = 0; slot < outlet::kMaxSlots; ++slot)
     bodies.push_back(in(slot, asymmetric_pose()));
-  EXPECT_LT(encode_frame(frame_of(std::move(bodies)), {}, times()).size(), kLargestDatagram);
-  EXPECT_LT(encode_models(outlet::kMostSlots, {}).size(), kLargestDatagram);
+  EXPECT_LT(encode_frame(frame_of(std::move(bodies)), {}, times()).size(), kMaxDatagram);
+  EXPECT_LT(encode_models(outlet::kMaxSlots, {}).size(), kMaxDatagram);
 }
 
 TEST(NatNetModels, DescribeEverySlotBeforehand) {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/http/asio.h"
+#include "common/net/asio.h"
 #include "fusion-server/outlet/datagram_sender.h"
 #include "tests/support/matchers.h"
 
@@ -155,9 +155,9 @@ TEST(Outputs, DtracksGroupHasAnInterfaceAndALimit) {
 /// A port that is taken, by TCP and by UDP, as long as this lives.
 class Taken {
  public:
-  Taken() : acceptor_(io_, {http::net::ip::address_v4::loopback(), 0}), socket_(io_) {
-    socket_.open(http::udp::v4());
-    socket_.bind({http::net::ip::address_v4::loopback(), acceptor_.local_endpoint().port()});
+  Taken() : acceptor_(io_, {asio::ip::address_v4::loopback(), 0}), socket_(io_) {
+    socket_.open(net::udp::v4());
+    socket_.bind({asio::ip::address_v4::loopback(), acceptor_.local_endpoint().port()});
     acceptor_.listen();
   }
   [[nodiscard]] std::string port() const {
@@ -165,9 +165,9 @@ class Taken {
   }
 
  private:
-  http::net::io_context io_;
-  http::Acceptor acceptor_;
-  http::DatagramSocket socket_;
+  asio::io_context io_;
+  net::Acceptor acceptor_;
+  net::DatagramSocket socket_;
 };
 
 TEST(Outputs, APortThatIsTakenNamesItsKey) {

@@ -58,19 +58,40 @@ TEST(FrameTally, AFewAtOnceAreNoThousandASecond) {
   EXPECT_LE(tally.rate_hz(kStart + milliseconds(4)), 8.0);
 }
 
+/// A sensor at 30 Hz, one frame after the other.
+struct Aging {
+  AgeWatch watch = {};
+  std::uint64_t sequence = 0;
+
+  bool odd(Duration age) {
+    const auto received = kStart + milliseconds(33) * static_cast<int>(sequence);
+    SensorFrame f = testing::sensor_frame("s1", received - age, {});
+    f.sequence = ++sequence;
+    f.received = received;
+    return watch.odd(f);
+  }
+};
+
 TEST(AgeWatch, ASteadyAgeIsNeverOddAndAJumpIs) {
-  AgeWatch watch;
-  for (int i = 0; i < 100; ++i) EXPECT_FALSE(watch.odd(milliseconds(20 + i % 10))) << i;
-  EXPECT_TRUE(watch.odd(milliseconds(-700)));
-  EXPECT_TRUE(watch.odd(milliseconds(720)));
-  EXPECT_FALSE(watch.odd(milliseconds(22)));
+  Aging sensor;
+  for (int i = 0; i < 100; ++i) EXPECT_FALSE(sensor.odd(milliseconds(20 + i % 10))) << i;
+  EXPECT_TRUE(sensor.odd(milliseconds(-700)));
+  EXPECT_TRUE(sensor.odd(milliseconds(720)));
+  EXPECT_FALSE(sensor.odd(milliseconds(22)));
+}
+
+TEST(AgeWatch, ALateFrameIsNotOddUnlessItWasCapturedBeforeTheOneItFollows) {
+  Aging busy;
+  for (int i = 0; i < 50; ++i) (void)busy.odd(milliseconds(5 + 30 * (i % 5)));
+  EXPECT_FALSE(busy.odd(milliseconds(30)));
+  EXPECT_TRUE(busy.odd(milliseconds(30 + 200))) << "a clock that was set back by 0.2 s";
 }
 
 TEST(AgeWatch, WhatStaysBecomesTheRule) {
-  AgeWatch watch;
-  for (int i = 0; i < 50; ++i) (void)watch.odd(milliseconds(20));
+  Aging sensor;
+  for (int i = 0; i < 50; ++i) (void)sensor.odd(milliseconds(20));
   int odd = 0;
-  for (int i = 0; i < 50; ++i) odd += watch.odd(milliseconds(900)) ? 1 : 0;
+  for (int i = 0; i < 50; ++i) odd += sensor.odd(milliseconds(900)) ? 1 : 0;
   EXPECT_LE(odd, 5);
 }
 

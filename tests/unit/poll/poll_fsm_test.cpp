@@ -5,40 +5,15 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/poll/poll_rig.h"
+
 namespace chorus::poll {
 namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr double kFull = 0.999999999;  // jitter that keeps the whole back-off
 constexpr double kHalf = 0.0;
-
-const Timestamp kT0 = from_unix_ns(1'790'000'000'000'000'000);
-
-Timestamp at_ms(int ms) { return kT0 + milliseconds(ms); }
-
-FrameAnswered frame(int ms, std::string etag) { return {200, std::move(etag), at_ms(ms)}; }
-
-Failed reset() { return {Error{ErrorCode::Io, "127.0.0.1:8081", "connection reset"}}; }
-
-const Send& send_of(const Step& step) { return std::get<Send>(*step.action); }
-Duration sleep_of(const Step& step) { return std::get<Sleep>(*step.action).duration; }
-
-/// Past the floor plane, with the first request for a frame under way since `now`.
-PollFsm at_first_frame(Duration now) {
-  PollFsm fsm;
-  (void)fsm.resume(Started{}, now, kFull);
-  (void)fsm.resume(FloorAnswered{}, now, kFull);
-  return fsm;
-}
-
-/// Live: one frame delivered, and the long poll for the second under way since `now`.
-PollFsm live(Duration now) {
-  PollFsm fsm = at_first_frame(now - milliseconds(20));
-  (void)fsm.resume(frame(0, "\"1\""), now, kFull);
-  return fsm;
-}
 
 TEST(PollFsm, AsksForTheFloorFirstAndThenForAFrameWithoutCondition) {
   PollFsm fsm;

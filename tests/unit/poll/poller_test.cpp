@@ -14,6 +14,7 @@
 
 #include "common/http/server.h"
 #include "common/resource/frame_document.h"
+#include "common/resource/link_lines.h"
 #include "tests/support/builders.h"
 
 namespace chorus::poll {
@@ -44,6 +45,7 @@ class FakeSensor {
     http::ServerConfig config;
     config.port = port;
     config.clock = std::move(clock);
+    config.policy = resource::answer_policy();
     server_ = std::make_unique<http::Server>(config, router);
     if (auto ok = server_->start(); !ok) ADD_FAILURE() << to_string(ok.error());
   }

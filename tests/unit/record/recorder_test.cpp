@@ -14,7 +14,7 @@
 #include <mutex>
 #include <random>
 
-#include "common/record/session_reader.h"
+#include "common/record/cell_reader.h"
 #include "tests/support/builders.h"
 #include "tests/support/temporary_folder.h"
 
@@ -123,9 +123,9 @@ TEST(Recorder, WritesWhatItIsOfferedAndAnIndex) {
   EXPECT_EQ(report.dropped, 0u);
   EXPECT_FALSE((*recorder)->offer(raw(100))) << "it is over";
 
-  const auto session = read_session(folder / "recordings/rec");
-  ASSERT_TRUE(session) << to_string(session.error());
-  EXPECT_THAT(session->sensors.at(0).frames, SizeIs(100));
+  const auto cell = read_cell(folder / "recordings/rec");
+  ASSERT_TRUE(cell) << to_string(cell.error());
+  EXPECT_THAT(cell->sensors.at(0).frames, SizeIs(100));
   const auto index = read_index(folder / "recordings/rec");
   ASSERT_TRUE(index) << to_string(index.error());
   EXPECT_EQ(index->state, RecordingState::Finished);
@@ -154,10 +154,10 @@ TEST(Recorder, AFullQueueDropsTheNewestAndCounts) {
   EXPECT_EQ((*recorder)->report().dropped, 12u);
   go_on.set_value();
   EXPECT_EQ(stopped(**recorder).frames, 9u);
-  const auto session = read_session(folder / "recordings/rec");
-  ASSERT_TRUE(session);
-  EXPECT_EQ(session->sensors.at(0).frames.back().captured, raw(7).frame->captured);
-  EXPECT_THAT(session->registrations, SizeIs(1));
+  const auto cell = read_cell(folder / "recordings/rec");
+  ASSERT_TRUE(cell);
+  EXPECT_EQ(cell->sensors.at(0).frames.back().captured, raw(7).frame->captured);
+  EXPECT_THAT(cell->registrations, SizeIs(1));
 }
 
 TEST(Recorder, BeginsANewFileWhenTheTimeIsUpAndEachStandsAlone) {
@@ -183,9 +183,9 @@ TEST(Recorder, BeginsANewFileWhenTheTimeIsUpAndEachStandsAlone) {
   EXPECT_EQ(report.files[0].name, "rec-0001-20261121T073000Z.mcap");
   EXPECT_EQ(report.files[1].name, "rec-0002-20261121T073010Z.mcap");
   for (const RecordedFile& file : report.files) {
-    const auto session = read_session(folder / ("recordings/rec/" + file.name));
-    ASSERT_TRUE(session);
-    EXPECT_THAT(session->registrations, SizeIs(1)) << file.name;
+    const auto cell = read_cell(folder / ("recordings/rec/" + file.name));
+    ASSERT_TRUE(cell);
+    EXPECT_THAT(cell->registrations, SizeIs(1)) << file.name;
   }
 }
 
@@ -198,9 +198,9 @@ TEST(Recorder, BeginsANewFileBeforeOneUnpacksToMoreThanReadersHold) {
   for (int i = 0; i < 300; ++i) (*recorder)->offer(raw(i));
   const RecordingReport report = stopped(**recorder);
   EXPECT_GE(report.files.size(), 2u);
-  const auto session = read_session(folder / "recordings/rec");
-  ASSERT_TRUE(session);
-  EXPECT_THAT(session->sensors.at(0).frames, SizeIs(300));
+  const auto cell = read_cell(folder / "recordings/rec");
+  ASSERT_TRUE(cell);
+  EXPECT_THAT(cell->sensors.at(0).frames, SizeIs(300));
 }
 
 TEST(Recorder, TwoRunsAreNeverTakenForOne) {
@@ -214,10 +214,10 @@ TEST(Recorder, TwoRunsAreNeverTakenForOne) {
     ASSERT_TRUE(recorder);
     for (int i = 0; i < 5; ++i) (*recorder)->offer(raw(i + (name[0] == 'a' ? 100 : 0)));
   }
-  const auto both = read_session({folder / "a.mcap", folder / "b.mcap"});
+  const auto both = read_cell({folder / "a.mcap", folder / "b.mcap"});
   ASSERT_FALSE(both);
   EXPECT_EQ(both.error().code, ErrorCode::Conflict);
-  EXPECT_TRUE(read_session(folder / "a.mcap"));
+  EXPECT_TRUE(read_cell(folder / "a.mcap"));
 }
 
 TEST(Recorder, WaitsForTheDiskOnceASecondAndAtTheEnd) {
@@ -257,9 +257,9 @@ TEST(Recorder, BeginsANewFileWhenOneIsFull) {
   for (int i = 0; i < 300; ++i) ASSERT_TRUE((*recorder)->offer(raw(i, 1)));  // ten seconds
   const RecordingReport report = stopped(**recorder);
   EXPECT_GT(report.files.size(), 2u);
-  const auto session = read_session(folder / "recordings/rec");
-  ASSERT_TRUE(session);
-  EXPECT_THAT(session->sensors.at(0).frames, SizeIs(300)) << "nothing is lost between files";
+  const auto cell = read_cell(folder / "recordings/rec");
+  ASSERT_TRUE(cell);
+  EXPECT_THAT(cell->sensors.at(0).frames, SizeIs(300)) << "nothing is lost between files";
 }
 
 TEST(Recorder, StopsByItselfAfterItsTime) {
@@ -313,9 +313,9 @@ TEST(Recorder, AFullDiskEndsTheRecordingAndNothingElse) {
   const RecordingReport report = (*recorder)->report();
   EXPECT_EQ(report.state, RecordingState::Failed);
   EXPECT_THAT(report.reason, HasSubstr("cannot write"));
-  const auto session = read_session(folder / "recordings/rec");
-  ASSERT_TRUE(session) << to_string(session.error());
-  EXPECT_GT(session->sensors.at(0).frames.size(), 0u) << "what was written stays readable";
+  const auto cell = read_cell(folder / "recordings/rec");
+  ASSERT_TRUE(cell) << to_string(cell.error());
+  EXPECT_GT(cell->sensors.at(0).frames.size(), 0u) << "what was written stays readable";
 }
 
 TEST(Recorder, WritesOneFileWhereItIsTold) {
@@ -329,9 +329,9 @@ TEST(Recorder, WritesOneFileWhereItIsTold) {
     ASSERT_TRUE(recorder);
     for (int i = 0; i < 100; ++i) (*recorder)->offer(raw(i));
   }  // its end writes the rest
-  const auto session = read_session(folder / "mine.mcap");
-  ASSERT_TRUE(session);
-  EXPECT_THAT(session->sensors.at(0).frames, SizeIs(100));
+  const auto cell = read_cell(folder / "mine.mcap");
+  ASSERT_TRUE(cell);
+  EXPECT_THAT(cell->sensors.at(0).frames, SizeIs(100));
   EXPECT_FALSE(std::filesystem::exists(folder / "index.json"));
 }
 

@@ -17,7 +17,7 @@ TEST(FloorOf, IsTheMedianSoThatOneBadFrameDoesNoHarm) {
   WalkTrack walk = watch(1, kPlace, {.length = 2});
   walk.frames[3].floor = FloorPlane{Eigen::Vector3d::UnitX(), 9.0};
   walk.frames[4].floor = FloorPlane{{std::nan(""), 0, 0}, std::nan("")};
-  const FloorSight sight = floor_of(walk);
+  const WalkFloor sight = floor_of(walk);
   ASSERT_TRUE(sight.floor) << sight.objection;
   EXPECT_NEAR(sight.floor->offset, 1.8, 1e-6);
   EXPECT_NEAR(sight.floor->normal.y(), std::cos(deg(15)), 1e-6);

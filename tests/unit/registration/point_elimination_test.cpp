@@ -12,24 +12,24 @@ using Places3 = std::vector<Eigen::Isometry3d>;
 const Places3 kPlaces{Eigen::Isometry3d::Identity(), some_motion(), tilted_motion()};
 
 /// What three sensors see of a world point, each a little off.
-PointSights sights_of(const Eigen::Vector3d& x, double error) {
-  PointSights sights;
+PointMeasurements sights_of(const Eigen::Vector3d& x, double error) {
+  PointMeasurements measurements;
   for (std::size_t i = 0; i < kPlaces.size(); ++i) {
     const double turn = 2.0 * static_cast<double>(i);
     const Eigen::Vector3d off = error * Eigen::Vector3d(std::sin(turn), std::cos(turn), 0.5);
     const Eigen::Vector3d seen = kPlaces[i].inverse() * x + off;
-    sights.push_back({i, seen, seen.normalized(), mm(10) * (1.0 + static_cast<double>(i))});
+    measurements.push_back({i, seen, seen.normalized(), mm(10) * (1.0 + static_cast<double>(i))});
   }
-  return sights;
+  return measurements;
 }
 
 const Eigen::Vector3d kX(0.4, 1.3, 2.5);
 
 /// E(T) of the header: the least sum over x.
-double energy(const PointSights& sights, const Places3& places, double along_ratio) {
-  const FusedPoint fused = fuse_point(sights, places, along_ratio);
+double energy(const PointMeasurements& measurements, const Places3& places, double along_ratio) {
+  const FusedPoint fused = fuse_point(measurements, places, along_ratio);
   double sum = 0.0;
-  for (std::size_t i = 0; i < sights.size(); ++i) {
+  for (std::size_t i = 0; i < measurements.size(); ++i) {
     const Eigen::Vector3d off = fused.x - fused.seen[i];
     sum += off.dot(fused.information[i] * off);
   }
@@ -44,9 +44,10 @@ Places3 moved(const Eigen::VectorXd& motion) {
   return places;
 }
 
-PlaceEquations equations_of(const PointSights& sights, double along_ratio, double weight = 1.0) {
+PlaceEquations equations_of(const PointMeasurements& measurements, double along_ratio,
+                            double weight = 1.0) {
   PlaceEquations equations{Eigen::MatrixXd::Zero(18, 18), Eigen::VectorXd::Zero(18)};
-  add_point(equations, sights, fuse_point(sights, kPlaces, along_ratio), weight);
+  add_point(equations, measurements, fuse_point(measurements, kPlaces, along_ratio), weight);
   return equations;
 }
 
@@ -60,11 +61,11 @@ TEST(FusedPoint, IsTheInverseVarianceMean) {
 }
 
 TEST(FusedPoint, SitsWhereNoNeighbourCostsLess) {
-  const PointSights sights = sights_of(kX, mm(30));
-  const FusedPoint fused = fuse_point(sights, kPlaces, 3.0);
+  const PointMeasurements measurements = sights_of(kX, mm(30));
+  const FusedPoint fused = fuse_point(measurements, kPlaces, 3.0);
   const auto cost = [&](const Eigen::Vector3d& x) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < sights.size(); ++i) {
+    for (std::size_t i = 0; i < measurements.size(); ++i) {
       sum += (x - fused.seen[i]).dot(fused.information[i] * (x - fused.seen[i]));
     }
     return sum;
@@ -77,48 +78,50 @@ TEST(FusedPoint, SitsWhereNoNeighbourCostsLess) {
 }
 
 TEST(FusedPoint, InformationIsSharpAcrossAndBluntAlongTheRay) {
-  const PointSights sights = sights_of(kX, 0.0);
-  const FusedPoint fused = fuse_point(sights, kPlaces, 5.0);
-  for (std::size_t i = 0; i < sights.size(); ++i) {
-    const Eigen::Vector3d ray = kPlaces[i].linear() * sights[i].ray;
-    const double across = 1.0 / (sights[i].sigma * sights[i].sigma);
+  const PointMeasurements measurements = sights_of(kX, 0.0);
+  const FusedPoint fused = fuse_point(measurements, kPlaces, 5.0);
+  for (std::size_t i = 0; i < measurements.size(); ++i) {
+    const Eigen::Vector3d ray = kPlaces[i].linear() * measurements[i].ray;
+    const double across = 1.0 / (measurements[i].sigma * measurements[i].sigma);
     EXPECT_NEAR(ray.dot(fused.information[i] * ray), across / 25.0, 1e-6 * across);
     const Eigen::Vector3d aside = ray.unitOrthogonal();
     EXPECT_NEAR(aside.dot(fused.information[i] * aside), across, 1e-6 * across);
   }
-  const FusedPoint round = fuse_point(sights, kPlaces, 0.5);  // below one counts as one
+  const FusedPoint round = fuse_point(measurements, kPlaces, 0.5);  // below one counts as one
   EXPECT_LT((round.information[0] * mm(10) * mm(10) - Eigen::Matrix3d::Identity()).norm(), 1e-9);
 }
 
 TEST(FusedPoint, WorstNormIsTheFarthestSightInSigmas) {
-  PointSights sights{{0, {0, 0, 2}, {0, 0, 1}, mm(10)}, {0, {0, 0, 2}, {0, 0, 1}, mm(10)}};
-  sights[1].x.x() = mm(40);  // the mean is 20 mm from both
-  EXPECT_NEAR(worst_norm(fuse_point(sights, kPlaces, 1.0)), 2.0, 1e-9);
-  sights.push_back(sights[0]);  // now 13.3 and 26.7 mm
-  EXPECT_NEAR(worst_norm(fuse_point(sights, kPlaces, 1.0)), 8.0 / 3.0, 1e-9);
+  PointMeasurements measurements{{0, {0, 0, 2}, {0, 0, 1}, mm(10)},
+                                 {0, {0, 0, 2}, {0, 0, 1}, mm(10)}};
+  measurements[1].x.x() = mm(40);  // the mean is 20 mm from both
+  EXPECT_NEAR(worst_norm(fuse_point(measurements, kPlaces, 1.0)), 2.0, 1e-9);
+  measurements.push_back(measurements[0]);  // now 13.3 and 26.7 mm
+  EXPECT_NEAR(worst_norm(fuse_point(measurements, kPlaces, 1.0)), 8.0 / 3.0, 1e-9);
 }
 
 /// Round errors: S does not depend on the places, so that the derivative is exact.
 TEST(Elimination, RightHandSideIsTheNumericGradient) {
-  const PointSights sights = sights_of(kX, mm(30));
-  const PlaceEquations equations = equations_of(sights, 1.0);
+  const PointMeasurements measurements = sights_of(kX, mm(30));
+  const PlaceEquations equations = equations_of(measurements, 1.0);
   constexpr double kStep = 1e-6;
   Eigen::VectorXd gradient(18);
   for (int axis = 0; axis < 18; ++axis) {
     const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(18, axis);
     gradient[axis] =
-        (energy(sights, moved(step), 1.0) - energy(sights, moved(-step), 1.0)) / (2.0 * kStep);
+        (energy(measurements, moved(step), 1.0) - energy(measurements, moved(-step), 1.0)) /
+        (2.0 * kStep);
   }
   EXPECT_LT((equations.right + 0.5 * gradient).norm(), 1e-4 * gradient.norm());
 }
 
 /// Nothing left over: Gauss-Newton is exact, with blunt rays too.
 TEST(Elimination, InformationIsTheNumericHessian) {
-  const PointSights sights = sights_of(kX, 0.0);
-  const PlaceEquations equations = equations_of(sights, 3.0);
+  const PointMeasurements measurements = sights_of(kX, 0.0);
+  const PlaceEquations equations = equations_of(measurements, 3.0);
   constexpr double kStep = 1e-4;
   const auto cost = [&](const Eigen::VectorXd& motion) {
-    return energy(sights, moved(motion), 3.0);
+    return energy(measurements, moved(motion), 3.0);
   };
   Eigen::MatrixXd hessian(18, 18);
   for (int i = 0; i < 18; ++i) {
@@ -134,10 +137,10 @@ TEST(Elimination, InformationIsTheNumericHessian) {
 
 /// The Schur complement against the full system in which the point is still an unknown.
 TEST(Elimination, EqualsTheFullSystemWithThePointKept) {
-  const PointSights sights = sights_of(kX, mm(30));
-  const FusedPoint fused = fuse_point(sights, kPlaces, 3.0);
+  const PointMeasurements measurements = sights_of(kX, mm(30));
+  const FusedPoint fused = fuse_point(measurements, kPlaces, 3.0);
   Eigen::MatrixXd full = Eigen::MatrixXd::Zero(21, 21);
-  for (std::size_t i = 0; i < sights.size(); ++i) {
+  for (std::size_t i = 0; i < measurements.size(); ++i) {
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(3, 21);  // d (T_i m_i - x)
     for (int axis = 0; axis < 6; ++axis) {
       const Vector6 xi = unit6(axis, 1e-6);
@@ -151,7 +154,7 @@ TEST(Elimination, EqualsTheFullSystemWithThePointKept) {
   const Eigen::MatrixXd across = full.topRightCorner(18, 3);
   const Eigen::MatrixXd schur =
       full.topLeftCorner(18, 18) - across * point.inverse() * across.transpose();
-  const PlaceEquations equations = equations_of(sights, 3.0);
+  const PlaceEquations equations = equations_of(measurements, 3.0);
   EXPECT_LT((equations.information - schur).norm(), 1e-6 * schur.norm());
 }
 
@@ -167,16 +170,16 @@ TEST(Elimination, MovingEverythingTogetherCostsNothing) {
 }
 
 TEST(Elimination, TheOrderOfTheSightsDoesNotMatterAndTheWeightIsAFactor) {
-  const PointSights sights = sights_of(kX, mm(30));
-  const PointSights reversed(sights.rbegin(), sights.rend());
-  const PlaceEquations one = equations_of(sights, 3.0);
+  const PointMeasurements measurements = sights_of(kX, mm(30));
+  const PointMeasurements reversed(measurements.rbegin(), measurements.rend());
+  const PlaceEquations one = equations_of(measurements, 3.0);
   const PlaceEquations other = equations_of(reversed, 3.0, 0.25);
   EXPECT_LT((0.25 * one.information - other.information).norm(), 1e-9 * one.information.norm());
   EXPECT_LT((0.25 * one.right - other.right).norm(), 1e-9 * one.right.norm());
 }
 
 TEST(Elimination, ASensorThatSeesThePointAloneLearnsNothing) {
-  const PointSights alone{sights_of(kX, 0.0)[1]};
+  const PointMeasurements alone{sights_of(kX, 0.0)[1]};
   const PlaceEquations equations = equations_of(alone, 3.0);
   EXPECT_LT(equations.information.norm(), 1e-6);
   EXPECT_LT(equations.right.norm(), 1e-6);

@@ -47,7 +47,7 @@ class Walk {
     return std::find(types.begin(), types.end(), rdf::iri(type)) != types.end();
   }
   [[nodiscard]] double number(const Term& from, const std::string& verb) const {
-    return parse_number(one(from, verb).value).value_or(std::nan(""));
+    return read_decimal(one(from, verb).value).value_or(std::nan(""));
   }
 
  private:

@@ -46,19 +46,19 @@ TEST(FixedPoint, WhatItWritesReadsBackWithinHalfAUnit) {
   std::uniform_real_distribution<double> any(-10, 10);
   for (int i = 0; i < 1000; ++i) {
     const double value = any(random);
-    EXPECT_NEAR(*parse_number(*fixed(value, 5)), value, 0.5e-5 + 1e-12);
+    EXPECT_NEAR(*read_decimal(*fixed(value, 5)), value, 0.5e-5 + 1e-12);
   }
 }
 
 TEST(ParseNumber, TakesTheWholeTextOrNothing) {
-  EXPECT_EQ(parse_number("-1.5e2"), -150.0);
-  EXPECT_EQ(parse_number("+1"), 1.0);
-  EXPECT_EQ(parse_number("1.5x"), std::nullopt);
-  EXPECT_EQ(parse_number(""), std::nullopt);
-  EXPECT_EQ(parse_number("nan"), std::nullopt);
-  EXPECT_EQ(parse_number("INF"), std::nullopt);
-  EXPECT_EQ(parse_number("1e999"), std::nullopt);
-  EXPECT_EQ(parse_number("0x10"), std::nullopt);
+  EXPECT_EQ(read_decimal("-1.5e2"), -150.0);
+  EXPECT_EQ(read_decimal("+1"), 1.0);
+  EXPECT_EQ(read_decimal("1.5x"), std::nullopt);
+  EXPECT_EQ(read_decimal(""), std::nullopt);
+  EXPECT_EQ(read_decimal("nan"), std::nullopt);
+  EXPECT_EQ(read_decimal("INF"), std::nullopt);
+  EXPECT_EQ(read_decimal("1e999"), std::nullopt);
+  EXPECT_EQ(read_decimal("0x10"), std::nullopt);
 }
 
 }  // namespace

@@ -200,18 +200,6 @@ TEST(FrameReader, CutOffAnywhereIsRefusedAndNeverACrash) {
   }
 }
 
-TEST(FrameFacts, NumbersAreWholeOrNothing) {
-  EXPECT_EQ(parse_unsigned("18446744073709551615"), 18'446'744'073'709'551'615U);
-  EXPECT_EQ(parse_unsigned("18446744073709551616"), std::nullopt);
-  EXPECT_EQ(parse_unsigned("+5"), 5U);
-  EXPECT_EQ(parse_signed("-9223372036854775808"), std::numeric_limits<std::int64_t>::min());
-  for (const char* bad : {"", " 1", "1 ", "1.0", "0x1", "--1", "one"}) {
-    EXPECT_EQ(parse_signed(bad), std::nullopt) << bad;
-    EXPECT_EQ(parse_unsigned(bad), std::nullopt) << bad;
-  }
-  EXPECT_EQ(parse_unsigned("-1"), std::nullopt);
-}
-
 TEST(FrameFacts, ADocumentHoldsOneFrame) {
   EXPECT_FALSE(assemble({}));
   SubjectFacts frame;

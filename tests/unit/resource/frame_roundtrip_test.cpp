@@ -182,25 +182,18 @@ TEST(FrameWriter, NeverWritesWhatIsNotANumber) {
   for (const double bad : {nan, inf, -inf, 1e300, 10'000.1}) {
     FrameResource frame = random_frame(2, {1, true});
     JointResource& joint = frame.bodies[0].joints[3];
-    joint = {Eigen::Vector3d(0, bad, 0), Eigen::Quaterniond(1, 0, 0, 0), JointState::Tracked, 0.1,
-             1};
+    const Eigen::Quaterniond upright(1, 0, 0, 0);
+    joint = {{Eigen::Vector3d(0, bad, 0), upright, JointState::Tracked}, 0.1, 1};
     Eigen::Matrix3d odd = Eigen::Matrix3d::Identity();
     odd(0, 1) = bad;
-    frame.bodies[0].joints[5] = {Eigen::Vector3d(1, 2, 3),
-                                 Eigen::Quaterniond(1, 0, 0, 0),
-                                 JointState::Tracked,
+    frame.bodies[0].joints[5] = {{Eigen::Vector3d(1, 2, 3), upright, JointState::Tracked,
+                                  Measurement::Point, Covariance(odd)},
                                  0.1,
-                                 1,
-                                 Measurement::Point,
-                                 Covariance(odd)};
-    frame.bodies[0].joints[6] = {Eigen::Vector3d(bad, 0, 1),
-                                 Eigen::Quaterniond(1, 0, 0, 0),
-                                 JointState::Tracked,
-                                 0.1,
-                                 1,
-                                 Measurement::Ray};
-    frame.bodies[0].joints[4] = {Eigen::Vector3d(1, 2, 3), Eigen::Quaterniond(bad, 0, 0, 0),
-                                 JointState::Tracked, bad, 1};
+                                 1};
+    frame.bodies[0].joints[6] = {
+        {Eigen::Vector3d(bad, 0, 1), upright, JointState::Tracked, Measurement::Ray}, 0.1, 1};
+    frame.bodies[0].joints[4] = {
+        {Eigen::Vector3d(1, 2, 3), Eigen::Quaterniond(bad, 0, 0, 0), JointState::Tracked}, bad, 1};
     for (const Format format : kFormats) {
       const auto back = read_frame(write(frame, format), format);
       ASSERT_TRUE(back) << bad << ": " << to_string(back.error());
@@ -216,7 +209,7 @@ TEST(FrameWriter, NeverWritesWhatIsNotANumber) {
 TEST(FrameWriter, NormalisesAQuaternionBeforeItLeaves) {
   FrameResource frame = random_frame(2, {1, false});
   frame.bodies[0].joints[0] = {
-      Eigen::Vector3d(1, 2, 3), Eigen::Quaterniond(2, 0, 0, 0), JointState::Tracked, {}, 0};
+      {Eigen::Vector3d(1, 2, 3), Eigen::Quaterniond(2, 0, 0, 0), JointState::Tracked}, {}, 0};
   const auto back = read_frame(write(frame, Format::Turtle), Format::Turtle);
   ASSERT_TRUE(back) << to_string(back.error());
   EXPECT_EQ(back->bodies[0].joints[0].orientation.w(), 1.0);

@@ -192,7 +192,8 @@ TEST(Replay, DescribesItself) {
   const DeviceDescription description = (*device)->describe();
   EXPECT_EQ(description.kind, "replay");
   EXPECT_EQ(description.label, "replay of cam01.mcap (Kinect v2)");
-  EXPECT_EQ(description.depth_camera.width, 1920);
+  ASSERT_TRUE(description.depth_camera);
+  EXPECT_EQ(description.depth_camera->width, 1920);
   EXPECT_NEAR(description.nominal_rate_hz, 30.0, 0.01);
 }
 

@@ -1,4 +1,4 @@
-#include "services/sensor/sensor_config.h"
+#include "services/sensor/sensor_settings.h"
 
 #include <set>
 
@@ -87,9 +87,11 @@ TEST(SensorConfig, AFileThatIsNotThereIsNamed) {
 
 /// A key of the section of a device counts when that device is chosen.
 std::string choosing_its_device(const std::string& key, const std::string& text) {
-  const bool replay = key.starts_with("device.replay.");
   auto root = ConfigReader::parse(text, "test");
-  EXPECT_TRUE(!replay || root->set("device.kind=replay"));
+  for (const std::string kind : {"replay", "bridge"}) {
+    const bool chosen = key.starts_with("device." + kind + ".");
+    EXPECT_TRUE(!chosen || root->set("device.kind=" + kind));
+  }
   return root->text();
 }
 
@@ -119,7 +121,8 @@ TEST(SensorConfig, OnlyTheDeviceThatIsChosenIsMade) {
   const auto host = SensorHost::make(settings_with(broken));
   ASSERT_TRUE(host);
   EXPECT_EQ(read_text(R"({"device": {"kind": "replay"}})")->at_start.device.kind, "replay");
-  EXPECT_FALSE(make_device({"usb", "{}"}, {chorus::testing::sensor_id("a"), {}}));
+  http::Router router;
+  EXPECT_FALSE(make_device({"usb", "{}"}, {chorus::testing::sensor_id("a"), {}, router}));
 }
 
 }  // namespace

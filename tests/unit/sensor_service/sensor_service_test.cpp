@@ -144,6 +144,17 @@ TEST_F(SensorServiceTest, AClockThatWasSetBackIsFollowed) {
   EXPECT_EQ(json("/frame")["sequence"], 4);
 }
 
+TEST_F(SensorServiceTest, AClockThatWasSetBackALittleCostsOneFrame) {
+  for (int i = 0; i < 20; ++i) service_.on_capture(capture(i));
+  for (int i = 20; i < 24; ++i) {
+    Capture back = capture(i);
+    back.frame.captured -= std::chrono::milliseconds(400);
+    service_.on_capture(std::move(back));
+  }
+  EXPECT_EQ(service_.counters().refused, 1u);
+  EXPECT_EQ(service_.counters().captured, 23u);
+}
+
 TEST_F(SensorServiceTest, NotANumberBecomesNotTracked) {
   Capture broken = capture(0);
   broken.frame.bodies[0].skeleton[JointId::Head].position.x() = std::nan("");
@@ -258,7 +269,7 @@ TEST_F(SensorServiceTest, AnEncoderThatThrowsAnythingIsAnErrorToo) {
 TEST_F(SensorServiceTest, AnExceptionCostsOneCaptureAndIsCounted) {
   ServiceOptions fragile = options(&now_);
   int recorded = 0;
-  fragile.record = [&](const Sight&) {
+  fragile.record = [&](const LatestCapture&) {
     if (++recorded == 2) throw std::runtime_error("no memory");
   };
   SensorService service(fragile);

@@ -1,5 +1,5 @@
 // deploy/config/fusion.json and everything that may be wrong with one.
-#include "fusion-server/server/fusion_config.h"
+#include "fusion-server/server/fusion_settings.h"
 
 #include <gtest/gtest.h>
 

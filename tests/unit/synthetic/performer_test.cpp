@@ -131,22 +131,21 @@ TEST(Performance, WhatCannotBePlayedIsRefusedWithTheReason) {
   EXPECT_THAT(to_string(staged({handless}).error()), HasSubstr("WristLeft"));
   EXPECT_TRUE(staged({handless, take()->roles[0]})) << "somebody else is whole";
   motion::Motion long_one = take()->roles[0];
-  long_one.frames.resize(kMostMotionFrames + 1);
+  long_one.frames.resize(kMaxMotionFrames + 1);
   EXPECT_EQ(staged({long_one}).error().code, ErrorCode::TooLarge);
 }
 
 TEST(Performer, NeitherPlaceNorVelocityJumps) {
   const Performer performer(take(), {});
-  constexpr double kMostSpeed = 6.0;  // of a wrist in this walk [m/s]
-  constexpr double kMostAcceleration =
-      400.0;  // heels strike; a corner at the ends has 2000 [m/s^2]
+  constexpr double kMaxSpeed = 6.0;           // of a wrist in this walk [m/s]
+  constexpr double kMaxAcceleration = 400.0;  // heels strike; a corner at the ends has 2000 [m/s^2]
   const double dt = seconds(kStep);
   for (const JointId joint : {JointId::SpineBase, JointId::WristRight, JointId::FootLeft}) {
     std::vector<Eigen::Vector3d> way = way_of(performer, joint, kStep);
     way.insert(way.end(), way.begin(), way.begin() + 100);  // over the loop's end
     for (std::size_t i = 2; i < way.size(); ++i) {
-      EXPECT_LT((way[i] - way[i - 1]).norm(), kMostSpeed * dt) << i;
-      EXPECT_LT((way[i] - 2 * way[i - 1] + way[i - 2]).norm(), kMostAcceleration * dt * dt) << i;
+      EXPECT_LT((way[i] - way[i - 1]).norm(), kMaxSpeed * dt) << i;
+      EXPECT_LT((way[i] - 2 * way[i - 1] + way[i - 2]).norm(), kMaxAcceleration * dt * dt) << i;
     }
   }
 }

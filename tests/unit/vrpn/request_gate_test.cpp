@@ -9,7 +9,7 @@ namespace {
 using std::chrono::milliseconds;
 using Verdict = RequestGate::Verdict;
 
-const outlet::SteadyTime kNow = outlet::SteadyTime() + std::chrono::hours(1);
+const SteadyTime kNow = SteadyTime() + std::chrono::hours(1);
 
 Asker asker(int address, int port = 5000) {
   return {"10.0." + std::to_string(address / 250) + "." + std::to_string(address % 250),
@@ -41,7 +41,7 @@ TEST(RequestGate, MakesFewConnectionsAtATime) {
 
 TEST(RequestGate, MakesFewConnectionsASecond) {
   RequestGate gate({.most_under_way = 1000, .all = {10, 5}});
-  auto made = [&gate, n = 0](outlet::SteadyTime now) mutable {
+  auto made = [&gate, n = 0](SteadyTime now) mutable {
     int count = 0;
     for (int i = 0; i < 100; ++i) count += gate.ask(asker(++n), now) == Verdict::Connect;
     return count;
@@ -62,7 +62,7 @@ struct Flood {
 Flood flood(RequestGate& gate, void (RequestGate::*end)(const Asker&)) {
   Flood counted;
   for (int ms = 0; ms < 60'000; ms += 2) {
-    const outlet::SteadyTime now = kNow + milliseconds(ms);
+    const SteadyTime now = kNow + milliseconds(ms);
     const Asker flooder = asker(1, 1024 + ms / 2);
     if (gate.ask(flooder, now) == Verdict::Connect) {
       ++counted.flooded;
@@ -98,7 +98,7 @@ TEST(RequestGate, ConnectionsThatNeverEndDoNotTakeTheOthersPlaces) {
 
 TEST(RequestGate, RemembersAFewAddressesAndForgetsThemWhenTheyAreQuiet) {
   RequestGate gate({.all = {1e6, 1e6}, .source = {1, 2}, .most_sources = 3});
-  const auto ask = [&gate](int address, int port, outlet::SteadyTime now) {
+  const auto ask = [&gate](int address, int port, SteadyTime now) {
     const auto verdict = gate.ask(asker(address, port), now);
     gate.connected(asker(address, port));
     return verdict;
@@ -109,7 +109,7 @@ TEST(RequestGate, RemembersAFewAddressesAndForgetsThemWhenTheyAreQuiet) {
   EXPECT_EQ(ask(5, 1, kNow), Verdict::Connect);
   EXPECT_EQ(ask(6, 1, kNow), Verdict::Refused);
   EXPECT_EQ(ask(1, 2, kNow), Verdict::Connect) << "one that is known keeps its own";
-  const outlet::SteadyTime later = kNow + std::chrono::seconds(5);
+  const SteadyTime later = kNow + std::chrono::seconds(5);
   for (int i = 7; i <= 9; ++i) {
     EXPECT_EQ(ask(i, 1, later), Verdict::Connect);
     EXPECT_EQ(ask(i, 2, later), Verdict::Connect);

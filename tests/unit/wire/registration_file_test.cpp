@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "fusion-server/wire/registration_resource.h"
+#include "fusion-server/wire/registration_nodes.h"
 #include "tests/support/builders.h"
 
 namespace chorus::wire {

@@ -13,10 +13,10 @@ namespace chorus::sensor_service {
 
 namespace {
 
-// A host that slept or stood still must not pour out the past: what is later than this is skipped.
+// A host that slept must not deliver the past at once: frames later than this are skipped.
 constexpr Duration kLatest = std::chrono::seconds(1);
 // UTC may be stepped while we wait, so a long wait looks at the clock now and then.
-constexpr Duration kLongestNap = std::chrono::milliseconds(200);
+constexpr Duration kMaxNap = std::chrono::milliseconds(200);
 
 bool wait_on(const Clock& clock, std::stop_token stop, Timestamp until) {
   std::mutex mutex;
@@ -25,7 +25,7 @@ bool wait_on(const Clock& clock, std::stop_token stop, Timestamp until) {
   while (!stop.stop_requested()) {
     const Duration left = until - clock.now();
     if (left <= Duration::zero()) return true;
-    never.wait_for(lock, stop, std::min(left, kLongestNap), [] { return false; });
+    never.wait_for(lock, stop, std::min(left, kMaxNap), [] { return false; });
   }
   return false;
 }
@@ -127,7 +127,7 @@ class Player {
  public:
   Player(ReplayTape& tape, const ReplaySchedule& plan) : tape_(tape), plan_(plan) {}
 
-  /// To the round in which something is due at `now` or soon after; never back.
+  /// Moves to the round in which something is due at `now` or soon after; never back.
   void skip_to(Timestamp now) {
     const std::int64_t round = plan_.round_before(now);
     if (round <= turn_.round && begun_) return;
@@ -171,7 +171,7 @@ Result<void> Replay::run(std::stop_token stop, const Sink& sink) {
   const Timestamp start = time_.world->now();
   const auto plan = schedule(start);
   if (!plan) return pass(plan);
-  // Delivery runs on the clock as it is; "as recorded" frames are stamped in their own time.
+  // Delivery follows the actual clock; "as recorded" frames are stamped in their own time.
   const Duration ahead = is_as_recorded() ? start - origin_of(*tape_, options_) : Duration::zero();
   Player player(*tape_, *plan);
   player.skip_to(start - ahead);
@@ -195,12 +195,11 @@ Result<void> Replay::run(std::stop_token stop, const Sink& sink) {
 }
 
 void read_ns(ConfigReader& config, std::string_view key, std::optional<std::int64_t>& out) {
-  // A double keeps UTC nanoseconds to 256 ns, the same 256 ns in every process that is told the
-  // number.
-  constexpr double kMost = 9.2e18;
+  // A double holds UTC nanoseconds to 256 ns, the same in every process that is given the number.
+  constexpr double kMax = 9.2e18;
   if (!config.has(key)) return;
   double value = 0.0;
-  config.read(key, value, 0.0, kMost);
+  config.read(key, value, 0.0, kMax);
   out = static_cast<std::int64_t>(value);
 }
 

@@ -1,4 +1,4 @@
-// The device `replay`: a recording played again in real time, stamped anew.
+// The device `replay`: plays a recording again in real time, with new stamps.
 #pragma once
 
 #include <filesystem>
@@ -26,7 +26,7 @@ struct ReplayOptions {
   bool loop = true;
   double speed = 1.0;
   ReplayEpoch epoch = ReplayEpoch::Now;
-  std::optional<Timestamp> epoch_at = {};  ///< Instead of `epoch`, for several processes.
+  std::optional<Timestamp> epoch_at = {};  ///< Used instead of `epoch`, for several processes.
   std::optional<Timestamp> origin = {};    ///< First capture of the set; else as noted.
   std::optional<Duration> period = {};     ///< Length of the set; likewise.
 };
@@ -37,8 +37,8 @@ struct ReplayOptions {
 /// Waits until the clock shows an instant; false when asked to stop before.
 using WaitUntil = std::function<bool(std::stop_token, Timestamp)>;
 
-/// Where the replay's time comes from.  It plays by true time, so that people are where they were
-/// seen together whatever the hosts' clocks say; frames are stamped by the host's.
+/// Where the replay's time comes from.  It follows true time, so that people are where they were
+/// seen together whatever the hosts' clocks say; frames are stamped by the host's clock.
 struct ReplayClock {
   std::shared_ptr<const Clock> world;
   WaitUntil wait;  ///< Until the world's clock shows it.  Empty: really waits.

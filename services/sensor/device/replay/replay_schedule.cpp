@@ -10,7 +10,7 @@ namespace {
 constexpr double kMaxSpeed = 1000.0;
 constexpr Duration kRounding =
     std::chrono::microseconds(1);  // an origin that passed through a double
-constexpr Duration kLongestPeriod = std::chrono::hours(24 * 366);  // keeps every product in 64 bits
+constexpr Duration kMaxPeriod = std::chrono::hours(24 * 366);  // keeps every product in 64 bits
 
 Duration divided(Duration span, double speed) {
   if (speed == 1.0) return span;  // exact: nanoseconds survive
@@ -32,12 +32,13 @@ Result<ReplaySchedule> ReplaySchedule::make(const TapeSpan& span, const ReplayTi
         ErrorCode::InvalidArgument, "origin_ns",
         "lies after the first frame of the recording; use the first capture of the whole set");
   }
-  // Recordings may say anything of their set: nothing below may leave 64 bits or divide by zero.
-  if (timing.origin < span.first - kLongestPeriod) {
+  // Recordings may state anything about their set: nothing below may exceed 64 bits or divide by
+  // zero.
+  if (timing.origin < span.first - kMaxPeriod) {
     return fail(ErrorCode::InvalidArgument, "origin_ns",
                 "lies more than a year before the recording");
   }
-  if (timing.period <= Duration::zero() || timing.period > kLongestPeriod ||
+  if (timing.period <= Duration::zero() || timing.period > kMaxPeriod ||
       span.last - timing.origin >= timing.period) {
     return fail(ErrorCode::InvalidArgument, "period_ns",
                 "must be longer than the recording (and shorter than a year)");

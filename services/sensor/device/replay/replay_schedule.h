@@ -39,7 +39,7 @@ class ReplaySchedule {
                                                    const ReplayTiming& timing);
 
   [[nodiscard]] Timestamp due(const Turn& turn) const;
-  /// A round that holds, or precedes by one, the first frame that is not due before `now`.
+  /// A round that contains, or directly precedes, the first frame not due before `now`.
   [[nodiscard]] std::int64_t round_before(Timestamp now) const;
   [[nodiscard]] bool over(std::int64_t round) const;
   /// Counts frames from the epoch on, from 1; gaps are frames that were not played.
@@ -52,7 +52,7 @@ class ReplaySchedule {
   ReplayTiming timing_;
 };
 
-/// The length of one loop when nobody states it: first to last capture and one usual step more.
+/// The length of one loop when nobody states it: from first to last capture, plus one usual step.
 [[nodiscard]] inline Duration natural_period(const TapeSpan& span) {
   return span.last - span.first + span.step;
 }

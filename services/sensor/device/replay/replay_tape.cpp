@@ -4,8 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "common/record/session_outline.h"
-#include "common/record/session_stream.h"
+#include "common/base/median.h"
+#include "common/record/cell_outline.h"
+#include "common/record/cell_stream.h"
 
 namespace chorus::sensor_service {
 namespace {
@@ -16,9 +17,7 @@ Duration median_step(const std::vector<Timestamp>& captured) {
   std::vector<Duration> steps;
   for (std::size_t i = 1; i < captured.size(); ++i) steps.push_back(captured[i] - captured[i - 1]);
   if (steps.empty()) return std::chrono::seconds(1);
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return median(std::move(steps));
 }
 
 tl::unexpected<Error> no_frames() {
@@ -58,7 +57,7 @@ class FileTape final : public ReplayTape {
       stay_.about.notes["damage." + std::to_string(i + 1)] = std::move(damage[i]);
   }
 
-  /// Looks at the first frames; at all of them where the file does not say how many there are.
+  /// Looks at the first frames, or at all of them if the file does not say how many there are.
   Result<void> measure() {
     std::vector<Timestamp> captured;
     std::uint64_t frames = 0;
@@ -89,18 +88,18 @@ class FileTape final : public ReplayTape {
   void rewind() override { stream_ = fresh(); }
 
  private:
-  [[nodiscard]] record::SessionStream fresh() const {
-    record::SessionQuery query;
+  [[nodiscard]] record::CellStream fresh() const {
+    record::CellQuery query;
     query.only = stay_.about.sensor;
-    return record::SessionStream(stay_.files, query);
+    return record::CellStream(stay_.files, query);
   }
 
   record::SensorStay stay_;
-  record::SessionStream stream_;
+  record::CellStream stream_;
   TapeSpan span_;
 };
 
-/// The stay that is meant, as read_frame_recording() chooses.
+/// The stream that is meant, chosen as read_frame_recording() does.
 Result<record::SensorStay> chosen(std::vector<record::SensorStay> stays, const SensorId& which,
                                   const std::string& path) {
   std::string there;
@@ -126,7 +125,7 @@ Result<std::unique_ptr<ReplayTape>> open_tape(const std::filesystem::path& path,
                                               const SensorId& which) {
   const auto files = record::recording_files(path);
   if (!files) return pass(files);
-  const auto lines = record::session_lines(*files);
+  const auto lines = record::cell_lines(*files);
   if (!lines) return pass(lines);
   auto stays = record::sensor_stays(*lines);
   if (!stays) return pass(stays);

@@ -15,7 +15,7 @@ namespace chorus::sensor_service {
 struct TapeSpan {
   Timestamp first;
   Timestamp last;
-  std::uint64_t frames = 0;  ///< At least one; some may be left out in playing.
+  std::uint64_t frames = 0;  ///< At least one; playing may leave some out.
   Duration step{0};          ///< The usual time between two.
 };
 
@@ -23,7 +23,7 @@ class ReplayTape {
  public:
   virtual ~ReplayTape() = default;
 
-  /// All but the frames.
+  /// Everything but the frames.
   [[nodiscard]] virtual const record::FrameRecording& about() const = 0;
   [[nodiscard]] virtual TapeSpan span() const = 0;
   /// Strictly rising in capture time; none at the end.

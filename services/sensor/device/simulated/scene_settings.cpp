@@ -16,16 +16,16 @@ using synthetic::Occluder;
 constexpr double kFarthest = 100.0;  // of anything in a room from its origin [m]
 constexpr double kLargest = 20.0;    // edge of a thing [m]
 constexpr double kSmallest = 0.01;   // [m]
-constexpr int kMostSeed = 1'000'000'000;
-constexpr int kMostPeople = 6;
-constexpr std::size_t kMostOccluders = 32;  // each costs a ray test per joint and frame
+constexpr int kMaxSeed = 1'000'000'000;
+constexpr int kMaxPeople = 6;
+constexpr std::size_t kMaxOccluders = 32;  // each costs a ray test per joint and frame
 constexpr Duration kUsualPeriod = std::chrono::seconds(20);
 
 synthetic::WalkerScript read_script(ConfigReader& config) {
   synthetic::WalkerScript script;
   int seed = 1;
   std::size_t path = 0;
-  config.read("seed", seed, 0, kMostSeed);
+  config.read("seed", seed, 0, kMaxSeed);
   config.read_choice("path", path, {synthetic::kPathNames.begin(), synthetic::kPathNames.end()});
   config.read("reach_m", script.reach, 0.0, kFarthest);
   config.read("centre_x_m", script.centre.x(), -kFarthest, kFarthest);
@@ -42,10 +42,10 @@ void read_people(ConfigReader& config, SceneSettings& out) {
   std::string path;
   synthetic::MotionFile file;
   const synthetic::WalkerScript script = read_script(config);
-  config.read("people", people, 0, kMostPeople);
+  config.read("people", people, 0, kMaxPeople);
   config.read("motion", path);
   config.read("motion_metres_per_unit", file.metres_per_unit, 1e-4, 10.0);
-  const auto count = static_cast<std::size_t>(std::clamp(people, 0, kMostPeople));
+  const auto count = static_cast<std::size_t>(std::clamp(people, 0, kMaxPeople));
   out.people = "CMU walking";
   if (path.empty()) {
     out.scene.people = synthetic::make_people(script, count);
@@ -86,7 +86,7 @@ Occluder read_occluder(ConfigReader& config) {
 
 std::vector<Occluder> read_occluders(ConfigReader& config) {
   std::vector<ConfigReader> items = config.items("occluders");
-  if (items.size() > kMostOccluders) config.complain("occluders", "are more than 32");
+  if (items.size() > kMaxOccluders) config.complain("occluders", "are more than 32");
   std::vector<Occluder> things;
   for (ConfigReader& item : items) things.push_back(read_occluder(item));
   return things;

@@ -13,10 +13,10 @@ namespace {
 
 using synthetic::BodySensor;
 
-// After a stall, or when UTC was stepped, the device goes on from now instead of catching up.
-constexpr Duration kMostBehind = std::chrono::seconds(1);
+// After a stall, or when UTC was stepped, the device continues from now instead of catching up.
+constexpr Duration kMaxBehind = std::chrono::seconds(1);
 // UTC may be stepped while we wait, so a long wait looks at the clock now and then.
-constexpr Duration kLongestNap = std::chrono::milliseconds(20);
+constexpr Duration kMaxNap = std::chrono::milliseconds(20);
 constexpr double kRate = 30.0;  // [Hz], of every profile
 
 class Simulated final : public FrameSource {
@@ -47,7 +47,7 @@ class Simulated final : public FrameSource {
 /// The clock was stepped, or we were stopped for long.
 bool Simulated::is_lost(const BodySensor& sensor) const {
   const Duration ahead = sensor.next_exposure() + settings_->latency - time_.world->now();
-  return ahead > kMostBehind || -ahead > kMostBehind;
+  return ahead > kMaxBehind || -ahead > kMaxBehind;
 }
 
 bool Simulated::wait_until(const std::stop_token& stop, Timestamp due) const {
@@ -57,8 +57,8 @@ bool Simulated::wait_until(const std::stop_token& stop, Timestamp due) const {
   while (!stop.stop_requested()) {
     const Duration left = due - time_.world->now();
     // A clock set back must not freeze the device; the caller starts over.
-    if (left <= Duration::zero() || left > kMostBehind) return true;
-    never.wait_for(lock, stop, std::min(left, kLongestNap), [] { return false; });
+    if (left <= Duration::zero() || left > kMaxBehind) return true;
+    never.wait_for(lock, stop, std::min(left, kMaxNap), [] { return false; });
   }
   return false;
 }
@@ -81,7 +81,7 @@ Capture Simulated::with_images(SensorFrame frame) const {
   return capture;
 }
 
-/// From true time to what this host's clock showed.
+/// From true time to what this host's clock shows.
 void Simulated::stamp(SensorFrame& frame) const {
   frame.captured = time_.host.host_time(frame.captured);
   frame.received = time_.host.host_time(time_.world->now());

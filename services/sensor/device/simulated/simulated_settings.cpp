@@ -4,20 +4,15 @@
 #include <array>
 #include <utility>
 
+#include "common/base/fnv.h"
+#include "common/sensor/limits.h"
+
 namespace chorus::sensor_service {
 namespace {
 
 constexpr double kFarthest = 100.0;  // of anything in a room from its origin [m]
-constexpr int kMostSensors = 64;
-constexpr int kMostSeed = 1'000'000'000;
-constexpr std::array<std::string_view, 4> kProfiles{synthetic::kGaussProfile, "A", "B", "C"};
-
-/// FNV-1a: noise must differ between sensors that share a seed, and be the same in every run.
-std::uint64_t hash_of(std::string_view text) {
-  std::uint64_t hash = 0xcbf29ce484222325ull;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
-  return hash;
-}
+constexpr int kMaxSeed = 1'000'000'000;
+constexpr std::array<std::string_view, 5> kProfiles{synthetic::kGaussProfile, "A", "B", "C", "D"};
 
 void read_mm(ConfigReader& config, std::string_view key, double& out, double most) {
   double value = to_mm(out);
@@ -29,8 +24,8 @@ Eigen::Isometry3d read_ring(ConfigReader config) {
   synthetic::Ring ring;
   int index = 0;
   int count = static_cast<int>(ring.count);
-  config.read("index", index, 0, kMostSensors - 1);
-  config.read("count", count, 1, kMostSensors);
+  config.read("index", index, 0, int{kMaxSensors} - 1);
+  config.read("count", count, 1, int{kMaxSensors});
   config.read("radius_m", ring.radius, 0.0, kFarthest);
   config.read("height_m", ring.height, 0.0, kFarthest);
   config.read_deg("pitch_deg", ring.pitch, -89, 89);
@@ -57,7 +52,7 @@ void read_noise(ConfigReader config, synthetic::SensorChoice& choice) {
   synthetic::SensorModel& model = choice.gauss;
   int seed = 1;
   double dropped = 0;
-  config.read("seed", seed, 0, kMostSeed);
+  config.read("seed", seed, 0, kMaxSeed);
   read_mm(config, "along_mm", model.noise.along, 1000);
   read_mm(config, "across_mm", model.noise.across, 1000);
   config.read_deg("turn_deg", model.noise.turn, 0, 90);
@@ -68,14 +63,15 @@ void read_noise(ConfigReader config, synthetic::SensorChoice& choice) {
   read_mm(config, "floor_offset_mm", model.floor.fixed_offset, 1000);
   model.sampling.drop_share = dropped / 100.0;
   choice.seed = choice.bias_seed = static_cast<std::uint64_t>(seed);
-  model.seed = choice.seed ^ hash_of(choice.id.str());
+  // Noise differs between sensors that share a seed, and is the same in every run.
+  model.seed = choice.seed ^ fnv1a(choice.id.str());
 }
 
 void read_profile(ConfigReader& config, synthetic::SensorChoice& choice) {
   std::size_t profile = 0;
   int draw = 0;
   config.read_choice("profile", profile, {kProfiles.begin(), kProfiles.end()});
-  config.read("profile_draw", draw, 0, kMostSeed);
+  config.read("profile_draw", draw, 0, kMaxSeed);
   choice.profile = kProfiles.at(profile);
   if (draw > 0) choice.draw = static_cast<std::uint64_t>(draw);
   choice.own_clock = false;  // the host's clock is a setting of the service

@@ -156,5 +156,11 @@ TEST(WithSource, LeftAndRightAreExchangedEarlierTheMoreYawErrs) {
   }
 }
 
+TEST(WithSource, WhatNeverExchangesLeftAndRightNeverDoes) {
+  for (const double factor : {0.5, 1.0, 2.0, 3.0}) {
+    EXPECT_GE(with_source(nominal_profile("D"), Source::Yaw, factor).yaw.flip_to_rear, deg(180));
+  }
+}
+
 }  // namespace
 }  // namespace chorus::synthetic::kinect

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
+#include <string>
 
+#include "common/body/bones.h"
 #include "tests/support/builders.h"
 #include "tests/unit/synthetic/kinect/room.h"
 
@@ -39,8 +43,8 @@ TEST(KinectSensor, TheSameSeedGivesTheSameFrames) {
   EXPECT_FALSE(same(once, minute(room(2), setting(profile, 1, 1))));
 }
 
-TEST(KinectSensor, GivesFiniteValuesInOrderForBothProfiles) {
-  for (const char* name : {"A", "B"}) {
+TEST(KinectSensor, GivesFiniteValuesInOrderForEveryProfile) {
+  for (const char* name : {"A", "B", "D"}) {
     const auto frames = minute(room(3), setting(draw_profile(name, 4)));
     ASSERT_GT(frames.size(), 1600u);
     for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -129,6 +133,120 @@ TEST(KinectSensor, AnOccluderBetweenMakesItLoseThePerson) {
     return count;
   };
   EXPECT_LT(bodies(hidden), bodies(free) / 2);
+}
+
+/// Does the body fit better with left and right exchanged?
+bool is_exchanged(const Skeleton<SensorSpace>& body, const Skeleton<SensorSpace>& exact) {
+  double better = 0.0;
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    if (!body.joints[i].seen()) continue;
+    const Eigen::Vector3d& other = exact[mirror(static_cast<JointId>(i))].position;
+    better += (body.joints[i].position - exact.joints[i].position).norm() -
+              (body.joints[i].position - other).norm();
+  }
+  return better > 0;
+}
+
+/// Errors of the seen joints of a minute, each over the root of the mean square that it confides.
+struct Honesty {
+  double square = 0.0;  ///< Mean per axis: 1 is honest.
+  double count = 0.0;
+};
+
+Honesty honesty_of(const std::string& profile) {
+  Honesty honesty;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const Scene scene = room();
+    KinectSetting how = setting(draw_profile(profile, seed), seed);
+    how.bias_seed = seed;
+    how.own_clock = false;
+    how.confides = true;
+    for (const SensorFrame& frame : minute(scene, how)) {
+      if (frame.bodies.empty()) continue;
+      const auto exact =
+          to_sensor(scene.world_from_sensor[0].inverse(), truth(scene, 0, frame.captured));
+      const auto& body = frame.bodies[0].skeleton;
+      const bool exchanged = is_exchanged(body, exact);
+      for (std::size_t i = 0; i < kJointCount; ++i) {
+        const auto id = static_cast<JointId>(i);
+        if (!body[id].covariance.known()) continue;  // a ghost's
+        const auto off = body[id].position - exact[exchanged ? mirror(id) : id].position;
+        const Eigen::Matrix3d moment = body[id].covariance.matrix();
+        honesty.square += off.dot(moment.ldlt().solve(off)) / 3.0;
+        honesty.count += 1.0;
+      }
+    }
+  }
+  honesty.square /= honesty.count;
+  return honesty;
+}
+
+TEST(KinectSensor, ConfidesHowFarItsJointsAreOff) {
+  for (const char* profile : {"A", "B", "D"}) {
+    const Honesty honesty = honesty_of(profile);
+    EXPECT_GT(honesty.count, 50'000) << profile;
+    EXPECT_GT(honesty.square, 0.6) << profile;
+    EXPECT_LT(honesty.square, 1.5) << profile;
+  }
+}
+
+TEST(KinectSensor, ConfidingChangesNoPlaceAndWithoutItNothingIsSaid) {
+  KinectSetting how = setting(nominal_profile("A"));
+  const auto plain = minute(room(), how);
+  how.confides = true;
+  const auto confiding = minute(room(), how);
+  EXPECT_TRUE(same(plain, confiding));
+  EXPECT_FALSE(plain[10].bodies.at(0).skeleton[JointId::Neck].covariance.known());
+  EXPECT_TRUE(confiding[10].bodies.at(0).skeleton[JointId::Neck].covariance.known());
+}
+
+TEST(KinectSensor, OfProfileDHasOneScaleForAllBonesOfAFrameAndNeverExchangesLabels) {
+  Scene scene = room();
+  KinectSetting how = setting(nominal_profile("D"));
+  how.own_clock = false;
+  std::vector<double> scales;
+  double thigh_over_arm = 0.0;
+  using enum JointId;
+  for (const SensorFrame& frame : minute(scene, how)) {
+    if (frame.bodies.size() != 1) continue;
+    const auto exact =
+        to_sensor(scene.world_from_sensor[0].inverse(), truth(scene, 0, frame.captured));
+    const auto& body = frame.bodies[0].skeleton;
+    const auto scale = [&](JointId parent, JointId child) {
+      return (body[child].position - body[parent].position).norm() /
+             (exact[child].position - exact[parent].position).norm();
+    };
+    if (!body[KneeLeft].seen() || !body[AnkleLeft].seen() || !body[WristRight].seen()) continue;
+    const double ratio = scale(HipLeft, KneeLeft) / scale(ElbowRight, WristRight);
+    if (!scales.empty()) {
+      ASSERT_NEAR(ratio, thigh_over_arm, 1e-6);
+    }
+    thigh_over_arm = ratio;
+    scales.push_back(scale(HipLeft, KneeLeft));
+    EXPECT_LT((body[ShoulderLeft].position - exact[ShoulderLeft].position).norm(),
+              (body[ShoulderLeft].position - exact[ShoulderRight].position).norm());
+  }
+  ASSERT_GT(scales.size(), 1000u);
+  const auto [least, most] = std::minmax_element(scales.begin(), scales.end());
+  EXPECT_GT(*most / *least, 1.2) << "0.77-1.09 in the log";
+}
+
+TEST(KinectSensor, WhomItFindsAgainFromBehindItTakesToFaceIt) {
+  Scene scene = room();
+  // Turned by 100 deg: between the way back and the way out, where only the past would tell.
+  scene.people = {[](Duration) {
+    return testing::standing_person({0, 0, 2.0}, deg(180) + deg(100));
+  }};
+  Profile profile = perfect();
+  profile.yaw = nominal_profile("A").yaw;
+  KinectSetting how = setting(profile);
+  how.own_clock = false;
+  const auto frames = minute(scene, how);
+  const auto exact = to_sensor(scene.world_from_sensor[0].inverse(), truth(scene, 0, kStart));
+  using enum JointId;
+  const auto& first = frames.front().bodies.at(0).skeleton;
+  EXPECT_LT((first[HipLeft].position - exact[HipRight].position).norm(),
+            (first[HipLeft].position - exact[HipLeft].position).norm());
 }
 
 TEST(KinectSensor, NobodyInAnEmptyRoom) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/body/bones.h"
@@ -47,20 +48,63 @@ TEST(YawBehaviour, FlipsAtOneAngleAndBackAtAnother) {
   EXPECT_FALSE(turn({}, 0, deg(129)).rear);
   const FlipState rear = turn({}, 0, deg(131));
   EXPECT_TRUE(rear.rear);
-  EXPECT_TRUE(turn(rear, deg(131), deg(101)).rear) << "hysteresis: it stays";
-  EXPECT_FALSE(turn(rear, deg(131), deg(99)).rear);
+  EXPECT_TRUE(turn(rear, deg(131), deg(61)).rear) << "hysteresis: it stays";
+  EXPECT_FALSE(turn(rear, deg(131), deg(59)).rear);
   EXPECT_TRUE(turn({}, 0, deg(-131)).rear) << "the same to the other side";
-  EXPECT_FALSE(turn(rear, deg(131), deg(261)).rear) << "all the way round: 260 is 100 from front";
+  EXPECT_TRUE(turn(rear, deg(131), deg(299)).rear);
+  EXPECT_FALSE(turn(rear, deg(131), deg(301)).rear) << "all the way round: 300 is 60 from front";
 }
 
 TEST(YawBehaviour, ChangesItsMindOverSomeFrames) {
   FlipState state;
+  advance(state, deg(0), 0.033, kBehaviour);
   advance(state, deg(140), 0.033, kBehaviour);
   EXPECT_TRUE(state.rear);
   EXPECT_GT(state.blend, 0.0);
   EXPECT_LT(state.blend, 0.5);
   for (int i = 0; i < 6; ++i) advance(state, deg(140), 0.033, kBehaviour);
   EXPECT_EQ(state.blend, 1.0);
+}
+
+TEST(YawBehaviour, WhomItMeetsItTakesToFaceIt) {
+  const auto met_at = [](double facing) {
+    FlipState state;
+    advance(state, facing, 0.033, kBehaviour);
+    return state;
+  };
+  EXPECT_FALSE(met_at(deg(94)).rear);
+  EXPECT_TRUE(met_at(deg(-96)).rear) << "as near to the back as to the front";
+  EXPECT_EQ(met_at(deg(96)).blend, 1.0) << "at once";
+  const YawBehaviour never = nominal_profile("D").yaw;
+  FlipState state;
+  for (int i = 0; i < 10; ++i) advance(state, deg(180), 0.033, never);
+  EXPECT_FALSE(state.rear);
+}
+
+TEST(OwnBehaviour, SpreadsTheWayBackOverOttosWindowAndKeepsTheWayOut) {
+  const YawBehaviour a = nominal_profile("A").yaw;
+  double least = deg(180);
+  double most = 0;
+  for (std::uint64_t sensor = 0; sensor < 200; ++sensor) {
+    const YawBehaviour own = own_behaviour(a, 1, sensor);
+    EXPECT_EQ(own.flip_to_rear, a.flip_to_rear);
+    least = std::min(least, own.flip_to_front);
+    most = std::max(most, own.flip_to_front);
+  }
+  EXPECT_NEAR(least, deg(45), deg(1));
+  EXPECT_NEAR(most, deg(75), deg(1));
+}
+
+TEST(OwnBehaviour, MovesBothAnglesOfBTogether) {
+  const YawBehaviour b = nominal_profile("B").yaw;
+  bool differ = false;
+  for (std::uint64_t sensor = 0; sensor < 50; ++sensor) {
+    const YawBehaviour own = own_behaviour(b, 1, sensor);
+    EXPECT_NEAR(own.flip_to_rear, own.flip_to_front, 1e-12) << "no hysteresis";
+    EXPECT_LE(std::abs(own.flip_to_rear - b.flip_to_rear), deg(15));
+    differ |= std::abs(own.flip_to_rear - b.flip_to_rear) > deg(10);
+  }
+  EXPECT_TRUE(differ);
 }
 
 TEST(YawBehaviour, FromTheFrontTheBodyIsUnchanged) {

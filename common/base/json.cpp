@@ -1,0 +1,81 @@
+#include "common/base/json.h"
+
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace chorus {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t kShownKey = 80;  // characters of a foreign key in our messages
+
+/// What the parser's callback throws; never leaves this file.
+struct TooDeep : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Refuses what the parser would silently swallow: a key given twice, and nesting without bound.
+class StructureGuard {
+ public:
+  explicit StructureGuard(int nesting) : nesting_(nesting) {}
+
+  bool operator()(int depth, Json::parse_event_t event, const Json& parsed) {
+    using Event = Json::parse_event_t;
+    if ((event == Event::object_start || event == Event::array_start) && depth >= nesting_)
+      throw TooDeep("brackets are nested deeper than " + std::to_string(nesting_));
+    if (event == Event::object_start) open_.emplace_back();
+    if (event == Event::object_end && !open_.empty()) open_.pop_back();
+    if (event == Event::key && !open_.empty()) {
+      const auto& key = parsed.get_ref<const std::string&>();
+      if (!open_.back().insert(key).second && repeated_.empty()) repeated_ = key;
+    }
+    return true;
+  }
+  [[nodiscard]] const std::string& repeated() const { return repeated_; }
+
+ private:
+  int nesting_;
+  std::vector<std::set<std::string>> open_;
+  std::string repeated_;
+};
+
+/// "[json.exception.parse_error.101] parse error at line 1..." without its first part.
+std::string readable(const Json::exception& error) {
+  const std::string_view what = error.what();
+  const std::size_t end = what.find("] ");
+  return std::string(end == std::string_view::npos ? what : what.substr(end + 2));
+}
+
+}  // namespace
+
+Result<Json> parse_json(std::string_view text, const JsonLimits& limits) {
+  if (text.size() > limits.bytes) {
+    return fail(ErrorCode::TooLarge, {},
+                "the document has " + std::to_string(text.size()) + " bytes; at most " +
+                    std::to_string(limits.bytes) + " are read");
+  }
+  StructureGuard guard(limits.nesting);
+  try {
+    constexpr bool kExceptions = true;
+    Json json = Json::parse(
+        text,
+        [&guard](int depth, Json::parse_event_t event, const Json& parsed) {
+          return guard(depth, event, parsed);
+        },
+        kExceptions, limits.comments);
+    if (guard.repeated().empty()) return json;
+  } catch (const Json::exception& error) {
+    return fail(ErrorCode::Malformed, {}, readable(error));
+  } catch (const TooDeep& error) {
+    return fail(ErrorCode::TooLarge, {}, error.what());
+  }
+  return fail(ErrorCode::Malformed, guard.repeated().substr(0, kShownKey),
+              "the key is given twice");
+}
+
+}  // namespace chorus

@@ -1,0 +1,24 @@
+// JSON from outside: bounded in size and nesting, without repeated keys, never throwing.
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "common/base/result.h"
+
+namespace chorus {
+
+struct JsonLimits {
+  std::size_t bytes = 2'000'000;
+  int nesting = 32;
+  bool comments = false;  ///< Whether // and /* */ are allowed, as in configurations.
+};
+
+/// The parsed document.  TooLarge beyond the limits.  Malformed: not JSON (the message says where),
+/// or an object has a key twice (the context is that key).
+[[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text,
+                                                const JsonLimits& limits = {});
+
+}  // namespace chorus

@@ -1,0 +1,19 @@
+// The median.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace chorus {
+
+/// The upper of the two middle values when their number is even.  There must be at least one value.
+template <class Value>
+[[nodiscard]] Value median(std::vector<Value> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return std::move(*middle);
+}
+
+}  // namespace chorus

@@ -1,0 +1,28 @@
+// A body between two instants at which it was seen.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "common/body/skeleton.h"
+
+namespace chorus {
+
+/// Positions are linear (directions of rays normalised), orientations a sign-aligned LERP where
+/// both have one, the state is the worse one; s in [0, 1].  Not tracked when either joint has no
+/// place, nor between a point and a ray.
+[[nodiscard]] Joint interpolate(const Joint& a, const Joint& b, double s);
+
+/// Joint by joint.  `s` is clamped to [0, 1]; NaN counts as 0.
+template <class Space>
+[[nodiscard]] Skeleton<Space> interpolate(const Skeleton<Space>& a, const Skeleton<Space>& b,
+                                          double s) {
+  const double share = std::isfinite(s) ? std::clamp(s, 0.0, 1.0) : 0.0;
+  Skeleton<Space> body;
+  for (std::size_t i = 0; i < kJointCount; ++i)
+    body.joints[i] = interpolate(a.joints[i], b.joints[i], share);
+  return body;
+}
+
+}  // namespace chorus

@@ -1,0 +1,338 @@
+#include "common/http/conversation.h"
+
+#include <utility>
+
+#include "common/http/admission.h"
+#include "common/http/status.h"
+
+namespace chorus::http {
+namespace {
+
+constexpr std::chrono::seconds kLingerTime{2};
+constexpr std::size_t kLingerBytes = 1u << 20;  // What a refused client may still send.
+
+// The client holds the body back until it reads this.
+constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
+
+}  // namespace
+
+Conversation::Conversation(ConversationContext context, Peer peer, Charge charge)
+    : context_(context),
+      peer_(std::move(peer)),
+      charge_(std::move(charge)),
+      buffer_(context.config.limits.max_header_bytes) {}
+
+template <class Event>
+Orders Conversation::resume(SteadyTime now, const Event& event) {
+  now_ = now;
+  orders_ = {};
+  if (!closed()) event();
+  return std::exchange(orders_, {});
+}
+
+Orders Conversation::begin(SteadyTime now) {
+  return resume(now, [this] {
+    expire_in(context_.config.limits.idle_timeout);
+    read();
+  });
+}
+
+Orders Conversation::begin_in_reserve(SteadyTime now) {
+  return resume(now, [this] {
+    in_reserve_ = close_after_ = true;
+    expire_in(context_.config.limits.header_timeout);
+    read();
+  });
+}
+
+Orders Conversation::received(std::size_t size, SteadyTime now) {
+  return resume(now, [this, size] { on_input(size); });
+}
+
+Orders Conversation::input_ended(bool cleanly, SteadyTime now) {
+  return resume(now, [this, cleanly] {
+    reading_ = false;
+    end_of_input_ = true;
+    // Requests made before the end of input are still answered, but nobody waits any longer.
+    if (!cleanly || state_ != State::Writing) hang_up();
+  });
+}
+
+Orders Conversation::sent(std::size_t size, SteadyTime now) {
+  return resume(now, [this, size] {
+    if (std::exchange(continuing_, false)) return advance_body();
+    count(context_.counters.bytes_sent, size);
+    if (state_ != State::Streaming) return answer_sent();
+    event_.reset();
+    orders_.settle = true;
+  });
+}
+
+Orders Conversation::send_failed(std::size_t size, SteadyTime now) {
+  return resume(now, [this, size] {
+    if (!continuing_) count(context_.counters.bytes_sent, size);
+    hang_up();
+  });
+}
+
+Orders Conversation::settled(SteadyTime now) {
+  return resume(now, [this] { on_settled(); });
+}
+
+Orders Conversation::woken(SteadyTime now) {
+  return resume(now, [this] { on_woken(); });
+}
+
+Orders Conversation::look(SteadyTime now) {
+  return resume(now, [this] { on_look(); });
+}
+
+Orders Conversation::expired(SteadyTime now) {
+  return resume(now, [this] { on_deadline(); });
+}
+
+Orders Conversation::stop(SteadyTime now) {
+  return resume(now, [this] { on_stop(); });
+}
+
+Orders Conversation::close(SteadyTime now) {
+  return resume(now, [this] { hang_up(); });
+}
+
+bool Conversation::idle() const {
+  return state_ == State::Head && unread().empty() && !in_reserve_;
+}
+
+void Conversation::read() {
+  if (reading_ || buffer_.full()) return;
+  orders_.read = reading_ = true;
+}
+
+void Conversation::on_input(std::size_t size) {
+  reading_ = false;
+  buffer_.add(size);
+  switch (state_) {
+    case State::Head:
+      received_ = context_.config.clock->now();
+      if (unread().size() == size) expire_in(context_.config.limits.header_timeout);
+      return advance();
+    case State::Body:
+      return advance_body();
+    case State::Lingering:
+      drained_ += size;
+      buffer_.clear();
+      return drained_ > kLingerBytes ? hang_up() : read();
+    default:
+      return;  // A request sent ahead; it stays in the buffer.
+  }
+}
+
+void Conversation::advance() {
+  const HeadEnd head = buffer_.find_head();
+  if (head.progress == HeadProgress::Broken) {
+    return refuse(status::kBadRequest,
+                  "lines end in CR LF and a request begins with its request line");
+  }
+  if (head.progress == HeadProgress::Complete) return serve(head.size);
+  if (!reading_) buffer_.compact();
+  if (buffer_.full()) {
+    const bool line_done = unread().find('\n') != std::string_view::npos;
+    return refuse(line_done ? status::kFieldsTooLarge : status::kUriTooLong,
+                  "a request line with its header fields has at most " +
+                      std::to_string(buffer_.capacity()) + " bytes");
+  }
+  read();
+}
+
+void Conversation::refuse(int status, std::string detail) {
+  count(context_.counters.refused);
+  send(context_.responder.refuse({status, std::move(detail)}));
+}
+
+void Conversation::serve(std::size_t head_size) {
+  request_size_ = head_size;
+  if (auto refusal = read_head(unread().substr(0, head_size), head_))
+    return refuse(refusal->status, std::move(refusal->detail));
+  count(context_.counters.requests);
+  if (!head_.keep_alive) close_after_ = true;
+  if (!may_ask()) return refuse(status::kUnavailable, "too many connections; keep fewer open");
+  reaction_ = context_.responder.react(head_, peer_);
+  switch (reaction_.kind) {
+    case Reaction::Kind::Answer:
+      return send(std::move(reaction_.answer));
+    case Reaction::Kind::ReadBody:
+      return begin_body();
+    case Reaction::Kind::Wait:
+      return begin_wait();
+    case Reaction::Kind::Stream:
+      return begin_stream();
+    case Reaction::Kind::Upgrade:
+      state_ = State::Closed;
+      orders_.upgrade = true;
+  }
+}
+
+/// Whether there is room for this request's sender; beyond the limits only for what is vital.
+bool Conversation::may_ask() {
+  if (peer_.proxy) {
+    if (const auto account = forwarded_account(head_)) {
+      if (!charge_(*account)) return context_.responder.is_vital(head_);
+      peer_.account = *account;
+    }
+  }
+  return !in_reserve_ || context_.responder.is_vital(head_);
+}
+
+void Conversation::begin_body() {
+  state_ = State::Body;
+  body_.clear();
+  expire_in(context_.config.limits.body_timeout);
+  if (!head_.expects_continue) return advance_body();
+  continuing_ = true;
+  write(kContinue);
+}
+
+void Conversation::advance_body() {
+  // The head stays where it is, for the action to read; the body is taken out behind it.
+  const auto wanted = static_cast<std::size_t>(head_.content_length) - body_.size();
+  buffer_.take_body(request_size_, wanted, body_);
+  if (body_.size() < head_.content_length) {
+    // A head that fills the buffer leaves no room for reading its body.
+    if (buffer_.full())
+      return refuse(status::kFieldsTooLarge, "shorten the header fields of a request with a body");
+    return read();
+  }
+  send(context_.responder.act(reaction_, head_, peer_, body_));
+}
+
+void Conversation::send(Answer answer) {
+  if (answer.file && !begin_download()) {
+    count(context_.counters.refused);
+    answer = context_.responder.refuse(
+        {status::kUnavailable,
+         "too many files are on their way to others; ask again when one is done"});
+  }
+  answer_ = std::move(answer);
+  sent_of_file_ = 0;
+  state_ = State::Writing;
+  close_after_ = close_after_ || answer_.close || context_.stopping;
+  if (answer_.status == status::kNotModified) count(context_.counters.not_modified);
+  if (answer_.status == status::kUnauthorized || answer_.status == status::kTooManyRequests)
+    count(context_.counters.unauthorized);
+  first_lines_.clear();
+  const bool tell = head_.minor_version == 0 && !close_after_;
+  write_first_lines(first_lines_, answer_,
+                    {received_, context_.config.clock->now(), close_after_, tell,
+                     context_.config.policy.clock_field});
+  write(first_lines_);
+  output_ = {first_lines_, answer_.route, answer_.own, answer_.body};
+}
+
+void Conversation::write(std::string_view bytes) {
+  output_ = {bytes};
+  orders_.write = true;
+  if (!continuing_) expire_in(context_.config.limits.write_timeout);
+}
+
+void Conversation::answer_sent() {
+  if (send_piece()) return;
+  answer_ = {};
+  end_download();
+  if (reaction_.kind == Reaction::Kind::Stream) {
+    state_ = State::Streaming;
+    return push_event();
+  }
+  if (close_after_ || context_.stopping) return linger();
+  next_request();
+}
+
+bool Conversation::begin_download() {
+  auto& open = context_.counters.downloads_open;
+  if (open.load(std::memory_order_relaxed) >= context_.config.limits.max_downloads) return false;
+  count(open);
+  return downloading_ = true;
+}
+
+void Conversation::end_download() {
+  if (std::exchange(downloading_, false)) uncount(context_.counters.downloads_open);
+}
+
+/// The next piece of the answer's file; false when there is none left.
+bool Conversation::send_piece() {
+  if (!answer_.file || sent_of_file_ >= answer_.file->size()) return false;
+  if (!answer_.file->read(sent_of_file_, piece_)) {
+    hang_up();  // the announced length cannot be kept: only a broken connection says so
+    return true;
+  }
+  sent_of_file_ += piece_.size();
+  write(piece_);
+  return true;
+}
+
+void Conversation::next_request() {
+  buffer_.drop(request_size_);
+  request_size_ = 0;
+  reaction_.entry = nullptr;
+  state_ = State::Head;
+  if (unread().empty()) {
+    if (!reading_) buffer_.clear();
+    expire_in(context_.config.limits.idle_timeout);
+    return end_of_input_ ? hang_up() : read();
+  }
+  received_ = context_.config.clock->now();
+  expire_in(context_.config.limits.header_timeout);
+  advance();
+}
+
+/// Tells the client that nothing more comes and reads on until the client has closed: closing with
+/// unread input would reset the connection and destroy the answer on its way.
+void Conversation::linger() {
+  if (end_of_input_) return hang_up();
+  state_ = State::Lingering;
+  if (!reading_) buffer_.clear();
+  orders_.half_close = true;
+  expire_in(kLingerTime);
+  read();
+}
+
+void Conversation::on_deadline() {
+  switch (state_) {
+    case State::Head:
+      if (unread().empty()) return hang_up();
+      return refuse(status::kRequestTimeout, "the request did not arrive in time; send it at once");
+    case State::Body:
+      if (continuing_) return hang_up();
+      return refuse(status::kRequestTimeout, "the request did not arrive in time; send it at once");
+    case State::Waiting:
+      orders_.stop_waiting = true;
+      return end_wait(context_.responder.given_up(*reaction_.entry, head_));
+    case State::Streaming:
+      return push_event();
+    default:
+      return hang_up();
+  }
+}
+
+void Conversation::on_stop() {
+  switch (state_) {
+    case State::Waiting:
+      orders_.stop_waiting = true;
+      return end_wait(context_.responder.refuse({status::kUnavailable, "the service is stopping"}));
+    case State::Writing:
+    case State::Body:
+      return;
+    default:
+      return hang_up();
+  }
+}
+
+void Conversation::hang_up() {
+  const State before = std::exchange(state_, State::Closed);
+  end_download();
+  if (before == State::Waiting) uncount(context_.counters.long_polls_waiting);
+  if (reaction_.kind == Reaction::Kind::Stream) uncount(context_.counters.event_streams_open);
+  orders_.stop_waiting = reaction_.entry != nullptr;
+  orders_.close = true;
+}
+
+}  // namespace chorus::http

@@ -1,0 +1,134 @@
+// One client's requests and our answers, as a state machine without IO: events in, orders out.
+//
+// Requests are read one after the other and answered in order; what a client sends ahead waits in
+// the buffer.  Long polls and event streams wait for publishes.  Time is an argument; the Asio
+// shell (http_connection.h) carries the orders out and feeds their outcome back.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "common/base/duration.h"
+#include "common/http/counters.h"
+#include "common/http/orders.h"
+#include "common/http/request_buffer.h"
+#include "common/http/responder.h"
+
+namespace chorus::http {
+
+/// What all conversations of a server share.
+struct ConversationContext {
+  const ServerConfig& config;
+  const Responder& responder;
+  AtomicCounters& counters;
+  const bool& stopping;  ///< The server is stopping: each answer is the last one of its connection.
+};
+
+class Conversation {
+ public:
+  /// Counts the connection for the account that a trusted proxy names; false when that one is full.
+  using Charge = std::function<bool(const std::string& account)>;
+
+  Conversation(ConversationContext context, Peer peer, Charge charge);
+
+  [[nodiscard]] Orders begin(SteadyTime now);
+  /// There are too many connections: one request is answered, if it is for something vital.
+  [[nodiscard]] Orders begin_in_reserve(SteadyTime now);
+  [[nodiscard]] Orders received(std::size_t size, SteadyTime now);
+  /// `cleanly`: the client has closed its side; else the connection is broken.
+  [[nodiscard]] Orders input_ended(bool cleanly, SteadyTime now);
+  [[nodiscard]] Orders sent(std::size_t size, SteadyTime now);
+  [[nodiscard]] Orders send_failed(std::size_t size, SteadyTime now);
+  [[nodiscard]] Orders settled(SteadyTime now);
+  /// A new version of the entry's document has been published; the wait is not registered any more.
+  [[nodiscard]] Orders woken(SteadyTime now);
+  /// The wait has just been registered: checks whether a version was published before that.
+  [[nodiscard]] Orders look(SteadyTime now);
+  [[nodiscard]] Orders expired(SteadyTime now);
+  /// The server stops: finishes what is under way and begins nothing new.
+  [[nodiscard]] Orders stop(SteadyTime now);
+  [[nodiscard]] Orders close(SteadyTime now);
+
+  [[nodiscard]] std::span<char> room() { return buffer_.room(); }
+  [[nodiscard]] const std::array<std::string_view, 4>& output() const { return output_; }
+  [[nodiscard]] std::string_view unread() const { return buffer_.unread(); }
+  /// Its entry says which document to wait for, or which WebSocket to upgrade to.
+  [[nodiscard]] const Reaction& reaction() const { return reaction_; }
+  [[nodiscard]] SteadyTime deadline() const { return deadline_; }
+  [[nodiscard]] bool closed() const { return state_ == State::Closed; }
+  /// True between requests.
+  [[nodiscard]] bool idle() const;
+
+ private:
+  enum class State { Head, Body, Writing, Waiting, Streaming, Lingering, Closed };
+
+  template <class Event>
+  Orders resume(SteadyTime now, const Event& event);
+  void read();
+  void on_input(std::size_t size);
+  void advance();
+  void refuse(int status, std::string detail);
+  void serve(std::size_t head_size);
+  [[nodiscard]] bool may_ask();
+  void begin_body();
+  void advance_body();
+  void send(Answer answer);
+  void write(std::string_view bytes);
+  void answer_sent();
+  [[nodiscard]] bool begin_download();
+  void end_download();
+  [[nodiscard]] bool send_piece();
+  void next_request();
+  void linger();
+  void begin_wait();
+  void on_woken();
+  void on_look();
+  void on_settled();
+  void end_wait(Answer answer);
+  void watch();
+  void begin_stream();
+  void push_event();
+  void on_deadline();
+  void on_stop();
+  void hang_up();
+  void expire_in(std::chrono::seconds time) { deadline_ = now_ + time; }
+
+  ConversationContext context_;
+  Peer peer_;
+  Charge charge_;
+  State state_ = State::Head;
+  SteadyTime now_{};
+  SteadyTime deadline_{};
+  Orders orders_;
+  bool reading_ = false;
+  bool end_of_input_ = false;
+  bool close_after_ = false;
+  bool in_reserve_ = false;
+  bool downloading_ = false;
+  bool continuing_ = false;  ///< "100 Continue" is being written.
+
+  RequestBuffer buffer_;
+  std::size_t request_size_ = 0;
+  std::size_t drained_ = 0;
+
+  RequestHead head_;
+  Reaction reaction_;
+  Answer answer_;
+  std::array<std::string_view, 4> output_;
+  std::uint64_t sent_of_file_ = 0;
+  std::string piece_;  ///< Of the answer's file.
+  Timestamp received_;
+  std::string first_lines_;
+  std::string body_;
+
+  DocumentPtr streamed_;  ///< Last document sent as an event.
+  std::shared_ptr<const std::string> event_;
+  bool event_under_way_ = false;
+  bool event_pending_ = false;
+};
+
+}  // namespace chorus::http

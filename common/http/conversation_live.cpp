@@ -1,0 +1,98 @@
+// Waiting for the next version: long polls, and server-sent events (WHATWG HTML 9.2), which carry
+// the newest document as often as the reader can take it.
+#include <utility>
+
+#include "common/http/conversation.h"
+#include "common/http/status.h"
+
+namespace chorus::http {
+namespace {
+
+constexpr std::chrono::seconds kHeartbeat{15};
+
+std::shared_ptr<const std::string> heartbeat(Coding coding) {
+  constexpr std::string_view kComment = ":\n\n";
+  static const auto plain = std::make_shared<const std::string>(kComment);
+  static const auto coded = std::make_shared<const std::string>(gzip_piece(kComment));
+  return coding == Coding::Gzip ? coded : plain;
+}
+
+}  // namespace
+
+void Conversation::begin_wait() {
+  if (context_.counters.long_polls_waiting.load(std::memory_order_relaxed) >=
+      context_.config.limits.max_long_polls)
+    return refuse(status::kUnavailable,
+                  "too many long polls are waiting; ask without Prefer: wait");
+  state_ = State::Waiting;
+  expire_in(reaction_.wait);
+  count(context_.counters.long_polls_waiting);
+  orders_.wait = true;
+}
+
+void Conversation::on_woken() {
+  if (state_ == State::Waiting) {
+    auto answer = context_.responder.waited(*reaction_.entry, head_);
+    if (answer) return end_wait(std::move(*answer));
+  }
+  orders_.wait = state_ == State::Waiting || reaction_.kind == Reaction::Kind::Stream;
+}
+
+/// A publish wakes only those who wait, so one that came just before has to be looked for.
+void Conversation::on_look() {
+  if (state_ == State::Streaming) return push_event();
+  if (state_ != State::Waiting) return;
+  auto answer = context_.responder.waited(*reaction_.entry, head_);
+  if (!answer) return watch();
+  orders_.stop_waiting = true;
+  end_wait(std::move(*answer));
+}
+
+void Conversation::end_wait(Answer answer) {
+  uncount(context_.counters.long_polls_waiting);
+  send(std::move(answer));
+}
+
+/// Keeps reading while there is nothing to answer, to notice when the client leaves; not if more
+/// requests are in the buffer already, because compact() must then be possible.
+void Conversation::watch() {
+  if (unread().size() == request_size_) read();
+}
+
+void Conversation::begin_stream() {
+  count(context_.counters.event_streams_open);
+  orders_.small_queue = orders_.wait = true;
+  const auto current = reaction_.entry->live->current();
+  // A reader that comes back and has the newest version already gets the next one.
+  if (current && !head_.last_event_id.empty() && head_.last_event_id == current->options().version)
+    streamed_ = current;
+  watch();
+  send(std::move(reaction_.answer));
+}
+
+void Conversation::push_event() {
+  if (event_under_way_) {
+    // The last event is still being written at the next publish: only the newest waits, the others
+    // are skipped.
+    if (now_ >= deadline_) return hang_up();
+    if (event_pending_) count(context_.counters.events_skipped);
+    event_pending_ = true;
+    return;
+  }
+  const Coding coding = coding_for(head_.accept_encoding);
+  const DocumentPtr newest = reaction_.entry->live->current();
+  event_ = newest && newest != streamed_ ? newest->event(reaction_.event_type, coding) : nullptr;
+  if (newest) streamed_ = newest;
+  if (!event_ && now_ < deadline_) return;
+  if (!event_) event_ = heartbeat(coding);
+  event_under_way_ = true;
+  write(*event_);
+}
+
+void Conversation::on_settled() {
+  event_under_way_ = false;
+  expire_in(kHeartbeat);
+  if (std::exchange(event_pending_, false)) push_event();
+}
+
+}  // namespace chorus::http

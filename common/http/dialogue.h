@@ -1,0 +1,45 @@
+// A client that sends messages and gets answers, whatever carries them: a WebSocket, or lines on a
+// socket.  Everything runs on the carrier's thread.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/result.h"
+
+namespace chorus::http {
+
+/// What to send to the client, in order, and whether the dialogue ends then.
+struct Reply {
+  std::vector<std::string> messages = {};
+  bool over = false;
+};
+
+/// The server says nothing except in these calls.
+class Dialogue {
+ public:
+  virtual ~Dialogue() = default;  ///< The client has left, or is disconnected.
+  /// One complete message.
+  [[nodiscard]] virtual Reply hear(std::string_view message) = 0;
+  /// Called four times a second: what the server has to say unasked.
+  [[nodiscard]] virtual Reply look() = 0;
+};
+
+/// Begins a dialogue with a client at this address; an Error refuses it with a problem document.
+using Opener = std::function<Result<std::unique_ptr<Dialogue>>(const std::string& address)>;
+
+/// How a pattern's WebSockets are answered.
+struct DialogueRoute {
+  Opener open;
+  std::string protocol;                       ///< Its name in Sec-WebSocket-Protocol.
+  std::size_t max_message_bytes = 64 * 1024;  ///< A client that sends a longer one is disconnected.
+};
+
+/// A client that does not read is disconnected when this much waits for it.
+inline constexpr std::size_t kMaxUnread = 64 * 1024;
+
+}  // namespace chorus::http

@@ -1,0 +1,115 @@
+#include "common/http/http_connection.h"
+
+#include <array>
+#include <utility>
+
+#include "common/http/server_core.h"
+#include "common/http/websocket.h"
+#include "common/net/address.h"
+#include "common/net/small_queue.h"
+
+namespace chorus::http {
+namespace {
+
+Peer peer_of(const ServerCore& core, const net::Socket& socket, const net::tcp::endpoint& remote) {
+  net::error_code failed;
+  const auto local = socket.local_endpoint(failed);
+  Peer peer;
+  peer.loopback = net::unmapped(remote.address()).is_loopback();
+  peer.proxy = core.is_proxy(remote.address());
+  peer.local_address = net::unmapped(local.address()).to_string();
+  peer.local_port = local.port();
+  peer.account = net::account_of(remote.address());
+  return peer;
+}
+
+}  // namespace
+
+HttpConnection::HttpConnection(ServerCore& core, net::Socket socket,
+                               const net::tcp::endpoint& remote)
+    : Connection(net::account_of(remote.address())),
+      core_(core),
+      socket_(std::move(socket)),
+      conversation_({core.config, core.responder, core.counters, core.stopping},
+                    peer_of(core, socket_, remote),
+                    [this](const std::string& account) { return core_.charge(*this, account); }) {
+  net::error_code ignored;
+  socket_.set_option(net::tcp::no_delay(true), ignored);
+}
+
+void HttpConnection::start() { carry_out(conversation_.begin(core_.now)); }
+void HttpConnection::start_in_reserve() { carry_out(conversation_.begin_in_reserve(core_.now)); }
+void HttpConnection::wake() { carry_out(conversation_.woken(core_.now)); }
+void HttpConnection::expire() { carry_out(conversation_.expired(core_.now)); }
+void HttpConnection::stop() { carry_out(conversation_.stop(core_.now)); }
+void HttpConnection::close() { carry_out(conversation_.close(core_.now)); }
+
+void HttpConnection::carry_out(const Orders& orders) {
+  deadline_ = conversation_.deadline();
+  if (orders.small_queue) net::keep_queue_small(socket_);
+  if (orders.stop_waiting) core_.stop_waiting(conversation_.reaction().entry->index, this);
+  if (orders.upgrade) return upgrade();
+  if (orders.close) return hang_up();
+  if (orders.half_close) {
+    net::error_code failed;
+    socket_.shutdown(net::tcp::socket::shutdown_send, failed);
+    if (failed) return close();
+  }
+  if (orders.read) read();
+  if (orders.write) write();
+  if (orders.settle) settle();
+  if (orders.wait) {
+    core_.wait_for(conversation_.reaction().entry->index, shared_from_this());
+    carry_out(conversation_.look(core_.now));
+  }
+}
+
+void HttpConnection::read() {
+  const auto room = conversation_.room();
+  socket_.async_read_some(
+      asio::buffer(room.data(), room.size()),
+      [me = self()](net::error_code failed, std::size_t size) {
+        Conversation& conversation = me->conversation_;
+        me->carry_out(failed ? conversation.input_ended(failed == asio::error::eof, me->core_.now)
+                             : conversation.received(size, me->core_.now));
+      });
+}
+
+void HttpConnection::write() {
+  std::array<asio::const_buffer, 4> buffers;
+  for (std::size_t i = 0; i < buffers.size(); ++i) {
+    const std::string_view part = conversation_.output()[i];
+    buffers[i] = asio::buffer(part.data(), part.size());
+  }
+  asio::async_write(socket_, buffers, [me = self()](net::error_code failed, std::size_t size) {
+    Conversation& conversation = me->conversation_;
+    me->carry_out(failed ? conversation.send_failed(size, me->core_.now)
+                         : conversation.sent(size, me->core_.now));
+  });
+}
+
+void HttpConnection::settle() {
+  if (net::is_queue_small(socket_)) return carry_out(conversation_.settled(core_.now));
+  socket_.async_wait(net::Socket::wait_write, [me = self()](net::error_code broken) {
+    me->carry_out(broken ? me->conversation_.close(me->core_.now)
+                         : me->conversation_.settled(me->core_.now));
+  });
+}
+
+/// The socket, and what has been read from it, go to a connection that speaks the other protocol.
+void HttpConnection::upgrade() {
+  const Reaction& chosen = conversation_.reaction();
+  WebSocketOpening opening{std::move(socket_), std::string(conversation_.unread()),
+                           peer_address(),     chosen.entry,
+                           chosen.dialogue,    chosen.protocol};
+  core_.replace(this, open_websocket(core_, std::move(opening)));
+}
+
+void HttpConnection::hang_up() {
+  const auto keep = shared_from_this();  // forget() drops what may be the last reference.
+  net::error_code ignored;
+  socket_.close(ignored);
+  core_.forget(this);
+}
+
+}  // namespace chorus::http

@@ -1,0 +1,47 @@
+// One client that speaks HTTP: the socket of a conversation.
+//
+// Everything runs on the server's only thread.  At most one read and one write are under way.
+// Deadlines are swept by the server (a timer per request costs 2 us), so they are exact to a
+// quarter of a second.
+#pragma once
+
+#include <memory>
+
+#include "common/http/connection.h"
+#include "common/http/conversation.h"
+#include "common/net/asio.h"
+
+namespace chorus::http {
+
+struct ServerCore;
+
+class HttpConnection final : public Connection {
+ public:
+  HttpConnection(ServerCore& core, net::Socket socket, const net::tcp::endpoint& remote);
+
+  void start();
+  /// There are too many connections: answers one request, if it is for something vital, and closes.
+  void start_in_reserve();
+  void wake() override;
+  void expire() override;
+  void stop() override;
+  void close() override;
+  [[nodiscard]] bool idle() const override { return conversation_.idle(); }
+
+ private:
+  void carry_out(const Orders& orders);
+  void read();
+  void write();
+  void settle();
+  void upgrade();
+  void hang_up();
+  [[nodiscard]] std::shared_ptr<HttpConnection> self() {
+    return std::static_pointer_cast<HttpConnection>(shared_from_this());
+  }
+
+  ServerCore& core_;
+  net::Socket socket_;
+  Conversation conversation_;
+};
+
+}  // namespace chorus::http

@@ -1,0 +1,24 @@
+// Northwestern-UCLA Multiview Action3D as json: one Kinect v1 view, 20 joints, no times, no states.
+//
+// {"file_name", "skeletons": [frames][20][x, y, z], "label"}, metres in camera space.  The Kinect
+// v1 has no Neck, hand tips and thumbs: those stay NotTracked.  Views of one take are named
+// aAA_sSS_eEE_vVV; in some takes the dataset holds v02 a second time as v03.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "common/importers/import_options.h"
+#include "common/record/frame_recording.h"
+
+namespace chorus::importers {
+
+/// The sensor is named after the view ("v01") unless the options name it.
+[[nodiscard]] Result<record::FrameRecording> read_nw_ucla_json(const std::filesystem::path& file,
+                                                               const ImportOptions& options = {});
+
+/// Refuses sets in which two recordings hold the same joint positions throughout: two cameras
+/// cannot.
+[[nodiscard]] Result<void> refuse_copies(const std::vector<record::FrameRecording>& views);
+
+}  // namespace chorus::importers

@@ -1,0 +1,69 @@
+// Skeleton layouts: which landmarks a tracker provides, in which order, and how our joints are made
+// from them.  One table per file, each with the source of its order.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "common/base/result.h"
+#include "common/body/skeleton.h"
+
+namespace chorus::layout {
+
+/// The weight of one landmark in a joint.
+struct Share {
+  std::uint8_t landmark = 0;
+  double weight = 0.0;
+};
+
+/// A joint as a weighted mean of landmarks.
+struct Recipe {
+  JointId joint = JointId::SpineBase;
+  std::array<Share, 4> shares;  ///< Weights sum to one; unused shares have weight zero.
+};
+
+struct Layout {
+  std::string_view name;                        ///< "mediapipe_33"
+  std::string_view tracker;                     ///< For people.
+  std::string_view source;                      ///< Where its order is published.
+  std::span<const std::string_view> landmarks;  ///< By number, in the spelling of the source.
+  /// A joint that no entry makes is one that the tracker does not provide.  If several entries make
+  /// one joint, the first that is seen counts; the others are substitutes, whose joint is at most
+  /// Inferred.
+  std::span<const Recipe> recipes;
+  double tracked_from = 0.0;   ///< Lowest confidence (0 to 1) of a Tracked landmark ...
+  double inferred_from = 0.0;  ///< ... and of an Inferred one.
+};
+
+/// All layouts.
+[[nodiscard]] std::span<const Layout* const> layouts();
+
+/// NotFound lists the known ones.
+[[nodiscard]] Result<const Layout*> find_layout(std::string_view name);
+
+[[nodiscard]] std::optional<std::size_t> landmark_named(const Layout& layout,
+                                                        std::string_view name);
+
+[[nodiscard]] JointState state_of(double confidence, double tracked_from, double inferred_from);
+
+/// One landmark, in the form of a Joint: a point [m], or a ray.
+struct Landmark {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  JointState state = JointState::NotTracked;
+  Measurement measurement = Measurement::Point;
+  Covariance covariance = {};
+};
+
+/// `landmarks` are in the layout's order; those missing at the end are not tracked.  A joint is as
+/// certain as its least certain landmark; its covariance assumes independent errors of the
+/// landmarks, and is known if all of theirs are.  Rays are averaged in direction: for landmarks at
+/// different depths this is only nearly the ray to their centre (3 mm for the hips at 3 m).
+/// Landmarks have no orientation, so the joints have none.
+[[nodiscard]] std::array<Joint, kJointCount> joints_of(const Layout& layout,
+                                                       std::span<const Landmark> landmarks);
+
+}  // namespace chorus::layout

@@ -1,0 +1,17 @@
+// Addresses as limits and logs use them.
+#pragma once
+
+#include <string>
+
+#include "common/net/asio.h"
+
+namespace chorus::net {
+
+/// An IPv4 address that is mapped into IPv6 as plain IPv4; any other address unchanged.
+[[nodiscard]] asio::ip::address unmapped(const asio::ip::address& address);
+
+/// The account that a connection is counted for: an IPv4 address, or the first 64 bits of an IPv6
+/// address, because one host may use all the other bits.
+[[nodiscard]] std::string account_of(const asio::ip::address& address);
+
+}  // namespace chorus::net

@@ -1,0 +1,27 @@
+// How many clients a server accepts, in total and from one address.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace chorus::net {
+
+struct Capacity {
+  std::size_t all = 0;
+  std::size_t of_address = 0;       ///< So that one host cannot take all places.
+  std::string_view all_key;         ///< Configures `all`: "outputs.vrpn.max_clients".
+  std::string_view of_address_key;  ///< Configures `of_address`.
+};
+
+/// How many clients a server has when another one arrives.
+struct ClientCount {
+  std::size_t all = 0;
+  std::size_t of_address = 0;  ///< From the newcomer's address.
+};
+
+/// Why a client from `address` is turned away, with the key to change; empty when there is room.
+[[nodiscard]] std::string objection(const Capacity& capacity, const ClientCount& count,
+                                    std::string_view address);
+
+}  // namespace chorus::net

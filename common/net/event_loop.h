@@ -1,0 +1,18 @@
+// Runs an io_context on the caller's thread, for servers that must survive exceptions.
+#pragma once
+
+#include <functional>
+#include <string_view>
+
+#include "common/net/asio.h"
+
+namespace chorus::net {
+
+/// Returns when there is no more work.  Handlers catch the exceptions they expect; any other (out
+/// of memory) is logged as the event `failure` and ends what that handler was doing, not the
+/// program. `prepare` is called before the first handler and again after such an exception: it
+/// starts what must always be running.
+void run_events(asio::io_context& io, std::string_view failure,
+                const std::function<void()>& prepare = {});
+
+}  // namespace chorus::net

@@ -1,0 +1,28 @@
+// Periodic work on an io_context's thread.
+#pragma once
+
+#include <chrono>
+#include <functional>
+
+#include "common/net/asio.h"
+
+namespace chorus::net {
+
+/// Calls `work` after every interval until stopped; an exception from `work` does not end it.
+class Every {
+ public:
+  Every(asio::io_context& io, std::chrono::milliseconds interval, std::function<void()> work);
+
+  /// Starts it unless it is running, so run_events may call this repeatedly.
+  void ensure();
+  void stop();
+
+ private:
+  Timer timer_;
+  std::chrono::milliseconds interval_;
+  std::function<void()> work_;
+  bool under_way_ = false;
+  bool stopped_ = false;
+};
+
+}  // namespace chorus::net

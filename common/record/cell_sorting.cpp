@@ -1,0 +1,244 @@
+#include "common/record/cell_sorting.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "common/base/json.h"
+#include "common/base/parse.h"
+#include "common/record/floor_message.h"
+#include "common/record/frame_schema.h"
+#include "common/resource/frame_resource.h"
+
+namespace chorus::record {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Fused frames are recognised by their space; the documents we write state it at the beginning.
+bool says_world_space(std::string_view json) {
+  constexpr std::size_t kHead = 512;
+  constexpr std::string_view kWorld = "\"WorldSpace\"";
+  return json.substr(0, kHead).find(kWorld) != std::string_view::npos ||
+         json.find(kWorld) != std::string_view::npos;
+}
+
+}  // namespace
+
+Result<Duration> read_shift(std::string_view text) {
+  constexpr std::int64_t kMax = 100ll * 365 * 24 * 3600 * 1'000'000'000;  // a hundred years
+  const auto json = parse_json(text).value_or(nlohmann::json());
+  const auto wrong = fail(ErrorCode::Malformed, "clock", "a clock model has no appliedNanoseconds");
+  if (!json.is_object() || !json.contains("appliedNanoseconds")) return wrong;
+  const auto& value = json["appliedNanoseconds"];
+  if (!value.is_string()) return wrong;
+  const auto& digits = value.get_ref<const std::string&>();
+  const auto ns = parse_number<std::int64_t>(digits);
+  if (!ns || *ns > kMax || *ns < -kMax) return wrong;
+  return Duration(*ns);
+}
+
+bool moved(Timestamp& t, const std::optional<Duration>& by) {
+  std::int64_t ns = 0;
+  const std::int64_t shift = by ? by->count() : 0;
+  if (__builtin_add_overflow(to_unix_ns(t), shift, &ns) || ns < 0) return false;
+  t = from_unix_ns(ns);
+  return true;
+}
+
+std::optional<Topic> topic_of(std::string_view text) {
+  if (!text.starts_with(kSensorsPrefix)) {
+    return text.starts_with('/') ? std::optional(Topic{{}, text.substr(1)}) : std::nullopt;
+  }
+  text.remove_prefix(kSensorsPrefix.size());
+  const auto slash = text.find('/');
+  const auto id = SensorId::parse(text.substr(0, slash));
+  if (!id || slash == std::string_view::npos) return std::nullopt;
+  return Topic{*id, text.substr(slash + 1)};
+}
+
+void Sorting::note_cell(const std::vector<Channel>& channels) {
+  for (const Channel& channel : channels) {
+    if (const auto topic = topic_of(channel.topic); topic && topic->sensor)
+      out_.cell.insert(*topic->sensor);
+  }
+}
+
+void Sorting::begin_file(const fs::path& file, const std::vector<Channel>& channels,
+                         const Metadata& metadata) {
+  source_ = {file, {}, {}, {}, false};
+  ++files_;
+  note_cell(channels);
+  const auto found = metadata.find(std::string(kMetadataName));
+  if (found == metadata.end()) return;
+  read_metadata(found->second, source_.description);
+  source_.single = !source_.description.sensor.str().empty();
+  const auto said = [&](const char* key) {
+    const auto value = found->second.find(key);
+    return value == found->second.end() ? std::string{} : value->second;
+  };
+  source_.recording = said("recording");
+  source_.part = said("part");
+}
+
+/// False: this file belongs to another recording, or is the same part again.
+bool Sorting::begins_or_follows(Line& line) const {
+  if (line.newest == files_) return true;  // a file named twice is two files
+  if (line.files.empty()) line.recording = source_.recording;
+  const bool follows = !line.recording.empty() && line.recording == source_.recording &&
+                       (source_.part.empty() || !line.parts.contains(source_.part));
+  if (!line.files.empty() && !follows) return false;
+  line.parts.insert(source_.part);
+  line.files.push_back(source_.file);
+  line.newest = files_;
+  return true;
+}
+
+/// The stream, which this file begins or, as the next file of its recording, continues.
+Result<Sorting::Stream*> Sorting::stream_of(const SensorId& sensor) {
+  const auto [found, fresh] = streams_.try_emplace(sensor);
+  Stream& stream = found->second;
+  if (fresh) {
+    if (source_.single) stream.recording = source_.description;
+    stream.recording.sensor = sensor;
+    stream.floor = stream.recording.floor;
+  }
+  if (stream.line.newest == files_) return &stream;
+  if (!begins_or_follows(stream.line)) {
+    return fail(ErrorCode::Conflict, where(),
+                "is a recording of sensor " + sensor.str() + ", and so is " +
+                    stream.line.files.back().string() +
+                    "; they are not parts of one recording: name one of them");
+  }
+  stream.kept_before = stream.kept;
+  stream.newest_out.reset();
+  return &stream;
+}
+
+Sorting::Item Sorting::kept(Stream& stream, SensorFrame frame) const {
+  bool told = moved(frame.captured, stream.shift);
+  for (BodyFrame& body : frame.bodies) told = moved(body.captured, stream.shift) && told;
+  if (!told) {
+    ++stream.left_out;
+    return std::nullopt;
+  }
+  frame.floor = stream.floor;
+  if (!stream.newest || frame.captured > *stream.newest) {
+    stream.newest = frame.captured;
+    ++stream.kept;
+    return SessionItem(std::move(frame));
+  }
+  if (!query_.strict || stream.shift) {  // a clock that was corrected may step back
+    ++stream.left_out;
+    stream.newest_out = std::max(stream.newest_out.value_or(frame.captured), frame.captured);
+    return std::nullopt;
+  }
+  const bool repeats = frame.captured == *stream.newest;
+  return fail(ErrorCode::Malformed, where(),
+              "frame " + std::to_string(stream.kept) +
+                  (repeats ? " repeats the capture time " : " goes back in time to ") +
+                  to_iso8601(frame.captured));
+}
+
+Sorting::Item Sorting::take_fused(resource::FrameResource frame) {
+  if (!begins_or_follows(fused_)) {
+    return fail(ErrorCode::Conflict, where(),
+                "holds fused frames, and so does " + fused_.files.back().string() +
+                    "; they are not parts of one recording: name one of them");
+  }
+  return SessionItem(std::move(frame));
+}
+
+Sorting::Item Sorting::take_frame(const MessageView& message, const Topic& topic) {
+  const bool maybe_fused = !topic.sensor && !source_.single;
+  ++frames_;
+  if (maybe_fused && !query_.fused && says_world_space(message.data)) return std::nullopt;
+  auto frame = resource::read_frame(message.data, resource::Format::Json);
+  if (!frame) {
+    return fail(ErrorCode::Malformed, where(),
+                "frame " + std::to_string(frames_ - 1) + ", on " + std::string(message.topic) +
+                    ": " + to_string(frame.error()));
+  }
+  if (maybe_fused && frame->space == resource::SpaceKind::World)
+    return take_fused(std::move(*frame));
+  SensorId sensor = topic.sensor.value_or(source_.description.sensor);
+  if (sensor.str().empty()) {
+    if (const auto id = SensorId::parse(frame->source)) sensor = *id;
+  }
+  const auto stream = stream_of(sensor);
+  if (!stream) return pass(stream);
+  return kept(**stream, resource::to_sensor_frame(*frame, sensor, message.log_time));
+}
+
+/// What applies to the frames after it.
+Result<void> Sorting::take_state(const MessageView& message, const Topic& topic) {
+  const auto stream = stream_of(topic.sensor ? *topic.sensor : source_.description.sensor);
+  if (!stream) return pass(stream);
+  if (topic.what == "clock") {
+    const auto shift = read_shift(message.data);
+    if (!shift) return fail(ErrorCode::Malformed, where(), shift.error().message);
+    (*stream)->shift = *shift;
+    return {};
+  }
+  const auto floor = read_floor_json(message.data);
+  if (!floor) return fail(ErrorCode::Malformed, where(), floor.error().message);
+  (*stream)->floor = *floor;
+  return {};
+}
+
+Sorting::Item Sorting::take(const MessageView& message) {
+  const auto topic = topic_of(message.topic);
+  if (!topic) return std::nullopt;
+  if (topic->what == "frame") return take_frame(message, *topic);
+  const bool floor = topic->what == "floor-plane";
+  if (floor || (topic->what == "clock" && topic->sensor)) {
+    if (auto ok = take_state(message, *topic); !ok) return pass(ok);
+    return std::nullopt;
+  }
+  if (message.topic != "/registration" || registration_ == message.data) return std::nullopt;
+  registration_ = message.data;
+  return SessionItem(registration_);
+}
+
+Result<void> Sorting::end_file(const std::vector<Channel>& channels,
+                               const std::vector<std::string>& notes) {
+  note_cell(channels);
+  for (const std::string& note : notes)
+    out_.damage.push_back(source_.file.filename().string() + ": " + note);
+  for (const auto& [sensor, stream] : streams_) {
+    if (auto ok = check_order(stream); !ok) return ok;
+  }
+  return {};
+}
+
+/// A file without a usable frame is not accepted as a continuation.
+Result<void> Sorting::check_order(const Stream& stream) const {
+  const bool unused = stream.line.newest == files_ && stream.line.files.size() > 1 &&
+                      stream.kept == stream.kept_before && stream.newest_out;
+  if (!unused || !stream.newest || *stream.newest_out >= *stream.newest) return {};
+  return fail(
+      ErrorCode::Conflict, where(),
+      "all its frames of sensor " + stream.recording.sensor.str() + " are older than the end of " +
+          stream.line.files[stream.line.files.size() - 2].string() + "; fuse the two one by one");
+}
+
+CellRecording Sorting::finish() {
+  // A recording of one sensor that saw nothing.
+  if (streams_.empty() && frames_ == 0 && out_.cell.empty()) {
+    streams_[source_.description.sensor].recording = source_.description;
+  }
+  for (auto& [sensor, stream] : streams_) {
+    auto& notes = stream.recording.notes;
+    for (std::size_t i = 0; i < out_.damage.size(); ++i)
+      notes["damage." + std::to_string(i + 1)] = out_.damage[i];
+    if (stream.left_out > 0)
+      notes["left_out"] =
+          std::to_string(stream.left_out) + " frames that go back in time or out of it";
+    out_.sensors.push_back(std::move(stream.recording));
+    out_.files[sensor] = std::move(stream.line.files);
+  }
+  return std::move(out_);
+}
+
+}  // namespace chorus::record

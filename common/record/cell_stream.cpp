@@ -1,0 +1,85 @@
+#include "common/record/cell_stream.h"
+
+#include <utility>
+
+#include "common/record/cell_sorting.h"
+
+namespace chorus::record {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_scene(std::string_view topic) {
+  return topic.ends_with("/scene") || topic == "/transforms";
+}
+
+}  // namespace
+
+ReadLimits limits_of(const CellQuery& query) {
+  ReadLimits limits = query.limits;
+  const std::string own = std::string(kSensorsPrefix) + query.only.str() + "/";
+  limits.wanted = [raw = query.raw, all = query.only.str().empty(), own](std::string_view topic) {
+    if (!raw) return topic == kFusedTopic;
+    const bool others = !all && topic.starts_with(kSensorsPrefix);
+    return !is_scene(topic) && (!others || topic.starts_with(own));
+  };
+  return limits;
+}
+
+struct CellStream::Impl {
+  Impl(std::vector<fs::path> all, CellQuery asked)
+      : files(in_log_order(std::move(all))), query(std::move(asked)), sorting(query) {}
+
+  Result<void> open_next() {
+    const fs::path& file = files[next_file++];
+    auto opened = RecordingStream::open(file, limits_of(query));
+    if (!opened) return pass(opened);
+    current.emplace(std::move(*opened));
+    sorting.begin_file(file, current->channels(), current->metadata());
+    return {};
+  }
+
+  Result<void> close_current() {
+    const RecordingStream closed = std::move(*current);
+    current.reset();
+    return sorting.end_file(closed.channels(), closed.notes());
+  }
+
+  std::vector<fs::path> files;
+  std::size_t next_file = 0;
+  CellQuery query;
+  Sorting sorting;
+  std::optional<RecordingStream> current;
+};
+
+CellStream::CellStream(std::vector<fs::path> files, CellQuery query)
+    : impl_(std::make_unique<Impl>(std::move(files), std::move(query))) {}
+CellStream::CellStream(CellStream&&) noexcept = default;
+CellStream& CellStream::operator=(CellStream&&) noexcept = default;
+CellStream::~CellStream() = default;
+
+Result<std::optional<SessionItem>> CellStream::next() {
+  Impl& in = *impl_;
+  while (in.current || in.next_file < in.files.size()) {
+    if (!in.current) {
+      if (auto ok = in.open_next(); !ok) return pass(ok);
+    }
+    const auto message = in.current->next();
+    if (!message) {
+      Error error = message.error();
+      error.context = in.files[in.next_file - 1].string();
+      return tl::unexpected<Error>(std::move(error));
+    }
+    if (!*message) {
+      if (auto ok = in.close_current(); !ok) return pass(ok);
+      continue;
+    }
+    auto item = in.sorting.take(**message);
+    if (!item || *item) return item;
+  }
+  return std::nullopt;
+}
+
+CellRecording CellStream::finish() { return impl_->sorting.finish(); }
+
+}  // namespace chorus::record

@@ -1,0 +1,102 @@
+// One recording of a whole cell: what the sensors sent, what was made of it, and all that is needed
+// to make it again.
+//
+//   /sensors/{id}/frame        chorus.Frame       as the sensor sent it: its own space and clock
+//   /sensors/{id}/floor-plane  chorus.FloorPlane  when it changes
+//   /sensors/{id}/clock        chorus.ClockModel  when what is added to its capture times changes
+//   /frame                     chorus.Frame       fused
+//   /registration              chorus.Registration  when it changes
+// and for viewers /scene, /sensors/{id}/scene, /transforms (skeleton_scene.h).  A recording of a
+// single sensor has its raw frames on /frame and its floor on /floor-plane (frame_recording.h).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/record/recording.h"
+#include "common/record/skeleton_scene.h"
+#include "common/resource/frame_resource.h"
+#include "common/sensor/sensor_frame.h"
+
+namespace chorus::record {
+
+/// How a sensor's capture times become ours.
+struct ClockModel {
+  Duration applied{0};  ///< Added to its capture times.
+  Duration ours_minus_theirs{0};
+  std::optional<Duration> uncertainty;  ///< None: its clock is unknown.
+};
+
+struct RawFrame {
+  SensorId sensor;
+  std::shared_ptr<const resource::FrameResource> frame;
+  Timestamp received;  ///< By our clock.
+  std::optional<FloorPlane> floor;
+  ClockModel clock;
+};
+
+struct FusedFrame {
+  Timestamp instant;
+  Timestamp published;
+  std::function<resource::FrameResource()> frame;  ///< Called once, by the writer.
+};
+
+struct PlacesChanged {
+  Timestamp at;
+  std::string registration;  ///< JSON as GET /registration or the registration file has it.
+  std::vector<NamedPlace> places;
+};
+
+struct CellHead {
+  std::map<std::string, std::string> metadata;  ///< The metadata record "chorus".
+  bool single_sensor = false;                   ///< Raw frames go to /frame.
+};
+
+class CellWriter {
+ public:
+  [[nodiscard]] static Result<CellWriter> create(const std::filesystem::path& path,
+                                                 const CellHead& head);
+
+  [[nodiscard]] Result<void> write(const RawFrame& raw);
+  [[nodiscard]] Result<void> write(const FusedFrame& fused);
+  [[nodiscard]] Result<void> write(const PlacesChanged& places);
+  /// Hands the open chunk to the operating system.
+  [[nodiscard]] Result<void> flush() { return writer_.flush(); }
+  /// Waits until the disk has stored what was flushed.
+  [[nodiscard]] Result<void> sync() { return writer_.sync(); }
+  [[nodiscard]] Result<void> close() { return writer_.close(); }
+
+  [[nodiscard]] std::uint64_t bytes() const { return writer_.bytes(); }
+  [[nodiscard]] std::uint64_t unpacked_bytes() const { return writer_.unpacked_bytes(); }
+
+ private:
+  struct Stream {
+    std::optional<FloorPlane> floor;
+    std::optional<ClockModel> clock;
+  };
+  struct Stamps {
+    Timestamp logged;
+    Timestamp published;
+    std::uint64_t sequence = 0;
+  };
+
+  CellWriter(RecordingWriter writer, bool single_sensor)
+      : writer_(std::move(writer)), single_sensor_(single_sensor) {}
+  [[nodiscard]] Result<void> put(const std::string& topic, std::string_view schema,
+                                 const Stamps& stamps, std::string text);
+  [[nodiscard]] Result<void> write_state(const RawFrame& raw, const std::string& prefix,
+                                         const Stamps& stamps);
+
+  RecordingWriter writer_;
+  bool single_sensor_;
+  std::map<std::string, std::uint16_t> channels_;  ///< By topic.
+  std::map<SensorId, Stream> streams_;
+};
+
+}  // namespace chorus::record

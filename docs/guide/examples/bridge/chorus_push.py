@@ -1,0 +1,270 @@
+"""Pushes frames of any tracker to a chorus-sensor whose device is `bridge`: Python's standard library and nothing else.
+
+    from chorus_push import Pusher
+
+    pusher = Pusher("ws://127.0.0.1:8081/push", {"name": "my camera", "layout": "coco_17", "axes": "right down ahead"})
+    while True:
+        captured, people = my_camera.next()                    # chorus_push.now_ns() of the exposure; landmarks in metres
+        pusher.push([{"id": p.id, "points": p.landmarks} for p in people], captured)
+
+ws://HOST:PORT/push is a WebSocket, http://HOST:PORT/push one POST a frame, anything else the path of a local socket.  The
+clock of this program need not be right: questions for the time are answered here.  When the sensor is not there, frames are
+dropped and the connection is tried again once a second.  What the messages mean: proto/bridge.md.
+"""
+import base64
+import http.client
+import json
+import os
+import socket
+import struct
+import sys
+import threading
+import time
+import urllib.parse
+
+TIMEOUT_S = 5
+RETRY_S = 1
+
+
+_FIRST = time.time_ns() - time.perf_counter_ns()
+
+
+def now_ns():
+    """Nanoseconds since 1970 by this computer's clock, as fine on Windows, whose own counts 16 ms, as elsewhere."""
+    return _FIRST + time.perf_counter_ns() if sys.platform == "win32" else time.time_ns()
+
+
+class Refused(ConnectionError):
+    """The sensor closed the connection and said why."""
+
+
+def complain(text):
+    print("chorus_push:", text, file=sys.stderr, flush=True)
+
+
+class LineWay:
+    """Messages as lines, over a local socket."""
+
+    def __init__(self, path):
+        self.socket = socket.socket(socket.AF_UNIX)
+        self.socket.settimeout(TIMEOUT_S)
+        self.socket.connect(path)
+        self.socket.settimeout(None)
+        self.lines = self.socket.makefile("rb")
+        self.lock = threading.Lock()
+
+    def send(self, text):
+        with self.lock:
+            self.socket.sendall(text.encode() + b"\n")
+
+    def receive(self):
+        """The next message; None at the end."""
+        line = self.lines.readline()
+        return line.decode() if line else None
+
+    def close(self):
+        self.socket.close()
+
+
+class WebSocketWay:
+    """Messages as text frames of RFC 6455, as far as a client of our own sensor needs it."""
+
+    TEXT, CLOSE, PING, PONG = 1, 8, 9, 10
+
+    def __init__(self, url, token):
+        parts = urllib.parse.urlsplit(url)
+        self.socket = socket.create_connection((parts.hostname, parts.port or 80), TIMEOUT_S)
+        self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self.stream = self.socket.makefile("rb")
+        self.lock = threading.Lock()
+        key = base64.b64encode(os.urandom(16)).decode()
+        fields = [f"GET {parts.path or '/push'} HTTP/1.1", f"Host: {parts.netloc}", "Connection: Upgrade", "Upgrade: websocket",
+                  "Sec-WebSocket-Version: 13", f"Sec-WebSocket-Key: {key}"]
+        if token:
+            fields.append(f"Authorization: Bearer {token}")
+        self.socket.sendall(("\r\n".join(fields) + "\r\n\r\n").encode())
+        status = self.stream.readline().decode()
+        length = 0
+        while (line := self.stream.readline().strip()):
+            name, _, value = line.partition(b":")
+            if name.lower() == b"content-length":
+                length = int(value)
+        if " 101 " not in status:
+            why = self.stream.read(length).decode(errors="replace")
+            self.socket.close()
+            raise Refused(f"{status.strip()}: {why}")
+        self.socket.settimeout(None)
+
+    def send(self, text):
+        self._send(self.TEXT, text.encode())
+
+    def _send(self, opcode, payload):
+        size = len(payload)
+        head = bytes([0x80 | opcode])
+        if size < 126:
+            head += bytes([0x80 | size])
+        elif size < 65536:
+            head += bytes([0x80 | 126]) + struct.pack(">H", size)
+        else:
+            head += bytes([0x80 | 127]) + struct.pack(">Q", size)
+        mask = os.urandom(4)
+        key = int.from_bytes((mask * (size // 4 + 1))[:size], "big")
+        masked = (int.from_bytes(payload, "big") ^ key).to_bytes(size, "big")
+        with self.lock:
+            self.socket.sendall(head + mask + masked)
+
+    def receive(self):
+        """The next message; None at the end."""
+        text = b""
+        while True:
+            head = self.stream.read(2)
+            if len(head) < 2:
+                return None
+            size = head[1] & 0x7F
+            if size == 126:
+                size, = struct.unpack(">H", self.stream.read(2))
+            elif size == 127:
+                size, = struct.unpack(">Q", self.stream.read(8))
+            payload = self.stream.read(size)
+            opcode = head[0] & 0x0F
+            if opcode == self.CLOSE:
+                return None
+            if opcode == self.PING:
+                self._send(self.PONG, payload)
+            elif opcode != self.PONG:
+                text += payload
+                if head[0] & 0x80:
+                    return text.decode()
+
+    def close(self):
+        try:
+            self._send(self.CLOSE, struct.pack(">H", 1000))
+        except OSError:
+            pass
+        self.socket.close()
+
+
+class Talk:
+    """A connection that is open both ways; questions for the time are answered by a thread of its own."""
+
+    def __init__(self, way, hello, clock, tell):
+        self.way, self.clock, self.tell = way, clock, tell
+        self.over = None
+        way.send(hello)
+        first = way.receive()
+        answer = json.loads(first) if first else {"type": "bye", "detail": "the connection was closed"}
+        if answer["type"] != "welcome":
+            way.close()
+            raise Refused(f"{answer.get('context', '')}: {answer['detail']}")
+        self.welcome = answer
+        threading.Thread(target=self._listen, daemon=True).start()
+
+    def _listen(self):
+        try:
+            while (text := self.way.receive()) is not None:
+                received = self.clock()
+                message = json.loads(text)
+                if message["type"] == "clock":
+                    self.way.send(json.dumps({"type": "clock", "sent": message["sent"], "received": str(received),
+                                              "answered": str(self.clock())}))
+                elif message["type"] in ("error", "bye"):
+                    self.tell(f"{message['type']}: {message['context']}: {message['detail']}")
+        except (OSError, ValueError):
+            pass
+        self.over = True
+
+    def push(self, frame):
+        if self.over:
+            raise ConnectionError("the sensor has gone")
+        self.way.send(frame)
+
+    def close(self):
+        self.way.close()
+
+
+class Post:
+    """One POST a frame.  The way back of each tells the next one our clock."""
+
+    def __init__(self, url, token, hello, clock, tell):
+        parts = urllib.parse.urlsplit(url)
+        self.path = parts.path or "/push"
+        self.connection = http.client.HTTPConnection(parts.hostname, parts.port or 80, timeout=TIMEOUT_S)
+        self.connection.connect()
+        self.connection.sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self.headers = {"Content-Type": "application/x-ndjson", **({"Authorization": f"Bearer {token}"} if token else {})}
+        self.hello, self.clock, self.tell = hello, clock, tell
+        self.asked = None
+        for _ in range(3):  # so that the clock is known before the first frame
+            self._post([])
+
+    def _post(self, lines):
+        lines = [self.hello, *lines]
+        if self.asked:
+            sent, received = self.asked
+            lines.insert(1, json.dumps({"type": "clock", "sent": sent, "received": str(received), "answered": str(self.clock())}))
+        self.connection.request("POST", self.path, "\n".join(lines) + "\n", self.headers)
+        answer = self.connection.getresponse()
+        received = self.clock()
+        body = answer.read()
+        stamps = answer.headers.get("Chorus-Clock", "").split()
+        self.asked = (stamps[1], received) if len(stamps) == 2 else None
+        if answer.status in (401, 403, 404, 409, 503):
+            raise Refused(f"{answer.status}: {body.decode(errors='replace')}")
+        if answer.status != 200:
+            self.tell(f"{answer.status}: {body.decode(errors='replace')}")
+
+    def push(self, frame):
+        self._post([frame])
+
+    def close(self):
+        self.connection.close()
+
+
+class Pusher:
+    """`hello` without its type; `clock` gives nanoseconds since 1970 and is what `captured` counts by."""
+
+    def __init__(self, url, hello, token=None, clock=now_ns, tell=complain):
+        self.url, self.token, self.clock, self.tell = url, token, clock, tell
+        self.hello = json.dumps({"type": "hello", "version": 1, **hello})
+        self.sequence = 0
+        self.dropped = 0
+        self._talk = None
+        self._tried = -RETRY_S
+
+    def push(self, bodies, captured=None, **more):
+        """One frame, [] when nobody is seen.  False when it could not be sent."""
+        self.sequence += 1
+        captured = self.clock() if captured is None else captured
+        frame = json.dumps({"type": "frame", "sequence": self.sequence, "captured": str(captured), "bodies": bodies, **more},
+                           separators=(",", ":"), allow_nan=False)
+        try:
+            if not self._connected():
+                self.dropped += 1
+                return False
+            self._talk.push(frame)
+            return True
+        except (OSError, http.client.HTTPException) as problem:
+            self.tell(f"{self.url}: {problem}")
+            self.dropped += 1
+            self.close()
+            return False
+
+    def _connected(self):
+        if self._talk is not None:
+            return True
+        if time.monotonic() - self._tried < RETRY_S:
+            return False
+        self._tried = time.monotonic()
+        self._talk = self._connect()
+        return True
+
+    def _connect(self):
+        if self.url.startswith("http://"):
+            return Post(self.url, self.token, self.hello, self.clock, self.tell)
+        way = WebSocketWay(self.url, self.token) if self.url.startswith("ws://") else LineWay(self.url)
+        return Talk(way, self.hello, self.clock, self.tell)
+
+    def close(self):
+        if self._talk is not None:
+            self._talk.close()
+            self._talk = None

@@ -1,0 +1,102 @@
+#include "fusion-server/associate/admission.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace chorus::associate {
+namespace {
+
+constexpr double kTooNear = 0.8;  // [m] nobody is tracked nearer than this
+constexpr double kGirth = 0.4;    // [m] a person this close to a line of sight blocks it
+
+using Plan = Eigen::Vector2d;
+
+Plan on_floor(const Eigen::Vector3d& point) { return {point.x(), point.z()}; }
+
+bool has(const std::vector<Assigned>& bodies, const SensorId& sensor) {
+  return std::ranges::find(bodies, sensor, &Assigned::sensor) != bodies.end();
+}
+
+}  // namespace
+
+Admission::Admission(const std::vector<Observer>& observers, const std::vector<Assigned>& bodies,
+                     Duration elapsed, const AssociationConfig& config)
+    : observers_(observers), elapsed_(elapsed), config_(config) {
+  for (const Assigned& body : bodies) {
+    bodies_[body.sensor].push_back(body);
+    tracks_[body.track].push_back(body);
+  }
+}
+
+void Admission::judge(Track& track) const {
+  const auto seen = tracks_.find(track.id);
+  if (track.admitted || seen == tracks_.end()) return;
+  track.doubted = track.doubted || std::ranges::any_of(observers_, [&](const Observer& observer) {
+                    return misses(observer, track);
+                  });
+  if (seen->second.size() > 1 || !track.doubted) {
+    track.admitted = seen->second.size() > 1 || track.hits >= config_.confirm_frames;
+    return;
+  }
+  const SensorId& sensor = seen->second.front().sensor;
+  if (track.hits > 1 && !misplaces(sensor)) track.alone += elapsed_ / alone_in(sensor);
+  track.admitted = track.alone >= config_.alone;
+}
+
+/// Whether the observer would surely see a person at `place`.
+bool Admission::looks_at(const Observer& observer, const Eigen::Vector3d& place) const {
+  const Eigen::Vector3d seen = observer.world_from_sensor.inverse() * place;
+  const double distance = seen.norm();
+  return distance >= kTooNear && distance <= config_.look_range &&
+         seen.z() >= distance * std::cos(config_.look_angle);
+}
+
+/// Whether somebody whom the observer sees blocks its line of sight to `place`.
+bool Admission::hidden_from(const Observer& observer, const Eigen::Vector3d& place) const {
+  const Plan eye = on_floor(observer.world_from_sensor.translation());
+  const Plan way = on_floor(place) - eye;
+  const double far = way.norm();
+  return std::ranges::any_of(bodies_of(observer.sensor), [&](const Assigned& body) {
+    const Plan there = on_floor(body.core) - eye;
+    const double along = there.dot(way) / far;
+    const double beside = std::abs(there.x() * way.y() - there.y() * way.x()) / far;
+    return along > 0.0 && along < far && beside < kGirth;
+  });
+}
+
+/// The observer looks where the track is, and sees nobody there whom it could be.
+bool Admission::misses(const Observer& observer, const Track& track) const {
+  if (!looks_at(observer, track.core)) return false;
+  const bool sees_somebody =
+      std::ranges::any_of(bodies_of(observer.sensor), [&](const Assigned& body) {
+        const bool here = (on_floor(body.core) - on_floor(track.core)).norm() <= config_.gate;
+        return here && (body.track == track.id || !body.settled);
+      });
+  return !sees_somebody && !hidden_from(observer, track.core);
+}
+
+/// Several others see somebody where the sensor looks, and it does not.
+bool Admission::misplaces(const SensorId& sensor) const {
+  const auto own = std::ranges::find(observers_, sensor, &Observer::sensor);
+  if (own == observers_.end()) return false;
+  return std::ranges::any_of(tracks_, [&](const auto& entry) {
+    const std::vector<Assigned>& sights = entry.second;
+    return sights.size() > 1 && sights.front().settled && !has(sights, sensor) &&
+           looks_at(*own, sights.front().core);
+  });
+}
+
+const std::vector<Assigned>& Admission::bodies_of(const SensorId& sensor) const {
+  static const std::vector<Assigned> kNone;
+  const auto bodies = bodies_.find(sensor);
+  return bodies == bodies_.end() ? kNone : bodies->second;
+}
+
+/// How many new bodies the sensor sees that nobody else does.
+std::int64_t Admission::alone_in(const SensorId& sensor) const {
+  return std::ranges::count_if(bodies_of(sensor), [&](const Assigned& body) {
+    return !body.settled && tracks_.at(body.track).size() == 1;
+  });
+}
+
+}  // namespace chorus::associate

@@ -1,0 +1,39 @@
+#include "fusion-server/core/last_seen.h"
+
+namespace chorus::core {
+namespace {
+
+bool lately(Timestamp when, Timestamp now) { return now - when <= kSeenLately; }
+
+}  // namespace
+
+void LastSeen::add(const SensorFrame& frame) {
+  Newest& own = newest_[frame.sensor];
+  own.received = frame.received;
+  own.bodies = frame.bodies.size();
+  if (!frame.bodies.empty()) own.saw = frame.received;
+}
+
+void LastSeen::keep(const std::set<SensorId>& sensors) {
+  std::erase_if(newest_, [&](const auto& entry) { return !sensors.contains(entry.first); });
+}
+
+std::size_t LastSeen::bodies(const SensorId& sensor, Timestamp now) const {
+  const auto own = newest_.find(sensor);
+  return own != newest_.end() && lately(own->second.received, now) ? own->second.bodies : 0;
+}
+
+bool LastSeen::delivers(const SensorId& sensor, Timestamp now) const {
+  const auto own = newest_.find(sensor);
+  return own != newest_.end() && lately(own->second.received, now);
+}
+
+std::set<SensorId> LastSeen::seeing(Timestamp now) const {
+  std::set<SensorId> sensors;
+  for (const auto& [sensor, own] : newest_) {
+    if (own.saw != Timestamp{} && lately(own.saw, now)) sensors.insert(sensor);
+  }
+  return sensors;
+}
+
+}  // namespace chorus::core

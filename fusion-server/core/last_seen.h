@@ -1,0 +1,38 @@
+// Which sensors deliver, which see somebody, and how many: judged by their frames alone, whether or
+// not they have a place.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <set>
+
+#include "common/base/strong_id.h"
+#include "common/sensor/sensor_frame.h"
+#include "common/time/timestamp.h"
+
+namespace chorus::core {
+
+/// A frame counts this long, by our clock.
+inline constexpr Duration kSeenLately = std::chrono::seconds(2);
+
+class LastSeen {
+ public:
+  void add(const SensorFrame& frame);
+  void keep(const std::set<SensorId>& sensors);  ///< Forgets all others.
+
+  /// Bodies in its newest frame; zero when that is old.
+  [[nodiscard]] std::size_t bodies(const SensorId& sensor, Timestamp now) const;
+  [[nodiscard]] bool delivers(const SensorId& sensor, Timestamp now) const;
+  /// Sensors that saw a body lately.
+  [[nodiscard]] std::set<SensorId> seeing(Timestamp now) const;
+
+ private:
+  struct Newest {
+    Timestamp received;  ///< Of its newest frame.
+    std::size_t bodies = 0;
+    Timestamp saw{};  ///< When its last frame with a body came.
+  };
+  std::map<SensorId, Newest> newest_;
+};
+
+}  // namespace chorus::core

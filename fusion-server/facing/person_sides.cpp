@@ -1,0 +1,75 @@
+#include "fusion-server/facing/person_sides.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace chorus::facing {
+namespace {
+
+constexpr double kMinWeight = 1e-12;  // so that no weight is lost for good
+constexpr double kMaxNews = 30.0;     // log odds of one instant; beyond this it is certain anyway
+
+/// Likelihood of evidence with these log odds, over its mean under both signs.
+double likelihood(double log_odds) { return 2.0 / (1.0 + std::exp(-log_odds)); }
+
+double changed(double elapsed, const Spell& spell) {
+  return 1.0 - std::exp(-elapsed / spell.length);
+}
+
+}  // namespace
+
+PersonFilter::PersonFilter(const PersonPrior& prior)
+    : weight_{0.5 * (1.0 - prior.backwards.share), 0.5 * (1.0 - prior.backwards.share),
+              0.5 * prior.backwards.share, 0.5 * prior.backwards.share} {}
+
+/// A clear bit becomes set with probability `set`, and a set bit clear with probability `cleared`.
+void PersonFilter::mix(std::size_t bit, double set, double cleared) {
+  for (std::size_t state = 0; state < weight_.size(); ++state) {
+    if ((state & bit) != 0) continue;
+    double& clear = weight_[state];
+    double& held = weight_[state | bit];
+    const double gained = set * clear - cleared * held;
+    clear -= gained;
+    held += gained;
+  }
+}
+
+void PersonFilter::predict(double elapsed, bool blind, const PersonPrior& prior) {
+  const double slipped = 0.5 * (1.0 - std::exp(-2.0 * (blind ? prior.lost : prior.slip) * elapsed));
+  mix(kWrong, slipped, slipped);
+  const double way = changed(elapsed, prior.backwards);
+  mix(kBackwards, way * prior.backwards.share, way * (1.0 - prior.backwards.share));
+}
+
+void PersonFilter::update(const Evidence& evidence) {
+  const double news = std::clamp(evidence.news, -kMaxNews, kMaxNews);
+  for (std::size_t state = 0; state < weight_.size(); ++state) {
+    const double sign = (state & kWrong) != 0 ? -1.0 : 1.0;
+    const double way = (state & kBackwards) != 0 ? -sign : sign;
+    weight_[state] *=
+        std::pow(likelihood(way * evidence.walking), evidence.share) * std::exp(0.5 * sign * news);
+  }
+  normalise();
+}
+
+void PersonFilter::turn_round() {
+  for (std::size_t state = 0; state < weight_.size(); state += 2)
+    std::swap(weight_[state], weight_[state + 1]);
+}
+
+void PersonFilter::normalise() {
+  const double sum = std::accumulate(weight_.begin(), weight_.end(), 0.0);
+  for (double& weight : weight_) weight = std::max(weight / sum, kMinWeight);
+}
+
+double PersonFilter::right() const {
+  double right = 0.0;
+  double wrong = 0.0;
+  for (std::size_t state = 0; state < weight_.size(); ++state)
+    ((state & kWrong) != 0 ? wrong : right) += weight_[state];
+  return right / (right + wrong);
+}
+
+}  // namespace chorus::facing

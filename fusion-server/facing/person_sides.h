@@ -1,0 +1,66 @@
+// One person's hidden Markov model of sides (docs/papers/sides.md): two bits of the person, and one
+// per view.
+//
+//   sign       the sides held are the true ones, or the opposite
+//   backwards  the person walks backwards
+//   exchanged  one per view: this sensor shows left and right exchanged (labels.h)
+//
+// Given the sign, each view depends only on its own past, so the forward filter is exact with four
+// weights for the person and two probabilities per view.
+#pragma once
+
+#include <array>
+#include <map>
+
+#include "fusion-server/facing/exchange_habit.h"
+#include "fusion-server/flow.h"
+
+namespace chorus::facing {
+
+/// A bit that switches on and off by itself.
+struct Spell {
+  double share = 0.1;   ///< Share of the time for which it is on.
+  double length = 1.0;  ///< Time constant [s].
+
+  bool operator==(const Spell&) const = default;
+};
+
+/// Evidence of one instant for the sides held, in log odds.
+struct Evidence {
+  double news = 0.0;     ///< From labels and posture: only what earlier instants did not tell.
+  double walking = 0.0;  ///< For walking forwards.
+  double share = 1.0;    ///< Which share of `walking` is new, [0, 1].
+};
+
+struct PersonPrior {
+  Spell backwards{0.15, 3.0};
+  double slip = 0.0001;  ///< Rate at which the sides held become wrong unnoticed [1/s].
+  double lost = 0.5;     ///< The same while no view tells left from right [1/s].
+
+  bool operator==(const PersonPrior&) const = default;
+};
+
+class PersonFilter {
+ public:
+  explicit PersonFilter(const PersonPrior& prior);
+
+  /// Advances the time; `blind`: no view tells left from right.
+  void predict(double elapsed, bool blind, const PersonPrior& prior);
+  void update(const Evidence& evidence);
+  /// From now on the opposite sides are held.
+  void turn_round();
+
+  /// Probability that the sides held are right.
+  [[nodiscard]] double right() const;
+
+ private:
+  static constexpr std::size_t kWrong = 1;
+  static constexpr std::size_t kBackwards = 2;
+
+  void mix(std::size_t bit, double set, double cleared);
+  void normalise();
+
+  std::array<double, 4> weight_{};
+};
+
+}  // namespace chorus::facing

@@ -1,0 +1,144 @@
+#include "fusion-server/facing/posture.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "common/body/bones.h"
+
+namespace chorus::facing {
+namespace {
+
+constexpr double kGuessed = 0.3;  // weight of an offset that rests on an inferred joint
+
+/// Weighted mean of offsets in the world [m].
+struct Offset {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double weight = 0.0;
+
+  void add(const Eigen::Vector3d& offset, double by) {
+    sum += by * offset;
+    weight += by;
+  }
+  [[nodiscard]] double along(const Eigen::Vector3d& direction) const {
+    return weight > 0 ? sum.dot(direction) / weight : 0.0;
+  }
+};
+
+/// Zero when one of the joints has no position.
+template <class... Ids>
+double weight_of(const Skeleton<WorldSpace>& body, Ids... ids) {
+  const bool seen = (body[ids].seen() && ...);
+  const bool tracked = ((body[ids].state == JointState::Tracked) && ...);
+  return seen ? (tracked ? 1.0 : kGuessed) : 0.0;
+}
+
+/// From the nearest point of the line between `a` and `b`.
+Eigen::Vector3d off_line(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                         const Eigen::Vector3d& b) {
+  constexpr double kMinLength = 1e-4;  // [m^2]
+  const Eigen::Vector3d line = b - a;
+  if (line.squaredNorm() < kMinLength) return Eigen::Vector3d::Zero();
+  const double t = std::clamp((p - a).dot(line) / line.squaredNorm(), 0.0, 1.0);
+  return p - a - t * line;
+}
+
+struct Limb {
+  JointId root;
+  JointId middle;
+  JointId end;
+};
+
+constexpr std::array kLegs{Limb{JointId::HipLeft, JointId::KneeLeft, JointId::AnkleLeft},
+                           Limb{JointId::HipRight, JointId::KneeRight, JointId::AnkleRight}};
+constexpr std::array kArms{Limb{JointId::ShoulderLeft, JointId::ElbowLeft, JointId::WristLeft},
+                           Limb{JointId::ShoulderRight, JointId::ElbowRight, JointId::WristRight}};
+
+void add_bends(Offset& offset, const Skeleton<WorldSpace>& body, const std::array<Limb, 2>& limbs) {
+  for (const Limb& limb : limbs) {
+    offset.add(
+        off_line(body[limb.middle].position, body[limb.root].position, body[limb.end].position),
+        weight_of(body, limb.root, limb.middle, limb.end));
+  }
+}
+
+/// Both wrists from the centre of the shoulders: a single wrist would tell how the trunk is turned.
+void add_wrists(Offset& offset, const Skeleton<WorldSpace>& body) {
+  using enum JointId;
+  const auto middle = [&](JointId left) {
+    return 0.5 * (body[left].position + body[mirror(left)].position);
+  };
+  offset.add(middle(WristLeft) - middle(ShoulderLeft),
+             weight_of(body, WristLeft, WristRight, ShoulderLeft, ShoulderRight));
+}
+
+void add_lean(Offset& offset, const Skeleton<WorldSpace>& body) {
+  using enum JointId;
+  offset.add(body[SpineShoulder].position - body[SpineBase].position,
+             weight_of(body, SpineShoulder, SpineBase));
+}
+
+/// Horizontal unit vector from the person to the sensor; zero when it has no neck.
+Eigen::Vector3d towards_sensor(const SensorView& view) {
+  const Joint& neck = view.skeleton[JointId::Neck];
+  if (!neck.seen()) return Eigen::Vector3d::Zero();
+  Eigen::Vector3d way = view.eye - neck.position;
+  way.y() = 0;
+  return way.normalized();
+}
+
+double tracked_share_of_arms(const Skeleton<WorldSpace>& body) {
+  using enum JointId;
+  constexpr std::array kArmJoints{ElbowLeft, WristLeft, ElbowRight, WristRight};
+  const auto tracked = std::ranges::count_if(
+      kArmJoints, [&](JointId id) { return body[id].state == JointState::Tracked; });
+  return static_cast<double>(tracked) / static_cast<double>(kArmJoints.size());
+}
+
+/// By how much the sensors towards `forward` see a larger share of the arm joints than the others
+/// do.
+double seen_from(const std::vector<SensorView>& views, const Eigen::Vector3d& forward) {
+  double mean = 0.0;
+  for (const SensorView& view : views) mean += tracked_share_of_arms(view.skeleton);
+  mean /= static_cast<double>(views.size());
+  double beyond = 0.0;
+  double weight = 0.0;
+  for (const SensorView& view : views) {
+    const double along = towards_sensor(view).dot(forward);
+    beyond += along * (tracked_share_of_arms(view.skeleton) - mean);
+    weight += std::abs(along);
+  }
+  return weight > 0 ? beyond / weight : 0.0;
+}
+
+double of(const Cue& cue, double ahead) {
+  return cue.log_odds * std::clamp(ahead / cue.at, -1.0, 1.0);
+}
+
+}  // namespace
+
+double posture_log_odds(const std::vector<SensorView>& views, const Eigen::Vector3d& forward,
+                        const PostureCues& cues) {
+  if (views.empty() || forward.isZero()) return 0.0;
+  Offset knees;
+  Offset elbows;
+  Offset wrists;
+  Offset lean;
+  for (const SensorView& view : views) {
+    add_bends(knees, view.skeleton, kLegs);
+    add_bends(elbows, view.skeleton, kArms);
+    add_wrists(wrists, view.skeleton);
+    add_lean(lean, view.skeleton);
+  }
+  return of(cues.knees, knees.along(forward)) + of(cues.elbows, elbows.along(forward)) +
+         of(cues.wrists, wrists.along(forward)) + of(cues.lean, lean.along(forward)) +
+         of(cues.hidden, seen_from(views, forward));
+}
+
+double posture_news(double now, double before, double elapsed, double same) {
+  const double kept = std::exp(-elapsed / same);
+  return (now - kept * before) / (1.0 + kept);
+}
+
+}  // namespace chorus::facing

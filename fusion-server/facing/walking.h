@@ -1,0 +1,38 @@
+// Which way a person walks, from how the trunk moves in each view; a view that appears or
+// disappears adds no speed.
+#pragma once
+
+#include <map>
+
+#include "fusion-server/flow.h"
+
+namespace chorus::facing {
+
+struct WalkingCue {
+  double log_odds = 3.0;   ///< For walking forwards against backwards at full speed.
+  double from = 0.3;       ///< Anything slower is standing [m/s].
+  double full = 1.0;       ///< [m/s]
+  double smoothing = 0.2;  ///< Time constant of the speed [s].
+  double same = 0.5;       ///< Walking within this time counts as one piece of evidence [s].
+
+  bool operator==(const WalkingCue&) const = default;
+};
+
+class Walk {
+ public:
+  void follow(const std::vector<SensorView>& views, Timestamp instant, const WalkingCue& cue);
+  /// Log odds that the front is where `forward` (unit, horizontal) points.
+  [[nodiscard]] double log_odds(const Eigen::Vector3d& forward, const WalkingCue& cue) const;
+
+ private:
+  struct Trunk {
+    Timestamp seen;
+    Eigen::Vector3d place;  ///< World [m].
+  };
+
+  std::map<SensorId, Trunk> trunks_;
+  Timestamp followed_;
+  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  ///< Horizontal [m/s].
+};
+
+}  // namespace chorus::facing

@@ -1,0 +1,41 @@
+#include "fusion-server/fusion/joint_view.h"
+
+#include <algorithm>
+
+#include "common/sensor/limits.h"
+#include "fusion-server/fusion/weight.h"
+
+namespace chorus::fusion {
+namespace {
+
+constexpr double kAxes = 3.0;
+
+std::uint64_t bit_of(const SensorId& sensor, const std::vector<SensorId>& sensors) {
+  const auto at = std::find(sensors.begin(), sensors.end(), sensor);
+  const auto index = static_cast<std::size_t>(at - sensors.begin());
+  return at == sensors.end() || index >= kMaxSensors ? 0 : std::uint64_t{1} << index;
+}
+
+}  // namespace
+
+std::vector<JointView> joint_views_of(JointId joint, const Person& person,
+                                      const std::vector<SensorId>& sensors,
+                                      const ErrorModel& errors) {
+  std::vector<JointView> views;
+  for (const SensorView& view : person.views) {
+    const Joint& seen = view.skeleton[joint];
+    if (!seen.seen()) continue;
+    views.push_back({seen, Weight::clamped(view.weight).value(), errors.covariance(view, joint),
+                     bit_of(view.sensor, sensors)});
+  }
+  return views;
+}
+
+double mean_variance(const Eigen::Matrix3d& covariance) { return covariance.trace() / kAxes; }
+
+void state_covariance(FusedJoint& fused, const Eigen::Matrix3d& covariance) {
+  fused.variance = mean_variance(covariance);
+  fused.joint.covariance = Covariance(covariance);
+}
+
+}  // namespace chorus::fusion

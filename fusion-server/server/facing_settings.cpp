@@ -1,0 +1,75 @@
+#include "fusion-server/server/facing_settings.h"
+
+namespace chorus::server {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr double kMaxLogOdds = 20.0;
+constexpr double kMaxRate = 100.0;   // [1/s]
+constexpr double kMaxTime = 3600.0;  // [s]
+
+void read_cue(ConfigReader reader, facing::Cue& out) {
+  reader.read("log_odds", out.log_odds, -kMaxLogOdds, kMaxLogOdds);
+  reader.read("full_at", out.at, 1e-3, 10.0);
+}
+
+void read_posture(ConfigReader reader, facing::PostureCues& out) {
+  read_cue(reader.child("knees"), out.knees);
+  read_cue(reader.child("wrists"), out.wrists);
+  read_cue(reader.child("elbows"), out.elbows);
+  read_cue(reader.child("lean"), out.lean);
+  read_cue(reader.child("hidden_arms"), out.hidden);
+  reader.read("same_s", out.same, 0.01, kMaxTime);
+}
+
+void read_walking(ConfigReader reader, facing::WalkingCue& out) {
+  reader.read("log_odds", out.log_odds, 0.0, kMaxLogOdds);
+  reader.read("from_m_s", out.from, 0.0, 10.0);
+  reader.read("full_m_s", out.full, 0.0, 10.0);
+  reader.read("smoothing_s", out.smoothing, 0.0, 10.0);
+  reader.read("same_s", out.same, 0.01, kMaxTime);
+  if (out.full <= out.from) reader.complain("full_m_s", "must be above from_m_s");
+}
+
+void read_spell(ConfigReader reader, facing::Spell& out) {
+  reader.read("share", out.share, 1e-6, 0.5);
+  reader.read("length_s", out.length, 0.01, kMaxTime);
+}
+
+void read_habit(ConfigReader reader, facing::HabitPrior& out) {
+  reader.read("front_out_per_s", out.front_out, 1e-6, kMaxRate);
+  reader.read("front_back_per_s", out.front_back, 1e-6, kMaxRate);
+  reader.read("side_out_per_s", out.side_out, 1e-6, kMaxRate);
+  reader.read("side_back_per_s", out.side_back, 1e-6, kMaxRate);
+  reader.read("rear_per_s", out.rear, 1e-6, kMaxRate);
+  reader.read("facing_time_s", out.facing_time, 1e-3, kMaxTime);
+  reader.read("rear_time_s", out.rear_time, 1e-3, kMaxTime);
+  reader.read("most_time_s", out.most_time, 1.0, 24 * kMaxTime);
+}
+
+void read_limbs(ConfigReader reader, facing::LimbLimits& out) {
+  reader.read("mend", out.mend);
+  reader.read("apart_m", out.apart, 0.01, 1.0);
+  reader.read("better_share", out.better, 0.0, 1.0);
+}
+
+}  // namespace
+
+void read_facing(ConfigReader reader, facing::SidesConfig& out) {
+  reader.read("resolve_sides", out.resolve);
+  read_posture(reader.child("posture"), out.posture);
+  read_walking(reader.child("walking"), out.walking);
+  read_spell(reader.child("backwards"), out.person.backwards);
+  reader.read("slip_per_s", out.person.slip, 0.0, kMaxRate);
+  reader.read("lost_per_s", out.person.lost, 0.0, kMaxRate);
+  read_habit(reader.child("habit"), out.habit);
+  read_limbs(reader.child("limbs"), out.limbs);
+  reader.read("change_log_odds", out.change_odds, 0.0, kMaxLogOdds);
+  reader.read("smoothing_s", out.smoothing, 0.0, 10.0);
+  reader.read("learn_from", out.learn_from, 0.5, 1.0);
+  reader.read_s("forget_s", out.forget, milliseconds(1), seconds(60));
+}
+
+}  // namespace chorus::server

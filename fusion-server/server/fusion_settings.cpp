@@ -1,0 +1,188 @@
+#include "fusion-server/server/fusion_settings.h"
+
+#include <array>
+#include <set>
+#include <utility>
+
+#include "common/base/config_reader.h"
+#include "common/sensor/limits.h"
+#include "common/service/http_config.h"
+#include "fusion-server/rest/registration_resources.h"
+#include "fusion-server/server/facing_settings.h"
+
+namespace chorus::server {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+void read_noise(ConfigReader& reader, fusion::NoiseModel& out) {
+  reader.read("along_m", out.along, 1e-4, 1.0);
+  reader.read("across_m", out.across, 1e-4, 1.0);
+  reader.read("inferred_factor", out.inferred_factor, 1.0, 100.0);
+}
+
+void read_sensor(ConfigReader& reader, LiveSettings& out, std::set<SensorId>& known) {
+  std::string name;
+  poll::PolledSensor sensor;
+  reader.read("id", name);
+  reader.read("url", sensor.url);
+  auto id = SensorId::parse(name);
+  if (!id) return reader.complain("id", id.error().message);
+  if (!known.insert(*id).second) return reader.complain("id", "is the id of another sensor too");
+  if (auto url = http::parse_url(sensor.url); !url) {
+    return reader.complain("url", url.error().message);
+  }
+  sensor.id = *id;
+  if (reader.has("noise")) {
+    fusion::NoiseModel noise = out.pipeline.fusion.noise;
+    ConfigReader child = reader.child("noise");
+    read_noise(child, noise);
+    out.pipeline.fusion.sensor_noise[*id] = noise;
+  }
+  out.sensors.push_back(std::move(sensor));
+}
+
+void read_sensors(ConfigReader& root, LiveSettings& out) {
+  std::set<SensorId> known;
+  for (ConfigReader& reader : root.items("sensors")) read_sensor(reader, out, known);
+  if (out.sensors.size() > kMaxSensors) {
+    root.complain("sensors", "at most " + std::to_string(kMaxSensors) + " are possible");
+  }
+}
+
+void read_poll(ConfigReader reader, poll::PollTimings& out) {
+  reader.read_s("wait_s", out.wait, seconds(1), seconds(30));
+  reader.read_ms("answer_slack_ms", out.answer_slack, milliseconds(50), seconds(30));
+  reader.read_ms("min_interval_ms", out.min_interval, milliseconds(1), seconds(1));
+  reader.read_ms("first_backoff_ms", out.first_backoff, milliseconds(10), seconds(10));
+  reader.read_ms("max_backoff_ms", out.max_backoff, milliseconds(100), seconds(600));
+  reader.read("stream", out.stream);
+  reader.read_s("floor_interval_s", out.floor_interval, seconds(1), seconds(3600));
+}
+
+void read_output(ConfigReader reader, FusionSettings& out) {
+  reader.read("rate_hz", out.live.output.rate_hz, 1, 240);
+  reader.read_ms("alignment_delay_ms", out.live.output.alignment_delay, milliseconds(0),
+                 seconds(2));
+  reader.read_s("history_s", out.at_start.history, seconds(1), seconds(120));
+}
+
+void read_align(ConfigReader reader, align::AlignConfig& out) {
+  reader.read_ms("max_gap_ms", out.max_gap, milliseconds(1), seconds(2));
+  reader.read_ms("patience_ms", out.patience, milliseconds(1), seconds(5));
+  reader.read_ms("unsteady_ms", out.unsteady, milliseconds(0), seconds(5));
+}
+
+void read_quality(ConfigReader reader, fusion::QualityLimits& out) {
+  reader.read("best_distance_m", out.best_distance, 0.1, 20.0);
+  reader.read("distance_reach_m", out.distance_reach, 0.1, 20.0);
+  reader.read_deg("max_facing_deg", out.max_facing, 1.0, 180.0);
+  reader.read_deg("max_bearing_deg", out.max_bearing, 1.0, 180.0);
+}
+
+void read_association(ConfigReader reader, associate::AssociationConfig& out) {
+  reader.read("gate_m", out.gate, 0.05, 10.0);
+  reader.read("cluster_m", out.cluster, 0.05, 10.0);
+  reader.read("confirm_frames", out.confirm_frames, 1, 1000);
+  reader.read_s("coast_s", out.coast, seconds(0), seconds(60));
+  reader.read("merge_frames", out.merge_frames, 1, 1000);
+  reader.read_s("alone_s", out.alone, seconds(0), seconds(60));
+  reader.read_deg("look_angle_deg", out.look_angle, 1.0, 90.0);
+  reader.read("look_range_m", out.look_range, 0.5, 100.0);
+  reader.read("max_range_m", out.bodies.max_range, 1.0, 1000.0);
+  reader.read_s("frozen_s", out.bodies.max_frozen, seconds(0), seconds(3600));
+}
+
+void read_fusion(ConfigReader reader, fusion::FusionConfig& out) {
+  std::vector<std::string_view> names;
+  for (const fusion::MethodRow& row : fusion::methods()) names.push_back(row.name);
+  std::size_t chosen = names.size();
+  reader.read_choice("method", chosen, names);
+  if (chosen < names.size()) out.method = fusion::methods()[chosen].method;
+  reader.read("zero_weight_floor", out.zero_weight_floor, 0.0, 1.0);
+  reader.read("common_sigma_m", out.common_sigma, 0.0, 1.0);
+  reader.read("huber", out.huber, 0.1, 100.0);
+  reader.read_ms("hysteresis_ms", out.hysteresis, milliseconds(0), seconds(10));
+  reader.read("kalman_sigma_m", out.kalman_sigma, 1e-4, 1.0);
+  reader.read_ms("kalman_coast_ms", out.kalman_coast, milliseconds(0), seconds(10));
+  ConfigReader noise = reader.child("noise");
+  read_noise(noise, out.noise);
+}
+
+void read_pairing(ConfigReader& reader, registration::RegistrationConfig& out) {
+  using registration::JointChoice;
+  using registration::PairMethod;
+  std::size_t method = static_cast<std::size_t>(out.method);
+  reader.read_choice("method", method, {"timed-robust", "icp-only"});
+  out.method = method == 0 ? PairMethod::TimedRobust : PairMethod::IcpOnly;
+  std::size_t joints = static_cast<std::size_t>(out.joints);
+  reader.read_choice("joints", joints, {"neck", "core", "all"});
+  out.joints = static_cast<JointChoice>(joints);
+  reader.read("use_floor", out.use_floor);
+  reader.read("along_ratio", out.along_ratio, 1.0, 100.0);
+  reader.read("adjust_together", out.adjust_together);
+  reader.read_ms("max_gap_ms", out.max_gap, milliseconds(1), seconds(1));
+  reader.read("min_distance_m", out.min_distance, 0.0, 20.0);
+  reader.read("max_distance_m", out.max_distance, 0.1, 50.0);
+  reader.read("max_speed_m_s", out.max_speed, 0.1, 20.0);
+  int min_pairs = static_cast<int>(out.min_pairs);
+  reader.read("min_pairs", min_pairs, 3, 100000);
+  out.min_pairs = static_cast<std::size_t>(min_pairs);
+  reader.read("min_spread_m", out.min_spread, 0.0, 20.0);
+  reader.read("max_edge_rms_m", out.max_edge_rms, 0.001, 5.0);
+  reader.read("good_rms_m", out.good_rms, 0.001, 5.0);
+  reader.read("good_position_m", out.good_position, 0.001, 5.0);
+  reader.read_s("good_duration_s", out.good_duration, seconds(1), seconds(300));
+}
+
+void read_registration(ConfigReader reader, FusionSettings& out) {
+  auto& [live, at_start] = out;
+  reader.read("auto", live.session.automatic);
+  double target = chorus::seconds(live.session.target);
+  reader.read("seconds", target, rest::kMinSession, rest::kMaxSession);
+  live.session.target = from_seconds(target);
+  reader.read_s("first_solve_s", live.session.first_solve, seconds(2), seconds(60));
+  reader.read_s("solve_every_s", live.session.solve_every, seconds(1), seconds(60));
+  reader.read("file", at_start.registration_file);
+  std::string master;
+  reader.read("master", master);
+  if (!master.empty()) {
+    auto id = SensorId::parse(master);
+    if (id) {
+      live.registration.master = *id;
+    } else {
+      reader.complain("master", id.error().message);
+    }
+  }
+  read_pairing(reader, live.registration);
+}
+
+}  // namespace
+
+Result<FusionSettings> read_fusion_settings(ConfigReader root) {
+  FusionSettings settings;
+  auto& [live, at_start] = settings;
+  at_start.state_dir = "auto";
+  root.read("title", at_start.title);
+  service::read_http(root.child("http"), at_start.http);
+  live.bearer_token = std::exchange(at_start.http.bearer_token, {});
+  service::read_log(root.child("log"), live.log);
+  read_poll(root.child("poll"), at_start.poll);
+  read_output(root.child("output"), settings);
+  read_align(root.child("align"), live.pipeline.align);
+  read_quality(root.child("quality"), live.pipeline.quality);
+  read_association(root.child("association"), live.pipeline.association);
+  read_facing(root.child("facing"), live.pipeline.sides);
+  read_fusion(root.child("fusion"), live.pipeline.fusion);
+  read_sensors(root, live);
+  read_registration(root.child("registration"), settings);
+  outputs::read_outputs(root.child("outputs"), at_start.outputs);
+  root.read("state_dir", at_start.state_dir);
+  root.read("viewer_dir", at_start.viewer_dir);
+  service::read_recording(root.child("recording"), at_start.recording);
+  if (auto ok = root.finish(); !ok) return pass(ok);
+  return settings;
+}
+
+}  // namespace chorus::server

@@ -1,0 +1,59 @@
+// Everything deploy/config/fusion.json can say, as plain values in two parts.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/http/server.h"
+#include "common/service/log_config.h"
+#include "common/service/recordings.h"
+#include "fusion-server/core/registration_session.h"
+#include "fusion-server/core/tick_schedule.h"
+#include "fusion-server/outputs/outputs.h"
+#include "fusion-server/pipeline/pipeline.h"
+#include "fusion-server/poll/poller.h"
+#include "fusion-server/registration/registration.h"
+
+namespace chorus::server {
+
+/// What a reload takes over.
+struct LiveSettings {
+  service::LogConfig log;
+  std::string bearer_token;  ///< Of http.
+  std::vector<poll::PolledSensor> sensors;
+  core::TickConfig output;
+  pipeline::PipelineConfig pipeline;
+  registration::RegistrationConfig registration;
+  core::SessionConfig session;
+
+  bool operator==(const LiveSettings&) const = default;
+};
+
+/// What needs a restart.
+struct StartSettings {
+  std::string title = "Chorus fusion server";
+  http::ServerConfig http = {.port = 8080};  ///< Without its token.
+  poll::PollTimings poll;
+  Duration history = std::chrono::seconds(10);  ///< How long /frames/{seq} and ?at= reach back.
+  outputs::OutputsConfig outputs;
+  std::string registration_file;  ///< Given extrinsics; empty: registered from a walk.
+  /// Where state survives a restart; "auto": the user's folder; empty: nowhere.
+  std::string state_dir;
+  service::RecordingConfig recording;
+  std::string viewer_dir;  ///< Static files of /viewer/; empty: no viewer.
+
+  bool operator==(const StartSettings&) const = default;
+};
+
+struct FusionSettings {
+  LiveSettings live;
+  StartSettings at_start;
+
+  bool operator==(const FusionSettings&) const = default;
+};
+
+/// Every mistake is reported, all at once.
+[[nodiscard]] Result<FusionSettings> read_fusion_settings(ConfigReader root);
+
+}  // namespace chorus::server

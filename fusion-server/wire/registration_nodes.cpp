@@ -1,0 +1,194 @@
+#include "fusion-server/wire/registration_nodes.h"
+
+#include <array>
+#include <utility>
+
+namespace chorus::wire {
+namespace {
+
+using resource::Decimal;
+using resource::Node;
+
+constexpr std::array<std::pair<Verdict, std::string_view>, 4> kVerdicts{{
+    {Verdict::None, "None"},
+    {Verdict::Provisional, "Provisional"},
+    {Verdict::Good, "Good"},
+    {Verdict::Refused, "Refused"},
+}};
+
+/// Row by row; squares of 0.1 mm and of a hundredth of a degree, with two digits more.
+std::vector<Decimal> decimals_of(const Eigen::Matrix<double, 6, 6>& covariance) {
+  constexpr int kCovarianceDigits = 10;
+  std::vector<Decimal> values;
+  for (const double value : covariance.transpose().reshaped())
+    values.push_back({value, kCovarianceDigits});
+  return values;
+}
+
+void add_verdict(Node& node, const SensorVerdict& own) {
+  node.properties.emplace_back("verdict", std::string(name_of(own.verdict)));
+  node.properties.emplace_back("reasons", own.reasons);
+}
+
+Node sensor_node(const SensorId& id, const Extrinsics& place) {
+  const Eigen::Vector3d p = place.world_from_sensor.translation();
+  const Eigen::Quaterniond q(place.world_from_sensor.rotation());
+  constexpr int kPlaceDigits = 4;  // 0.1 mm
+  constexpr int kRotationDigits = 5;
+  Node node{"sensors/" + id.str(), {"RegisteredSensor"}, {{"sensorId", id.str()}}};
+  const auto put = [&](const char* key, double value, int digits) {
+    node.properties.emplace_back(key, Decimal{value, digits});
+  };
+  put("x", p.x(), kPlaceDigits);
+  put("y", p.y(), kPlaceDigits);
+  put("z", p.z(), kPlaceDigits);
+  put("qx", q.x(), kRotationDigits);
+  put("qy", q.y(), kRotationDigits);
+  put("qz", q.z(), kRotationDigits);
+  put("qw", q.w(), kRotationDigits);
+  put("error", place.error, kPlaceDigits);
+  node.properties.emplace_back("chain", names_of(place.chain));
+  if (!place.covariance.isZero(0.0))  // else nothing is known of it
+    node.properties.emplace_back("covariance", decimals_of(place.covariance));
+  return node;
+}
+
+Node edge_node(const PairwiseRegistration& edge) {
+  constexpr int kDigits = 4;
+  return {"_",
+          {"RegistrationEdge"},
+          {{"target", edge.target.str()},
+           {"source", edge.source.str()},
+           {"rms", Decimal{edge.rms, kDigits}},
+           {"pairs", static_cast<std::int64_t>(edge.pairs)},
+           {"inliers", static_cast<std::int64_t>(edge.inliers)}}};
+}
+
+/// The session that runs, else the last one; "idle" says that none runs.
+Node newest_session(const RegistrationProgress& progress) {
+  constexpr int kDigits = 1;
+  const SessionStatus session =
+      progress.sessions.empty() ? SessionStatus{} : progress.sessions.front();
+  Node node{"_", {"RegistrationSession"}, {}};
+  if (session.id != 0) {
+    node.properties.emplace_back("sessionId", static_cast<std::int64_t>(session.id));
+    node.properties.emplace_back("progress", resource::Ref{session_path(session.id)});
+  }
+  node.properties.emplace_back("state",
+                               std::string(running(session) ? name_of(session.state) : "idle"));
+  node.properties.emplace_back("elapsedSeconds", Decimal{session.elapsed, kDigits});
+  node.properties.emplace_back("targetSeconds", Decimal{session.target, kDigits});
+  node.properties.emplace_back("reasons", session.reasons);
+  return node;
+}
+
+void add_storage(Node& node, const StorageStatus& storage) {
+  node.properties.emplace_back("stored", stored(storage));
+  if (stored(storage)) return;
+  node.properties.emplace_back("storeProblem",
+                               storage.folder.empty()
+                                   ? std::string("state_dir is empty: the registration is "
+                                                 "forgotten when the server ends")
+                                   : storage.trouble);
+}
+
+/// Sensors that took part in a walk and have no place.
+std::vector<Node> unplaced_nodes(const Registration& registration) {
+  std::vector<Node> nodes;
+  for (const auto& [id, own] : registration.verdicts) {
+    if (registration.sensors.contains(id)) continue;
+    Node node{"sensors/" + id.str(), {"UnplacedSensor"}, {{"sensorId", id.str()}}};
+    add_verdict(node, own);
+    nodes.push_back(std::move(node));
+  }
+  return nodes;
+}
+
+}  // namespace
+
+std::vector<std::string> names_of(const std::vector<SensorId>& sensors) {
+  std::vector<std::string> names;
+  names.reserve(sensors.size());
+  for (const SensorId& sensor : sensors) names.push_back(sensor.str());
+  return names;
+}
+
+std::string_view name_of(Verdict verdict) noexcept {
+  for (const auto& [value, name] : kVerdicts) {
+    if (value == verdict) return name;
+  }
+  return "None";
+}
+
+std::string_view name_of(SessionState state) noexcept {
+  switch (state) {
+    case SessionState::Collecting:
+      return "collecting";
+    case SessionState::Solving:
+      return "solving";
+    case SessionState::Done:
+      return "done";
+    case SessionState::Cancelled:
+      return "cancelled";
+  }
+  return "done";
+}
+
+std::string session_path(std::uint64_t id) {
+  return "/registration/sessions/" + std::to_string(id);
+}
+
+std::optional<Verdict> verdict_named(std::string_view name) noexcept {
+  for (const auto& [value, known] : kVerdicts) {
+    if (known == name) return value;
+  }
+  return std::nullopt;
+}
+
+Node session_node(const SessionStatus& session, const std::vector<std::string>& awaits) {
+  constexpr int kDigits = 1;
+  Node node{"", {"RegistrationSession"}, {}};
+  auto& out = node.properties;
+  out.emplace_back("sessionId", static_cast<std::int64_t>(session.id));
+  out.emplace_back("state", std::string(name_of(session.state)));
+  out.emplace_back("automatic", session.automatic);
+  out.emplace_back("started", session.started);
+  out.emplace_back("elapsedSeconds", Decimal{session.elapsed, kDigits});
+  out.emplace_back("targetSeconds", Decimal{session.target, kDigits});
+  out.emplace_back("verdict", std::string(name_of(session.verdict)));
+  out.emplace_back("adopted", session.adopted);
+  out.emplace_back("reasons", session.reasons);
+  if (running(session)) out.emplace_back("awaits", awaits);
+  out.emplace_back("registration", resource::Ref{"/registration"});
+  return node;
+}
+
+Node registration_node(const Registration& registration, const RegistrationProgress& progress) {
+  Node node{"", {"Registration"}, {}};
+  node.properties.emplace_back("version", static_cast<std::int64_t>(registration.version));
+  node.properties.emplace_back("verdict", std::string(name_of(registration.verdict)));
+  node.properties.emplace_back("reasons", registration.reasons);
+  node.properties.emplace_back("awaits", progress.awaits);
+  if (!registration.sensors.empty()) {
+    node.properties.emplace_back("master", registration.master.str());
+    node.properties.emplace_back("solved", registration.solved);
+  }
+  add_storage(node, progress.storage);
+  node.properties.emplace_back("session", newest_session(progress));
+  std::vector<Node> sensors;
+  for (const auto& [id, place] : registration.sensors) {
+    sensors.push_back(sensor_node(id, place));
+    const auto own = registration.verdicts.find(id);
+    add_verdict(sensors.back(), own != registration.verdicts.end()
+                                    ? own->second
+                                    : SensorVerdict{registration.verdict, {}});
+  }
+  node.properties.emplace_back("sensors", std::move(sensors));
+  node.properties.emplace_back("unplaced", unplaced_nodes(registration));
+  std::vector<Node> edges;
+  for (const PairwiseRegistration& edge : registration.edges) edges.push_back(edge_node(edge));
+  node.properties.emplace_back("edges", std::move(edges));
+  return node;
+}
+
+}  // namespace chorus::wire

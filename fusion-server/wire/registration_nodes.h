@@ -1,0 +1,34 @@
+// /registration: the extrinsics, why they are not better, and the session that improves them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/resource/node.h"
+#include "fusion-server/flow.h"
+#include "fusion-server/status.h"
+
+namespace chorus::wire {
+
+[[nodiscard]] resource::Node registration_node(const Registration& registration,
+                                               const RegistrationProgress& progress);
+
+/// /registration/sessions/{id}: its progress and its outcome.  `awaits` are shown while it runs.
+[[nodiscard]] resource::Node session_node(const SessionStatus& session,
+                                          const std::vector<std::string>& awaits);
+
+/// "collecting", "solving", "done", "cancelled".
+[[nodiscard]] std::string_view name_of(SessionState state) noexcept;
+
+/// Where to follow a session: "/registration/sessions/7".
+[[nodiscard]] std::string session_path(std::uint64_t id);
+
+[[nodiscard]] std::vector<std::string> names_of(const std::vector<SensorId>& sensors);
+
+/// The verdict's name on the wire: "Good", "Provisional", "Refused", "None".
+[[nodiscard]] std::string_view name_of(Verdict verdict) noexcept;
+[[nodiscard]] std::optional<Verdict> verdict_named(std::string_view name) noexcept;
+
+}  // namespace chorus::wire

@@ -1,0 +1,17 @@
+// The device `bridge`: any program in any language pushes frames (proto/bridge.md).
+#pragma once
+
+#include <memory>
+
+#include "common/base/config_reader.h"
+#include "common/http/router.h"
+#include "common/sensor/frame_source.h"
+#include "services/sensor/device/device_kinds.h"
+
+namespace chorus::bridge {
+
+/// The reader's finish() reports mistakes.  Adds `/push` to the context's router.
+[[nodiscard]] Result<std::unique_ptr<FrameSource>> make_bridge(
+    ConfigReader& section, const sensor_service::DeviceContext& context);
+
+}  // namespace chorus::bridge

@@ -1,0 +1,27 @@
+// The section device.bridge of the configuration.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "common/base/config_reader.h"
+#include "common/base/duration.h"
+
+namespace chorus::bridge {
+
+struct BridgeSettings {
+  std::string label = "bridge";  ///< For people.
+  std::string socket = {};       ///< Path of a local socket; empty: no socket.
+  double max_rate_hz = 120.0;    ///< Frames beyond this rate are dropped.
+  std::size_t max_message_bytes = 256 * 1024;
+  double max_bytes_per_s = 4e6;  ///< A program that sends more is disconnected.
+  /// Programs connected at once; only one of them pushes.
+  std::size_t max_pushers = 4;
+  /// A pusher silent for this long makes room for another.
+  Duration yields_after = std::chrono::seconds(2);
+};
+
+/// The reader's finish() reports mistakes.
+[[nodiscard]] BridgeSettings read_bridge_settings(ConfigReader& section);
+
+}  // namespace chorus::bridge

@@ -1,0 +1,37 @@
+// What a program says about itself before it pushes frames (proto/bridge.md, section 2).
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+#include <nlohmann/json_fwd.hpp>
+
+#include "common/layout/layout.h"
+#include "common/sensor/camera_image.h"
+#include "common/sensor/sensor_frame.h"
+
+namespace chorus::bridge {
+
+struct Hello {
+  std::string name;                        ///< 1 to 64 printable ASCII characters.
+  const layout::Layout* layout = nullptr;  ///< Never null after reading.
+  /// From the pusher's axes to ours; a reflection when its axes are left-handed.
+  Eigen::Matrix3d sensor_from_pusher = Eigen::Matrix3d::Identity();
+  std::optional<FloorPlane> floor;    ///< In sensor space.
+  std::optional<Intrinsics> camera;   ///< Of the pixels it sends.
+  std::optional<double> pixel_sigma;  ///< Standard deviation of a pixel coordinate [px].
+  double tracked_from = 0.0;          ///< Confidence, as in Layout.
+  double inferred_from = 0.0;
+};
+
+/// "right down ahead": where x, y and z point, for somebody looking in the camera's direction.
+[[nodiscard]] Result<Eigen::Matrix3d> read_axes(std::string_view words);
+
+/// nx, ny, nz, d with n.x + d = 0 in the pusher's axes [m]; the normal must point up.
+[[nodiscard]] Result<FloorPlane> read_floor(const nlohmann::json& value,
+                                            const Eigen::Matrix3d& sensor_from_pusher);
+
+[[nodiscard]] Result<Hello> read_hello(const nlohmann::json& message);
+
+}  // namespace chorus::bridge

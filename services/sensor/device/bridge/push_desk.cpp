@@ -1,0 +1,182 @@
+#include "services/sensor/device/bridge/push_desk.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "common/base/log.h"
+
+namespace chorus::bridge {
+namespace {
+
+constexpr std::size_t kQueue = 64;                        // frames
+constexpr Duration kMaxRepeat = std::chrono::seconds(1);  // as in SensorService
+constexpr auto kShut = std::chrono::seconds(1);
+constexpr std::uint64_t kWidestGap = 1000;
+
+std::string described(const Pusher& pusher) {
+  const std::string from = pusher.address.empty() ? "" : " from " + pusher.address;
+  return fmt::format("\"{}\" ({}{})", pusher.name, pusher.via, from);
+}
+
+long whole_seconds(std::chrono::steady_clock::duration duration) {
+  return static_cast<long>(std::chrono::duration_cast<std::chrono::seconds>(duration).count());
+}
+
+}  // namespace
+
+PushDesk::PushDesk(DeskOptions options) : options_(std::move(options)), queue_(kQueue) {}
+
+Result<void> PushDesk::connect() {
+  const std::lock_guard lock(mutex_);
+  if (steady_now() < shut_until_) {
+    return fail(ErrorCode::Unavailable, "/push",
+                "a program has just been sent away for flooding; try again in a second");
+  }
+  if (connections_ >= options_.settings.max_pushers) {
+    return fail(ErrorCode::Unavailable, "/push",
+                fmt::format("{} programs are connected already, and one pushes; end the others or "
+                            "raise device.bridge.max_pushers",
+                            connections_));
+  }
+  ++connections_;
+  return {};
+}
+
+void PushDesk::disconnect() {
+  const std::lock_guard lock(mutex_);
+  if (connections_ > 0) --connections_;
+}
+
+void PushDesk::shut_for_a_moment() {
+  const std::lock_guard lock(mutex_);
+  shut_until_ = steady_now() + kShut;
+}
+
+/// The caller holds the mutex.
+bool PushDesk::idle(const Holder& holder) const {
+  return steady_now() - holder.last_frame.value_or(holder.sat_down) >
+         options_.settings.yields_after;
+}
+
+Result<PushDesk::Seat> PushDesk::sit_down(const Pusher& pusher) {
+  const std::lock_guard lock(mutex_);
+  if (holder_ && !idle(*holder_)) {
+    return fail(ErrorCode::Conflict, options_.sensor.str(),
+                fmt::format("{} pushes to this sensor already; end it, or give this program a "
+                            "chorus-sensor of its own",
+                            described(*holder_->status.pusher)));
+  }
+  Holder holder;
+  holder.seat = ++last_seat_;
+  holder.sat_down = steady_now();
+  holder.status.pusher = pusher;
+  holder.status.since = now();
+  holder_ = std::move(holder);
+  log::info("a program pushes frames", {{"name", pusher.name},
+                                        {"layout", pusher.layout},
+                                        {"via", pusher.via},
+                                        {"address", pusher.address}});
+  return last_seat_;
+}
+
+bool PushDesk::sits(Seat seat) const {
+  const std::lock_guard lock(mutex_);
+  return holder_ && holder_->seat == seat;
+}
+
+void PushDesk::leave(Seat seat, std::string_view why) {
+  const std::lock_guard lock(mutex_);
+  if (!holder_ || holder_->seat != seat) return;
+  departed_ = fmt::format("{} left: {}", described(*holder_->status.pusher), why);
+  log::info("a program pushes no more", {{"name", holder_->status.pusher->name}, {"why", why}});
+  holder_.reset();
+}
+
+/// By how much our sequence advances: gaps in the pusher's own count are lost frames.
+std::uint64_t PushDesk::step_of(const PushedFrame& frame) const {
+  if (!frame.sequence || !holder_->last_count || *frame.sequence <= *holder_->last_count) return 1;
+  return std::min(*frame.sequence - *holder_->last_count, kWidestGap);
+}
+
+/// The same rule as in SensorService; here the program is told.
+bool PushDesk::advances(Timestamp captured) const {
+  if (!last_captured_ || captured > *last_captured_) return true;
+  if (*last_captured_ - captured > kMaxRepeat) return true;
+  return captured != *last_captured_ && refused_captured_ && captured > *refused_captured_;
+}
+
+Result<void> PushDesk::take(Seat seat, PushedFrame frame, const Hello& hello) {
+  const std::lock_guard lock(mutex_);
+  if (!holder_ || holder_->seat != seat)
+    return fail(ErrorCode::Conflict, "type", "another program pushes to this sensor now");
+  if (!advances(frame.captured)) {
+    refused_captured_ = frame.captured;
+    return fail(ErrorCode::Conflict, "captured",
+                "must be later than that of the frame before; send frames in order, each once");
+  }
+  Capture capture;
+  capture.frame.sensor = options_.sensor;
+  capture.frame.sequence = sequence_ += step_of(frame);
+  capture.frame.captured = frame.captured;
+  capture.frame.received = now();
+  capture.frame.bodies = std::move(frame.bodies);
+  capture.frame.floor = frame.floor ? frame.floor : hello.floor;
+  last_captured_ = frame.captured;
+  refused_captured_.reset();
+  holder_->last_count = frame.sequence;
+  holder_->last_frame = steady_now();
+  holder_->refused_since = false;
+  ++holder_->status.frames;
+  queue_.give(std::move(capture));
+  return {};
+}
+
+void PushDesk::note_refusal(Seat seat, const Error& error) {
+  const std::string text = to_string(error);
+  refusals_.hit(text);
+  const std::lock_guard lock(mutex_);
+  if (!holder_ || holder_->seat != seat) return;
+  ++holder_->status.refused;
+  holder_->status.last_error = text;
+  holder_->refused_since = true;
+}
+
+void PushDesk::note_left_out(Seat seat) {
+  const std::lock_guard lock(mutex_);
+  if (holder_ && holder_->seat == seat) ++holder_->status.left_out;
+}
+
+void PushDesk::note_clock(Seat seat, const std::optional<ClockEstimate>& estimate) {
+  const std::lock_guard lock(mutex_);
+  if (holder_ && holder_->seat == seat) holder_->status.clock = estimate;
+}
+
+/// The caller holds the mutex.
+std::string PushDesk::silence_of(const Holder& holder) const {
+  const std::string who = described(*holder.status.pusher);
+  if (holder.refused_since) {
+    return fmt::format("no frame of {} is taken: {}", who, holder.status.last_error);
+  }
+  if (!holder.last_frame) return who + " has said hello and pushes no frames";
+  return fmt::format("{} has pushed no frame for {} s", who,
+                     whole_seconds(steady_now() - *holder.last_frame));
+}
+
+PushStatus PushDesk::status() const {
+  const std::lock_guard lock(mutex_);
+  PushStatus status = holder_ ? holder_->status : PushStatus{};
+  if (!holder_) {
+    status.state = "waiting";
+    status.reason = "no program pushes frames";
+    if (!departed_.empty()) status.reason += "; " + departed_;
+    return status;
+  }
+  const bool live = holder_->last_frame && !idle(*holder_);
+  status.state = live ? "live" : "silent";
+  if (!live) status.reason = silence_of(*holder_);
+  return status;
+}
+
+}  // namespace chorus::bridge

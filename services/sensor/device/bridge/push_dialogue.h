@@ -1,0 +1,17 @@
+// A PushSession as a dialogue: JSON messages both ways, for a WebSocket or a local socket.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/http/dialogue.h"
+#include "services/sensor/device/bridge/push_session.h"
+
+namespace chorus::bridge {
+
+/// Unavailable when there are too many connections.
+[[nodiscard]] Result<std::unique_ptr<http::Dialogue>> open_dialogue(
+    const std::shared_ptr<PushDesk>& desk, std::string via, std::string address);
+
+}  // namespace chorus::bridge

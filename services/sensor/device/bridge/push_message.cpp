@@ -1,0 +1,284 @@
+#include "services/sensor/device/bridge/push_message.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "common/base/json.h"
+#include "common/sensor/limits.h"
+#include "common/sensor/pixel_ray.h"
+#include "services/sensor/device/bridge/json_value.h"
+
+namespace chorus::bridge {
+namespace {
+
+using Json = nlohmann::json;
+using layout::Landmark;
+
+constexpr double kMaxPixels = 1e5;
+constexpr double kMaxVariance = 1e8;  // [m^2]
+constexpr JsonLimits kLimits{.bytes = 2'000'000, .nesting = 8};
+
+/// What an element says apart from the landmark's place.
+struct Sureness {
+  double confidence = 1.0;
+  std::optional<JointState> state;
+};
+
+/// An element of `points` or `pixels`: [place..., confidence], or {"at": [place...], ...}.
+template <std::size_t N>
+struct Element {
+  std::array<double, N> place{};
+  Sureness sure;
+  const Json* object = nullptr;  ///< If the element is one.
+};
+
+Result<JointState> read_state(const Json& value, const At& at) {
+  for (const auto& [name, state] :
+       {std::pair{"Tracked", JointState::Tracked}, std::pair{"Inferred", JointState::Inferred},
+        std::pair{"NotTracked", JointState::NotTracked}}) {
+    if (value == name) return state;
+  }
+  return wrong(at, "must be \"Tracked\", \"Inferred\" or \"NotTracked\"");
+}
+
+Result<Sureness> read_sureness(const Json& object, const At& at) {
+  Sureness sure;
+  if (const Json* confidence = find(object, "confidence")) {
+    const auto number = read_number(*confidence, {0.0, 1.0}, at["confidence"]);
+    if (!number) return pass(number);
+    sure.confidence = *number;
+  }
+  if (const Json* named = find(object, "state")) {
+    const auto state = read_state(*named, at["state"]);
+    if (!state) return pass(state);
+    sure.state = *state;
+  }
+  return sure;
+}
+
+template <std::size_t N>
+Result<Element<N>> read_object_element(const Json& value, Bounds bounds, const At& at) {
+  Element<N> element;
+  element.object = &value;
+  const Json* place = find(value, "at");
+  if (place == nullptr) return wrong(at["at"], "is missing");
+  if (const auto ok = read_numbers(*place, element.place, bounds, at["at"]); !ok) return pass(ok);
+  const auto sure = read_sureness(value, at);
+  if (!sure) return pass(sure);
+  element.sure = *sure;
+  return element;
+}
+
+template <std::size_t N>
+Result<Element<N>> read_element(const Json& value, Bounds bounds, const At& at) {
+  if (value.is_object()) return read_object_element<N>(value, bounds, at);
+  Element<N> element;
+  if (!value.is_array() || (value.size() != N && value.size() != N + 1)) {
+    return wrong(at, fmt::format("must be [{}], the same with a confidence behind it, an object "
+                                 "with \"at\", or null",
+                                 N == 3 ? "x, y, z" : "u, v"));
+  }
+  for (std::size_t i = 0; i < N; ++i) {
+    const auto number = read_number(value[i], bounds, at[i]);
+    if (!number) return pass(number);
+    element.place[i] = *number;
+  }
+  if (value.size() == N) return element;
+  const auto confidence = read_number(value[N], {0.0, 1.0}, at[N]);
+  if (!confidence) return pass(confidence);
+  element.sure.confidence = *confidence;
+  return element;
+}
+
+JointState state_of(const Sureness& sure, const Hello& hello) {
+  return sure.state.value_or(
+      layout::state_of(sure.confidence, hello.tracked_from, hello.inferred_from));
+}
+
+Result<Covariance> read_covariance(const Json& value, const Hello& hello, const At& at) {
+  std::array<double, Covariance::kTerms> upper{};
+  const Bounds bounds{-kMaxVariance, kMaxVariance};
+  if (const auto ok = read_numbers(value, upper, bounds, at); !ok) return pass(ok);
+  const Covariance covariance = Covariance(upper).turned(hello.sensor_from_pusher);
+  if (covariance.plausible()) return covariance;
+  return wrong(at, "must be [xx, xy, xz, yy, yz, zz] in m^2 without a negative variance");
+}
+
+Result<Landmark> read_point(const Json& value, const Hello& hello, const At& at) {
+  if (value.is_null()) return Landmark{};
+  const auto element = read_element<3>(value, {-kMaxCoordinate, kMaxCoordinate}, at);
+  if (!element) return pass(element);
+  const auto& [x, y, z] = element->place;
+  Landmark landmark{hello.sensor_from_pusher * Eigen::Vector3d(x, y, z),
+                    state_of(element->sure, hello)};
+  if (element->object == nullptr) return landmark;
+  if (const Json* covariance = find(*element->object, "covariance")) {
+    const auto known = read_covariance(*covariance, hello, at["covariance"]);
+    if (!known) return pass(known);
+    landmark.covariance = *known;
+  }
+  return landmark;
+}
+
+Result<Landmark> read_pixel(const Json& value, const Hello& hello, const At& at) {
+  if (value.is_null()) return Landmark{};
+  const auto element = read_element<2>(value, {-kMaxPixels, kMaxPixels}, at);
+  if (!element) return pass(element);
+  std::optional<double> sigma = hello.pixel_sigma;
+  if (const Json* own = element->object != nullptr ? find(*element->object, "sigma") : nullptr) {
+    const auto number = read_number(*own, {0.01, 1000.0}, at["sigma"]);
+    if (!number) return pass(number);
+    sigma = *number;
+  }
+  const auto ray = ray_of({element->place[0], element->place[1]}, *hello.camera);
+  if (!ray) return Landmark{};
+  // In an image "right" and "down" are known, whatever the axes of the pusher's points.
+  const Eigen::Matrix3d sensor_from_image = Eigen::Vector3d(-1.0, -1.0, 1.0).asDiagonal();
+  Landmark landmark{sensor_from_image * *ray, state_of(element->sure, hello), Measurement::Ray};
+  if (sigma)
+    landmark.covariance =
+        Covariance(ray_covariance(*ray, *hello.camera, *sigma)).turned(sensor_from_image);
+  return landmark;
+}
+
+using ReadLandmark = Result<Landmark> (*)(const Json&, const Hello&, const At&);
+
+/// {"LEFT_HIP": ..., ...}
+Result<std::vector<Landmark>> read_named(const Json& value, ReadLandmark read, const Hello& hello,
+                                         const At& at) {
+  std::vector<Landmark> landmarks(hello.layout->landmarks.size());
+  for (const auto& [name, one] : value.items()) {
+    const auto index = landmark_named(*hello.layout, name);
+    if (!index) {
+      return wrong(at[name], fmt::format("{} has no such landmark; it has {}", hello.layout->name,
+                                         fmt::join(hello.layout->landmarks, ", ")));
+    }
+    const auto landmark = read(one, hello, at[name]);
+    if (!landmark) return pass(landmark);
+    landmarks[*index] = *landmark;
+  }
+  return landmarks;
+}
+
+Result<std::vector<Landmark>> read_landmarks(const Json& value, ReadLandmark read,
+                                             const Hello& hello, const At& at) {
+  const std::size_t count = hello.layout->landmarks.size();
+  if (value.is_object()) return read_named(value, read, hello, at);
+  if (!value.is_array() || value.size() != count) {
+    return wrong(at, fmt::format("must be an array of {} landmarks in the order of {}, null for "
+                                 "those not seen, or an object of them by name",
+                                 count, hello.layout->name));
+  }
+  std::vector<Landmark> landmarks;
+  landmarks.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto landmark = read(value[i], hello, at[i]);
+    if (!landmark) return pass(landmark);
+    landmarks.push_back(*landmark);
+  }
+  return landmarks;
+}
+
+Result<BodyFrame> read_body(const Json& value, const Hello& hello, const At& at) {
+  if (!value.is_object())
+    return wrong(at, "must be an object with \"id\" and \"points\" or \"pixels\"");
+  const Json* id = find(value, "id");
+  if (id == nullptr) return wrong(at["id"], "is missing; number the bodies, one number a person");
+  const auto number = read_whole(*id, at["id"]);
+  if (!number) return pass(number);
+  const Json* points = find(value, "points");
+  const Json* pixels = find(value, "pixels");
+  if ((points == nullptr) == (pixels == nullptr))
+    return wrong(at, "must have either \"points\" [m] or \"pixels\"");
+  if (pixels != nullptr && !hello.camera)
+    return wrong(at["pixels"], "mean nothing without \"intrinsics\" in the hello");
+  const auto landmarks = points != nullptr
+                             ? read_landmarks(*points, &read_point, hello, at["points"])
+                             : read_landmarks(*pixels, &read_pixel, hello, at["pixels"]);
+  if (!landmarks) return pass(landmarks);
+  return BodyFrame{BodyId{*number}, {}, {layout::joints_of(*hello.layout, *landmarks)}};
+}
+
+Result<std::vector<BodyFrame>> read_bodies(const Json& value, const Hello& hello,
+                                           Timestamp captured) {
+  const At at = At{}["bodies"];
+  if (!value.is_array() || value.size() > kMaxBodies)
+    return wrong(
+        at, fmt::format("must be an array of at most {}; [] when nobody is there", kMaxBodies));
+  std::vector<BodyFrame> bodies;
+  std::vector<BodyId> ids;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    auto body = read_body(value[i], hello, at[i]);
+    if (!body) return pass(body);
+    if (std::find(ids.begin(), ids.end(), body->id) != ids.end())
+      return wrong(at[i]["id"], "two bodies of one frame have this id");
+    ids.push_back(body->id);
+    const auto& joints = body->skeleton.joints;
+    if (std::none_of(joints.begin(), joints.end(), [](const Joint& j) { return j.given(); }))
+      continue;
+    body->captured = captured;
+    bodies.push_back(std::move(*body));
+  }
+  return bodies;
+}
+
+Result<PushedFrame> read_frame(const Json& message, const Hello& hello) {
+  PushedFrame frame;
+  const Json* captured = find(message, "captured");
+  if (captured == nullptr) return wrong(At{}["captured"], "is missing; when light hit the sensor");
+  const auto stamp = read_stamp(*captured, At{}["captured"]);
+  if (!stamp) return pass(stamp);
+  frame.captured = *stamp;
+  if (const Json* sequence = find(message, "sequence")) {
+    const auto number = read_whole(*sequence, At{}["sequence"]);
+    if (!number) return pass(number);
+    frame.sequence = *number;
+  }
+  if (const Json* floor = find(message, "floor")) {
+    const auto plane = read_floor(*floor, hello.sensor_from_pusher);
+    if (!plane) return pass(plane);
+    frame.floor = *plane;
+  }
+  const Json* bodies = find(message, "bodies");
+  if (bodies == nullptr) return wrong(At{}["bodies"], "is missing; [] when nobody is there");
+  auto read = read_bodies(*bodies, hello, *stamp);
+  if (!read) return pass(read);
+  frame.bodies = std::move(*read);
+  return frame;
+}
+
+Result<ClockAnswer> read_clock(const Json& message) {
+  std::array<Timestamp, 3> stamps{};
+  const std::array<const char*, 3> keys{"sent", "received", "answered"};
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const Json* value = find(message, keys[i]);
+    if (value == nullptr) return wrong(At{}[keys[i]], "is missing");
+    const auto stamp = read_stamp(*value, At{}[keys[i]]);
+    if (!stamp) return pass(stamp);
+    stamps[i] = *stamp;
+  }
+  return ClockAnswer{stamps[0], stamps[1], stamps[2]};
+}
+
+}  // namespace
+
+Result<PushMessage> read_push_message(std::string_view text, const Hello* hello) {
+  const auto message = parse_json(text, kLimits);
+  if (!message) return pass(message);
+  const Json* type = message->is_object() ? find(*message, "type") : nullptr;
+  const auto into = [](auto&& read) { return PushMessage(std::move(read)); };
+  if (type != nullptr && *type == "hello") return read_hello(*message).map(into);
+  if (type != nullptr && *type == "clock") return read_clock(*message).map(into);
+  if (type == nullptr || *type != "frame")
+    return wrong(At{}["type"],
+                 "each line is an object whose type is \"hello\", \"frame\" or \"clock\"");
+  if (hello == nullptr)
+    return fail(ErrorCode::Conflict, "type", "say hello before the first frame (proto/bridge.md)");
+  return read_frame(*message, *hello).map(into);
+}
+
+}  // namespace chorus::bridge

@@ -1,0 +1,35 @@
+// Reads one line of what a program pushes (proto/bridge.md).  No IO, no state.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "services/sensor/device/bridge/hello.h"
+
+namespace chorus::bridge {
+
+/// The answer to our question what time it is.
+struct ClockAnswer {
+  Timestamp sent;      ///< Our clock, as in the question.
+  Timestamp received;  ///< The pusher's clock when the question arrived ...
+  Timestamp answered;  ///< ... and when this answer was sent.
+};
+
+struct PushedFrame {
+  std::optional<std::uint64_t> sequence;  ///< The pusher's own count.
+  Timestamp captured;                     ///< By the pusher's clock; the same in each body.
+  /// In sensor space; bodies without any joint are left out.
+  std::vector<BodyFrame> bodies;
+  std::optional<FloorPlane> floor;
+};
+
+using PushMessage = std::variant<Hello, ClockAnswer, PushedFrame>;
+
+/// `hello`: that of the pusher, null before it has come.  Unknown keys are ignored.  Errors say
+/// where in the message the mistake is ("bodies[0].points[3]") and what should stand there.
+[[nodiscard]] Result<PushMessage> read_push_message(std::string_view text, const Hello* hello);
+
+}  // namespace chorus::bridge

@@ -1,0 +1,43 @@
+// What the service knows after one capture: immutable, shared by all requests until the next one.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/base/result.h"
+#include "common/http/document.h"
+#include "common/resource/frame_resource.h"
+#include "common/sensor/frame_source.h"
+#include "common/service/serving.h"
+#include "services/sensor/lazy_image.h"
+
+namespace chorus::sensor_service {
+
+struct LatestCapture {
+  std::shared_ptr<const resource::FrameResource> frame;
+  std::optional<FloorPlane> floor;
+  std::uint64_t floor_version = 0;         ///< Counts changes of the floor plane.
+  std::shared_ptr<const LazyImage> color;  ///< Null: the device has none.
+  std::shared_ptr<const LazyImage> depth;
+};
+using LatestCapturePtr = std::shared_ptr<const LatestCapture>;
+
+/// What is known after a capture; `before` (may be null) lends its floor plane when the capture has
+/// none.
+[[nodiscard]] LatestCapturePtr latest_capture(Capture capture, const LatestCapture* before);
+
+// The documents of one capture.
+
+[[nodiscard]] Result<http::DocumentPtr> floor_plane(const LatestCapture& latest,
+                                                    const service::Serving& serving);
+/// `/images/`: which images there are, and the camera model behind each.
+[[nodiscard]] http::DocumentPtr image_list(const LatestCapture& latest,
+                                           const service::Serving& serving);
+/// One image as bytes; an encoder that fails is an Error.
+[[nodiscard]] Result<http::DocumentPtr> image_document(const LazyImage& image,
+                                                       std::uint64_t sequence,
+                                                       const service::Serving& serving);
+
+}  // namespace chorus::sensor_service

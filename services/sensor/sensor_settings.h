@@ -1,0 +1,47 @@
+// deploy/config/sensor.json as a struct of two parts.
+#pragma once
+
+#include <string>
+
+#include "common/base/config_reader.h"
+#include "common/base/strong_id.h"
+#include "common/http/server.h"
+#include "common/service/log_config.h"
+#include "common/service/recordings.h"
+#include "services/sensor/device/device_kinds.h"
+#include "services/sensor/host_clock.h"
+
+namespace chorus::sensor_service {
+
+/// What a reload takes over.
+struct LiveSettings {
+  service::LogConfig log;
+  std::string bearer_token;  ///< Of http.
+  bool images = false;
+
+  bool operator==(const LiveSettings&) const = default;
+};
+
+/// What needs a restart.
+struct StartSettings {
+  SensorId id;
+  http::ServerConfig http = {.port = 8081};    ///< Without its token.
+  Duration history = std::chrono::seconds(3);  ///< How long /frames/{seq} and ?at= reach back.
+  ClockErrors clock;  ///< Of a simulated host; a real host's clock is kept by NTP.
+  service::RecordingConfig recording;
+  DeviceChoice device;
+
+  bool operator==(const StartSettings&) const = default;
+};
+
+struct SensorSettings {
+  LiveSettings live;
+  StartSettings at_start;
+
+  bool operator==(const SensorSettings&) const = default;
+};
+
+/// All mistakes come in one Error.
+[[nodiscard]] Result<SensorSettings> read_sensor_settings(ConfigReader root);
+
+}  // namespace chorus::sensor_service

@@ -1,0 +1,251 @@
+// Fused joints beside single sensors and all other methods, on the same frames and the same views.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "common/base/units.h"
+#include "tests/bench/accuracy/fusion_cases.h"
+#include "tests/bench/accuracy/fusion_cost.h"
+#include "tests/bench/methods/comparison.h"
+#include "tests/bench/methods/contest.h"
+#include "tests/bench/methods/over_draws.h"
+#include "tests/bench/methods/stress.h"
+#include "tests/bench/report/report.h"
+#include "tests/judge/cold_start.h"
+
+namespace chorus::bench {
+namespace {
+
+using synthetic::PathKind;
+
+constexpr Duration kSweepLength = std::chrono::seconds(5);
+constexpr std::size_t kQuickDraws = 2;
+constexpr Duration kQuickLength = std::chrono::seconds(10);  // the least to register from
+
+using Draws = std::vector<std::vector<Scored>>;
+
+bool is_short_metric(const Metric& metric) {
+  return metric.name == "mpjpe_mm" || metric.name == "flip_percent" ||
+         metric.name == "limb_flip_percent" || metric.name == "missing_percent";
+}
+
+Draws draw_all(const Report& report, const FusionCase& each,
+               const std::vector<Contender>& contenders) {
+  const std::size_t count = report.quick() ? kQuickDraws : each.draws;
+  return over_draws(count, [&](std::size_t draw) {
+    Contest one = each.contest;
+    one.setting.seed = report.seed() + draw;
+    if (report.quick()) one.setting.length = std::min(one.setting.length, kQuickLength);
+    if (each.cold) begin_cold(one.setting, draw);
+    return hold(one, contenders);
+  });
+}
+
+/// Of figures that not every method has: only the methods that have it.
+bool has_any(const Draws& draws, std::size_t method, std::size_t metric) {
+  return std::ranges::any_of(draws, [&](const std::vector<Scored>& draw) {
+    return !std::isnan(draw[method].values[metric]);
+  });
+}
+
+Comparison compare(const std::string& name, const Draws& draws, std::size_t metric) {
+  const Metric& shown = metrics()[metric];
+  Comparison comparison(name, shown.name, shown.unit);
+  for (std::size_t method = 0; !draws.empty() && method < draws.front().size(); ++method) {
+    if (!has_any(draws, method, metric)) continue;
+    for (std::size_t draw = 0; draw < draws.size(); ++draw) {
+      const Scored& scored = draws[draw][method];
+      const double value = scored.values[metric];
+      // What no joint was asked about is no failure.
+      if (shown.kind == Kind::Stated && std::isnan(value)) continue;
+      comparison.add(scored.method, draw, value);
+    }
+  }
+  return comparison;
+}
+
+/// Of covariances, where no figure is better for being lower: every method that states one.
+void report_stated(Report& report, const std::string& name, const Draws& draws,
+                   std::size_t metric) {
+  const Comparison found = compare(name, draws, metric);
+  const Metric& shown = metrics()[metric];
+  for (std::size_t method = 0; !draws.empty() && method < draws.front().size(); ++method) {
+    if (!has_any(draws, method, metric)) continue;
+    const std::string& of = draws.front()[method].method;
+    const Spread spread = found.spread_of(of);
+    report.row({name, shown.name, spread.median, shown.unit, of, kNoRatio, spread});
+  }
+}
+
+/// Errors over the joints that every method answers.
+void report_common(Report& report, const std::string& name, const Draws& draws) {
+  Comparison comparison(name, "mpjpe_common_mm", "mm");
+  for (std::size_t draw = 0; draw < draws.size(); ++draw) {
+    for (const Scored& scored : draws[draw]) {
+      if (!std::isnan(scored.common)) comparison.add(scored.method, draw, to_mm(scored.common));
+    }
+  }
+  comparison.report(report);
+}
+
+/// Each way to begin by itself.
+void report_cold_starts(Report& report, const std::string& name, const Draws& draws) {
+  for (std::size_t kind = 0; kind < kColdStarts.size(); ++kind) {
+    Draws own;
+    for (std::size_t i = kind; i < draws.size(); i += kColdStarts.size()) own.push_back(draws[i]);
+    if (own.empty()) continue;
+    const std::string with = fmt::format("{}-{}", name, kColdStarts[kind]);
+    for (std::size_t metric = 0; metric < metrics().size(); ++metric) {
+      if (is_short_metric(metrics()[metric])) compare(with, own, metric).report(report);
+    }
+  }
+}
+
+/// The comparison of mpjpe_mm.
+Comparison report_draws(Report& report, const std::string& name, const Draws& draws, bool in_full) {
+  for (std::size_t metric = 0; metric < metrics().size(); ++metric) {
+    if (!in_full && !is_short_metric(metrics()[metric])) continue;
+    if (metrics()[metric].kind == Kind::Stated) {
+      report_stated(report, name, draws, metric);
+    } else {
+      compare(name, draws, metric).report(report);
+    }
+  }
+  if (in_full) report_common(report, name, draws);
+  Comparison errors = compare(name, draws, 0);
+  errors.report_wins(report);
+  return errors;
+}
+
+Comparison measure(Report& report, const FusionCase& each) {
+  const Draws draws = draw_all(report, each, all_contenders());
+  if (!each.also.empty()) report_draws(report, each.also, draws, false);
+  if (each.cold) report_cold_starts(report, each.name, draws);
+  return report_draws(report, each.name, draws, each.in_full);
+}
+
+/// What each part of our method is worth: ours is the whole, the rows beside lack one part.
+void ablate(Report& report) {
+  fusion::FusionConfig whole;
+  fusion::FusionConfig not_robust = whole;
+  not_robust.huber = 0;
+  fusion::FusionConfig isotropic = whole;
+  isotropic.noise.along = isotropic.noise.across = mm(21);  // the same mean variance
+  fusion::FusionConfig no_states = whole;
+  no_states.noise.inferred_factor = 1;
+  const std::vector<Contender> contenders{ours(whole), ours(not_robust, "without-robust-loss"),
+                                          ours(isotropic, "without-line-of-sight"),
+                                          ours(no_states, "without-inferred-factor")};
+  FusionCase each{"ablation-workshop6-A", contest_of("A", 6, PathKind::Random)};
+  each.contest.every_method = false;
+  Draws draws = draw_all(report, each, contenders);
+  each.contest.pipeline.sides.resolve = false;
+  const Draws unresolved = draw_all(report, each, {ours(whole, "without-side-consensus")});
+  for (std::size_t i = 0; i < draws.size(); ++i) draws[i].push_back(unresolved[i].front());
+  compare(each.name, draws, 0).report(report);
+}
+
+/// One source of error after the other turned down and up.
+void sweep(Report& report) {
+  std::vector<Contender> contenders;
+  for (Contender& each : all_contenders()) {
+    const bool kept = each.name == "ours" || each.name == "otto" ||
+                      each.name == "flip-fixed-mean" || each.name == "best-skeleton";
+    if (kept) contenders.push_back(std::move(each));
+  }
+  for (const NamedSource& source : kSources) {
+    for (const double factor : kFactors) {
+      FusionCase each{fmt::format("sweep-{}-x{}", source.name, factor),
+                      contest_of("A", 6, PathKind::Random)};
+      each.contest.every_method = false;
+      each.contest.setting.stress = {{source.source, factor}};
+      each.contest.setting.length = kSweepLength;
+      compare(each.name, draw_all(report, each, contenders), 0).report(report);
+    }
+  }
+}
+
+/// The claim of the first issue: white noise only, registered from the same walk.
+void measure_gauss(Report& report) {
+  FusionCase gauss{"workshop6-gauss", contest_of("gauss", 6, PathKind::Random)};
+  gauss.contest.own_registration = true;
+  const Comparison found = measure(report, gauss);
+  report.condition(
+      "workshop6-gauss: the fused mean joint error is below the best single sensor's in every draw",
+      found.won_percent("best-sensor") == 100.0);
+}
+
+std::vector<FusionCase> all_cases() {
+  std::vector<FusionCase> cases = main_cases();
+  for (FusionCase& each : flip_cases()) cases.push_back(std::move(each));
+  return cases;
+}
+
+/// A regression shows here long before anybody reads the table.
+void hold_to_ceiling(Report& report, const Comparison& found) {
+  constexpr double kCeiling = 60.0;  // [mm] about twice what it is; 97 before sides were resolved
+  report.condition(fmt::format("{}: our mean joint error is below {} mm", kMainCase, kCeiling),
+                   found.spread_of(kOurs).median < kCeiling);
+}
+
+void explain(Report& report) {
+  report.note(
+      "Medians over draws; every method gets the same views: same alignment, registration, facing "
+      "and association.  True registration unless the case says otherwise.");
+  report.note(
+      "bound: per joint and instant the best linear combination of the views, given the true mean "
+      "square of each sighting's error and true labels; not known for C and gauss.  "
+      "oracle-weights: "
+      "weights 1 / e^2 with each sighting's true error e.");
+  report.note(
+      "best-sensor: one sensor for the whole draw, chosen knowing the truth.  ours-true-labels: "
+      "ours, if somebody told it which views have left and right exchanged.  arrival-kalman: held "
+      "against the truth at the time it states, that of arrival.");
+  report.note(
+      "nees per axis, ball95 and sharpness (stated over true rms) are of stated covariances: 1, 95 "
+      "% "
+      "and 1 are honest, neither lower nor higher is better.  mpjpe_common_mm: over the joints "
+      "that "
+      "every method answers.  hold50_mm: the truth 50 ms later.  -cold: draws take turns in "
+      "standing, "
+      "waving, walking backwards and coming in from behind the sensors.");
+  report.note("Simulated sensors.");
+}
+
+}  // namespace
+
+Result<void> run_fusion(Report& report) {
+  report.profile(described({"A", "B", "C", "D", "gauss"}));
+  const std::vector<FusionCase> cases = all_cases();
+  if (report.list()) {
+    for (const FusionCase& each : cases) std::cout << each.name << '\n';
+    return {};
+  }
+  const auto chosen = [&](const FusionCase& each) {
+    return report.only().empty() ? !report.quick() || each.quick : each.name == report.only();
+  };
+  if (std::ranges::none_of(cases, chosen)) {
+    return fail(ErrorCode::InvalidArgument, "--only",
+                "there is no case \"" + report.only() + "\"; --list shows all");
+  }
+  if (report.only().empty()) measure_gauss(report);
+  for (const FusionCase& each : cases) {
+    if (!chosen(each)) continue;
+    const Comparison errors = measure(report, each);
+    if (each.name == kMainCase) hold_to_ceiling(report, errors);
+  }
+  if (!report.only().empty()) return {};
+  if (!report.quick()) {
+    ablate(report);
+    sweep(report);
+  }
+  if (auto done = measure_cost(report); !done) return done;
+  explain(report);
+  return {};
+}
+
+}  // namespace chorus::bench

@@ -1,0 +1,104 @@
+#include "tests/bench/accuracy/fusion_cost.h"
+
+#include <array>
+#include <chrono>
+
+#include <fmt/format.h>
+
+#include "tests/bench/live/live_cell.h"
+#include "tests/bench/methods/comparison.h"
+#include "tests/bench/methods/moments.h"
+#include "tests/judge/crowd.h"
+#include "tests/judge/judge.h"
+#include "tests/judge/statistics.h"
+
+namespace chorus::bench {
+namespace {
+
+constexpr double kRate = 30.0;  // [Hz]
+constexpr Duration kLength = std::chrono::seconds(10);
+constexpr Duration kQuickLength = std::chrono::seconds(2);
+constexpr double kLiveRun = 8.0;  // [s]
+
+struct CostCase {
+  const char* name;
+  std::size_t sensors;
+  std::size_t persons;
+  double most_p99_ms;  ///< Condition.
+};
+constexpr std::array kCases{CostCase{"cost-10x6", 10, 6, 2.0}, CostCase{"scale-64x2", 64, 2, 5.0}};
+
+Workshop workshop_of(const Report& report, const CostCase& each) {
+  Setting setting;
+  setting.seed = report.seed();
+  synthetic::Ring ring;
+  ring.count = each.sensors;
+  setting.places = ring_places(ring);
+  setting.people = people_at_work(each.persons, setting.seed);
+  setting.length = report.quick() ? kQuickLength : kLength;
+  return draw_workshop(setting);
+}
+
+/// Of every instant from frames to snapshot [ms].
+std::vector<double> step_times(const Workshop& workshop, fusion::Method method) {
+  pipeline::PipelineConfig config;
+  config.fusion.method = method;
+  const Registration places = true_registration(workshop, workshop.tracks.front().sensor);
+  Arriving arriving(workshop.tracks);
+  pipeline::Memory memory;
+  std::vector<double> times;
+  const Timestamp end = workshop.begin + workshop.setting.length;
+  const Duration step = from_seconds(1.0 / kRate);
+  for (Timestamp instant = workshop.begin; instant <= end; instant += step) {
+    const pipeline::Histories& histories = arriving.until(instant);
+    const Timestamp late = instant + config.align.patience + Duration(1);
+    const auto begun = std::chrono::steady_clock::now();
+    auto done = pipeline::step({instant, late, times.size()}, histories, places, memory, config);
+    const auto spent = std::chrono::steady_clock::now() - begun;
+    memory = std::move(done.memory);
+    times.push_back(std::chrono::duration<double, std::milli>(spent).count());
+  }
+  return times;
+}
+
+void report_times(Report& report, const CostCase& each) {
+  const Workshop workshop = workshop_of(report, each);
+  const auto ours = step_times(workshop, fusion::FusionConfig{}.method);
+  const auto mean = step_times(workshop, fusion::Method::Mean);
+  for (const auto& [metric, share] :
+       {std::pair{"fuse_p50_ms", 0.5}, std::pair{"fuse_p99_ms", 0.99}}) {
+    const double spent = percentile(ours, share);
+    report.row(each.name, metric, spent, "ms", "flip-fixed-mean", spent / percentile(mean, share));
+  }
+  if (report.quick()) return;  // a build without optimisation says nothing
+  report.condition(
+      fmt::format("{}: one instant is fused in less than {} ms, p99", each.name, each.most_p99_ms),
+      percentile(ours, 0.99) < each.most_p99_ms);
+}
+
+Result<void> report_rate(Report& report, const CostCase& each) {
+  const auto cell = start_cell(static_cast<int>(each.sensors), static_cast<int>(each.persons));
+  if (!cell) return pass(cell);
+  const auto seen = watch(*cell, kLiveRun);
+  if (!seen) return pass(seen);
+  report.row(each.name, "output_hz", seen->output_hz, "Hz", "configured", seen->output_hz / kRate);
+  report.row(each.name, "lost_frames", static_cast<double>(seen->lost), "frames");
+  return {};
+}
+
+}  // namespace
+
+Result<void> measure_cost(Report& report) {
+  for (const CostCase& each : kCases) {
+    report_times(report, each);
+    if (report.quick()) continue;
+    if (auto done = report_rate(report, each); !done) return done;
+  }
+  report.note(
+      "cost, scale: fuse_*_ms is one instant from frames to snapshot on one thread, beside the "
+      "same with a plain mean; output_hz is a real server's, whose sensors run in this process on "
+      "the same cores.");
+  return {};
+}
+
+}  // namespace chorus::bench

@@ -1,0 +1,216 @@
+#include "tests/bench/accuracy/persons_cases.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "tests/bench/methods/moments.h"
+#include "tests/bench/methods/nearest_neighbour.h"
+#include "tests/judge/crowd.h"
+
+namespace chorus::bench {
+namespace {
+
+constexpr Duration kStart = std::chrono::milliseconds(500);
+constexpr Duration kTail = std::chrono::milliseconds(200);
+constexpr double kClose = 0.3;  // [m] shoulder to shoulder
+constexpr const char* kBestSensor = "best-sensor-ids";
+
+using People = std::vector<synthetic::Person>;
+
+People crossing_two(std::uint64_t seed) { return crossing_people(2, seed); }
+People crossing_close(std::uint64_t seed) { return crossing_people(2, seed, kClose); }
+People crossing_four(std::uint64_t seed) { return crossing_people(4, seed); }
+People crossing_six(std::uint64_t seed) { return crossing_people(6, seed); }
+People four_at_work(std::uint64_t seed) { return people_at_work(4, seed); }
+People around_car(std::uint64_t seed) { return people_around(1.5, seed); }
+People relayed(std::uint64_t seed) { return relayed_people(seed, begin_of(seed)); }
+
+std::vector<Eigen::Isometry3d> ring(std::size_t count, double radius = 3.0) {
+  synthetic::Ring ring;
+  ring.count = count;
+  ring.radius = radius;
+  return ring_places(ring);
+}
+
+/// One instant as the sensors see it, before anybody decided who it is.
+using Sights = associate::Scene;
+
+/// A method: who is there, instant after instant; remembers what it needs.
+using Grouper = std::function<std::vector<Person>(const Sights& sights)>;
+
+/// Profile A tracks many joints falsely where they are occluded, by an error about their true
+/// place: it would see through the screen.  Here what is occluded is known to be.
+void know_the_occluded(synthetic::kinect::Profile& profile) {
+  profile.visibility.inferred_occluded = 1.0;
+}
+
+PersonsCase behind_screen() {
+  PersonsCase hidden{"crossing-2-hidden", "A", places_behind_screen(), crossing_two, {screen()}};
+  hidden.adjust = know_the_occluded;
+  return hidden;
+}
+
+Setting setting_of(const PersonsCase& each, std::uint64_t seed) {
+  Setting setting;
+  setting.profile = each.profile;
+  setting.seed = seed;
+  setting.places = each.places;
+  setting.people = each.people(seed);
+  setting.occluders = each.occluders;
+  setting.length = each.length;
+  if (each.adjust) {
+    setting.adjust = [adjust = each.adjust](synthetic::kinect::Profile& profile, std::size_t) {
+      adjust(profile);
+    };
+  }
+  return setting;
+}
+
+/// Horizontally; not finite: not in the room.
+Eigen::Vector2d true_place(const Workshop& workshop, std::size_t person, Timestamp instant,
+                           const SensorId& master) {
+  const Eigen::Vector2d place = baselines::place_of(true_body(workshop, person, instant, master));
+  if (place.norm() < kOutside) return place;
+  return Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+}
+
+Claimed claimed(const Person& person) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  double count = 0.0;
+  for (const SensorView& view : person.views) {
+    const Eigen::Vector2d place = baselines::place_of(view.skeleton);
+    if (!place.allFinite()) continue;
+    sum += place;
+    count += 1.0;
+  }
+  return {person.id.value, sum / count};
+}
+
+Grouper by_association(const associate::AssociationConfig& config) {
+  return [config, tracks = associate::Tracks()](const Sights& sights) mutable {
+    auto grouping = associate::group(sights, tracks, config);
+    tracks = std::move(grouping.tracks);
+    return std::move(grouping.people);
+  };
+}
+
+Grouper by_nearest_neighbour() {
+  return [neighbour = baselines::NearestNeighbour()](const Sights& sights) mutable {
+    return neighbour.group(sights.views, sights.instant);
+  };
+}
+
+/// One sensor's own ids at face value.
+Grouper by_sensor(const SensorId& sensor) {
+  return [sensor](const Sights& sights) {
+    std::vector<Person> people;
+    for (const SensorView& view : sights.views) {
+      if (view.sensor == sensor) people.push_back({PersonId{view.body.value}, {view}});
+    }
+    return people;
+  };
+}
+
+/// A method under way through a draw.
+struct Contestant {
+  std::string name;
+  Grouper group;
+  std::vector<Roll> rolls = {};
+};
+
+std::vector<Contestant> contestants_in(const Workshop& workshop,
+                                       const std::vector<Association>& ours) {
+  std::vector<Contestant> all{{"nearest-neighbour", by_nearest_neighbour()}};
+  for (const Association& association : ours) {
+    all.push_back({association.name, by_association(association.config)});
+  }
+  for (const registration::WalkTrack& track : workshop.tracks) {
+    all.push_back({kBestSensor, by_sensor(track.sensor)});
+  }
+  return all;
+}
+
+/// Everybody's true place; nobody claimed yet.
+Roll roll_at(const Workshop& workshop, Timestamp instant) {
+  Roll roll{instant, {}, {}};
+  const SensorId& master = workshop.tracks.front().sensor;
+  for (std::size_t person = 0; person < workshop.scene.people.size(); ++person) {
+    roll.exact.push_back(true_place(workshop, person, instant, master));
+  }
+  return roll;
+}
+
+std::vector<associate::Observer> observers_in(const Moment& moment, const Registration& places) {
+  std::vector<associate::Observer> observers;
+  for (const SensorReport& report : moment.reports) {
+    const bool spoke = report.basis == Basis::Exact || report.basis == Basis::Interpolated;
+    if (spoke)
+      observers.push_back({report.sensor, places.sensors.at(report.sensor).world_from_sensor});
+  }
+  return observers;
+}
+
+/// Everybody at every instant, by every method.
+void call_rolls(const Workshop& workshop, std::vector<Contestant>& contestants) {
+  const Registration places = true_registration(workshop, workshop.tracks.front().sensor);
+  const Timestamp end = workshop.begin + workshop.setting.length;
+  pipeline::PipelineConfig config;
+  config.association.alone = Duration{0};
+  config.association.confirm_frames = 1;  // every body of every sensor is in somebody's views
+  const auto take = [&](Moment moment) {
+    Sights sights{moment.instant, {}, observers_in(moment, places)};
+    for (Person& person : moment.people) {
+      std::ranges::move(person.views, std::back_inserter(sights.views));
+    }
+    const Roll nobody = roll_at(workshop, moment.instant);
+    for (Contestant& contestant : contestants) {
+      Roll roll = nobody;
+      for (const Person& person : contestant.group(sights)) roll.claimed.push_back(claimed(person));
+      contestant.rolls.push_back(std::move(roll));
+    }
+  };
+  visit_moments(workshop.tracks, places, {workshop.begin + kStart, end - kTail}, take, config);
+}
+
+}  // namespace
+
+std::vector<PersonsCase> persons_cases() {
+  constexpr Duration kFiveMinutes = std::chrono::minutes(5);
+  // Profile C renders images; what hides whom costs with the square of the people.
+  constexpr Duration kRendered = std::chrono::seconds(12);
+  constexpr Duration kOfFour = std::chrono::seconds(20);
+  constexpr Duration kOfSix = std::chrono::seconds(15);
+  return {{kCrossingTwo, "A", ring(6), crossing_two},
+          {"crossing-2-B", "B", ring(6), crossing_two},
+          {"crossing-2-C", "C", ring(6), crossing_two, {}, kRendered},
+          {"crossing-2-ring3", "A", ring(3), crossing_two},
+          {"crossing-2-close", "A", ring(3), crossing_close},
+          behind_screen(),
+          {"crossing-2-hidden-C", "C", places_behind_screen(), crossing_two, {screen()}, kRendered},
+          {"crossing-2-pillar", "A", ring(6), crossing_two, {pillar()}},
+          {"crossing-4", "A", ring(6), crossing_four, {}, kOfFour},
+          {"crossing-4-B", "B", ring(6), crossing_four, {}, kOfFour},
+          {"crossing-6", "A", ring(6), crossing_six, {}, kOfSix},
+          {"relay-3", "A", ring(6), relayed},
+          {"circled-2", "A", ring(6), circled_person},
+          {"work-4", "A", ring(6), four_at_work, {}, kOfFour},
+          {"around-2-car", "A", ring(6, 3.5), around_car, {car_body()}},
+          {"around-2-table", "A", ring(6, 3.5), around_car, {table()}},
+          {"four-5min", "A", ring(3), crossing_four, {}, kFiveMinutes}};
+}
+
+Identities identities_in(const PersonsCase& each, std::uint64_t seed,
+                         const std::vector<Association>& ours) {
+  const Workshop workshop = draw_workshop(setting_of(each, seed));
+  std::vector<Contestant> contestants = contestants_in(workshop, ours);
+  call_rolls(workshop, contestants);
+  Identities identities;
+  for (const Contestant& contestant : contestants) {
+    const Identity found = identity_of(contestant.rolls);
+    const auto [known, fresh] = identities.emplace(contestant.name, found);
+    if (!fresh && found.idf1 > known->second.idf1) known->second = found;  // the best sensor
+  }
+  return identities;
+}
+
+}  // namespace chorus::bench

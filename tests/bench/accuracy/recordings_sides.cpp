@@ -1,0 +1,196 @@
+// Left and right of one sensor's recordings through the whole pipeline.
+//
+// People of most collections face the sensor: its labels are the truth.  Those of NW-UCLA walk
+// about, and the way they walk is; labels of people seen from behind are exchanged there.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "common/importers/datasets/keraal_text.h"
+#include "common/importers/datasets/labanotation_csv.h"
+#include "common/importers/datasets/ntu_skeleton.h"
+#include "common/importers/datasets/nw_ucla_json.h"
+#include "fusion-server/pipeline/offline.h"
+#include "tests/bench/accuracy/recordings.h"
+#include "tests/judge/labelled_error.h"
+
+namespace chorus::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using record::FrameRecording;
+
+using Body = Skeleton<WorldSpace>;
+
+/// What a body seen at frame `index` of a recording is worth; nothing where that cannot be told.
+struct Truth {
+  bool as_labelled = true;  ///< The sensor's own labels are right.
+};
+using Judge =
+    std::function<std::optional<Truth>(const FrameRecording&, std::size_t index, const Body& raw)>;
+
+struct Share {
+  std::size_t right = 0;
+  std::size_t all = 0;
+
+  void add(bool is_right) {
+    right += is_right ? 1 : 0;
+    ++all;
+  }
+  [[nodiscard]] double percent() const {
+    return all == 0 ? kNoRatio : 100.0 * static_cast<double>(right) / static_cast<double>(all);
+  }
+};
+
+struct Shares {
+  Share as_labelled;  ///< Where the sensor's labels are right.
+  Share exchanged;    ///< Where they are not.
+};
+
+/// The sensor's body nearest to a fused one.
+const BodyFrame* nearest(const SensorFrame& frame, const Body& fused) {
+  const BodyFrame* best = nullptr;
+  double least = 0.3;  // [m]
+  for (const BodyFrame& body : frame.bodies) {
+    const double off =
+        (body.skeleton[JointId::SpineMid].position - fused[JointId::SpineMid].position).norm();
+    if (off < least) {
+      least = off;
+      best = &body;
+    }
+  }
+  return best;
+}
+
+std::size_t index_at(const FrameRecording& recording, Timestamp instant) {
+  const auto later =
+      std::ranges::lower_bound(recording.frames, instant, {}, &SensorFrame::captured);
+  const auto index = static_cast<std::size_t>(later - recording.frames.begin());
+  if (index == 0) return 0;
+  const bool before = index == recording.frames.size() ||
+                      instant - recording.frames[index - 1].captured < later->captured - instant;
+  return before ? index - 1 : index;
+}
+
+Result<void> count(const FrameRecording& recording, const Judge& judge, Shares& shares) {
+  Registration given;
+  given.master = recording.sensor;
+  given.sensors[recording.sensor].chain = {recording.sensor};
+  const auto fused = pipeline::fuse_offline({{recording.sensor, recording.frames}}, given, {});
+  if (!fused) return pass(fused);
+  for (const Snapshot& snapshot : fused->snapshots) {
+    const std::size_t index = index_at(recording, snapshot.instant);
+    for (const FusedBody& body : snapshot.bodies) {
+      const BodyFrame* seen = nearest(recording.frames[index], body.skeleton);
+      if (seen == nullptr) continue;
+      const Body raw = to_world(Eigen::Isometry3d::Identity(), seen->skeleton);
+      const auto truth = judge(recording, index, raw);
+      if (!truth) continue;
+      const LabelledError error = labelled_error(body.skeleton, raw);
+      const bool kept = error.as_given <= error.exchanged;
+      (truth->as_labelled ? shares.as_labelled : shares.exchanged).add(kept == truth->as_labelled);
+    }
+  }
+  return {};
+}
+
+std::optional<Truth> labels_are_right(const FrameRecording&, std::size_t, const Body&) {
+  return Truth{};
+}
+
+/// From where the body goes within eight frames.
+std::optional<Truth> walks_forwards(const FrameRecording& recording, std::size_t index,
+                                    const Body& raw) {
+  constexpr std::size_t kFrames = 4;
+  constexpr double kWalking = 0.4;  // [m/s]
+  constexpr double kAlong = 0.5;    // cosine of the angle to the front
+  if (index < kFrames || index + kFrames >= recording.frames.size()) return std::nullopt;
+  const auto& before = recording.frames[index - kFrames];
+  const auto& after = recording.frames[index + kFrames];
+  Eigen::Vector3d way = after.bodies.at(0).skeleton[JointId::SpineMid].position -
+                        before.bodies.at(0).skeleton[JointId::SpineMid].position;
+  way.y() = 0;
+  Eigen::Vector3d left = raw[JointId::ShoulderLeft].position - raw[JointId::ShoulderRight].position;
+  left.y() = 0;
+  if (way.norm() < kWalking * seconds(after.captured - before.captured) || left.norm() < 0.05)
+    return std::nullopt;
+  const double along = way.normalized().dot(left.normalized().cross(Eigen::Vector3d::UnitY()));
+  if (std::abs(along) < kAlong) return std::nullopt;
+  return Truth{along > 0};
+}
+
+using Reader = Result<FrameRecording> (*)(const fs::path&, const importers::ImportOptions&);
+
+struct Collection {
+  const char* name;
+  const char* ending;  ///< Of the files, and their beginning.
+  const char* beginning;
+  Reader read;
+  Judge judge;
+  double least_percent;  ///< Right where the labels are right; 0: reported only.
+};
+
+Result<void> count_all(Report& report, const fs::path& folder, const Collection& each) {
+  Shares shares;
+  std::size_t files = 0;
+  double worst = 100.0;
+  for (const auto& file : fs::recursive_directory_iterator(folder)) {
+    const std::string name = file.path().filename().string();
+    if (!name.starts_with(each.beginning) || !name.ends_with(each.ending)) continue;
+    const auto recording = each.read(file.path(), {});
+    if (!recording) continue;
+    Shares own;
+    if (auto done = count(*recording, each.judge, own); !done) return done;
+    ++files;
+    if (own.as_labelled.all > 0) worst = std::min(worst, own.as_labelled.percent());
+    for (auto part : {&Shares::as_labelled, &Shares::exchanged}) {
+      (shares.*part).right += (own.*part).right;
+      (shares.*part).all += (own.*part).all;
+    }
+  }
+  const std::string name = fmt::format("sides-{}", each.name);
+  report.row(name, "files", static_cast<double>(files), "files");
+  report.row(name, "right_percent", shares.as_labelled.percent(), "%");
+  report.row(name, "right_percent_worst_file", worst, "%");
+  if (shares.exchanged.all > 0)
+    report.row(name, "right_percent_where_exchanged", shares.exchanged.percent(), "%");
+  if (each.least_percent > 0)
+    report.condition(
+        fmt::format("{}: right in at least {} % of the frames", name, each.least_percent),
+        shares.as_labelled.percent() >= each.least_percent);
+  return {};
+}
+
+constexpr double kTarget = 96.0;  // [%]
+
+}  // namespace
+
+Result<void> side_labanotation(Report& report, const fs::path& folder) {
+  return count_all(
+      report, folder,
+      {"labanotation", ".csv", "", importers::read_labanotation_csv, labels_are_right, kTarget});
+}
+
+Result<void> side_keraal(Report& report, const fs::path& folder) {
+  return count_all(
+      report, folder,
+      {"keraal", ".txt", "G3-Kinect", importers::read_keraal_text, labels_are_right, kTarget});
+}
+
+Result<void> side_ntu(Report& report, const fs::path& folder) {
+  return count_all(
+      report, folder,
+      {"ntu", ".skeleton", "", importers::read_ntu_skeleton, labels_are_right, kTarget});
+}
+
+Result<void> side_nw_ucla(Report& report, const fs::path& folder) {
+  return count_all(
+      report, folder,
+      {"nw-ucla-walk", ".json", "a04", importers::read_nw_ucla_json, walks_forwards, 0.0});
+}
+
+}  // namespace chorus::bench

@@ -1,0 +1,88 @@
+// A real chorus-fusion process that is polled by many clients, fed by sensors whose every capture
+// is known: exact views of standing people, served over HTTP from this process.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/time/timestamp.h"
+#include "tests/bench/live/child_process.h"
+#include "tests/bench/live/scratch_folder.h"
+
+namespace chorus::bench {
+
+/// Sensors on a ring, 30 Hz each, evenly out of phase.
+class ExactSensors {
+ public:
+  ExactSensors(int count, int persons);
+  ~ExactSensors();
+
+  /// The fusion server's setting "sensors", and the content of its registration file.
+  [[nodiscard]] std::string settings() const;
+  [[nodiscard]] std::string places() const;
+  /// When the last capture that the instant had to wait for was published: of each sensor the first
+  /// one at or after the instant.  None: not captured yet.
+  [[nodiscard]] std::optional<Timestamp> last_needed_capture(Timestamp instant) const;
+
+ private:
+  void run(const std::stop_token& stop);
+  struct Sensor;
+  std::vector<std::unique_ptr<Sensor>> sensors_;
+  int persons_;
+  mutable std::mutex mutex_;  ///< Guards the captures.
+  std::jthread thread_;
+};
+
+struct LiveCell {
+  std::unique_ptr<ExactSensors> sensors;
+  ScratchFolder folder;
+  std::vector<ChildProcess> fusion;  ///< One; ends before its folder goes.
+  std::uint16_t port = 0;
+  std::uint16_t vrpn_port = 0;
+};
+
+/// Started, and so many bodies are fused.
+[[nodiscard]] Result<LiveCell> start_cell(int sensors, int persons);
+
+/// What one VRPN client of the first person sees.
+struct Lateness {
+  std::vector<double> beyond_capture;  ///< Of each frame, since the last capture it needed [s].
+  double output_hz = 0.0;
+  std::size_t lost = 0;
+};
+[[nodiscard]] Result<Lateness> watch(const LiveCell& cell, double run_seconds);
+
+/// What clients at rest in a room do: take what comes.
+struct ClientCounts {
+  int vrpn = 0;
+  int long_polls = 0;
+  int event_streams = 0;
+  int websockets = 0;
+};
+struct ClientAnswers {
+  std::uint64_t vrpn_frames = 0;
+  std::uint64_t long_polls = 0;
+  std::uint64_t events = 0;
+  std::uint64_t messages = 0;  ///< Of WebSockets.
+  std::uint64_t lost = 0;      ///< Connections that the server ended.
+};
+
+/// All clients on one thread and one epoll set.
+class ClientCrowd {
+ public:
+  ClientCrowd(const LiveCell& cell, const ClientCounts& counts);
+  ~ClientCrowd();
+  [[nodiscard]] ClientAnswers answers() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace chorus::bench

@@ -1,0 +1,358 @@
+#include "tests/bench/methods/contest.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "common/base/units.h"
+#include "common/body/bones.h"
+#include "tests/bench/methods/averaging.h"
+#include "tests/bench/methods/kalman.h"
+#include "tests/judge/labelled_error.h"
+#include "tests/judge/plausibility.h"
+#include "tests/judge/stated_error.h"
+
+namespace chorus::bench {
+namespace {
+
+using baselines::Body;
+
+constexpr Duration kStart = std::chrono::milliseconds(500);  // tracks are confirmed by then
+constexpr Duration kTail = std::chrono::milliseconds(200);   // frames still under way at the end
+constexpr double kReach = 0.6;  // [m] horizontally: an answer further away is somebody else
+constexpr Duration kFresh = std::chrono::milliseconds(100);  // of an answer stated at arrival
+constexpr double kPercent = 100.0;
+constexpr double kToMs = 1000.0;
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+template <class Of>
+Metric in_mm(std::string name, Of of) {
+  return {std::move(name), "mm", [of](const Answers& a) { return to_mm(of(a)); }};
+}
+template <class Of>
+Metric in_percent(std::string name, Of of) {
+  return {std::move(name), "%", [of](const Answers& a) { return kPercent * of(a); }};
+}
+
+template <JointGroup kGroup, double (*kOf)(const Answers&, JointGroup)>
+double of_group(const Answers& answers) {
+  return kOf(answers, kGroup);
+}
+
+std::vector<Metric> error_metrics() {
+  using enum JointGroup;
+  return {in_mm("mpjpe_mm", of_group<All, mpjpe>),
+          in_mm("centre_mm", of_group<Centre, mpjpe>),
+          in_mm("extremities_mm", of_group<Extremities, mpjpe>),
+          in_mm("bias_free_mm", of_group<All, bias_free_mpjpe>),
+          in_mm("jitter_core_mm", of_group<Centre, jitter_at_rest>),
+          in_mm("jitter_extremity_mm", of_group<Extremities, jitter_at_rest>),
+          in_percent("bone_cv_percent", bone_variation),
+          in_percent("bone_length_error_percent", bone_length_error),
+          in_mm("foot_slide_mm", foot_slide),
+          {"jumps_per_minute", "1/min", jumps_per_minute},
+          in_percent("flip_percent", label_error_share),
+          in_percent("limb_flip_percent", limb_label_error_share),
+          {"latency_ms", "ms", [](const Answers& a) { return kToMs * latency(a); }},
+          in_mm("hold50_mm", held_error),
+          in_percent("missing_percent", [](const Answers& a) { return 1.0 - coverage(a); })};
+}
+
+struct NamedSighted {
+  std::string suffix;
+  Sighted which;
+};
+
+/// All joints, and apart by how many saw them and whether they rest.
+std::vector<NamedSighted> sighted_apart() {
+  using enum Sighted::Motion;
+  std::vector<NamedSighted> all{{"", {}}};
+  for (const auto& [views, least, most] :
+       {std::tuple{"_1_view", 1, 1}, std::tuple{"_2_views", 2, 2},
+        std::tuple{"_more_views", 3, 1000}}) {
+    for (const auto& [motion, which] : {std::pair{"_rest", Rest}, std::pair{"_moving", Moving}}) {
+      all.push_back({std::string(views) + motion,
+                     {static_cast<std::size_t>(least), static_cast<std::size_t>(most), which}});
+    }
+  }
+  return all;
+}
+
+std::vector<Metric> stated_metrics() {
+  std::vector<Metric> all;
+  for (const auto& [suffix, which] : sighted_apart()) {
+    const auto add = [&, asked = which](const char* name, const char* unit, double scale,
+                                        double (*of)(const Answers&, const Sighted&)) {
+      all.push_back({name + suffix, unit, [=](const Answers& a) { return scale * of(a, asked); },
+                     Kind::Stated});
+    };
+    add("nees", "", 1.0, nees);
+    add("ball95_percent", "%", kPercent, ball95_share);
+    add("sharpness", "", 1.0, sharpness);
+  }
+  return all;
+}
+
+std::vector<Metric> all_metrics() {
+  std::vector<Metric> all = error_metrics();
+  for (Metric& each : stated_metrics()) all.push_back(std::move(each));
+  return all;
+}
+
+/// Mean of the seen core joints, of all views; not finite without any.
+Eigen::Vector3d core_of(std::span<const Body* const> bodies) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double count = 0.0;
+  for (const Body* body : bodies) {
+    for (const JointId id : kCoreJoints) {
+      if (!(*body)[id].seen()) continue;
+      sum += (*body)[id].position;
+      count += 1.0;
+    }
+  }
+  return sum / count;
+}
+
+Eigen::Vector3d core_of(const Person& person) {
+  std::vector<const Body*> bodies;
+  for (const SensorView& view : person.views) bodies.push_back(&view.skeleton);
+  return core_of(bodies);
+}
+
+double distance_to(const Eigen::Vector3d& core, const Body& exact) {
+  const Body* const body = &exact;
+  const Eigen::Vector3d off = core - core_of(std::span(&body, 1));
+  return std::hypot(off.x(), off.z());
+}
+
+/// Of several candidates the one nearest to the truth and within reach.
+template <class Candidates, class Core>
+auto nearest(const Candidates& candidates, const Body& exact, const Core& core) {
+  auto best = candidates.end();
+  double least = kReach;
+  for (auto each = candidates.begin(); each != candidates.end(); ++each) {
+    const double distance = distance_to(core(*each), exact);
+    if (!(distance <= least)) continue;
+    best = each;
+    least = distance;
+  }
+  return best;
+}
+
+Person with_true_labels(Person person, const Body& exact) {
+  for (SensorView& view : person.views) {
+    const LabelledError error = labelled_error(view.skeleton, exact);
+    if (error.exchanged < error.as_given) view.skeleton = exchanged(view.skeleton);
+  }
+  return person;
+}
+
+/// A draw, its place in the world, and the views of everybody in it.
+struct Stage {
+  Workshop workshop;
+  Registration registration;
+  std::vector<Moment> moments;
+  std::vector<Body> exact;       ///< Of the only person, at each moment.
+  std::vector<Moment> confided;  ///< The same moments, joints bringing their true mean squares.
+  baselines::SharedErrors shared;
+
+  [[nodiscard]] Body truth_at(Timestamp instant) const {
+    return true_body(workshop, 0, instant, registration.master);
+  }
+};
+
+/// The same views once more, with what only the judge knows of their errors.
+void confide(Stage& stage, const Period& period, const pipeline::PipelineConfig& config) {
+  const Confided known = confided(stage.workshop);
+  if (known.tracks.empty()) return;
+  stage.confided = moments_of(known.tracks, stage.registration, period, config);
+  stage.shared = {known.coloured.sensor_correlation, known.coloured.neck_correlation,
+                  known.coloured.view_twice};
+}
+
+Stage stage_of(const Contest& contest, bool with_bound) {
+  Stage stage{draw_workshop(contest.setting), {}, {}, {}, {}, {}};
+  const Workshop& workshop = stage.workshop;
+  stage.registration = contest.own_registration
+                           ? solve(workshop.tracks, workshop.begin, {})
+                           : true_registration(workshop, workshop.tracks.front().sensor);
+  if (stage.registration.sensors.empty()) return stage;
+  const Period period{workshop.begin + kStart, workshop.begin + contest.setting.length - kTail};
+  stage.moments = moments_of(workshop.tracks, stage.registration, period, contest.pipeline);
+  if (with_bound) confide(stage, period, contest.pipeline);
+  for (const Moment& moment : stage.moments) stage.exact.push_back(stage.truth_at(moment.instant));
+  return stage;
+}
+
+/// The person of that moment as the contender gets them; nobody: none.
+std::optional<Person> given_at(const Stage& stage, std::size_t at, const Contender& contender) {
+  const Body& exact = stage.exact[at];
+  if (contender.bound && stage.confided.empty()) return std::nullopt;
+  const auto& people = (contender.bound ? stage.confided : stage.moments)[at].people;
+  const auto person = nearest(people, exact, [](const Person& each) { return core_of(each); });
+  if (person == people.end()) return std::nullopt;
+  return contender.true_labels ? with_true_labels(*person, exact) : *person;
+}
+
+/// How many views have each joint.
+std::array<std::size_t, kJointCount> views_of(const Person& person) {
+  std::array<std::size_t, kJointCount> views{};
+  for (const SensorView& view : person.views) {
+    for (std::size_t i = 0; i < kJointCount; ++i) {
+      views[i] += view.skeleton.joints[i].seen() ? 1U : 0U;
+    }
+  }
+  return views;
+}
+
+Answers answers_of(const Stage& stage, const Contender& contender) {
+  std::map<PersonId, baselines::Method> methods;
+  Answers answers;
+  for (std::size_t i = 0; i < stage.moments.size(); ++i) {
+    Answer answer{stage.moments[i].instant, {}, stage.exact[i], {}};
+    if (const auto given = given_at(stage, i, contender)) {
+      answer.views = views_of(*given);
+      if (contender.bound) {
+        answer.body = baselines::linear_bound(*given, stage.shared);
+      } else if (contender.told != nullptr) {
+        answer.body = contender.told(*given, stage.exact[i]);
+      } else {
+        baselines::Method& method = methods[given->id];
+        if (!method) method = contender.begin();
+        answer.body = method(*given, answer.instant);
+      }
+    }
+    answers.push_back(std::move(answer));
+  }
+  return answers;
+}
+
+/// One sensor's views alone.
+Answers answers_of_sensor(const Stage& stage, const SensorId& sensor) {
+  const auto only = [&sensor](const Person& person, Timestamp) {
+    const auto view = std::ranges::find(person.views, sensor, &SensorView::sensor);
+    return view == person.views.end() ? Body{} : view->skeleton;
+  };
+  return answers_of(stage, {"one-sensor", [&] { return baselines::Method(only); }});
+}
+
+/// The sensor of least error, chosen knowing the truth: better than any that one could choose.
+Answers answers_of_best_sensor(const Stage& stage) {
+  Answers best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const registration::WalkTrack& track : stage.workshop.tracks) {
+    Answers answers = answers_of_sensor(stage, track.sensor);
+    const double error = mpjpe(answers, JointGroup::All);
+    if (!(error < least)) continue;
+    least = error;
+    best = std::move(answers);
+  }
+  return best;
+}
+
+/// At each instant the newest answer, held against the truth at the time that it states itself.
+Answers answers_at_arrival(const Stage& stage) {
+  const auto stated = baselines::arrival_kalman(stage.workshop.tracks, stage.registration);
+  Answers answers;
+  auto begin = stated.begin();
+  for (std::size_t i = 0; i < stage.moments.size(); ++i) {
+    const Timestamp instant = stage.moments[i].instant;
+    while (begin != stated.end() && begin->instant < instant - kFresh) ++begin;
+    auto end = begin;
+    while (end != stated.end() && end->instant <= instant) ++end;
+    const auto newest_first = std::span(begin, end);
+    Answer answer{instant, {}, stage.exact[i], {}};
+    for (auto each = newest_first.rbegin(); each != newest_first.rend(); ++each) {
+      const Body* const body = &each->body;
+      if (!(distance_to(core_of(std::span(&body, 1)), stage.exact[i]) <= kReach)) continue;
+      answer = {each->instant, each->body, stage.truth_at(each->instant), {}};
+      break;
+    }
+    answers.push_back(std::move(answer));
+  }
+  return answers;
+}
+
+Scored score(std::string method, const Answers& answers) {
+  Scored scored{std::move(method), {}, kNothing};
+  for (const Metric& metric : metrics()) scored.values.push_back(metric.of(answers));
+  return scored;
+}
+
+/// Errors once more, over joints that everybody answers who answers anything.
+void score_common(std::vector<Scored>& scores, std::vector<Answers>& all) {
+  const auto answers_nothing = [](const Answers& answers) { return !(coverage(answers) > 0); };
+  const std::size_t count = all.empty() ? 0 : all.front().size();
+  for (std::size_t at = 0; at < count; ++at) {
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      const bool everybody = std::ranges::all_of(all, [&](const Answers& answers) {
+        return answers[at].body.joints[j].seen() || answers_nothing(answers);
+      });
+      if (everybody) continue;
+      for (Answers& answers : all) answers[at].body.joints[j] = Joint{};
+    }
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) scores[i].common = mpjpe(all[i], JointGroup::All);
+}
+
+}  // namespace
+
+std::span<const Metric> metrics() {
+  static const std::vector<Metric> kMetrics = all_metrics();
+  return kMetrics;
+}
+
+Contender ours(const fusion::FusionConfig& config, std::string name) {
+  return {std::move(name), [config] { return baselines::product(config); }};
+}
+
+Contender labelled(Contender contender) {
+  contender.name += "-true-labels";
+  contender.true_labels = true;
+  return contender;
+}
+
+std::vector<Contender> all_contenders() {
+  std::vector<Contender> contenders{ours()};
+  for (const baselines::Baseline& each : baselines::all()) {
+    contenders.push_back({std::string(each.name), each.begin});
+  }
+  contenders.push_back(labelled(ours({}, "ours")));
+  for (const baselines::Baseline& each : baselines::all()) {
+    const bool kept =
+        each.name == "flip-fixed-mean" || each.name == "otto" || each.name == "otto-kalman";
+    if (kept) contenders.push_back(labelled({std::string(each.name), each.begin}));
+  }
+  contenders.push_back({"oracle-weights", {}, true, baselines::error_weighted_mean});
+  contenders.push_back({"bound", {}, true, nullptr, true});
+  return contenders;
+}
+
+std::vector<Scored> hold(const Contest& contest, const std::vector<Contender>& contenders) {
+  const bool with_bound = std::ranges::any_of(contenders, &Contender::bound);
+  const Stage stage = stage_of(contest, with_bound);
+  std::vector<Answers> answers;
+  std::vector<Scored> scores;
+  for (const Contender& contender : contenders) {
+    answers.push_back(answers_of(stage, contender));
+    scores.push_back(score(contender.name, answers.back()));
+  }
+  score_common(scores, answers);
+  if (contest.every_method) {
+    scores.push_back(score("best-sensor", answers_of_best_sensor(stage)));
+    scores.push_back(score("arrival-kalman", answers_at_arrival(stage)));
+  }
+  return scores;
+}
+
+Skeleton<WorldSpace> exchanged(const Skeleton<WorldSpace>& body) {
+  Skeleton<WorldSpace> other = body;
+  for (const auto& [left, right] : kMirrorPairs) std::swap(other[left], other[right]);
+  return other;
+}
+
+}  // namespace chorus::bench

@@ -1,0 +1,50 @@
+// What fusion gets: every person at every instant with all their views, made once for all methods.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "fusion-server/pipeline/pipeline.h"
+#include "fusion-server/registration/registration.h"
+
+namespace chorus::bench {
+
+struct Moment {
+  Timestamp instant;
+  std::vector<Person> people;
+  std::vector<SensorReport> reports;
+};
+
+struct Period {
+  Timestamp begin;
+  Timestamp end;
+  double rate_hz = 30.0;
+};
+
+/// Recorded tracks as they come in: what an instant needs is in the histories, and nothing later.
+class Arriving {
+ public:
+  explicit Arriving(const std::vector<registration::WalkTrack>& tracks)
+      : tracks_(tracks), next_(tracks.size(), 0) {}
+
+  /// Until every sensor has passed the instant.
+  [[nodiscard]] const pipeline::Histories& until(Timestamp instant);
+
+ private:
+  const std::vector<registration::WalkTrack>& tracks_;
+  std::vector<std::size_t> next_;
+  pipeline::Histories histories_;
+};
+
+/// The pipeline up to fusion, at each instant of the period, one after the other.
+void visit_moments(const std::vector<registration::WalkTrack>& tracks,
+                   const Registration& registration, const Period& period,
+                   const std::function<void(Moment)>& visit,
+                   const pipeline::PipelineConfig& config = {});
+
+/// All of them.
+[[nodiscard]] std::vector<Moment> moments_of(const std::vector<registration::WalkTrack>& tracks,
+                                             const Registration& registration, const Period& period,
+                                             const pipeline::PipelineConfig& config = {});
+
+}  // namespace chorus::bench

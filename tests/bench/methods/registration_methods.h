@@ -1,0 +1,48 @@
+// The ways to register that are compared, and how one result is scored against the truth.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "fusion-server/registration/registration.h"
+#include "tests/judge/judge.h"
+
+namespace chorus::bench {
+
+struct RegistrationMethod {
+  std::string name;
+  std::function<Registration(const std::vector<registration::WalkTrack>&, Timestamp now,
+                             const SensorId& master)>
+      solve;
+};
+
+/// The shipped defaults.
+[[nodiscard]] RegistrationMethod our_registration();
+/// "trajectory-icp": time is a coordinate; "closed-form": time-interpolated pairs, least squares.
+[[nodiscard]] std::vector<RegistrationMethod> timed_baselines();
+/// Before them "icp": PCL ICP on neck clouds without time (Otto).
+[[nodiscard]] std::vector<RegistrationMethod> all_baselines();
+/// Ours with one part taken out each.
+[[nodiscard]] std::vector<RegistrationMethod> registration_ablations();
+
+/// One registration against the truth; means over the placed sensors other than the master.
+struct Score {
+  double position = 0.0;        ///< NaN where a sensor was refused [m]
+  double position_worst = 0.0;  ///< As above [m]
+  double horizontal = 0.0;      ///< As above [m]
+  double vertical = 0.0;        ///< As above [m]
+  double yaw = 0.0;             ///< As above [rad]
+  double pitch_roll = 0.0;      ///< As above [rad]
+  double centre = 0.0;          ///< As above: of the workspace centre, 1 m above the floor [m]
+  std::size_t asked = 0;        ///< Sensors.
+  std::size_t refused = 0;      ///< ... that were left out, with a reason.
+  std::size_t lost = 0;         ///< ... that were placed more than 100 mm off.
+  std::size_t covered = 0;      ///< ... whose 95 % ellipse on the floor holds the truth.
+};
+
+/// Of these sensors; the master among them is passed over, its place is the world by definition.
+[[nodiscard]] Score score_of(const Workshop& workshop, const Registration& solved,
+                             const std::vector<SensorId>& sensors);
+
+}  // namespace chorus::bench

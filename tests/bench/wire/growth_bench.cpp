@@ -1,0 +1,105 @@
+// chorus-bench growth: what many readers and many sensors cost the fusion server.
+#include <chrono>
+#include <thread>
+
+#include "tests/bench/live/live_cell.h"
+#include "tests/bench/report/report.h"
+
+namespace chorus::bench {
+namespace {
+
+using Steady = std::chrono::steady_clock;
+
+constexpr double kRate = 30.0;       // [Hz]
+constexpr double kMinShare = 0.99;   // of the frames, that every reader gets
+constexpr double kMaxRatio = 1.3;    // the claim: a WebSocket beside an event stream
+constexpr double kMaxOfACore = 0.2;  // the claim: 64 sensors, one person
+constexpr int kReaders = 300;
+constexpr auto kWarmUp = std::chrono::seconds(2);
+
+/// Processor time of the server while somebody waits so long, as a part of a core.
+double cores_used(const LiveCell& cell, double run_seconds) {
+  const auto begun = Steady::now();
+  const double before = cell.fusion.front().cpu_seconds();
+  std::this_thread::sleep_for(std::chrono::duration<double>(run_seconds));
+  const double used = cell.fusion.front().cpu_seconds() - before;
+  return used / std::chrono::duration<double>(Steady::now() - begun).count();
+}
+
+struct Reading {
+  double cores = 0.0;  ///< Of the server.
+  double hz = 0.0;     ///< Of each reader.
+  std::uint64_t lost = 0;
+};
+
+Reading read_by(const LiveCell& cell, const ClientCounts& clients, double run_seconds) {
+  const ClientCrowd crowd(cell, clients);
+  std::this_thread::sleep_for(kWarmUp);
+  const auto begun = Steady::now();
+  const ClientAnswers before = crowd.answers();
+  Reading out;
+  out.cores = cores_used(cell, run_seconds);
+  const ClientAnswers after = crowd.answers();
+  const double elapsed = std::chrono::duration<double>(Steady::now() - begun).count();
+  const auto got = after.events - before.events + after.messages - before.messages;
+  out.hz = static_cast<double>(got) / elapsed / kReaders;
+  out.lost = after.lost;
+  return out;
+}
+
+void report_reading(Report& report, const std::string& name, const Reading& reading) {
+  report.row(name, "fusion_cores", reading.cores, "cores");
+  report.row(name, "client_hz", reading.hz, "Hz");
+  report.row(name, "connections_lost", static_cast<double>(reading.lost), "connections");
+  report.condition(name + ": every reader gets every frame",
+                   reading.hz > kMinShare * kRate && reading.lost == 0);
+}
+
+/// What the readers cost: what the server uses without them is taken off.
+Result<void> readers_300(Report& report, double run_seconds) {
+  const auto cell = start_cell(3, 6);
+  if (!cell) return pass(cell);
+  std::this_thread::sleep_for(kWarmUp);
+  const double alone = cores_used(*cell, run_seconds);
+  const Reading events = read_by(*cell, {.event_streams = kReaders}, run_seconds);
+  const Reading sockets = read_by(*cell, {.websockets = kReaders}, run_seconds);
+  const double ratio = (sockets.cores - alone) / (events.cores - alone);
+  report.row("readers-0", "fusion_cores", alone, "cores");
+  report_reading(report, "events-300", events);
+  report_reading(report, "websockets-300", sockets);
+  report.row("websockets-300", "readers_cores", sockets.cores - alone, "cores", "events-300",
+             ratio);
+  report.condition("websockets-300: at most 1.3 x the same event streams", ratio <= kMaxRatio);
+  return {};
+}
+
+Result<void> sensors_64(Report& report, double run_seconds) {
+  const auto cell = start_cell(64, 1);
+  if (!cell) return pass(cell);
+  std::this_thread::sleep_for(kWarmUp);
+  const double cores = cores_used(*cell, run_seconds);
+  const auto seen = watch(*cell, run_seconds / 2);
+  if (!seen) return pass(seen);
+  report.row("sensors-64", "fusion_cores", cores, "cores");
+  report.row("sensors-64", "output_hz", seen->output_hz, "Hz", "configured",
+             seen->output_hz / kRate);
+  report.row("sensors-64", "lost_frames", static_cast<double>(seen->lost), "frames");
+  report.condition("sensors-64: at most 0.2 of a core", cores <= kMaxOfACore);
+  report.condition("sensors-64: nothing lost", seen->lost == 0);
+  return {};
+}
+
+}  // namespace
+
+Result<void> run_growth(Report& report) {
+  const double run_seconds = report.quick() ? 3.0 : 20.0;
+  if (auto done = readers_300(report, run_seconds); !done) return done;
+  if (auto done = sensors_64(report, run_seconds); !done) return done;
+  report.note(
+      "fusion_cores: user and system time of chorus-fusion.  readers_cores: what it uses more than "
+      "without readers.  Six people before three sensors; 64 sensors before one person.  Sensors "
+      "and readers run in this process, on the same cores as the server.");
+  return {};
+}
+
+}  // namespace chorus::bench

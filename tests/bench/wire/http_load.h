@@ -1,0 +1,73 @@
+// Servers under load, each in a process of its own: ours, nginx, and the generators of the load.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/result.h"
+#include "tests/bench/live/scratch_folder.h"
+
+namespace chorus::bench {
+
+/// A forked process that serves until it is destroyed.
+class ServingProcess {
+ public:
+  /// Forks; the child calls `serve`, which says its port and returns when `wait_for_end` returns.
+  using Serve = std::function<void(const std::function<void(std::uint16_t)>& say_port,
+                                   const std::function<void()>& wait_for_end)>;
+  [[nodiscard]] static Result<ServingProcess> fork(const Serve& serve);
+  /// Starts nginx with one worker on a free port, serving `body` at /frame as text/turtle.
+  [[nodiscard]] static Result<ServingProcess> nginx(const std::string& body);
+
+  ServingProcess(ServingProcess&& other) noexcept;
+  ServingProcess& operator=(ServingProcess&&) = delete;
+  ~ServingProcess();
+
+  [[nodiscard]] std::uint16_t port() const { return port_; }
+  /// User and system time of the process so far.
+  [[nodiscard]] double cpu_seconds() const;
+
+ private:
+  ServingProcess() = default;
+  pid_t pid_ = -1;
+  int life_line_ = -1;  ///< The child ends when this closes.
+  std::uint16_t port_ = 0;
+  std::optional<ScratchFolder> folder_ = {};  ///< nginx's.
+};
+
+/// Servers run on one core and the load on another, the same for every server; what runs on one
+/// core only is left alone.  Called in a child before it starts.
+enum class Side { Server, Load };
+void keep_to_side(Side side);
+
+struct WrkResult {
+  double requests_per_s = 0.0;
+  double requests = 0.0;
+};
+
+/// wrk -t1 -c64 against http://127.0.0.1:port/frame.
+[[nodiscard]] Result<WrkResult> run_wrk(std::uint16_t port, int connections, int run_seconds);
+
+struct LongPollLoad {
+  std::uint16_t port = 0;
+  int clients = 300;
+  double run_seconds = 5.0;
+};
+
+/// Ages [s] of the document at its receipt, one per answer.  Every body begins with "# <steady
+/// ns>".
+struct LongPollAges {
+  std::vector<double> ages;
+  std::uint64_t answers = 0;             ///< All, those of the warm-up too.
+  std::uint64_t repeated_or_missed = 0;  ///< Versions that did not follow their predecessor.
+};
+
+/// Long-polls from a forked process with one epoll loop, as lean as the measured thing.
+[[nodiscard]] Result<LongPollAges> run_long_polls(const LongPollLoad& load);
+
+}  // namespace chorus::bench

@@ -1,0 +1,186 @@
+#include "tests/judge/crowd.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "common/geometry/rotation.h"
+#include "common/synthetic/draw.h"
+
+namespace chorus::bench {
+namespace {
+
+using synthetic::PathKind;
+using synthetic::WalkerScript;
+
+constexpr double kFullTurn = 2.0 * std::numbers::pi;
+constexpr double kCircling = 0.8;                   // [m]
+constexpr double kReach = 1.3;                      // of those who cross [m]
+constexpr double kWorkRing = 1.0;                   // where the working places lie [m]
+constexpr double kGap = 0.4;                        // between people at work [m]
+constexpr double kStint = 10.0;                     // of one person of a relay [s]
+constexpr double kMinPause = 0.3, kMaxPause = 2.0;  // [s]
+enum Purpose : std::uint64_t { kBuild = 701, kSpeed, kHour, kPause };
+
+/// Of different build, and somewhere in their loop.
+WalkerScript script_of(std::uint64_t seed, std::size_t person, PathKind path) {
+  constexpr double kSpread = 0.08;
+  WalkerScript script;
+  script.seed = seed + 100 * person;
+  script.path = path;
+  script.body_scale += synthetic::Draw{seed, kBuild, person}.uniform(-kSpread, kSpread);
+  script.speed = synthetic::Draw{seed, kSpeed}.uniform(0.7, 1.1);
+  return script;
+}
+
+/// Somebody else's way, turned about the middle after a shift aside and delayed.
+struct Placing {
+  double yaw = 0.0;    ///< [rad]
+  double aside = 0.0;  ///< [m] to the left of the way
+  double delay = 0.0;  ///< [s]
+};
+
+Skeleton<WorldSpace> turned(Skeleton<WorldSpace> body, const Eigen::Isometry3d& placed) {
+  for (Joint& joint : body.joints) {
+    joint.position = placed * joint.position;
+    if (is_unit(joint.orientation)) {
+      joint.orientation = Eigen::Quaterniond(placed.linear()) * joint.orientation;
+    }
+  }
+  return body;
+}
+
+synthetic::Person placed(const WalkerScript& script, const Placing& placing) {
+  return [walker = synthetic::Walker(script), placing](Duration since_epoch) {
+    const Duration time = since_epoch + from_seconds(placing.delay);
+    const Eigen::Isometry3d to_world(about_y(placing.yaw) *
+                                     Eigen::Translation3d(placing.aside, 0, 0));
+    return turned(walker.at(time), to_world);
+  };
+}
+
+double heading_of_line(const WalkerScript& script) {
+  const synthetic::Walker walker(script);
+  const Eigen::Vector2d from = walker.path().at(Duration{0}).place;
+  return std::atan2(-from.x(), -from.y());  // a line begins at its far end
+}
+
+}  // namespace
+
+std::vector<synthetic::Person> crossing_people(std::size_t count, std::uint64_t seed,
+                                               double passing) {
+  std::vector<synthetic::Person> people;
+  const std::size_t pairs = std::max<std::size_t>(1, count / 2);
+  const double hour = synthetic::Draw{seed, kHour}.uniform(0.0, 10.0);
+  for (std::size_t i = 0; i < 2 * pairs; ++i) {
+    WalkerScript script = script_of(seed, i / 2, PathKind::Line);  // both of a pair keep step
+    script.reach = kReach;
+    const synthetic::Walker walker(script);
+    const double loop = seconds(walker.path().loop());
+    const auto pair = static_cast<double>(i / 2);
+    const auto pair_count = static_cast<double>(pairs);
+    Placing placing;
+    placing.yaw = -heading_of_line(script) + std::numbers::pi * pair / pair_count +
+                  (i % 2 == 0 ? 0.0 : std::numbers::pi);
+    placing.delay = hour + 0.5 * loop * pair / pair_count;  // each pair meets at its own time
+    const Eigen::Vector3d left = about_y(heading_of_line(script)) * Eigen::Vector3d::UnitX();
+    script.centre = 0.5 * passing * Eigen::Vector2d(left.x(), left.z());
+    people.push_back(placed(script, placing));
+  }
+  return people;
+}
+
+std::vector<synthetic::Person> circled_person(std::uint64_t seed) {
+  WalkerScript around = script_of(seed, 1, PathKind::Circle);
+  around.reach = kCircling;
+  return {placed(script_of(seed, 0, PathKind::Stand), {}), placed(around, {})};
+}
+
+std::vector<synthetic::Person> people_at_work(std::size_t count, std::uint64_t seed) {
+  std::vector<synthetic::Person> people;
+  const double first = synthetic::Draw{seed, kHour}.uniform(0.0, kFullTurn);
+  const double between = 2.0 * kWorkRing * std::sin(0.5 * kFullTurn / static_cast<double>(count));
+  for (std::size_t i = 0; i < count; ++i) {
+    WalkerScript script = script_of(seed, i, PathKind::Random);
+    script.reach = std::max(0.1, 0.5 * (between - kGap));
+    const double angle = first + kFullTurn * static_cast<double>(i) / static_cast<double>(count);
+    script.centre = kWorkRing * Eigen::Vector2d(std::sin(angle), std::cos(angle));
+    people.push_back(placed(script, {}));
+  }
+  return people;
+}
+
+std::vector<synthetic::Person> people_around(double radius, std::uint64_t seed) {
+  WalkerScript script = script_of(seed, 0, PathKind::Circle);
+  script.reach = radius;
+  Placing opposite;
+  opposite.yaw = std::numbers::pi;
+  return {placed(script, {}), placed(script, opposite)};
+}
+
+std::vector<synthetic::Person> relayed_people(std::uint64_t seed, Timestamp begin) {
+  std::vector<synthetic::Person> people;
+  synthetic::Draw pauses{seed, kPause};
+  double enters = -kStint;  // the first one was there before
+  double behind = 0.0;      // the walk stands still while nobody walks it [s]
+  for (std::size_t i = 0; i < 3; ++i) {
+    WalkerScript script = script_of(seed, i, PathKind::Random);
+    script.seed = seed;  // one walk for all
+    const double leaves = i < 2 ? kStint * static_cast<double>(i + 1) : 1e9;
+    people.push_back(
+        [walk = placed(script, {0.0, 0.0, -behind}), begin, enters, leaves](Duration since_epoch) {
+          Skeleton<WorldSpace> body = walk(since_epoch);
+          const double time = seconds(Timestamp{since_epoch} - begin);
+          if (time >= enters && time < leaves) return body;
+          for (Joint& joint : body.joints) joint.position.x() += 2.0 * kOutside;
+          return body;
+        });
+    const double pause = pauses.uniform(kMinPause, kMaxPause);
+    enters = leaves + pause;
+    behind += pause;
+  }
+  return people;
+}
+
+synthetic::Occluder car_body() {
+  synthetic::Occluder box;
+  box.half = {0.4, 0.6, 0.9};
+  box.world_from_box.translation().y() = box.half.y();
+  return box;
+}
+
+synthetic::Occluder pillar() {
+  synthetic::Occluder box;
+  box.half = {0.2, 1.25, 0.2};
+  box.world_from_box.translation() = Eigen::Vector3d(0.9, box.half.y(), 0.9);
+  return box;
+}
+
+synthetic::Occluder table() {
+  synthetic::Occluder box;
+  box.half = {0.6, 0.375, 0.4};
+  box.world_from_box.translation().y() = box.half.y();
+  return box;
+}
+
+std::vector<Eigen::Isometry3d> places_behind_screen() {
+  constexpr double kDistance = 3.0;  // [m]
+  constexpr double kHeight = 1.6;    // [m]
+  constexpr double kAside = 0.25;    // [m]
+  std::vector<Eigen::Isometry3d> places;
+  for (const double aside : {-kAside, kAside}) {
+    places.push_back(
+        synthetic::stand_sensor({-kDistance, kHeight, aside}, 0.25 * kFullTurn, deg(13)));
+  }
+  return places;
+}
+
+synthetic::Occluder screen() {
+  // A third of the way to the sensors: its shadow on the crossing is half as wide again, less half
+  // of how far apart the sensors are.
+  synthetic::Occluder box;
+  box.half = {0.05, 1.25, 0.3};
+  box.world_from_box.translation() = Eigen::Vector3d(-1.0, box.half.y(), 0.0);
+  return box;
+}
+
+}  // namespace chorus::bench

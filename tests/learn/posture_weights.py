@@ -1,0 +1,205 @@
+#!/usr/bin/env python3
+"""Learns the weights of PostureCues (fusion-server/facing/posture.h) from real recordings.
+
+    tests/learn/posture_weights.py [FOLDER]     default: $CHORUS_SHARED/data, else ../shared/data
+
+Recordings that may be shipped, of people who face one sensor: Labanotation (MIT), KERAAL (BSD-2),
+UI-PRMD (PDDL), Azure Kinect (MIT).  The front is known from the labels.  A logistic regression
+without constant on offsets along the front is fitted to (offsets, front) and, implied, to
+(-offsets, rear): turning the direction round turns the sign and nothing else, and offsets do not
+know the labels (docs/papers/sides.md).  Every recording weighs by the share of its collection,
+whatever its length.  Prints the weights, and for each collection how many frames the weights
+learned from the others get right.
+"""
+
+import csv
+import glob
+import gzip
+import math
+import os
+import sys
+
+CUES = {"knees": 0.05, "wrists": 0.10, "elbows": 0.05, "lean": 0.15}  # [m] at which a cue is full
+SHARES = {"labanotation": 7, "keraal": 2, "azure": 1, "ui-prmd": 10}
+RIDGE = 0.02
+KINECT = (
+    "SpineBase SpineMid Neck Head ShoulderLeft ElbowLeft WristLeft HandLeft ShoulderRight ElbowRight WristRight HandRight "
+    "HipLeft KneeLeft AnkleLeft FootLeft HipRight KneeRight AnkleRight FootRight SpineShoulder HandTipLeft ThumbLeft "
+    "HandTipRight ThumbRight"
+).split()
+
+
+def labanotation(folder):
+    for path in sorted(glob.glob(f"{folder}/kinect2_labanotation/**/*.csv", recursive=True)):
+        frames = []
+        for row in csv.reader(open(path)):
+            values = [float(value) for value in row if value]
+            if len(values) < 101:
+                continue
+            frames.append({name: values[1 + 4 * i : 4 + 4 * i] for i, name in enumerate(KINECT) if values[4 + 4 * i] > 0})
+        yield frames
+
+
+def keraal(folder):
+    for path in glob.glob(f"{folder}/keraal_kinect2_optical/G3-Kinect*.txt"):
+        rows = [[float(value) for value in line.split()] for line in open(path)]
+        yield [{name: row[7 * i : 7 * i + 3] for i, name in enumerate(KINECT)} for row in rows if len(row) == 175]
+
+
+def azure(folder):
+    centre = {"SpineBase": "PELVIS", "SpineShoulder": "SPINE_CHEST"}
+    sides = {
+        part + side: f"{part}_{side}".upper()
+        for part in ("Shoulder", "Elbow", "Wrist", "Hip", "Knee", "Ankle")
+        for side in ("Left", "Right")
+    }
+    frames = []
+    for row in csv.DictReader(gzip.open(f"{folder}/azure_kinect_pymocapviewer/azure_positions.csv.gz", "rt"), delimiter=";"):
+        place = lambda name: [float(row[f"{name} ({axis})"]) * factor for axis, factor in zip("xyz", (-0.001, -0.001, 0.001))]
+        frames.append({ours: place(name) for ours, name in (centre | sides).items() if float(row[f"{name} (c)"]) > 0})
+    yield frames[::6]
+
+
+UI_JOINTS = (
+    "SpineBase SpineMid SpineShoulder Neck Head HeadTip CollarLeft ShoulderLeft ElbowLeft WristLeft CollarRight ShoulderRight "
+    "ElbowRight WristRight HipLeft KneeLeft AnkleLeft FootLeft HipRight KneeRight AnkleRight FootRight"
+).split()
+UI_PARENTS = [-1, 0, 1, 2, 3, 4, 2, 6, 7, 8, 2, 10, 11, 12, 0, 14, 15, 16, 0, 18, 19, 20]
+
+
+def times(a, b):
+    return [[sum(a[i][k] * b[k][j] for k in range(3)) for j in range(len(b[0]))] for i in range(3)]
+
+
+def turn_about(axis, degrees):
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    return {
+        "x": [[1, 0, 0], [0, c, -s], [0, s, c]],
+        "y": [[c, 0, s], [0, 1, 0], [-s, 0, c]],
+        "z": [[c, -s, 0], [s, c, 0], [0, 0, 1]],
+    }[axis]
+
+
+def ui_body(places, angles):
+    """Forward kinematics: places in the parent's frame [cm], R = Rz Rx Ry."""
+    turns, joints = [], []
+    for i, parent in enumerate(UI_PARENTS):
+        x, y, z = angles[3 * i : 3 * i + 3]
+        turn = times(times(turn_about("z", z), turn_about("x", x)), turn_about("y", y))
+        place = [[0.01 * value] for value in places[3 * i : 3 * i + 3]]
+        if parent >= 0:
+            place = [[a[0] + b[0]] for a, b in zip(joints[parent], times(turns[parent], place))]
+            turn = times(turns[parent], turn)
+        turns.append(turn)
+        joints.append(place)
+    return {name: [row[0] for row in place] for name, place in zip(UI_JOINTS, joints)}
+
+
+def ui_prmd(folder):
+    for path in sorted(glob.glob(f"{folder}/uiprmd_kinect_vicon/kinect_positions/*.gz")):
+        angles = path.replace("kinect_positions", "kinect_angles").replace("_positions.txt", "_angles.txt")
+        rows = list(zip(gzip.open(path, "rt"), gzip.open(angles, "rt")))[::6]
+        yield [ui_body(*([float(value) for value in line.split(",")] for line in row)) for row in rows]
+
+
+def minus(a, b):
+    return [x - y for x, y in zip(a, b)]
+
+
+def middle(body, part):
+    return [(x + y) / 2 for x, y in zip(body[part + "Left"], body[part + "Right"])]
+
+
+def off_line(p, a, b):
+    line = minus(b, a)
+    length = sum(x * x for x in line)
+    if length < 1e-4:
+        return [0, 0, 0]
+    t = min(1, max(0, sum(x * y for x, y in zip(minus(p, a), line)) / length))
+    return [x - y - t * z for x, y, z in zip(p, a, line)]
+
+
+def front_of(body):
+    left = [0.0, 0.0, 0.0]
+    for part in ("Shoulder", "Hip"):
+        if part + "Left" in body and part + "Right" in body:
+            left = [x + y for x, y in zip(left, minus(body[part + "Left"], body[part + "Right"]))]
+    size = math.hypot(left[0], left[2])
+    return None if size < 0.05 else (-left[2] / size, 0.0, left[0] / size)
+
+
+def offsets(body):
+    """As in posture.cpp, clamped to +-1."""
+    front = front_of(body)
+    if front is None:
+        return None
+    ahead = lambda v: v[0] * front[0] + v[2] * front[2]
+
+    def bend(root, mid, end):
+        limbs = [[part + side for part in (root, mid, end)] for side in ("Left", "Right")]
+        found = [ahead(off_line(body[m], body[r], body[e])) for r, m, e in limbs if all(j in body for j in (r, m, e))]
+        return sum(found) / len(found) if found else 0.0
+
+    arms = all(part + side in body for part in ("Wrist", "Shoulder") for side in ("Left", "Right"))
+    found = {
+        "knees": bend("Hip", "Knee", "Ankle"),
+        "elbows": bend("Shoulder", "Elbow", "Wrist"),
+        "wrists": ahead(minus(middle(body, "Wrist"), middle(body, "Shoulder"))) if arms else 0.0,
+        "lean": ahead(minus(body["SpineShoulder"], body["SpineBase"])),
+    }
+    return [max(-1.0, min(1.0, found[cue] / full)) for cue, full in CUES.items()]
+
+
+def solve(matrix, right):
+    rows = [row + [value] for row, value in zip(matrix, right)]
+    for i in range(len(rows)):
+        pivot = max(range(i, len(rows)), key=lambda r: abs(rows[r][i]))
+        rows[i], rows[pivot] = rows[pivot], rows[i]
+        for r in range(len(rows)):
+            if r != i:
+                factor = rows[r][i] / rows[i][i]
+                rows[r] = [a - factor * b for a, b in zip(rows[r], rows[i])]
+    return [row[-1] / row[i] for i, row in enumerate(rows)]
+
+
+def learn(rows):
+    """Newton's method on the penalised log likelihood; rows are (offsets, weight)."""
+    n = len(CUES)
+    total = sum(weight for _, weight in rows)
+    found = [0.0] * n
+    for _ in range(50):
+        slope = [-RIDGE * w for w in found]
+        curve = [[RIDGE if i == j else 0.0 for j in range(n)] for i in range(n)]
+        for x, weight in rows:
+            wrong = 1 / (1 + math.exp(sum(a * b for a, b in zip(found, x))))
+            for i in range(n):
+                slope[i] += weight / total * wrong * x[i]
+                for j in range(n):
+                    curve[i][j] += weight / total * wrong * (1 - wrong) * x[i] * x[j]
+        step = solve(curve, slope)
+        found = [a + b for a, b in zip(found, step)]
+        if max(map(abs, step)) < 1e-9:
+            break
+    return found
+
+
+def main():
+    default = os.path.join(os.environ.get("CHORUS_SHARED", "../shared"), "data")
+    folder = sys.argv[1] if len(sys.argv) > 1 else default
+    readers = {"labanotation": labanotation, "keraal": keraal, "azure": azure, "ui-prmd": ui_prmd}
+    rows = {}
+    for name, read in readers.items():
+        takes = [[x for x in map(offsets, take) if x] for take in read(folder)]
+        if not takes:
+            sys.exit(f"{folder} holds no recordings of {name}.")
+        rows[name] = [(x, SHARES[name] / len(takes) / len(take)) for take in takes for x in take]
+    weights = learn(sum(rows.values(), []))
+    print("\n".join(f"{cue:8} {weight:6.2f} at {CUES[cue]} m" for cue, weight in zip(CUES, weights)))
+    for name in rows:
+        others = learn(sum((found for other, found in rows.items() if other != name), []))
+        right = [sum(a * b for a, b in zip(others, x)) > 0 for x, _ in rows[name]]
+        print(f"{name:13} {len(right):5} frames, {100 * sum(right) / len(right):.1f} % right by the others' weights")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,80 @@
+#include "common/base/json.h"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace chorus {
+namespace {
+
+std::string repeated(const std::string& text, int times) {
+  std::string all;
+  for (int i = 0; i < times; ++i) all += text;
+  return all;
+}
+
+TEST(ParseJson, GivesWhatTheParserGives) {
+  const auto json = parse_json(R"({"a": [1, 2.5, "x", null, true], "b": {"a": 1}})");
+  ASSERT_TRUE(json) << to_string(json.error());
+  EXPECT_EQ(json->at("a").size(), 5U);
+  EXPECT_EQ(json->at("b").at("a"), 1) << "the same key in another object is no repetition";
+  EXPECT_EQ(parse_json("17").value(), 17);
+}
+
+TEST(ParseJson, NamesAKeyThatAnObjectHasTwice) {
+  for (const char* text : {R"({"a": 1, "a": 1})", R"([{"b": 1}, {"a": 1, "b": {"c": 2}, "a": 2}])",
+                           R"({"x": {"a": 1, "a": 2}})"}) {
+    const auto json = parse_json(text);
+    ASSERT_FALSE(json) << text;
+    EXPECT_EQ(json.error().context, "a") << text;
+    EXPECT_EQ(json.error().code, ErrorCode::Malformed);
+  }
+  const auto longest =
+      parse_json("{\"" + std::string(500, 'k') + "\":1,\"" + std::string(500, 'k') + "\":1}");
+  ASSERT_FALSE(longest);
+  EXPECT_EQ(longest.error().context.size(), 80U);
+}
+
+TEST(ParseJson, CountsDepthAsABracketCounterWould) {
+  EXPECT_TRUE(parse_json(repeated("[", 32) + repeated("]", 32)));
+  const auto deep = parse_json(repeated("[", 33) + repeated("]", 33));
+  ASSERT_FALSE(deep);
+  EXPECT_EQ(deep.error().code, ErrorCode::TooLarge);
+  EXPECT_FALSE(parse_json(repeated("{\"a\":", 33) + "1" + repeated("}", 33)));
+  EXPECT_TRUE(parse_json("[" + repeated("[],{},", 1000) + "1]")) << "side by side is not deep";
+  EXPECT_FALSE(parse_json(repeated("[", 100'000))) << "no recursion into it";
+}
+
+TEST(ParseJson, BracketsInTextsAreNoDepth) {
+  const std::string many = repeated("[{", 100);
+  EXPECT_TRUE(parse_json("{\"a\": \"" + many + "\"}"));
+  EXPECT_TRUE(parse_json("{\"" + many + "\": 1}"));
+  EXPECT_TRUE(parse_json("[\"\\\"" + many + "\"]")) << "an escaped quote ends no text";
+  EXPECT_FALSE(parse_json("[\"\\\\\"," + many)) << "an escaped backslash escapes nothing";
+}
+
+TEST(ParseJson, LimitsAreTheCallers) {
+  const JsonLimits narrow{.bytes = 10, .nesting = 2};
+  EXPECT_TRUE(parse_json("[[1,2,3]]", narrow));
+  EXPECT_FALSE(parse_json("[[[1]]]", narrow));
+  const auto longer = parse_json("[1,2,3,4,5]", narrow);
+  ASSERT_FALSE(longer);
+  EXPECT_NE(longer.error().message.find("at most 10"), std::string::npos);
+}
+
+TEST(ParseJson, BrokenTextsAreErrorsThatNameTheByte) {
+  for (const std::string& text :
+       {std::string(), std::string("{"), std::string("[1,]"), std::string("{\"a\" 1}"),
+        std::string("\"\xFF\""), std::string("nul"), std::string("1 2"), std::string("[1\0]", 4),
+        std::string("NaN"), std::string("1e999"), std::string("{'a': 1}")}) {
+    const auto json = parse_json(text);
+    ASSERT_FALSE(json) << text;
+    EXPECT_EQ(json.error().code, ErrorCode::Malformed) << text;
+    EXPECT_FALSE(json.error().message.empty());
+  }
+}
+
+}  // namespace
+}  // namespace chorus

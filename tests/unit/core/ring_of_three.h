@@ -1,0 +1,38 @@
+// Three sensors on a ring, and the registrations that they may have.
+#pragma once
+
+#include <string>
+
+#include "fusion-server/flow.h"
+#include "tests/support/builders.h"
+
+namespace chorus::core {
+
+inline constexpr int kSensors = 3;
+
+/// "s1", "s2", "s3".
+[[nodiscard]] inline std::string name(int sensor) { return "s" + std::to_string(sensor + 1); }
+
+/// `Config` with a set of sensors: all three.
+template <class Config>
+[[nodiscard]] Config of_three() {
+  Config config;
+  for (int i = 0; i < kSensors; ++i) config.sensors.insert(testing::sensor_id(name(i)));
+  return config;
+}
+
+/// Version 4; the first `count` of them have a place and this verdict.
+[[nodiscard]] inline Registration ring(int count = kSensors, Verdict verdict = Verdict::Good) {
+  Registration r;
+  r.verdict = verdict;
+  r.version = 4;
+  r.master = testing::sensor_id("s1");
+  for (int i = 0; i < count; ++i) {
+    const SensorId sensor = testing::sensor_id(name(i));
+    r.sensors[sensor].world_from_sensor = testing::ring_sensor(i, kSensors);
+    r.verdicts[sensor] = {verdict, {}};
+  }
+  return r;
+}
+
+}  // namespace chorus::core

@@ -1,0 +1,376 @@
+// Requests, answers and publishes in any order, without a socket and without waiting.
+#include "common/http/conversation.h"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace chorus::http {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+using namespace std::chrono_literals;
+
+constexpr std::string_view kGet = "GET /frame HTTP/1.1\r\nHost: localhost\r\n\r\n";
+constexpr std::string_view kPoll =
+    "GET /frame HTTP/1.1\r\nHost: localhost\r\nPrefer: wait=9\r\nIf-None-Match: \"1-txt\"\r\n\r\n";
+constexpr std::string_view kStream =
+    "GET /frame HTTP/1.1\r\nHost: localhost\r\nAccept: text/event-stream\r\n\r\n";
+constexpr std::string_view kPost =
+    "POST /do HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2\r\n\r\n";
+
+/// Plays the shell: what the conversation orders is done at once, as far as the test lets it.
+class ConversationTest : public testing::Test {
+ protected:
+  ConversationTest() {
+    config_.clock = std::make_shared<FakeClock>(from_unix_ns(1'700'000'000'000'000'000));
+    config_.limits.max_header_bytes = 256;
+    auto router = std::make_shared<Router>();
+    router->live("/frame", frame_);
+    router->get("/vital", [](const Request&, const PathParams&) -> Result<DocumentPtr> {
+      return make_document("text/plain", "well", {"1"});
+    });
+    router->vital("/vital");
+    router->action(Method::Post, "/do", [](const Request& request, const PathParams&) {
+      return Result<ActionResult>(
+          ActionResult{200, make_document("text/plain", std::string(request.body), {"1"})});
+    });
+    responder_ = std::make_unique<Responder>(config_, router);
+    talk_ = std::make_unique<Conversation>(
+        ConversationContext{config_, *responder_, counters_, stopping_},
+        Peer{true, "127.0.0.1", 80}, [this](const std::string&) { return room_for_others_; });
+    publish(1);
+  }
+
+  void publish(int version) {
+    frame_->publish(
+        make_document("application/json", std::to_string(version), {std::to_string(version)}));
+  }
+  void begin() { obey(talk_->begin(now_)); }
+  void say(std::string_view bytes) {
+    ASSERT_TRUE(reading_) << "nobody listens";
+    while (!bytes.empty() && reading_) {
+      const auto room = talk_->room();
+      const std::size_t size = std::min(room.size(), bytes.size());
+      std::copy_n(bytes.begin(), size, room.begin());
+      bytes.remove_prefix(size);
+      reading_ = false;
+      obey(talk_->received(size, now_));
+    }
+    ahead_ = bytes;
+  }
+  void obey(const Orders& orders) {
+    closed_ = closed_ || orders.close;
+    half_closed_ = half_closed_ || orders.half_close;
+    upgraded_ = upgraded_ || orders.upgrade;
+    if (orders.stop_waiting) waiting_ = false;
+    if (orders.close) return;
+    reading_ = reading_ || orders.read;
+    settling_ = settling_ || orders.settle;
+    if (orders.write) {
+      writing_ = true;
+      if (!stalled_) finish_write();
+    }
+    if (orders.settle && !stalled_) settle();
+    if (!orders.wait) return;
+    waiting_ = true;
+    if (publish_before_look_) publish(9);
+    obey(talk_->look(now_));
+  }
+  void finish_write() {
+    std::size_t size = 0;
+    for (const std::string_view part : talk_->output()) {
+      heard_ += part;
+      size += part.size();
+    }
+    writing_ = false;
+    obey(talk_->sent(size, now_));
+  }
+  void settle() {
+    settling_ = false;
+    obey(talk_->settled(now_));
+  }
+  void wake() {
+    ASSERT_TRUE(waiting_);
+    waiting_ = false;
+    obey(talk_->woken(now_));
+  }
+  void pass(std::chrono::seconds time) {
+    now_ += time;
+    if (talk_->deadline() <= now_) obey(talk_->expired(now_));
+  }
+  [[nodiscard]] std::string heard() { return std::exchange(heard_, {}); }
+
+  ServerConfig config_;
+  AtomicCounters counters_;
+  bool stopping_ = false;
+  bool room_for_others_ = true;
+  std::shared_ptr<LiveDocument> frame_ = std::make_shared<LiveDocument>();
+  std::unique_ptr<Responder> responder_;
+  std::unique_ptr<Conversation> talk_;
+  SteadyTime now_{1h};
+  std::string heard_;
+  std::string_view ahead_;
+  bool reading_ = false, writing_ = false, settling_ = false, waiting_ = false;
+  bool closed_ = false, half_closed_ = false, upgraded_ = false;
+  bool stalled_ = false;              ///< The client does not read.
+  bool publish_before_look_ = false;  ///< A publish comes between the last look and the waiting.
+};
+
+std::size_t times(std::string_view text, std::string_view part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string_view::npos;
+       at = text.find(part, at + part.size()))
+    ++count;
+  return count;
+}
+
+TEST_F(ConversationTest, AHeadMayComeByteByByte) {
+  begin();
+  EXPECT_TRUE(talk_->idle());
+  for (const char& c : kGet) {
+    EXPECT_EQ(heard(), "");
+    say({&c, 1});
+  }
+  EXPECT_THAT(heard(), StartsWith("HTTP/1.1 200 OK\r\n"));
+  EXPECT_TRUE(talk_->idle());
+}
+
+TEST_F(ConversationTest, RequestsSentAheadAreAnsweredInOrder) {
+  begin();
+  say(std::string(kGet) + std::string(kPost) + "hi" + std::string(kGet));
+  const std::string all = heard();
+  EXPECT_EQ(times(all, "HTTP/1.1 200 OK"), 3u);
+  EXPECT_LT(all.find("\r\n\r\n1HTTP"), all.find("\r\n\r\nhiHTTP"));
+  EXPECT_FALSE(closed_);
+}
+
+TEST_F(ConversationTest, ARequestSentAheadWaitsWhileAnAnswerIsWritten) {
+  begin();
+  stalled_ = true;
+  say(kGet);
+  EXPECT_TRUE(writing_);
+  EXPECT_FALSE(reading_) << "what is sent ahead stays in the kernel";
+  stalled_ = false;
+  finish_write();
+  EXPECT_TRUE(reading_);
+}
+
+TEST_F(ConversationTest, ConnectionCloseEndsItAfterTheAnswer) {
+  begin();
+  say("GET /vital HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
+  EXPECT_THAT(heard(), HasSubstr("Connection: close\r\n"));
+  EXPECT_TRUE(half_closed_);
+  EXPECT_FALSE(closed_) << "what the client still sends is read first";
+  obey(talk_->input_ended(true, now_));
+  EXPECT_TRUE(closed_);
+}
+
+TEST_F(ConversationTest, HttpOneZeroIsClosedUnlessItAsks) {
+  begin();
+  say("GET /vital HTTP/1.0\r\nConnection: keep-alive\r\n\r\n");
+  EXPECT_THAT(heard(), HasSubstr("Connection: keep-alive\r\n"));
+  say("GET /vital HTTP/1.0\r\n\r\n");
+  EXPECT_THAT(heard(), HasSubstr("Connection: close\r\n"));
+  EXPECT_TRUE(half_closed_);
+}
+
+TEST_F(ConversationTest, HeadsThatAreTooLongOrNoHeadsAreRefusedAndEndIt) {
+  const auto answer_to = [this](const std::string& bytes) {
+    talk_ = std::make_unique<Conversation>(
+        ConversationContext{config_, *responder_, counters_, stopping_}, Peer{},
+        [](const std::string&) { return true; });
+    reading_ = false;
+    begin();
+    say(bytes);
+    return heard();
+  };
+  EXPECT_THAT(answer_to("GET /" + std::string(300, 'a')), StartsWith("HTTP/1.1 414"));
+  EXPECT_THAT(answer_to("GET / HTTP/1.1\r\nA: " + std::string(300, 'a')),
+              StartsWith("HTTP/1.1 431"));
+  EXPECT_THAT(answer_to("hello\n"), StartsWith("HTTP/1.1 400"));
+  EXPECT_EQ(counters_.refused.load(), 3u);
+  EXPECT_EQ(counters_.requests.load(), 0u);
+  EXPECT_TRUE(half_closed_);
+}
+
+TEST_F(ConversationTest, WhoGoesOnTalkingAfterARefusalIsCutOff) {
+  begin();
+  say("hello\n");
+  for (int i = 0; i < 5000 && !closed_; ++i) say(std::string(256, 'x'));
+  EXPECT_TRUE(closed_);
+}
+
+TEST_F(ConversationTest, ABodyIsReadHoweverItIsCut) {
+  begin();
+  say(kPost);
+  EXPECT_EQ(heard(), "");
+  say("h");
+  say("i");
+  EXPECT_THAT(heard(), HasSubstr("\r\n\r\nhi"));
+}
+
+TEST_F(ConversationTest, ABodyThatIsHeldBackIsAskedFor) {
+  begin();
+  say("POST /do HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2\r\nExpect: 100-continue\r\n\r\n");
+  EXPECT_EQ(heard(), "HTTP/1.1 100 Continue\r\n\r\n");
+  say("hi");
+  EXPECT_THAT(heard(), StartsWith("HTTP/1.1 200 OK"));
+  EXPECT_EQ(counters_.requests.load(), 1u);
+}
+
+TEST_F(ConversationTest, ABodyThatDoesNotComeIsNotWaitedForLong) {
+  begin();
+  say(kPost);
+  pass(config_.limits.body_timeout);
+  EXPECT_THAT(heard(), StartsWith("HTTP/1.1 408"));
+  EXPECT_TRUE(half_closed_);
+}
+
+TEST_F(ConversationTest, SilenceBetweenRequestsEndsItWithoutAWord) {
+  begin();
+  say(kGet);
+  (void)heard();
+  pass(config_.limits.idle_timeout - 1s);
+  EXPECT_FALSE(closed_);
+  pass(1s);
+  EXPECT_TRUE(closed_);
+  EXPECT_EQ(heard(), "");
+}
+
+TEST_F(ConversationTest, HalfAHeadIsNotWaitedForLong) {
+  begin();
+  say("GET /");
+  pass(config_.limits.header_timeout);
+  EXPECT_THAT(heard(), StartsWith("HTTP/1.1 408"));
+}
+
+TEST_F(ConversationTest, WhoDoesNotReadIsCutOff) {
+  begin();
+  stalled_ = true;
+  say(kGet);
+  pass(config_.limits.write_timeout);
+  EXPECT_TRUE(closed_);
+}
+
+TEST_F(ConversationTest, ALongPollIsAnsweredByThePublish) {
+  publish(1);
+  frame_->publish(make_document("text/plain", "x", {"1"}));
+  begin();
+  say(kPoll);
+  EXPECT_TRUE(waiting_);
+  EXPECT_EQ(heard(), "");
+  EXPECT_EQ(counters_.long_polls_waiting.load(), 1u);
+  frame_->publish(make_document("text/plain", "y", {"2"}));
+  wake();
+  EXPECT_THAT(heard(), HasSubstr("\r\n\r\ny"));
+  EXPECT_FALSE(waiting_);
+  EXPECT_EQ(counters_.long_polls_waiting.load(), 0u);
+}
+
+TEST_F(ConversationTest, APublishJustBeforeTheWaitIsNotMissed) {
+  frame_->publish(make_document("text/plain", "x", {"1"}));
+  publish_before_look_ = true;
+  begin();
+  say(kPoll);
+  EXPECT_THAT(heard(), HasSubstr("\r\n\r\n9"));
+  EXPECT_FALSE(waiting_);
+}
+
+TEST_F(ConversationTest, ALongPollEndsInVainOrWithTheServer) {
+  frame_->publish(make_document("text/plain", "x", {"1"}));
+  begin();
+  say(kPoll);
+  wake();
+  EXPECT_TRUE(waiting_) << "woken by a publish of the same version";
+  pass(9s);
+  EXPECT_THAT(heard(), StartsWith("HTTP/1.1 304"));
+  EXPECT_FALSE(waiting_);
+  say(kPoll);
+  stopping_ = true;
+  obey(talk_->stop(now_));
+  EXPECT_THAT(heard(), StartsWith("HTTP/1.1 503"));
+  EXPECT_TRUE(half_closed_);
+}
+
+TEST_F(ConversationTest, AClientThatLeavesWhileItWaitsIsForgotten) {
+  frame_->publish(make_document("text/plain", "x", {"1"}));
+  begin();
+  say(kPoll);
+  EXPECT_TRUE(reading_) << "or nobody would notice";
+  obey(talk_->input_ended(true, now_));
+  EXPECT_TRUE(closed_);
+  EXPECT_FALSE(waiting_);
+  EXPECT_EQ(counters_.long_polls_waiting.load(), 0u);
+}
+
+TEST_F(ConversationTest, AStreamCarriesEveryVersionAndSkipsForASlowReader) {
+  begin();
+  say(kStream);
+  EXPECT_THAT(heard(), HasSubstr("id: 1\ndata: 1\n\n"));
+  publish(2);
+  wake();
+  EXPECT_EQ(heard(), "id: 2\ndata: 2\n\n");
+  stalled_ = true;
+  for (const int version : {3, 4, 5}) {
+    publish(version);
+    wake();
+  }
+  EXPECT_EQ(counters_.events_skipped.load(), 1u);
+  stalled_ = false;
+  finish_write();
+  if (settling_) settle();
+  EXPECT_EQ(heard(), "id: 3\ndata: 3\n\nid: 5\ndata: 5\n\n");
+}
+
+TEST_F(ConversationTest, AStreamThatHasNothingToSayShowsThatItIsThere) {
+  begin();
+  say(kStream);
+  (void)heard();
+  pass(15s);
+  EXPECT_EQ(heard(), ":\n\n");
+  obey(talk_->close(now_));
+  EXPECT_EQ(counters_.event_streams_open.load(), 0u);
+}
+
+TEST_F(ConversationTest, BeyondTheLimitOnlyWhatIsVitalIsAnswered) {
+  obey(talk_->begin_in_reserve(now_));
+  EXPECT_FALSE(talk_->idle());
+  say("GET /vital HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_THAT(heard(), HasSubstr("\r\n\r\nwell"));
+  EXPECT_TRUE(half_closed_);
+}
+
+TEST_F(ConversationTest, AProxysClientCountsForItself) {
+  Peer proxy{true, "127.0.0.1", 80};
+  proxy.proxy = true;
+  room_for_others_ = false;
+  talk_ = std::make_unique<Conversation>(
+      ConversationContext{config_, *responder_, counters_, stopping_}, proxy,
+      [this](const std::string& account) { return account == "192.0.2.1" || room_for_others_; });
+  begin();
+  const std::string of = "Host: localhost\r\nX-Forwarded-For: ";
+  say("GET /frame HTTP/1.1\r\n" + of + "192.0.2.1\r\n\r\n");
+  EXPECT_THAT(heard(), StartsWith("HTTP/1.1 200"));
+  say("GET /vital HTTP/1.1\r\n" + of + "192.0.2.2\r\n\r\n");
+  EXPECT_THAT(heard(), StartsWith("HTTP/1.1 200"));
+  say("GET /frame HTTP/1.1\r\n" + of + "192.0.2.2\r\n\r\n");
+  EXPECT_THAT(heard(), StartsWith("HTTP/1.1 503"));
+}
+
+TEST_F(ConversationTest, AWebSocketIsHandedOverWithWhatHasBeenRead) {
+  const std::string open =
+      "GET /frame HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n\r\n";
+  begin();
+  say(open);
+  EXPECT_TRUE(upgraded_);
+  EXPECT_EQ(talk_->unread(), open);
+  EXPECT_NE(talk_->reaction().entry, nullptr);
+  obey(talk_->expired(now_ + 1h));
+  EXPECT_FALSE(closed_) << "it is no concern of the conversation any more";
+}
+
+}  // namespace
+}  // namespace chorus::http

@@ -1,0 +1,46 @@
+// Sensor answers and a follower brought to a known point, without a socket and without a sleep.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "fusion-server/poll/poll_fsm.h"
+
+namespace chorus::poll {
+
+inline constexpr double kFull = 0.999999999;  ///< Jitter that keeps the whole back-off.
+
+[[nodiscard]] inline Timestamp at_ms(int ms) {
+  return from_unix_ns(1'790'000'000'000'000'000) + std::chrono::milliseconds(ms);
+}
+
+[[nodiscard]] inline FrameAnswered frame(int ms, std::string etag) {
+  return {200, std::move(etag), at_ms(ms)};
+}
+
+[[nodiscard]] inline Failed reset() {
+  return {Error{ErrorCode::Io, "127.0.0.1:8081", "connection reset"}};
+}
+
+[[nodiscard]] inline const Send& send_of(const Step& step) { return std::get<Send>(*step.action); }
+[[nodiscard]] inline Duration sleep_of(const Step& step) {
+  return std::get<Sleep>(*step.action).duration;
+}
+
+/// Past the floor plane, with the first request for a frame under way since `now`.
+[[nodiscard]] inline PollFsm at_first_frame(Duration now) {
+  PollFsm fsm;
+  (void)fsm.resume(Started{}, now, kFull);
+  (void)fsm.resume(FloorAnswered{}, now, kFull);
+  return fsm;
+}
+
+/// Live: one frame delivered, and the long poll for the second under way since `now`.
+[[nodiscard]] inline PollFsm live(Duration now) {
+  PollFsm fsm = at_first_frame(now - std::chrono::milliseconds(20));
+  (void)fsm.resume(frame(0, "\"1\""), now, kFull);
+  return fsm;
+}
+
+}  // namespace chorus::poll

@@ -1,0 +1,142 @@
+// Who holds the sensor, and what people are told about it.
+#include "services/sensor/device/bridge/push_desk.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/builders.h"
+#include "tests/support/matchers.h"
+#include "tests/unit/push/push_rig.h"
+
+namespace chorus::bridge {
+namespace {
+
+using chorus::testing::FailsWith;
+using chorus::testing::IsOk;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using ::testing::HasSubstr;
+
+class Desk : public ::testing::Test {
+ protected:
+  [[nodiscard]] Result<PushDesk::Seat> sit(const std::string& name) {
+    return rig.desk->sit_down({name, "coco_17", "WebSocket", "10.0.0.5"});
+  }
+  [[nodiscard]] Result<void> push(PushDesk::Seat seat, Duration after,
+                                  std::optional<std::uint64_t> count = std::nullopt) {
+    PushedFrame frame;
+    frame.captured = kStart + after;
+    frame.sequence = count;
+    return rig.desk->take(seat, std::move(frame), hello);
+  }
+  PushRig rig;
+  Hello hello;
+};
+
+TEST_F(Desk, OneProgramHoldsTheSensorWhileItPushes) {
+  const auto first = sit("first");
+  ASSERT_THAT(first, IsOk());
+  rig.pass(seconds(1));
+  ASSERT_THAT(push(*first, milliseconds(0)), IsOk());
+  rig.pass(seconds(1));
+  const auto second = sit("second");
+  ASSERT_THAT(second, FailsWith(ErrorCode::Conflict));
+  EXPECT_THAT(second.error().message, HasSubstr("\"first\" (WebSocket from 10.0.0.5)"));
+}
+
+TEST_F(Desk, ASilentOneMakesRoomAndIsRefusedAfterwards) {
+  const auto first = sit("first");
+  ASSERT_THAT(push(*first, milliseconds(0)), IsOk());
+  rig.pass(milliseconds(2100));
+  const auto second = sit("second");
+  ASSERT_THAT(second, IsOk());
+  EXPECT_FALSE(rig.desk->sits(*first));
+  EXPECT_THAT(push(*first, milliseconds(2200)), FailsWith(ErrorCode::Conflict));
+  EXPECT_THAT(push(*second, milliseconds(2200)), IsOk());
+  rig.desk->leave(*first, "late");
+  EXPECT_TRUE(rig.desk->sits(*second)) << "who has lost the seat cannot give it up";
+}
+
+TEST_F(Desk, WhoLeavesMakesRoomAtOnce) {
+  const auto first = sit("first");
+  rig.desk->leave(*first, "the connection ended");
+  EXPECT_THAT(rig.desk->status().reason, HasSubstr("\"first\" (WebSocket from 10.0.0.5) left"));
+  EXPECT_THAT(sit("second"), IsOk());
+}
+
+TEST_F(Desk, TimeAdvancesOrWasSet) {
+  const auto seat = sit("one");
+  ASSERT_THAT(push(*seat, milliseconds(100)), IsOk());
+  const auto again = push(*seat, milliseconds(100));
+  ASSERT_THAT(again, FailsWith(ErrorCode::Conflict));
+  EXPECT_EQ(again.error().context, "captured");
+  EXPECT_THAT(push(*seat, milliseconds(99)), FailsWith(ErrorCode::Conflict));
+  EXPECT_THAT(push(*seat, -seconds(5)), IsOk()) << "a clock that was set";
+}
+
+TEST_F(Desk, TimeThatWasSetBackALittleIsBelievedTheSecondTime) {
+  const auto seat = sit("one");
+  ASSERT_THAT(push(*seat, milliseconds(1000)), IsOk());
+  EXPECT_THAT(push(*seat, milliseconds(600)), FailsWith(ErrorCode::Conflict));
+  EXPECT_THAT(push(*seat, milliseconds(600)), FailsWith(ErrorCode::Conflict)) << "the same again";
+  EXPECT_THAT(push(*seat, milliseconds(633)), IsOk());
+  EXPECT_THAT(push(*seat, milliseconds(666)), IsOk());
+}
+
+TEST_F(Desk, GapsInItsOwnCountAreLostFrames) {
+  const auto seat = sit("one");
+  ASSERT_THAT(push(*seat, milliseconds(0), 10), IsOk());
+  ASSERT_THAT(push(*seat, milliseconds(33), 11), IsOk());
+  ASSERT_THAT(push(*seat, milliseconds(66), 14), IsOk());
+  ASSERT_THAT(push(*seat, milliseconds(99), 2), IsOk()) << "its count began anew";
+  std::vector<std::uint64_t> numbers;
+  for (const Capture& capture : rig.desk->captures(Duration{0}))
+    numbers.push_back(capture.frame.sequence);
+  EXPECT_EQ(numbers, (std::vector<std::uint64_t>{1, 2, 5, 6}));
+}
+
+TEST_F(Desk, FramesCarryTheSensorAndTheFloor) {
+  hello.floor = FloorPlane{Eigen::Vector3d::UnitY(), 1.4};
+  ASSERT_THAT(push(*sit("one"), milliseconds(5)), IsOk());
+  const auto captures = rig.desk->captures(Duration{0});
+  ASSERT_EQ(captures.size(), 1U);
+  EXPECT_EQ(captures[0].frame.sensor.str(), "s1");
+  EXPECT_EQ(captures[0].frame.captured, kStart + milliseconds(5));
+  EXPECT_EQ(captures[0].frame.received, rig.clock->now());
+  EXPECT_EQ(captures[0].frame.floor, hello.floor);
+}
+
+TEST_F(Desk, SaysWhyNothingComes) {
+  EXPECT_EQ(rig.desk->status().state, "waiting");
+  EXPECT_EQ(rig.desk->status().reason, "no program pushes frames");
+  const auto seat = sit("one");
+  EXPECT_THAT(rig.desk->status().reason, HasSubstr("pushes no frames"));
+  ASSERT_THAT(push(*seat, milliseconds(0)), IsOk());
+  EXPECT_EQ(rig.desk->status().state, "live");
+  EXPECT_EQ(rig.desk->status().reason, "");
+  rig.pass(seconds(7));
+  EXPECT_EQ(rig.desk->status().state, "silent");
+  EXPECT_THAT(rig.desk->status().reason, HasSubstr("has pushed no frame for 7 s"));
+  rig.desk->note_refusal(*seat, {ErrorCode::Malformed, "captured", "is missing"});
+  EXPECT_THAT(rig.desk->status().reason, HasSubstr("captured: is missing"));
+  EXPECT_EQ(rig.desk->status().refused, 1U);
+}
+
+TEST_F(Desk, LetsOnlySoManyIn) {
+  for (int i = 0; i < 4; ++i) EXPECT_THAT(rig.desk->connect(), IsOk());
+  const auto fifth = rig.desk->connect();
+  ASSERT_THAT(fifth, FailsWith(ErrorCode::Unavailable));
+  EXPECT_THAT(fifth.error().message, HasSubstr("max_pushers"));
+  rig.desk->disconnect();
+  EXPECT_THAT(rig.desk->connect(), IsOk());
+}
+
+TEST_F(Desk, IsShutForASecondAfterAFlood) {
+  rig.desk->shut_for_a_moment();
+  EXPECT_THAT(rig.desk->connect(), FailsWith(ErrorCode::Unavailable));
+  rig.pass(milliseconds(1001));
+  EXPECT_THAT(rig.desk->connect(), IsOk());
+}
+
+}  // namespace
+}  // namespace chorus::bridge

@@ -1,0 +1,31 @@
+// A desk whose clocks stand until they are moved.
+#pragma once
+
+#include <memory>
+
+#include "services/sensor/device/bridge/push_desk.h"
+#include "tests/support/builders.h"
+
+namespace chorus::bridge {
+
+inline const Timestamp kStart = from_unix_ns(1'795'246'200'000'000'000);
+
+struct PushRig {
+  explicit PushRig(BridgeSettings settings = {}) {
+    DeskOptions options;
+    options.sensor = chorus::testing::sensor_id("s1");
+    options.settings = std::move(settings);
+    options.clock = clock;
+    options.steady_now = [now = steady] { return *now; };
+    desk = std::make_shared<PushDesk>(std::move(options));
+  }
+  void pass(Duration time) {
+    clock->advance(time);
+    *steady += time;
+  }
+  std::shared_ptr<FakeClock> clock = std::make_shared<FakeClock>(kStart);
+  std::shared_ptr<SteadyTime> steady = std::make_shared<SteadyTime>(std::chrono::hours(1));
+  std::shared_ptr<PushDesk> desk;
+};
+
+}  // namespace chorus::bridge

@@ -1,0 +1,255 @@
+// One program that pushes: its clock, its rate, and what it may not do.
+#include "services/sensor/device/bridge/push_session.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/matchers.h"
+#include "tests/unit/push/push_rig.h"
+
+namespace chorus::bridge {
+namespace {
+
+using chorus::testing::FailsWith;
+using chorus::testing::IsOk;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using ::testing::HasSubstr;
+
+const std::string kHello = R"({"type":"hello","name":"cam","layout":"coco_17"})";
+
+std::string text(Timestamp t) { return "\"" + std::to_string(to_unix_ns(t)) + "\""; }
+
+std::string frame_at(Timestamp captured) {
+  return R"({"type":"frame","bodies":[],"captured":)" + text(captured) + "}";
+}
+
+class Session : public ::testing::Test {
+ protected:
+  explicit Session(BridgeSettings settings = {}) : rig(std::move(settings)) {}
+
+  [[nodiscard]] Result<Heard> hear(const std::string& message) { return session.hear(message); }
+  /// The answer of a clock that runs `ahead` of ours, over a way of 2 ms.
+  [[nodiscard]] Result<Heard> answer_clock(Duration ahead) {
+    const Timestamp asked = rig.clock->now();
+    rig.pass(milliseconds(2));
+    const Timestamp theirs = asked + milliseconds(1) + ahead;
+    return hear(R"({"type":"clock","sent":)" + text(asked) + R"(,"received":)" + text(theirs) +
+                R"(,"answered":)" + text(theirs) + "}");
+  }
+  [[nodiscard]] Timestamp captured() {
+    const auto captures = rig.desk->captures(Duration{0});
+    EXPECT_FALSE(captures.empty());
+    return captures.empty() ? Timestamp{} : captures.back().frame.captured;
+  }
+
+  PushRig rig;
+  PushSession session{rig.desk, "WebSocket", "127.0.0.1"};
+};
+
+TEST_F(Session, AWrongClockIsEstimatedAndTakenOff) {
+  ASSERT_THAT(hear(kHello), IsOk());
+  const Duration ahead = std::chrono::hours(1);
+  ASSERT_THAT(answer_clock(ahead), IsOk());
+  const Timestamp when = rig.clock->now() - milliseconds(40);
+  ASSERT_THAT(hear(frame_at(when + ahead)), IsOk());
+  EXPECT_LE(std::chrono::abs(captured() - when), milliseconds(1)) << "half of the way at most";
+  ASSERT_TRUE(rig.desk->status().clock);
+  EXPECT_LE(rig.desk->status().clock->uncertainty, milliseconds(2));
+}
+
+TEST_F(Session, FramesBeforeTheFirstAnswerAreLeftOutForASecond) {
+  ASSERT_THAT(hear(kHello), IsOk());
+  session.expect_clock();
+  const Duration ahead = std::chrono::hours(1);
+  EXPECT_EQ(*hear(frame_at(rig.clock->now() + ahead)), Heard::LeftOut);
+  ASSERT_THAT(answer_clock(ahead), IsOk());
+  EXPECT_EQ(*hear(frame_at(rig.clock->now() + ahead)), Heard::Frame);
+  PushSession mute(rig.desk, "WebSocket", "");
+  rig.pass(seconds(3));
+  ASSERT_THAT(mute.hear(kHello), IsOk());
+  mute.expect_clock();
+  EXPECT_EQ(*mute.hear(frame_at(rig.clock->now())), Heard::LeftOut);
+  rig.pass(milliseconds(1001));
+  EXPECT_EQ(*mute.hear(frame_at(rig.clock->now())), Heard::Frame) << "it never answers";
+}
+
+TEST_F(Session, AClockThatCountsMillisecondsIsGoodEnough) {
+  ASSERT_THAT(hear(kHello), IsOk());
+  const auto whole_ms = [](Timestamp t) {
+    return from_unix_ns(to_unix_ns(t) / 1'000'000 * 1'000'000);
+  };
+  for (int i = 0; i < 60; ++i) {
+    const Timestamp asked = rig.clock->now();
+    rig.pass(std::chrono::microseconds(37 + 11 * (i % 17)));
+    const std::string theirs = text(whole_ms(rig.clock->now() - std::chrono::hours(2)));
+    rig.pass(std::chrono::microseconds(50));
+    ASSERT_THAT(hear(R"({"type":"clock","sent":)" + text(asked) + R"(,"received":)" + theirs +
+                     R"(,"answered":)" + theirs + "}"),
+                IsOk());
+    rig.pass(std::chrono::microseconds(16'789));
+    const Timestamp when = rig.clock->now() - milliseconds(5);
+    ASSERT_EQ(*hear(frame_at(when - std::chrono::hours(2))), Heard::Frame) << i;
+    EXPECT_LE(std::chrono::abs(captured() - when), milliseconds(1));
+  }
+}
+
+TEST_F(Session, AnOffsetSmallerThanItsBoundIsTakenOffToo) {
+  ASSERT_THAT(hear(kHello), IsOk());
+  ASSERT_THAT(answer_clock(std::chrono::microseconds(1500)), IsOk());
+  const Timestamp when = rig.clock->now() - milliseconds(20);
+  ASSERT_THAT(hear(frame_at(when + std::chrono::microseconds(1500))), IsOk());
+  EXPECT_EQ(captured(), when);
+}
+
+TEST_F(Session, WithoutAnswersTheClockHasToBeRight) {
+  ASSERT_THAT(hear(kHello), IsOk());
+  EXPECT_THAT(hear(frame_at(rig.clock->now() - milliseconds(30))), IsOk());
+  for (const Duration off :
+       {Duration(seconds(3)), Duration(-seconds(11)), Duration(std::chrono::hours(-9))}) {
+    const auto heard = hear(frame_at(rig.clock->now() + off));
+    ASSERT_THAT(heard, FailsWith(ErrorCode::InvalidArgument));
+    EXPECT_EQ(heard.error().context, "captured");
+    EXPECT_THAT(heard.error().message, HasSubstr("set your clock"));
+    EXPECT_THAT(heard.error().message, HasSubstr(off > Duration{0} ? "in the future" : "ago"));
+  }
+}
+
+TEST_F(Session, AFrameFromTheFutureIsALie) {
+  ASSERT_THAT(hear(kHello), IsOk());
+  ASSERT_THAT(answer_clock(seconds(5)), IsOk());
+  const auto heard = hear(frame_at(rig.clock->now() + seconds(5) + milliseconds(300)));
+  ASSERT_THAT(heard, FailsWith(ErrorCode::InvalidArgument));
+  EXPECT_THAT(heard.error().message, HasSubstr("0.3"));
+  EXPECT_THAT(heard.error().message, HasSubstr("in the future; stamp frames by the clock"));
+}
+
+TEST_F(Session, StampsThatCannotBeTrueChangeNothing) {
+  ASSERT_THAT(hear(kHello), IsOk());
+  ASSERT_THAT(answer_clock(seconds(0)), IsOk());
+  const Timestamp now = rig.clock->now();
+  // Answered before it was asked; held longer than the way took; asked in the future.
+  EXPECT_THAT(hear(R"({"type":"clock","sent":)" + text(now - seconds(1)) + R"(,"received":)" +
+                   text(now) + R"(,"answered":)" + text(now - seconds(1)) + "}"),
+              IsOk());
+  EXPECT_THAT(hear(R"({"type":"clock","sent":)" + text(now - seconds(1)) + R"(,"received":)" +
+                   text(now) + R"(,"answered":)" + text(now + std::chrono::hours(1)) + "}"),
+              IsOk());
+  EXPECT_THAT(hear(R"({"type":"clock","sent":)" + text(now + seconds(9)) + R"(,"received":)" +
+                   text(now) + R"(,"answered":)" + text(now) + "}"),
+              FailsWith(ErrorCode::Malformed));
+  EXPECT_THAT(hear(frame_at(rig.clock->now() - milliseconds(10))), IsOk());
+  EXPECT_EQ(captured(), rig.clock->now() - milliseconds(10));
+}
+
+TEST_F(Session, ClocksAtTheEndsOfTimeAreNoHarm) {
+  ASSERT_THAT(hear(kHello), IsOk());
+  const Timestamp asked = rig.clock->now();
+  rig.pass(milliseconds(2));
+  for (const std::string far : {"1000000000000000000", "8000000000000000000"}) {
+    ASSERT_THAT(hear(R"({"type":"clock","sent":)" + text(asked) + R"(,"received":")" + far +
+                     R"(","answered":")" + far + "\"}"),
+                IsOk());
+    for (const std::string when : {"1000000000000000000", "8000000000000000000"})
+      (void)hear(R"({"type":"frame","bodies":[],"captured":")" + when + "\"}");
+  }
+  EXPECT_FALSE(session.lost());
+}
+
+TEST_F(Session, AClockThatWasSetIsLearntAnew) {
+  ASSERT_THAT(hear(kHello), IsOk());
+  for (int i = 0; i < 10; ++i) ASSERT_THAT(answer_clock(Duration{0}), IsOk());
+  EXPECT_FALSE(session.wants_clock());
+  ASSERT_THAT(answer_clock(seconds(60)), IsOk());
+  EXPECT_TRUE(session.wants_clock()) << "in doubt: ask again at once";
+  EXPECT_THAT(hear(frame_at(rig.clock->now() + seconds(60))), FailsWith(ErrorCode::Unavailable));
+  for (int i = 0; i < 3; ++i) ASSERT_THAT(answer_clock(seconds(60)), IsOk());
+  const Timestamp when = rig.clock->now() - milliseconds(20);
+  ASSERT_THAT(hear(frame_at(when + seconds(60))), IsOk());
+  EXPECT_LE(std::chrono::abs(captured() - when), milliseconds(2));
+}
+
+TEST_F(Session, FramesBeyondTheRateAreLeftOut) {
+  ASSERT_THAT(hear(kHello), IsOk());
+  int taken = 0;
+  int left_out = 0;
+  for (int i = 0; i < 300; ++i) {
+    rig.pass(milliseconds(4));  // 250 a second, where 120 may be
+    const auto heard = hear(frame_at(rig.clock->now()));
+    ASSERT_THAT(heard, IsOk());
+    (*heard == Heard::Frame ? taken : left_out) += 1;
+  }
+  EXPECT_NEAR(taken, 120 + 144, 3) << "a second's worth at once, then the rate";
+  EXPECT_EQ(left_out, 300 - taken);
+  EXPECT_EQ(rig.desk->status().left_out, static_cast<std::uint64_t>(left_out));
+  EXPECT_FALSE(session.lost());
+}
+
+TEST_F(Session, AFloodEndsIt) {
+  ASSERT_THAT(hear(kHello), IsOk());
+  Result<Heard> heard = Heard::Frame;
+  int messages = 0;
+  while (!session.lost() && messages < 10'000) {
+    heard = hear("{}");
+    ++messages;
+  }
+  EXPECT_LE(messages, 4 * 120 + 1);
+  ASSERT_THAT(heard, FailsWith(ErrorCode::Unavailable));
+  EXPECT_THAT(heard.error().message, HasSubstr("480 messages"));
+  EXPECT_THAT(rig.desk->connect(), FailsWith(ErrorCode::Unavailable)) << "not at once again";
+}
+
+TEST_F(Session, SoDoTooManyBytes) {
+  ASSERT_THAT(hear(kHello), IsOk());
+  const std::string large(200'000, ' ');
+  int messages = 0;
+  while (!session.lost() && messages < 100) {
+    (void)hear(large);
+    ++messages;
+  }
+  EXPECT_LE(messages, 21) << "four megabytes";
+}
+
+TEST_F(Session, AMessageThatIsTooLongIsRefusedUnread) {
+  ASSERT_THAT(hear(kHello), IsOk());
+  const auto heard = hear(std::string(256 * 1024 + 1, ' '));
+  ASSERT_THAT(heard, FailsWith(ErrorCode::TooLarge));
+  EXPECT_THAT(heard.error().message, HasSubstr("max_message_kb"));
+}
+
+TEST_F(Session, AWrongHelloIsTheEnd) {
+  EXPECT_THAT(hear(R"({"type":"hello","name":"cam","layout":"centaur"})"),
+              FailsWith(ErrorCode::Malformed));
+  EXPECT_TRUE(session.lost());
+}
+
+TEST_F(Session, ASecondHelloChangesTheCameraButNotTheName) {
+  ASSERT_THAT(hear(kHello), IsOk());
+  EXPECT_THAT(hear(R"({"type":"hello","name":"cam","layout":"body_25"})"), IsOk());
+  EXPECT_EQ(session.hello()->layout->name, "body_25");
+  EXPECT_THAT(hear(R"({"type":"hello","name":"other","layout":"body_25"})"),
+              FailsWith(ErrorCode::Conflict));
+}
+
+TEST_F(Session, WhoIsReplacedIsToldSo) {
+  ASSERT_THAT(hear(kHello), IsOk());
+  rig.pass(seconds(3));
+  PushSession other(rig.desk, "HTTP POST", "");
+  ASSERT_THAT(other.hear(kHello), IsOk());
+  const auto heard = hear(frame_at(rig.clock->now()));
+  ASSERT_THAT(heard, FailsWith(ErrorCode::Conflict));
+  EXPECT_TRUE(session.lost());
+}
+
+TEST_F(Session, ItsEndFreesTheSensor) {
+  {
+    PushSession short_one(rig.desk, "WebSocket", "");
+    ASSERT_THAT(short_one.hear(kHello), IsOk());
+    EXPECT_THAT(hear(kHello), FailsWith(ErrorCode::Conflict));
+  }
+  PushSession next(rig.desk, "WebSocket", "");
+  EXPECT_THAT(next.hear(kHello), IsOk());
+}
+
+}  // namespace
+}  // namespace chorus::bridge

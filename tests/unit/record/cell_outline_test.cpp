@@ -1,0 +1,115 @@
+// A cell told without reading it through, and read without holding it.
+#include "common/record/cell_outline.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/record/cell_stream.h"
+#include "common/record/cell_writer.h"
+#include "tests/support/builders.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chorus::record {
+namespace {
+
+using chorus::testing::kFrameInterval;
+using chorus::testing::kStart;
+using chorus::testing::TemporaryFolder;
+using std::chrono::milliseconds;
+using ::testing::SizeIs;
+
+resource::FrameResource frame_of(const char* source, int i) {
+  resource::FrameResource frame;
+  frame.sequence = static_cast<std::uint64_t>(i) + 1;
+  frame.captured = kStart + kFrameInterval * i;
+  frame.source = source;
+  return frame;
+}
+
+RawFrame raw(const char* sensor, int i, Duration applied = Duration{0}) {
+  auto frame = std::make_shared<const resource::FrameResource>(frame_of(sensor, i));
+  const Timestamp received = frame->captured + applied + milliseconds(5);
+  return {chorus::testing::sensor_id(sensor), std::move(frame), received,
+          FloorPlane{Eigen::Vector3d::UnitY(), 1.25},
+          ClockModel{applied, applied, milliseconds(1)}};
+}
+
+FusedFrame fused(int i) {
+  const Timestamp t = kStart + kFrameInterval * i;
+  return {t, t + milliseconds(20), [i] {
+            resource::FrameResource frame = frame_of("fusion", i);
+            frame.space = resource::SpaceKind::World;
+            return frame;
+          }};
+}
+
+/// Two sensors and what was fused of them; the clock of the second is corrected half-way.
+void write_cell(const std::filesystem::path& path) {
+  auto writer = CellWriter::create(path, {});
+  ASSERT_TRUE(writer);
+  ASSERT_TRUE(writer->write(PlacesChanged{kStart, R"({"version":1,"sensors":{}})", {}}));
+  for (int i = 0; i < 40; ++i) {
+    ASSERT_TRUE(writer->write(raw("s1", i)));
+    ASSERT_TRUE(writer->write(raw("s2", i, milliseconds(i < 20 ? 400 : 410))));
+    ASSERT_TRUE(writer->write(fused(i)));
+  }
+  ASSERT_TRUE(writer->close());
+}
+
+TEST(CellOutline, TellsWhoWasThereAndWhenWithoutReadingItThrough) {
+  const TemporaryFolder folder;
+  write_cell(folder / "a.mcap");
+  const auto lines = cell_lines({folder / "a.mcap"});
+  ASSERT_TRUE(lines) << to_string(lines.error());
+  ASSERT_THAT(*lines, SizeIs(1));
+  EXPECT_TRUE(lines->front().cell);
+  const auto stays = sensor_stays(*lines);
+  ASSERT_TRUE(stays) << to_string(stays.error());
+  ASSERT_THAT(*stays, SizeIs(2));
+  const SensorStay& second = stays->back();
+  EXPECT_EQ(second.about.sensor.str(), "s2");
+  EXPECT_EQ(second.frames, 40u);
+  EXPECT_EQ(second.first, kStart + milliseconds(400)) << "by the first clock model";
+  EXPECT_EQ(second.last, kStart + kFrameInterval * 39 + milliseconds(410)) << "by the last";
+  EXPECT_EQ(last_registration(*lines).value(), R"({"version":1,"sensors":{}})");
+}
+
+TEST(CellOutline, RefusesTwoRecordingsOfOneSensor) {
+  const TemporaryFolder folder;
+  write_cell(folder / "a.mcap");
+  write_cell(folder / "b.mcap");
+  const auto lines = cell_lines({folder / "a.mcap", folder / "b.mcap"});
+  ASSERT_TRUE(lines);
+  ASSERT_THAT(*lines, SizeIs(2)) << "neither says that it is a part of the other";
+  const auto stays = sensor_stays(*lines);
+  ASSERT_FALSE(stays);
+  EXPECT_EQ(stays.error().code, ErrorCode::Conflict);
+}
+
+TEST(CellStream, GivesWhatReadingItWholeGives) {
+  const TemporaryFolder folder;
+  write_cell(folder / "a.mcap");
+  const auto whole = read_cell(folder / "a.mcap", {.fused = true});
+  ASSERT_TRUE(whole);
+  CellStream stream({folder / "a.mcap"}, {.fused = true});
+  std::map<std::string, std::size_t> frames;
+  Timestamp last_s1{};
+  for (auto item = stream.next(); item && *item; item = stream.next()) {
+    if (const auto* frame = std::get_if<SensorFrame>(&**item)) {
+      const std::string sensor = frame->sensor.str();
+      const auto& same = whole->sensors[sensor == "s1" ? 0 : 1].frames[frames[sensor]++];
+      EXPECT_EQ(frame->captured, same.captured);
+      EXPECT_EQ(frame->floor, same.floor);
+      if (sensor == "s1") last_s1 = frame->captured;
+    }
+    if (std::holds_alternative<resource::FrameResource>(**item)) ++frames["fused"];
+  }
+  EXPECT_EQ(frames["s1"], 40u);
+  EXPECT_EQ(frames["s2"], 40u);
+  EXPECT_EQ(frames["fused"], 40u);
+  EXPECT_EQ(last_s1, kStart + kFrameInterval * 39);
+  EXPECT_THAT(stream.finish().sensors, SizeIs(2));
+}
+
+}  // namespace
+}  // namespace chorus::record
