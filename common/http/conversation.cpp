@@ -4,6 +4,7 @@
 
 #include "common/http/admission.h"
 #include "common/http/status.h"
+#include "common/http/websocket_handshake.h"
 
 namespace chorus::http {
 namespace {
@@ -170,6 +171,10 @@ void Conversation::serve(std::size_t head_size) {
       state_ = State::Closed;
       orders_.upgrade = true;
   }
+}
+
+std::string Conversation::handshake() const {
+  return handshake_of(head_, unread().substr(request_size_));
 }
 
 /// Whether there is room for this request's sender; beyond the limits only for what is vital.

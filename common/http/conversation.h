@@ -55,7 +55,8 @@ class Conversation {
 
   [[nodiscard]] std::span<char> room() { return buffer_.room(); }
   [[nodiscard]] const std::array<std::string_view, 4>& output() const { return output_; }
-  [[nodiscard]] std::string_view unread() const { return buffer_.unread(); }
+  /// Of the request that asked for an upgrade: see handshake_of.
+  [[nodiscard]] std::string handshake() const;
   /// Its entry says which document to wait for, or which WebSocket to upgrade to.
   [[nodiscard]] const Reaction& reaction() const { return reaction_; }
   [[nodiscard]] SteadyTime deadline() const { return deadline_; }
@@ -64,6 +65,7 @@ class Conversation {
   [[nodiscard]] bool idle() const;
 
  private:
+  [[nodiscard]] std::string_view unread() const { return buffer_.unread(); }
   enum class State { Head, Body, Writing, Waiting, Streaming, Lingering, Closed };
 
   template <class Event>

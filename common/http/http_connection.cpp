@@ -99,10 +99,9 @@ void HttpConnection::settle() {
 /// The socket, and what has been read from it, go to a connection that speaks the other protocol.
 void HttpConnection::upgrade() {
   const Reaction& chosen = conversation_.reaction();
-  WebSocketOpening opening{std::move(socket_), std::string(conversation_.unread()),
-                           peer_address(),     chosen.entry,
-                           chosen.dialogue,    chosen.protocol};
-  core_.replace(this, open_websocket(core_, std::move(opening)));
+  WebSocketOpening opening{std::move(socket_), conversation_.handshake(), peer_address(),
+                           chosen.entry,       chosen.dialogue,           chosen.protocol};
+  open_websocket(core_, std::move(opening), this);
 }
 
 void HttpConnection::hang_up() {

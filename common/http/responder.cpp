@@ -9,7 +9,7 @@
 #include "common/http/route_lines.h"
 #include "common/http/status.h"
 #include "common/http/uri.h"
-#include "common/http/websocket.h"
+#include "common/http/websocket_handshake.h"
 
 namespace chorus::http {
 namespace {

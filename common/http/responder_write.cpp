@@ -3,7 +3,7 @@
 #include "common/http/responder.h"
 #include "common/http/status.h"
 #include "common/http/uri.h"
-#include "common/http/websocket.h"
+#include "common/http/websocket_handshake.h"
 
 namespace chorus::http {
 namespace {

@@ -2,14 +2,12 @@
 #include <utility>
 
 #include "common/base/log.h"
-#include "common/http/beast_websocket.h"
 #include "common/http/server_core.h"
 #include "common/http/websocket.h"
+#include "common/http/websocket_stream.h"
 
 namespace chorus::http {
 namespace {
-
-namespace websocket = boost::beast::websocket;
 
 constexpr std::chrono::milliseconds kLook{250};
 constexpr std::chrono::seconds kGoodbye{2};  // how long the client's own close may take
@@ -19,62 +17,47 @@ class DialogueConnection final : public Connection {
   DialogueConnection(ServerCore& core, WebSocketOpening opening)
       : Connection(std::move(opening.peer_address)),
         core_(core),
-        stream_(std::move(opening.socket)),
-        received_(std::move(opening.received)),
-        protocol_(std::move(opening.protocol)),
-        dialogue_(std::move(opening.dialogue)),
-        heard_(opening.entry->dialogue->max_message_bytes) {}
+        stream_(std::move(opening.socket),
+                {core.config.limits, opening.entry->dialogue->max_message_bytes,
+                 std::move(opening.protocol)}),
+        dialogue_(std::move(opening.dialogue)) {}
 
-  void open();
+  void open(std::string received);
   void wake() override {}
   void expire() override;
-  void stop() override { say_goodbye(websocket::close_code::going_away); }
+  void stop() override { say_goodbye(Goodbye::GoingAway); }
   void close() override;
 
  private:
   enum class State { Opening, Open, Closing, Closed };
 
-  void set_options();
   void listen();
   void on_heard(net::error_code failed);
   template <class Speaking>
   void react(const Speaking& speaking);
   void send_next();
-  void say_goodbye(websocket::close_code code);
+  void say_goodbye(Goodbye code);
   [[nodiscard]] std::shared_ptr<DialogueConnection> self() {
     return std::static_pointer_cast<DialogueConnection>(shared_from_this());
   }
 
   ServerCore& core_;
-  websocket::stream<net::Socket> stream_;
-  std::string received_;
-  std::string protocol_;
+  WebSocketStream stream_;
   std::shared_ptr<Dialogue> dialogue_;
   State state_ = State::Opening;
-  boost::beast::flat_buffer heard_;
   std::deque<std::string> unsent_;  ///< The first is being sent.
   std::size_t unsent_bytes_ = 0;
   bool over_ = false;  ///< Ends when everything unsent has been sent.
   SteadyTime sending_until_{};
 };
 
-void DialogueConnection::set_options() {
-  set_up(stream_, core_.config.limits, heard_.max_size());
-  if (protocol_.empty()) return;
-  stream_.set_option(
-      websocket::stream_base::decorator([protocol = protocol_](websocket::response_type& response) {
-        response.set("Sec-WebSocket-Protocol", protocol);
-      }));
-}
-
-void DialogueConnection::open() {
-  set_options();
+void DialogueConnection::open(std::string received) {
+  stream_.on_flood([this] { close(); });
   deadline_ = core_.now + core_.config.limits.header_timeout;
-  stream_.async_accept(asio::buffer(received_), [me = self()](net::error_code failed) {
+  stream_.accept(std::move(received), [me = self()](net::error_code failed) {
     if (me->state_ != State::Opening) return;
     if (failed) return me->close();
     me->state_ = State::Open;
-    me->received_ = {};
     me->deadline_ = me->core_.now + kLook;
     count(me->core_.counters.websockets_open);
     me->listen();
@@ -82,21 +65,19 @@ void DialogueConnection::open() {
 }
 
 void DialogueConnection::listen() {
-  stream_.async_read(heard_,
-                     [me = self()](net::error_code failed, std::size_t) { me->on_heard(failed); });
+  stream_.read([me = self()](net::error_code failed) { me->on_heard(failed); });
 }
 
 void DialogueConnection::on_heard(net::error_code failed) {
   if (state_ == State::Closed) return;
   if (failed) return close();
-  if (state_ == State::Open && !stream_.got_text())
-    return say_goodbye(websocket::close_code::unknown_data);
   if (state_ == State::Open && !over_) {
-    const auto bytes = heard_.cdata();
-    const std::string_view text(static_cast<const char*>(bytes.data()), bytes.size());
-    react([&] { return dialogue_->hear(text); });
+    if (stream_.is_text()) {
+      react([&] { return dialogue_->hear(stream_.message()); });
+    } else {
+      say_goodbye(Goodbye::UnknownData);
+    }
   }
-  heard_.consume(heard_.size());
   if (state_ != State::Closed) listen();
 }
 
@@ -108,7 +89,7 @@ void DialogueConnection::react(const Speaking& speaking) {
     reply = speaking();
   } catch (const std::exception& thrown) {
     log::error("a dialogue failed", {{"reason", thrown.what()}});
-    return say_goodbye(websocket::close_code::internal_error);
+    return say_goodbye(Goodbye::Internal);
   }
   over_ = over_ || reply.over;
   const bool idle = unsent_.empty();
@@ -122,19 +103,18 @@ void DialogueConnection::react(const Speaking& speaking) {
 
 void DialogueConnection::send_next() {
   if (unsent_.empty()) {
-    if (over_) say_goodbye(websocket::close_code::policy_error);
+    if (over_) say_goodbye(Goodbye::Policy);
     return;
   }
   sending_until_ = core_.now + core_.config.limits.write_timeout;
-  stream_.async_write(asio::buffer(unsent_.front()),
-                      [me = self()](net::error_code failed, std::size_t n) {
-                        if (me->state_ != State::Open) return;
-                        if (failed) return me->close();
-                        count(me->core_.counters.bytes_sent, n);
-                        me->unsent_bytes_ -= me->unsent_.front().size();
-                        me->unsent_.pop_front();
-                        me->send_next();
-                      });
+  stream_.write(unsent_.front(), [me = self()](net::error_code failed) {
+    if (me->state_ != State::Open) return;
+    if (failed) return me->close();
+    count(me->core_.counters.bytes_sent, me->unsent_.front().size());
+    me->unsent_bytes_ -= me->unsent_.front().size();
+    me->unsent_.pop_front();
+    me->send_next();
+  });
 }
 
 void DialogueConnection::expire() {
@@ -145,13 +125,12 @@ void DialogueConnection::expire() {
 }
 
 /// Ends it politely, once; a client that does not reply is cut off.
-void DialogueConnection::say_goodbye(websocket::close_code code) {
-  if (state_ != State::Open || !unsent_.empty()) return close();
+void DialogueConnection::say_goodbye(Goodbye code) {
+  if (state_ != State::Open || !unsent_.empty() || !stream_.say_goodbye(code)) return close();
   state_ = State::Closing;
   count(core_.counters.websockets_open, static_cast<std::uint64_t>(-1));
   dialogue_.reset();
   deadline_ = core_.now + kGoodbye;
-  stream_.async_close(code, [me = self()](net::error_code) { me->close(); });
 }
 
 void DialogueConnection::close() {
@@ -160,17 +139,17 @@ void DialogueConnection::close() {
   const auto keep = shared_from_this();  // forget() drops what may be the last reference.
   if (before == State::Open) count(core_.counters.websockets_open, static_cast<std::uint64_t>(-1));
   dialogue_.reset();
-  net::error_code ignored;
-  stream_.next_layer().close(ignored);
+  stream_.close();
   core_.forget(this);
 }
 
 }  // namespace
 
-std::shared_ptr<Connection> talk_by_websocket(ServerCore& core, WebSocketOpening opening) {
+void talk_by_websocket(ServerCore& core, WebSocketOpening opening, const Connection* asker) {
+  std::string received = std::move(opening.received);
   auto connection = std::make_shared<DialogueConnection>(core, std::move(opening));
-  connection->open();
-  return connection;
+  core.replace(asker, connection);
+  connection->open(std::move(received));
 }
 
 }  // namespace chorus::http

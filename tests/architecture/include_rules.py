@@ -58,7 +58,7 @@ STAGE_HEADERS = re.compile(
 STAGE_CLOCKS = re.compile(r"common/time/clock\.h|(system|steady|high_resolution)_clock::now")
 ASIO = re.compile(r"<boost/(asio|beast)")
 POINT_CLOUDS_AND_IMAGES = re.compile(r"<(pcl|opencv2)/")
-ASIO_DOORS = {"common/net/asio.h", "common/net/asio_local.h", "common/http/beast.h", "common/http/beast_websocket.h"}
+ASIO_DOORS = {"common/net/asio.h", "common/net/asio_local.h", "common/http/beast.h", "common/http/websocket_stream.cpp"}
 
 # Policy of linked data is given to HTTP (common/resource/link_lines.h), never known by it.
 LINKED_DATA = re.compile(r"/ns/ldp|openapi|context\.jsonld|</shapes>|Chorus-Clock")

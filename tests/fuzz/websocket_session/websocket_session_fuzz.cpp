@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -23,6 +24,8 @@
 namespace {
 
 using namespace chorus;
+
+constexpr int kPatience = -1;  // the fuzzer's own limit for one input ends it
 
 void require(bool holds) {
   if (!holds) std::abort();
@@ -45,7 +48,9 @@ class Client {
  public:
   Client() : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
     const sockaddr_in address = testing::loopback(server().port());
-    require(::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
+    const int failed =
+        ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+    require(failed == 0 || (errno == EINTR && ready(POLLOUT, kPatience) > 0));
   }
   ~Client() {
     const linger at_once{1, 0};  // no port is left behind in TIME_WAIT
@@ -59,22 +64,29 @@ class Client {
     (void)::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
   }
   [[nodiscard]] std::string hear(int patience_ms) const {
-    pollfd waiting{socket_, POLLIN, 0};
     std::array<char, 4096> bytes{};
-    if (::poll(&waiting, 1, patience_ms) <= 0) return {};
+    if (ready(POLLIN, patience_ms) <= 0) return {};
     const ssize_t got = ::recv(socket_, bytes.data(), bytes.size(), 0);
     return {bytes.data(), got > 0 ? static_cast<std::size_t>(got) : 0};
   }
 
  private:
+  /// poll(2) for what the fuzzer's own alarm does not end.
+  [[nodiscard]] int ready(short events, int patience_ms) const {
+    pollfd waiting{socket_, events, 0};
+    while (true) {
+      const int found = ::poll(&waiting, 1, patience_ms);
+      if (found >= 0 || errno != EINTR) return found;
+    }
+  }
+
   int socket_;
 };
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  constexpr int kPatience = 10000;  // [ms] a busy machine is no finding
-  constexpr int kSilence = 2;       // what has not come by then does not come [ms]
+  constexpr int kSilence = 2;  // what has not come by then does not come [ms]
   const std::string_view text(reinterpret_cast<const char*>(bytes), size);
   const std::size_t line = std::min(text.find('\n'), text.size());
   const Client client;

@@ -237,6 +237,65 @@ TEST(WebSocket, WhoPingsAndNeverReadsIsClosedAndOthersGoOn) {
   EXPECT_EQ(service.ask("/frames/1").status, 200);
 }
 
+TEST(WebSocket, WhoFloodsWithPingsAndReadsIsClosedToo) {
+  TestServer service;
+  RawClient client(service.server.port());
+  client.say(hello());
+  (void)client.hear_until("\r\n\r\n");
+  const auto flood = [&](char first, int pings) {
+    std::string all;
+    for (int i = 0; i < pings; ++i) all += masked(0x9, {first, static_cast<char>('0' + i)});
+    client.say(all);
+  };
+  flood('a', 40);
+  EXPECT_THAT(client.hear_until(std::string{'a', static_cast<char>('0' + 39)}), HasSubstr("a0"));
+  flood('b', 40);
+  (void)client.hear_all();
+  EXPECT_TRUE(open_sockets(service.server, 0));
+}
+
+TEST(WebSocket, LongCookiesDoNotKeepAPageOut) {
+  TestServer service;
+  service.frame->publish(frame_document(1));
+  RawClient page(service.server.port());
+  page.say(hello("Cookie: " + std::string(6000, 'c') + "\r\n"));
+  EXPECT_THAT(page.hear_until(R"({"n":1})"), HasSubstr("101 "));
+}
+
+/// False while the server still counts a connection.
+bool no_connection(const Server& server) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (server.counters().connections_open != 0) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::yield();
+  }
+  return true;
+}
+
+TEST(WebSocket, WhoSaysTooMuchBehindTheHandshakeLeavesNothing) {
+  TestServer service;
+  {
+    RawClient hasty(service.server.port());
+    hasty.say(hello() + std::string(5000, 'x'));
+    (void)hasty.hear_all();
+  }
+  EXPECT_TRUE(no_connection(service.server));
+}
+
+TEST(WebSocket, AServerThatStopsSaysSo) {
+  TestServer service;
+  RawClient client(service.server.port());
+  client.say(hello());
+  (void)client.hear_until("\r\n\r\n");
+  ASSERT_TRUE(open_sockets(service.server, 1));
+  const auto begin = std::chrono::steady_clock::now();
+  std::thread stopping([&] { service.server.stop(); });
+  EXPECT_EQ(client.hear_until("\xE9"), std::string("\x88\x02\x03\xE9"));
+  client.say(std::string("\xF3\x80\x01\x02\x03\x04", 6));  // no frame at all
+  stopping.join();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+}
+
 TEST(WebSocket, FragmentsWithoutAnEndAndWithoutBytesCostNobodyElse) {
   TestServer service;
   service.frame->publish(frame_document(1));

@@ -9,7 +9,9 @@
 namespace chorus::http {
 namespace {
 
+using testing::EndsWith;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 using namespace std::chrono_literals;
 
@@ -362,11 +364,16 @@ TEST_F(ConversationTest, AProxysClientCountsForItself) {
 
 TEST_F(ConversationTest, AWebSocketIsHandedOverWithWhatHasBeenRead) {
   const std::string open =
-      "GET /frame HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n\r\n";
+      "GET /frame HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+      "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nCookie: cc\r\n\r\n";
   begin();
-  say(open);
+  say(open + "frames");
   EXPECT_TRUE(upgraded_);
-  EXPECT_EQ(talk_->unread(), open);
+  const std::string handshake = talk_->handshake();
+  EXPECT_THAT(handshake, StartsWith("GET / HTTP/1.1\r\n"));
+  EXPECT_THAT(handshake, HasSubstr("Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"));
+  EXPECT_THAT(handshake, EndsWith("\r\n\r\nframes"));
+  EXPECT_THAT(handshake, Not(HasSubstr("Cookie"))) << "Beast takes 1536 bytes, frames included";
   EXPECT_NE(talk_->reaction().entry, nullptr);
   obey(talk_->expired(now_ + 1h));
   EXPECT_FALSE(closed_) << "it is no concern of the conversation any more";

@@ -1,0 +1,108 @@
+#include "common/http/websocket_stream.h"
+
+#include <array>
+#include <chrono>
+#include <utility>
+
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/websocket/stream.hpp>
+
+#include "common/net/token_bucket.h"
+
+namespace chorus::http {
+namespace {
+
+namespace websocket = boost::beast::websocket;
+
+constexpr net::Allowance kPings{.per_second = 5.0, .burst = 50.0};
+
+}  // namespace
+
+struct WebSocketStream::Beast {
+  Beast(net::Socket socket, std::size_t max_message)
+      : stream(std::move(socket)), said(max_message) {}
+
+  websocket::stream<net::Socket> stream;
+  boost::beast::flat_buffer said;
+  net::TokenBucket pings{kPings};
+  bool writing = false;
+};
+
+WebSocketStream::WebSocketStream(net::Socket socket, const WebSocketOptions& options)
+    : beast_(std::make_unique<Beast>(std::move(socket), options.max_message)) {
+  websocket::stream_base::timeout patience{};
+  patience.handshake_timeout = options.limits.header_timeout;
+  patience.idle_timeout = options.limits.idle_timeout;
+  patience.keep_alive_pings = true;
+  auto& stream = beast_->stream;
+  stream.set_option(patience);
+  stream.read_message_max(options.max_message);
+  stream.text(true);
+  stream.auto_fragment(false);  // pieces of 4 KiB cost three times the CPU of one message
+  if (options.protocol.empty()) return;
+  stream.set_option(websocket::stream_base::decorator(
+      [protocol = options.protocol](websocket::response_type& response) {
+        response.set("Sec-WebSocket-Protocol", protocol);
+      }));
+}
+
+WebSocketStream::~WebSocketStream() = default;
+
+void WebSocketStream::accept(std::string received, Done done) {
+  beast_->stream.async_accept(asio::buffer(received), std::move(done));
+}
+
+void WebSocketStream::on_flood(std::function<void()> hang_up) {
+  beast_->stream.control_callback([pings = &beast_->pings, hang_up = std::move(hang_up)](
+                                      websocket::frame_type kind, boost::beast::string_view) {
+    if (kind != websocket::frame_type::ping) return;
+    if (!pings->take(1.0, std::chrono::steady_clock::now())) hang_up();
+  });
+}
+
+void WebSocketStream::read(Done done) {
+  beast_->said.consume(beast_->said.size());
+  beast_->stream.async_read(beast_->said, [done = std::move(done)](net::error_code failed,
+                                                                   std::size_t) { done(failed); });
+}
+
+std::string_view WebSocketStream::message() const {
+  const auto bytes = beast_->said.cdata();
+  return {static_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+bool WebSocketStream::is_text() const { return beast_->stream.got_text(); }
+
+void WebSocketStream::write(std::string_view text, Done done) {
+  beast_->writing = true;
+  beast_->stream.async_write(
+      asio::buffer(text.data(), text.size()),
+      [writing = &beast_->writing, done = std::move(done)](net::error_code failed, std::size_t) {
+        *writing = false;  // `done` keeps the stream
+        done(failed);
+      });
+}
+
+/// By hand: Beast's close waits for its read, and a read that meets a broken frame at that moment
+/// waits for the close (1.74: close.hpp, read.hpp), whatever becomes of the socket.
+bool WebSocketStream::say_goodbye(Goodbye code) {
+  if (beast_->writing || !is_open()) return false;
+  const auto number = static_cast<std::uint16_t>(code);
+  const std::array<unsigned char, 4> frame{0x88, 2, static_cast<unsigned char>(number >> 8),
+                                           static_cast<unsigned char>(number & 0xFF)};
+  net::error_code failed;
+  socket().non_blocking(true, failed);
+  if (!failed && socket().write_some(asio::buffer(frame), failed) != frame.size()) return false;
+  if (!failed) socket().shutdown(net::Socket::shutdown_send, failed);
+  return !failed;
+}
+
+bool WebSocketStream::is_open() const { return beast_->stream.is_open(); }
+net::Socket& WebSocketStream::socket() { return beast_->stream.next_layer(); }
+
+void WebSocketStream::close() {
+  net::error_code ignored;
+  socket().close(ignored);
+}
+
+}  // namespace chorus::http

@@ -1,0 +1,66 @@
+// One WebSocket (RFC 6455) of the server: Boost.Beast's stream, compiled once, its traps closed.
+//
+// Everything runs on the server's thread.  What is handed over keeps its owner alive until it is
+// called, once each.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "common/http/server.h"
+#include "common/net/asio.h"
+
+namespace chorus::http {
+
+struct WebSocketOptions {
+  const ServerLimits& limits;
+  std::size_t max_message = 0;  ///< Bytes of one message from the client.
+  std::string protocol = {};    ///< Answered in Sec-WebSocket-Protocol; empty: none.
+};
+
+enum class Goodbye : std::uint16_t {
+  GoingAway = 1001,
+  UnknownData = 1003,
+  Policy = 1008,
+  Internal = 1011
+};
+
+class WebSocketStream {
+ public:
+  using Done = std::function<void(net::error_code)>;
+
+  WebSocketStream(net::Socket socket, const WebSocketOptions& options);
+  ~WebSocketStream();
+  WebSocketStream(const WebSocketStream&) = delete;
+  WebSocketStream& operator=(const WebSocketStream&) = delete;
+
+  /// `received`: see handshake_of (websocket_handshake.h).  May call `done` before it returns.
+  void accept(std::string received, Done done);
+  /// Called for a client that sends more pings than anybody needs.
+  void on_flood(std::function<void()> hang_up);
+
+  void read(Done done);
+  /// What was read last.
+  [[nodiscard]] std::string_view message() const;
+  [[nodiscard]] bool is_text() const;
+
+  /// One text message; `text` must outlive it.
+  void write(std::string_view text, Done done);
+  /// Sends a close frame and says nothing after it.  While a write is under way, or when the frame
+  /// does not fit, it does nothing and returns false: then close the socket.
+  [[nodiscard]] bool say_goodbye(Goodbye code);
+
+  [[nodiscard]] bool is_open() const;
+  [[nodiscard]] net::Socket& socket();
+  void close();
+
+ private:
+  struct Beast;
+  std::unique_ptr<Beast> beast_;
+};
+
+}  // namespace chorus::http
