@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMaxSaid = 4096;  ///< Bytes of one message from a client.
 /// Beast ends a broken or closed conversation by waiting for the client to hang up; we check this
 /// often whether one is over, and hang up ourselves.
-constexpr std::chrono::seconds kLook{1};
+constexpr std::chrono::milliseconds kLook{250};
 constexpr std::string_view kMediaType = "application/json";
 
 class WebSocketConnection final : public Connection {
