@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <optional>
 #include <tuple>
@@ -18,12 +19,6 @@ namespace {
 constexpr std::size_t kMaxTracks = 256;  // Four times what a frame holds.
 constexpr double kVelocityBlend = 0.2;   // share of the newest difference; smooths 30 Hz to ~0.15 s
 constexpr double kFastest = 4.0;  // [m/s] a sprint; keeps one wild view from throwing the track
-
-/// A body with its core point; bodies without any seen joint have none and are left out.
-struct PlacedView {
-  SensorView view;
-  Eigen::Vector3d core = Eigen::Vector3d::Zero();
-};
 
 template <class Joints>
 std::optional<Eigen::Vector3d> mean_of(const Joints& joints) {
@@ -56,7 +51,9 @@ std::vector<PlacedView> placed_views(std::vector<SensorView> views) {
   std::vector<PlacedView> sights;
   for (SensorView& view : views) {
     const auto core = core_of(view.skeleton);
-    if (core) sights.push_back({std::move(view), *core});
+    const bool rays = has_rays_alone(view.skeleton) && view.eye.allFinite();
+    if (core || rays)
+      sights.push_back({std::move(view), core.value_or(Eigen::Vector3d::Zero()), rays});
   }
   std::sort(sights.begin(), sights.end(), [](const PlacedView& a, const PlacedView& b) {
     return std::tie(a.view.sensor, a.view.body) < std::tie(b.view.sensor, b.view.body);
@@ -82,13 +79,22 @@ std::vector<Candidate> predict(const Tracks& tracks, Timestamp instant,
   return candidates;
 }
 
+/// How far a body is from a track [m]; not a number when that cannot be told.
+double cost_of(const PlacedView& body, const Candidate& candidate) {
+  if (!body.rays) return horizontal_distance(body.core, candidate.predicted);
+  const Eigen::Vector3d shift = candidate.predicted - candidate.track.core;
+  auto off = misfit(body.view, candidate.track.joints, shift);
+  if (!off) off = misfit(body.view, candidate.predicted);
+  return off.value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
 /// Assigns one sensor's bodies to the tracks; returns those without a track.
 std::vector<PlacedView> match_sensor(std::vector<PlacedView> bodies,
                                      std::vector<Candidate>& candidates, double gate) {
   CostTable table{bodies.size(), candidates.size(), {}, gate};
   for (const PlacedView& body : bodies) {
     for (const Candidate& c : candidates) {
-      table.cost.push_back(horizontal_distance(body.core, c.predicted));
+      table.cost.push_back(cost_of(body, c));
     }
   }
   const auto chosen = assign(table);
@@ -153,16 +159,38 @@ bool share_a_sensor(const Candidate& a, const Candidate& b) {
                      [&](const PlacedView& s) { return has_sensor(b.sights, s.view.sensor); });
 }
 
-Eigen::Vector3d centre_of(const std::vector<PlacedView>& sights) {
+/// Of the views that have a place, else of where their rays meet; nothing for a lone ray view.
+std::optional<Eigen::Vector3d> centre_of(const Candidate& candidate) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const PlacedView& s : sights) sum += s.core;
-  return sum / static_cast<double>(sights.size());
+  double count = 0.0;
+  for (const PlacedView& s : candidate.sights) {
+    if (s.rays) continue;
+    sum += s.core;
+    count += 1.0;
+  }
+  if (count == 0.0) return middle_of(candidate.track.joints);
+  return Eigen::Vector3d(sum / count);
 }
 
+/// A track that only one camera sees stays where it is expected, as long as tracks survive unseen.
 void update(Candidate& candidate, Timestamp instant) {
   if (candidate.sights.empty()) return;
   Track& track = candidate.track;
-  const Eigen::Vector3d centre = centre_of(candidate.sights);
+  const bool rays = std::ranges::any_of(candidate.sights, &PlacedView::rays);
+  const Located before = std::exchange(track.joints, {});
+  if (rays) track.joints = locate(candidate.sights);
+  const auto found = centre_of(candidate);
+  const auto place_rays = [&](const Eigen::Vector3d& core) {
+    for (PlacedView& sight : candidate.sights) {
+      if (sight.rays) sight.core = core;
+    }
+  };
+  place_rays(found.value_or(candidate.predicted));
+  if (!found) {
+    track.joints = before;
+    return;
+  }
+  const Eigen::Vector3d& centre = *found;
   const double elapsed = seconds(instant - track.seen);
   if (track.hits > 0 && elapsed > 0) {
     const Eigen::Vector3d step = (centre - track.core) / elapsed;
@@ -250,6 +278,31 @@ Grouping publish(std::vector<Candidate> candidates, const AssociationConfig& con
   return grouping;
 }
 
+/// Takes the views of rays out of the others.
+std::vector<PlacedView> taken_rays(std::vector<PlacedView>& views) {
+  const auto rays = std::stable_partition(views.begin(), views.end(),
+                                          [](const PlacedView& view) { return !view.rays; });
+  std::vector<PlacedView> taken(std::make_move_iterator(rays),
+                                std::make_move_iterator(views.end()));
+  views.erase(rays, views.end());
+  return taken;
+}
+
+/// New people, with where their joints are.
+std::vector<Candidate> found(std::vector<std::vector<PlacedView>> people, std::uint64_t& next_id) {
+  std::vector<Candidate> candidates;
+  for (auto& members : people) {
+    Candidate fresh;
+    fresh.track.id = PersonId{next_id++};
+    fresh.track.joints = locate(members);
+    fresh.track.core = fresh.predicted =
+        middle_of(fresh.track.joints).value_or(Eigen::Vector3d::Zero());
+    fresh.sights = std::move(members);
+    candidates.push_back(std::move(fresh));
+  }
+  return candidates;
+}
+
 }  // namespace
 
 Grouping group(Scene scene, const Tracks& tracks, const AssociationConfig& config) {
@@ -258,12 +311,15 @@ Grouping group(Scene scene, const Tracks& tracks, const AssociationConfig& confi
   std::vector<PlacedView> leftovers =
       match(placed_views(std::move(scene.views)), candidates, config.gate);
   std::uint64_t next_id = std::max<std::uint64_t>(tracks.next_id, 1);
-  for (auto& members : cluster(std::move(leftovers), config.cluster)) {
-    if (candidates.size() >= kMaxTracks) break;
-    Candidate fresh;
-    fresh.track.id = PersonId{next_id++};
-    fresh.sights = std::move(members);
-    candidates.push_back(std::move(fresh));
+  std::vector<PlacedView> rays = taken_rays(leftovers);
+  std::vector<Candidate> fresh = found(cluster(std::move(leftovers), config.cluster), next_id);
+  if (!rays.empty()) {
+    rays = match(std::move(rays), fresh, config.gate);
+    for (Candidate& each : found(meet(std::move(rays), config.ray_cluster, config.bodies), next_id))
+      fresh.push_back(std::move(each));
+  }
+  for (Candidate& each : fresh) {
+    if (candidates.size() < kMaxTracks) candidates.push_back(std::move(each));
   }
   for (Candidate& candidate : candidates) update(candidate, instant);
   merge_doubles(candidates, config);

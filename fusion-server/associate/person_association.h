@@ -5,7 +5,9 @@
 // from its track), one-to-one per sensor; bodies left over are clustered across sensors into new
 // people.  Two tracks on one spot that never share a sensor are one person and become the older
 // one.  A person whom only one sensor sees where others look is not published at once
-// (admission.h).  Ids are never reused.
+// (admission.h).  Bodies of cameras without depth, whose joints are rays, are matched by how far
+// their rays pass the joints of a track (ray_matching.h); a single one founds nobody, and does not
+// keep anybody alive.  Ids are never reused.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +15,16 @@
 
 #include "common/base/units.h"
 #include "fusion-server/associate/plausible.h"
+#include "fusion-server/associate/ray_matching.h"
 #include "fusion-server/flow.h"
 
 namespace chorus::associate {
 
 struct AssociationConfig {
-  double gate = 0.6;       ///< Core-joint distance beyond which a body is not this person [m].
-  double cluster = 0.4;    ///< New bodies of different sensors closer than this are one person [m].
-  int confirm_frames = 3;  ///< A new person is published after so many instants.
+  double gate = 0.6;     ///< Core-joint distance beyond which a body is not this person [m].
+  double cluster = 0.4;  ///< New bodies of different sensors closer than this are one person [m].
+  double ray_cluster = 0.15;  ///< New people: rays of different cameras pass this close [m].
+  int confirm_frames = 3;     ///< A new person is published after so many instants.
   Duration coast = std::chrono::seconds(1);  ///< How long a track survives without any view.
   /// How many instants two confirmed tracks share a spot, but no sensor, before they merge.
   int merge_frames = 15;
@@ -43,6 +47,7 @@ struct Track {
   Eigen::Vector3d core = Eigen::Vector3d::Zero();      ///< Mean of the core joints, world [m].
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
   int shadowed = 0;  ///< Consecutive instants on an older track's spot without a common sensor.
+  Located joints;    ///< Where they were then; known while cameras show rays.
   bool admitted = false;  ///< It may be published; once admitted, always.
   bool doubted = false;   ///< A sensor has looked where it was, and seen nobody.
   Duration alone{0};      ///< How long one sensor alone has seen it since then.

@@ -10,11 +10,11 @@ namespace {
 
 constexpr std::size_t kManyJoints = 10;
 
-/// FNV-1a over the bytes of all positions that were seen.
+/// FNV-1a over the bytes of all positions and rays that were given.
 std::uint64_t hash_of(const Skeleton<SensorSpace>& body) {
   std::uint64_t hash = 14695981039346656037ULL;
   for (const Joint& joint : body.joints) {
-    if (!joint.seen()) continue;
+    if (!joint.given()) continue;
     for (const double value : {joint.position.x(), joint.position.y(), joint.position.z()}) {
       std::uint64_t bits = 0;
       std::memcpy(&bits, &value, sizeof bits);

@@ -6,12 +6,24 @@
 namespace chorus::fusion {
 namespace {
 
-constexpr double kMinSigma = 1e-4;  ///< [m] keeps a careless configuration from dividing by zero
+constexpr double kMinSigma =
+    1e-4;  ///< [m], [rad] keeps a careless configuration from dividing by zero
 constexpr double kMinFactor = 1.0;  ///< an inferred joint is never better than a tracked one
 constexpr double kMinRay = 1e-3;    ///< [m] a joint in the eye has no line of sight
 
 double usable(double sigma, double factor) {
   return sigma > kMinSigma ? sigma * factor : kMinSigma * factor;
+}
+
+double factor_of(const Joint& joint, const NoiseModel& noise) {
+  const bool inferred = joint.state == JointState::Inferred;
+  return inferred ? std::max(kMinFactor, noise.inferred_factor) : kMinFactor;
+}
+
+/// As large along the ray, where nothing is asked.
+Eigen::Matrix3d ray_covariance(const Joint& joint, const NoiseModel& noise) {
+  const double sigma = usable(noise.ray, factor_of(joint, noise));
+  return sigma * sigma * Eigen::Matrix3d::Identity();
 }
 
 class LineOfSightErrors final : public ErrorModel {
@@ -25,8 +37,9 @@ class LineOfSightErrors final : public ErrorModel {
       return joint.covariance.matrix() + kMinSigma * kMinSigma * Eigen::Matrix3d::Identity();
     }
     const auto own = of_sensors_.find(view.sensor);
-    return line_of_sight_covariance(joint, view.eye,
-                                    own == of_sensors_.end() ? noise_ : own->second);
+    const NoiseModel& noise = own == of_sensors_.end() ? noise_ : own->second;
+    if (joint.bears()) return ray_covariance(joint, noise);
+    return line_of_sight_covariance(joint, view.eye, noise);
   }
 
  private:
@@ -38,8 +51,7 @@ class LineOfSightErrors final : public ErrorModel {
 
 Eigen::Matrix3d line_of_sight_covariance(const Joint& joint, const Eigen::Vector3d& eye,
                                          const NoiseModel& noise) {
-  const bool inferred = joint.state == JointState::Inferred;
-  const double factor = inferred ? std::max(kMinFactor, noise.inferred_factor) : kMinFactor;
+  const double factor = factor_of(joint, noise);
   const double along = usable(noise.along, factor);
   const double across = usable(noise.across, factor);
   const Eigen::Matrix3d round = across * across * Eigen::Matrix3d::Identity();

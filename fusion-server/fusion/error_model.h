@@ -1,7 +1,7 @@
 // How uncertain one view's measurement of one joint is, for every method of fusion.
 //
-// A measurement with a covariance of its own is believed.  Otherwise a sensor is sharp across its
-// line of sight and blunt along it:
+// A measurement with a covariance of its own is believed.  Otherwise a ray errs alike in all
+// directions, and a sensor of points is sharp across its line of sight and blunt along it:
 //   Sigma = across^2 I + (along^2 - across^2) r r^T,   r = unit ray eye -> joint
 #pragma once
 
@@ -16,8 +16,9 @@ namespace chorus::fusion {
 class ErrorModel {
  public:
   virtual ~ErrorModel() = default;
-  /// Of the joint's position in world axes [m^2]; positive definite.  Asked only for joints that
-  /// have a place in the view.
+  /// Of the joint's position [m^2], or of its ray's direction [rad^2], in world axes.  That of a
+  /// position is positive definite; that of a direction need not be, because only what is across
+  /// the ray counts.  Asked only for joints that are given in the view.
   [[nodiscard]] virtual Eigen::Matrix3d covariance(const SensorView& view, JointId joint) const = 0;
 };
 

@@ -17,6 +17,7 @@ enum class Method {
   InverseVariance,  ///< Anisotropic inverse variance along and across the line of sight, robust.
   BestSkeleton,     ///< One view alone; changes hands only after a while.  Remembers.
   OttoKalman,       ///< A Kalman filter per joint with Otto's weights in R.  Remembers.
+  PointsAndRays,    ///< Robust least squares over points and rays of cameras.  Remembers.
 };
 
 struct FusionConfig {
@@ -27,13 +28,17 @@ struct FusionConfig {
   NoiseModel noise;  ///< For sensors without an entry of their own.
   std::map<SensorId, NoiseModel> sensor_noise;
   double common_sigma = 0.0;  ///< Error all sensors share [m]; added to the stated variance.
-  double huber = 1.5;         ///< In standard deviations; robust loss of InverseVariance.
+  double huber = 1.5;  ///< In standard deviations; robust loss of InverseVariance, PointsAndRays.
   /// BestSkeleton: how long another view must be better before it takes over.
   Duration hysteresis = std::chrono::milliseconds(300);
   /// OttoKalman: standard deviation of a view of weight 1 [m].
   double kalman_sigma = 0.020;
-  /// OttoKalman: how long a joint that nobody sees is predicted.
+  /// OttoKalman: how long a joint that nobody sees is predicted.  PointsAndRays: how long its last
+  /// place bounds the depth of a joint that a single ray shows.
   Duration kalman_coast = std::chrono::milliseconds(300);
+
+  /// PointsAndRays: a joint that rays determine less well than this is missing [m].
+  double max_sigma = 0.15;
 
   bool operator==(const FusionConfig&) const = default;
 };

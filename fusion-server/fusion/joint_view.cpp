@@ -16,6 +16,12 @@ std::uint64_t bit_of(const SensorId& sensor, const std::vector<SensorId>& sensor
   return at == sensors.end() || index >= kMaxSensors ? 0 : std::uint64_t{1} << index;
 }
 
+JointView joint_view_of(const SensorView& view, JointId joint, const std::vector<SensorId>& sensors,
+                        const ErrorModel& errors) {
+  return {view.skeleton[joint], Weight::clamped(view.weight).value(),
+          errors.covariance(view, joint), bit_of(view.sensor, sensors), view.eye};
+}
+
 }  // namespace
 
 std::vector<JointView> joint_views_of(JointId joint, const Person& person,
@@ -23,10 +29,19 @@ std::vector<JointView> joint_views_of(JointId joint, const Person& person,
                                       const ErrorModel& errors) {
   std::vector<JointView> views;
   for (const SensorView& view : person.views) {
-    const Joint& seen = view.skeleton[joint];
-    if (!seen.seen()) continue;
-    views.push_back({seen, Weight::clamped(view.weight).value(), errors.covariance(view, joint),
-                     bit_of(view.sensor, sensors)});
+    if (view.skeleton[joint].seen()) views.push_back(joint_view_of(view, joint, sensors, errors));
+  }
+  return views;
+}
+
+std::vector<JointView> points_and_rays_of(JointId joint, const Person& person,
+                                          const std::vector<SensorId>& sensors,
+                                          const ErrorModel& errors) {
+  std::vector<JointView> views;
+  for (const SensorView& view : person.views) {
+    const bool usable = view.skeleton[joint].seen() || view.eye.allFinite();
+    if (usable && view.skeleton[joint].given())
+      views.push_back(joint_view_of(view, joint, sensors, errors));
   }
   return views;
 }

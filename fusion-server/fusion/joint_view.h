@@ -10,12 +10,14 @@
 
 namespace chorus::fusion {
 
-/// A joint in one view, in world space.  Rays have no place and are left out.
+/// A joint in one view, in world space: a point, or a ray from the view's eye.
 struct JointView {
   Joint joint;
-  double weight = 0.0;                                       ///< Of the view, Eqs. (1)-(3); >= 0.
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< By the error model [m^2].
-  std::uint64_t contributor = 0;  ///< The sensor's bit in FusedBody::contributors.
+  double weight = 0.0;  ///< Of the view, Eqs. (1)-(3); >= 0.
+  /// By the error model: of a point [m^2], of a ray's direction [rad^2].
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
+  std::uint64_t contributor = 0;                  ///< The sensor's bit in FusedBody::contributors.
+  Eigen::Vector3d eye = Eigen::Vector3d::Zero();  ///< Where the sensor stands [m].
 };
 
 struct FusedJoint {
@@ -24,10 +26,16 @@ struct FusedJoint {
   std::uint64_t contributors = 0;
 };
 
-/// One joint in all views of a person.  Weights that are NaN become zero.
+/// One joint in all views of a person that have a place for it; rays are left out.  Weights that
+/// are NaN become zero.
 [[nodiscard]] std::vector<JointView> joint_views_of(JointId joint, const Person& person,
                                                     const std::vector<SensorId>& sensors,
                                                     const ErrorModel& errors);
+
+/// The same with rays.
+[[nodiscard]] std::vector<JointView> points_and_rays_of(JointId joint, const Person& person,
+                                                        const std::vector<SensorId>& sensors,
+                                                        const ErrorModel& errors);
 
 /// Sets a fused joint's covariance, and the mean variance that follows from it.
 void state_covariance(FusedJoint& fused, const Eigen::Matrix3d& covariance);

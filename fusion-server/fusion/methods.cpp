@@ -6,6 +6,7 @@
 #include "fusion-server/fusion/best_skeleton.h"
 #include "fusion-server/fusion/joint_wise.h"
 #include "fusion-server/fusion/otto_kalman.h"
+#include "fusion-server/fusion/points_and_rays.h"
 
 namespace chorus::fusion {
 namespace {
@@ -17,6 +18,7 @@ constexpr std::array kMethods{
     MethodRow{Method::BestView, "best-view", joint_wise},
     MethodRow{Method::BestSkeleton, "best-skeleton", best_skeleton},
     MethodRow{Method::OttoKalman, "otto-kalman", otto_kalman},
+    MethodRow{Method::PointsAndRays, "points-and-rays", points_and_rays},
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "common/sensor/limits.h"
 #include "fusion-server/align/patience.h"
 #include "fusion-server/facing/front_rear.h"
+#include "fusion-server/facing/stand_in.h"
 
 namespace chorus::pipeline {
 namespace {
@@ -98,7 +99,12 @@ std::set<PersonId> ids_of(const associate::Tracks& tracks) {
 /// 5.2.2 again, now that identities are known: sides agreed between the sensors.
 void resolve_sides(std::vector<Person>& people, Timestamp instant, Memory& memory,
                    const facing::SidesConfig& config) {
-  for (Person& person : people) facing::resolve_sides(person, instant, memory.sides, config);
+  for (Person& person : people) {
+    const auto track = std::ranges::find(memory.tracks.people, person.id, &associate::Track::id);
+    const auto figures = facing::stand_in(person, track->core);
+    facing::resolve_sides(person, instant, memory.sides, config);
+    facing::back_to_rays(person, figures);
+  }
 }
 
 /// 5.2.5, Eqs. (1)-(3).
@@ -138,6 +144,18 @@ std::vector<SensorReport> report(const std::vector<AlignedSensor>& aligned,
   return listed;
 }
 
+/// A single ray bounds nobody's depth for long: whom only such rays show has no joint any more.
+void leave_out_the_unplaced(std::vector<FusedBody>& bodies, const std::vector<Person>& people) {
+  const auto of_rays = [](const SensorView& view) {
+    return associate::has_rays_alone(view.skeleton);
+  };
+  std::erase_if(bodies, [&](const FusedBody& body) {
+    const auto person = std::ranges::find(people, body.id, &Person::id);
+    return std::ranges::none_of(body.skeleton.joints, &Joint::seen) &&
+           std::ranges::all_of(person->views, of_rays);
+  });
+}
+
 }  // namespace
 
 std::vector<SensorId> awaited(const Inputs& in, const Histories& histories,
@@ -175,6 +193,7 @@ Step step(const Inputs& in, const Histories& histories, const Registration& regi
   Snapshot snapshot{in.sequence, in.instant, registered_sensors(registration), {}, {}};
   snapshot.bodies = seen.memory.fusion.fuse(seen.people, {in.instant, snapshot.sensors},
                                             config.fusion);  // 5.2.5
+  leave_out_the_unplaced(snapshot.bodies, seen.people);
   seen.memory.seating.seat(snapshot.bodies, in.instant, config.association.coast, config.seating);
   snapshot.reports = std::move(seen.reports);
   return {std::move(snapshot), std::move(seen.memory)};

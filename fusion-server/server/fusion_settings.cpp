@@ -20,6 +20,7 @@ void read_noise(ConfigReader& reader, fusion::NoiseModel& out) {
   reader.read("along_m", out.along, 1e-4, 1.0);
   reader.read("across_m", out.across, 1e-4, 1.0);
   reader.read("inferred_factor", out.inferred_factor, 1.0, 100.0);
+  reader.read_deg("ray_deg", out.ray, 0.01, 45.0);
 }
 
 void read_sensor(ConfigReader& reader, LiveSettings& out, std::set<SensorId>& known) {
@@ -84,6 +85,7 @@ void read_quality(ConfigReader reader, fusion::QualityLimits& out) {
 void read_association(ConfigReader reader, associate::AssociationConfig& out) {
   reader.read("gate_m", out.gate, 0.05, 10.0);
   reader.read("cluster_m", out.cluster, 0.05, 10.0);
+  reader.read("ray_cluster_m", out.ray_cluster, 0.001, 10.0);
   reader.read("confirm_frames", out.confirm_frames, 1, 1000);
   reader.read_s("coast_s", out.coast, seconds(0), seconds(60));
   reader.read("merge_frames", out.merge_frames, 1, 1000);
@@ -106,6 +108,7 @@ void read_fusion(ConfigReader reader, fusion::FusionConfig& out) {
   reader.read_ms("hysteresis_ms", out.hysteresis, milliseconds(0), seconds(10));
   reader.read("kalman_sigma_m", out.kalman_sigma, 1e-4, 1.0);
   reader.read_ms("kalman_coast_ms", out.kalman_coast, milliseconds(0), seconds(10));
+  reader.read("max_sigma_m", out.max_sigma, 1e-3, 100.0);
   ConfigReader noise = reader.child("noise");
   read_noise(noise, out.noise);
 }

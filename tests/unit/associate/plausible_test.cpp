@@ -65,5 +65,19 @@ TEST(FrozenBodies, APersonWhoStandsStillIsNone) {
   }
 }
 
+TEST(FrozenBodies, RaysThatMoveAreNotFrozen) {
+  FrozenBodies watch;
+  for (int i = 0; i < 200; ++i) {
+    SensorFrame frame;
+    frame.captured = from_unix_ns(1'790'000'000'000'000'000) + std::chrono::milliseconds(33 * i);
+    BodyFrame& body = frame.bodies.emplace_back();
+    Joint& neck = body.skeleton[JointId::Neck];
+    neck.position = Eigen::Vector3d(0.001 * i, 0, 1).normalized();
+    neck.state = JointState::Tracked;
+    neck.measurement = Measurement::Ray;
+    ASSERT_EQ(watch.remove_from(frame, {}), 0u) << i;
+  }
+}
+
 }  // namespace
 }  // namespace chorus::associate

@@ -15,9 +15,9 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 const std::vector<SensorId> kSensors{sensor(1), sensor(2), sensor(3), sensor(4)};
-constexpr std::array kMethods{Method::Otto,         Method::Mean,
-                              Method::BestView,     Method::InverseVariance,
-                              Method::BestSkeleton, Method::OttoKalman};
+constexpr std::array kMethods{
+    Method::Otto,         Method::Mean,       Method::BestView,     Method::InverseVariance,
+    Method::BestSkeleton, Method::OttoKalman, Method::PointsAndRays};
 
 FusionConfig by(Method method) {
   FusionConfig config;

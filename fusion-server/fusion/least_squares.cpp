@@ -1,0 +1,240 @@
+#include "fusion-server/fusion/least_squares.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include "common/geometry/ray.h"
+
+namespace chorus::fusion {
+namespace {
+
+constexpr int kIterations = 20;
+constexpr double kSettled = 1e-6;       // [m]
+constexpr double kFar = 5.0;            // standard deviations from which influence fades
+constexpr double kContradicts = 3.0;    // standard deviations beyond which other starts are tried
+constexpr std::size_t kMaxStarts = 12;  // views that pairs are taken from
+constexpr double kNearest = 0.1;        // [m] a joint nearer than this is behind its camera
+constexpr double kFirstRange = 3.0;     // [m] of rays while their range is unknown
+constexpr double kMinAngle = 1e-5;      // [rad] no camera is sharper
+constexpr double kLeastInformation = 1e-2;  // [1/m^2] less along any axis is none: 10 m
+constexpr double kScalePrior = 4.0;    // views, or degrees of freedom, that say the scale is one
+constexpr std::size_t kManyViews = 4;  // from which a median tells the scale
+constexpr double kMedianOf2 = 1.3863;  // of chi^2 with two degrees of freedom
+constexpr double kMedianOf3 = 2.3660;
+
+/// A view as a point with information; that of a ray is zero along it.
+struct Term {
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  bool usable = true;  ///< The joint is before this camera.
+};
+
+/// Across the ray, at range one [1/rad^2].
+Eigen::Matrix3d angular_information(const JointView& view) {
+  const Eigen::Vector3d& d = view.joint.position;
+  Eigen::Matrix<double, 3, 2> basis;
+  basis.col(0) = d.unitOrthogonal();
+  basis.col(1) = d.cross(basis.col(0));
+  const Eigen::Matrix2d spread = basis.transpose() * view.covariance * basis +
+                                 kMinAngle * kMinAngle * Eigen::Matrix2d::Identity();
+  return basis * spread.inverse() * basis.transpose();
+}
+
+/// All views of a joint; the rays' part that does not depend on the point is worked out once.
+class Terms {
+ public:
+  explicit Terms(std::span<const JointView> views) : views_(views) {
+    for (const JointView& view : views) {
+      const bool ray = view.joint.bears();
+      fixed_.push_back(ray ? angular_information(view) : view.covariance.inverse());
+    }
+  }
+
+  [[nodiscard]] std::size_t size() const { return views_.size(); }
+  [[nodiscard]] int constraints(std::size_t i) const { return views_[i].joint.bears() ? 2 : 3; }
+
+  /// About a point; without one, ranges are kFirstRange.
+  [[nodiscard]] Term at(std::size_t i, const std::optional<Eigen::Vector3d>& point) const {
+    const JointView& view = views_[i];
+    if (!view.joint.bears()) return {view.joint.position, fixed_[i], true};
+    const Eigen::Vector3d& d = view.joint.position;
+    const double range = point ? d.dot(*point - view.eye) : kFirstRange;
+    if (range < kNearest) return {view.eye, Eigen::Matrix3d::Zero(), false};
+    return {view.eye + range * d, fixed_[i] / (range * range), true};
+  }
+
+ private:
+  std::span<const JointView> views_;
+  std::vector<Eigen::Matrix3d> fixed_;
+};
+
+struct Estimate {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+};
+
+std::optional<Estimate> solve(const Terms& terms, std::span<const double> trust,
+                              const std::optional<Eigen::Vector3d>& about) {
+  Estimate estimate;
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    const Term term = terms.at(i, about);
+    estimate.information += trust[i] * term.information;
+    right += trust[i] * term.information * term.place;
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(estimate.information, Eigen::EigenvaluesOnly);
+  if (!(solver.eigenvalues().minCoeff() > kLeastInformation)) return std::nullopt;
+  estimate.position = estimate.information.llt().solve(right);
+  return estimate;
+}
+
+/// In standard deviations; infinite behind a camera.
+double distance_of(const Term& term, const Eigen::Vector3d& point) {
+  if (!term.usable) return std::numeric_limits<double>::infinity();
+  const Eigen::Vector3d off = point - term.place;
+  return std::sqrt(std::max(0.0, off.dot(term.information * off)));
+}
+
+double trust_at(double distance, double huber) {
+  if (std::isinf(distance)) return 0.0;
+  if (distance <= huber || !(huber > 0)) return 1.0;
+  const double trust = huber / distance;
+  return distance <= kFar ? trust : trust * kFar / distance;
+}
+
+struct Loss {
+  double huber;
+  double scale;  ///< Of the residuals, squared.
+};
+
+std::vector<double> trusts_at(const Terms& terms, const Eigen::Vector3d& point, const Loss& loss) {
+  std::vector<double> trust;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    const double distance = distance_of(terms.at(i, point), point) / std::sqrt(loss.scale);
+    trust.push_back(trust_at(distance, loss.huber));
+  }
+  return trust;
+}
+
+/// Cauchy's loss of a point: near enough to ours, and fading.
+double loss_at(const Terms& terms, const Eigen::Vector3d& point) {
+  constexpr double kBehind = 1e3;
+  double loss = 0.0;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    const double distance = std::min(kBehind, distance_of(terms.at(i, point), point));
+    loss += std::log1p(distance * distance);
+  }
+  return loss;
+}
+
+/// Where all views together put the joint, the ranges of the rays twice refined.
+std::optional<Eigen::Vector3d> plain_start(const Terms& terms, std::span<const double> trust) {
+  std::optional<Eigen::Vector3d> point;
+  for (int round = 0; round < 3; ++round) {
+    const auto estimate = solve(terms, trust, point);
+    if (!estimate) return round == 0 ? std::nullopt : point;
+    point = estimate->position;
+  }
+  return point;
+}
+
+/// Of the starts that one or two views give, the one that most others agree with.
+Eigen::Vector3d best_start(const Terms& terms, Eigen::Vector3d start) {
+  double least = loss_at(terms, start);
+  const std::size_t count = std::min(terms.size(), kMaxStarts);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = i; j < count; ++j) {
+      std::vector<double> trust(terms.size(), 0.0);
+      trust[i] = trust[j] = 1.0;
+      const auto point = plain_start(terms, trust);
+      if (!point) continue;
+      const double loss = loss_at(terms, *point);
+      if (loss >= least) continue;
+      least = loss;
+      start = *point;
+    }
+  }
+  return start;
+}
+
+bool contradictory(const Terms& terms, const Eigen::Vector3d& point) {
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    if (distance_of(terms.at(i, point), point) > kContradicts) return true;
+  }
+  return false;
+}
+
+/// How much larger than stated the residuals are in the middle, squared, at least one: of many
+/// views their median, so that outliers have no part in it.
+double scale_of(const Terms& terms, const Eigen::Vector3d& point) {
+  std::vector<double> ratios;  // of what is usual
+  double constraints = 0.0;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    const double distance = distance_of(terms.at(i, point), point);
+    if (std::isinf(distance)) continue;
+    ratios.push_back(distance * distance / (terms.constraints(i) == 2 ? kMedianOf2 : kMedianOf3));
+    constraints += terms.constraints(i);
+  }
+  if (ratios.size() < kManyViews) return 1.0;
+  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  const auto count = static_cast<double>(ratios.size());
+  const double found = *middle * constraints / (constraints - 3.0);
+  return std::max(1.0, (kScalePrior + count * found) / (kScalePrior + count));
+}
+
+/// Of few views, whose disagreement tells little: the mean, held back by what was stated.
+double scale_of_few(const Terms& terms, std::span<const double> trust,
+                    const Eigen::Vector3d& point) {
+  double sum = kScalePrior;
+  double freedom = kScalePrior - 3.0;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    if (trust[i] == 0.0) continue;
+    const double distance = distance_of(terms.at(i, point), point);
+    sum += trust[i] * distance * distance;
+    freedom += terms.constraints(i);
+  }
+  return std::max(1.0, sum / std::max(kScalePrior, freedom));
+}
+
+/// Re-weights until the point rests; `scale` of the residuals, squared.
+std::optional<LeastSquares> settle(const Terms& terms, const Eigen::Vector3d& start, double huber,
+                                   double scale) {
+  LeastSquares found{start, {}, trusts_at(terms, start, {huber, scale})};
+  auto estimate = solve(terms, found.trust, found.position);
+  for (int i = 0; i < kIterations && estimate; ++i) {
+    const bool settled = (estimate->position - found.position).norm() < kSettled;
+    found.position = estimate->position;
+    found.trust = trusts_at(terms, found.position, {huber, scale});
+    if (settled) break;
+    estimate = solve(terms, found.trust, found.position);
+  }
+  if (!estimate) return std::nullopt;
+  found.covariance = scale * estimate->information.inverse();
+  return found;
+}
+
+}  // namespace
+
+std::optional<LeastSquares> least_squares(std::span<const JointView> views, double huber) {
+  const Terms terms(views);
+  auto start = plain_start(terms, std::vector<double>(views.size(), 1.0));
+  if (!start) return std::nullopt;
+  if (views.size() > 2 && huber > 0 && contradictory(terms, *start))
+    start = best_start(terms, *start);
+  auto found = settle(terms, *start, huber, 1.0);
+  if (!found) return std::nullopt;
+  if (views.size() < kManyViews) {
+    found->covariance *= scale_of_few(terms, found->trust, found->position);
+    return found;
+  }
+  const double scale = scale_of(terms, found->position);
+  return scale > 1.0 ? settle(terms, found->position, huber, scale) : found;
+}
+
+}  // namespace chorus::fusion

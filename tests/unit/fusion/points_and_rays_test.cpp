@@ -1,0 +1,120 @@
+// The method that takes points and rays, with its memory.
+#include "fusion-server/fusion/points_and_rays.h"
+
+#include <gtest/gtest.h>
+
+#include "fusion-server/fusion/fuse.h"
+#include "tests/unit/fusion/cameras.h"
+#include "tests/unit/fusion/views.h"
+
+namespace chorus::fusion {
+namespace {
+
+using std::chrono::milliseconds;
+
+const std::vector<SensorId> kSensors{sensor(1), sensor(2), sensor(3)};
+constexpr Timestamp kStart = from_unix_ns(1'795'246'200'000'000'000);
+constexpr std::size_t kNeck = index_of(JointId::Neck);
+
+SensorView ray_view(int number, const Eigen::Vector3d& neck) {
+  const Eigen::Vector3d eye = camera_eye(1.3 * number);
+  SensorView view = neck_view(number, (neck - eye).normalized(), 0.5, eye);
+  view.skeleton[JointId::Neck].measurement = Measurement::Ray;
+  view.skeleton[JointId::Neck].orientation.coeffs().setZero();
+  return view;
+}
+
+struct Cell {
+  Cell() { config.method = Method::PointsAndRays; }
+
+  FusedBody at(Duration after, std::vector<SensorView> views) {
+    return memory.fuse({{PersonId{1}, std::move(views)}}, {kStart + after, kSensors}, config)[0];
+  }
+
+  FusionConfig config;
+  Memory memory;
+};
+
+TEST(PointsAndRays, TwoRaysMakeAJointWithItsContributors) {
+  Cell cell;
+  const Eigen::Vector3d neck(0.2, 1.4, 0.1);
+  const FusedBody body = cell.at(milliseconds(0), {ray_view(1, neck), ray_view(2, neck)});
+  const Joint& joint = body.skeleton[JointId::Neck];
+  EXPECT_LT((joint.position - neck).norm(), 1e-9);
+  EXPECT_EQ(joint.state, JointState::Tracked);
+  EXPECT_EQ(joint.measurement, Measurement::Point);
+  EXPECT_EQ(body.contributors[kNeck], 0b11U);
+  // Half a degree at about 3 m.
+  EXPECT_NEAR(std::sqrt(body.variance[kNeck]), 0.026, 0.01);
+}
+
+TEST(PointsAndRays, ASingleRayMakesNoJoint) {
+  Cell cell;
+  const FusedBody body = cell.at(milliseconds(0), {ray_view(1, {0, 1.4, 0})});
+  EXPECT_EQ(body.skeleton[JointId::Neck].state, JointState::NotTracked);
+  EXPECT_EQ(body.contributors[kNeck], 0U);
+}
+
+TEST(PointsAndRays, TheLastPlaceBoundsASingleRayForAWhile) {
+  Cell cell;
+  const auto neck = [](int i) { return Eigen::Vector3d(0.01 * i, 1.4, 0); };
+  double before = 0.0;
+  for (int i = 0; i < 30; ++i)
+    before =
+        cell.at(milliseconds(33 * i), {ray_view(1, neck(i)), ray_view(2, neck(i))}).variance[kNeck];
+  const FusedBody alone = cell.at(milliseconds(33 * 31), {ray_view(1, neck(31))});
+  EXPECT_LT((alone.skeleton[JointId::Neck].position - neck(31)).norm(), 0.01);
+  EXPECT_EQ(alone.skeleton[JointId::Neck].state, JointState::Inferred);
+  EXPECT_EQ(alone.contributors[kNeck], 0b01U);
+  EXPECT_GT(alone.variance[kNeck], before);
+  EXPECT_EQ(
+      cell.at(milliseconds(33 * 30 + 400), {ray_view(1, neck(30))}).skeleton[JointId::Neck].state,
+      JointState::NotTracked);
+}
+
+TEST(PointsAndRays, AJointThatNoViewShowsIsNotPredicted) {
+  Cell cell;
+  const Eigen::Vector3d neck(0.2, 1.4, 0.1);
+  EXPECT_TRUE(cell.at(milliseconds(0), {ray_view(1, neck), ray_view(2, neck)})
+                  .skeleton[JointId::Neck]
+                  .seen());
+  EXPECT_FALSE(
+      cell.at(milliseconds(33), {neck_view(1, {0, 0, 0}, 0.5)}).skeleton[JointId::Head].seen());
+}
+
+TEST(PointsAndRays, RaysThatLeaveTheDepthOpenMakeNoJoint) {
+  Cell cell;
+  const Eigen::Vector3d neck(0, 1.4, 0);
+  SensorView beside = ray_view(1, neck);
+  beside.sensor = sensor(2);
+  beside.eye += Eigen::Vector3d(0.05, 0, 0);
+  beside.skeleton[JointId::Neck].position = (neck - beside.eye).normalized();
+  EXPECT_FALSE(
+      cell.at(milliseconds(0), {ray_view(1, neck), beside}).skeleton[JointId::Neck].seen());
+  cell.config.max_sigma = 100.0;
+  const FusedBody open = cell.at(milliseconds(0), {ray_view(1, neck), beside});
+  EXPECT_TRUE(open.skeleton[JointId::Neck].seen());
+  EXPECT_GT(open.variance[kNeck], 0.25);
+}
+
+TEST(PointsAndRays, PointsAndRaysWorkTogether) {
+  Cell cell;
+  const Eigen::Vector3d neck(0.2, 1.4, 0.1);
+  const FusedBody body = cell.at(milliseconds(0), {neck_view(1, neck, 0.5), ray_view(2, neck)});
+  EXPECT_LT((body.skeleton[JointId::Neck].position - neck).norm(), 1e-9);
+  EXPECT_EQ(body.contributors[kNeck], 0b11U);
+  EXPECT_TRUE(body.skeleton[JointId::Neck].orientation.isApprox(Eigen::Quaterniond::Identity()));
+}
+
+TEST(PointsAndRays, ARayBelievesItsOwnCovariance) {
+  Cell cell;
+  const Eigen::Vector3d neck(0.2, 1.4, 0.1);
+  std::vector views{ray_view(1, neck), ray_view(2, neck)};
+  for (SensorView& view : views)
+    view.skeleton[JointId::Neck].covariance =
+        Covariance(Eigen::Matrix3d(1e-6 * Eigen::Matrix3d::Identity()));
+  EXPECT_NEAR(std::sqrt(cell.at(milliseconds(0), views).variance[kNeck]), 0.003, 0.001);
+}
+
+}  // namespace
+}  // namespace chorus::fusion
