@@ -13,12 +13,19 @@ namespace {
 
 constexpr BodyId kOnlyBody{1};
 
+/// How landmarks become a body.
+struct Form {
+  bool rays;
+  Lateral lateral;
+};
+
 /// Empty when nobody was found; `unfitted` counts detections that fit no body.
 std::vector<BodyFrame> bodies_of(const LandmarkFrame& frame, Timestamp captured,
-                                 const Intrinsics& intrinsics, Lateral lateral,
+                                 const Intrinsics& intrinsics, const Form& form,
                                  std::size_t& unfitted) {
   if (!frame.detected) return {};
-  const auto landmarks = fit_landmarks(*frame.detected, intrinsics, lateral);
+  const auto landmarks = form.rays ? Result<Landmarks>(landmark_rays(*frame.detected, intrinsics))
+                                   : fit_landmarks(*frame.detected, intrinsics, form.lateral);
   if (!landmarks) {
     ++unfitted;
     return {};
@@ -51,9 +58,10 @@ record::FrameRecording header_of(const std::filesystem::path& file, const Calibr
       {"origin", file.filename().string()},
       {"time", fmt::format("seconds in the file count from its first frame; moved to {}",
                            to_iso8601(options.start))},
-      {"space",
-       "perspective-n-point of 33 landmarks, lateral place from each landmark's pixel; "
-       "depth is as good as the detector's guess of the person's size"}};
+      {"space", options.rays
+                    ? "rays of the landmarks' pixels; no depth"
+                    : "perspective-n-point of 33 landmarks, lateral place from each landmark's "
+                      "pixel; depth is as good as the detector's guess of the person's size"}};
   return recording;
 }
 
@@ -74,9 +82,10 @@ Result<record::FrameRecording> read_camera_view(const std::filesystem::path& fil
   std::size_t unfitted = 0;
   for (const LandmarkFrame& frame : view->frames) {
     const Timestamp captured = options.start + frame.at;
-    recording.frames.push_back({recording.sensor, recording.frames.size() + 1, captured, captured,
-                                bodies_of(frame, captured, camera->intrinsics, lateral, unfitted),
-                                options.floor});
+    recording.frames.push_back(
+        {recording.sensor, recording.frames.size() + 1, captured, captured,
+         bodies_of(frame, captured, camera->intrinsics, {options.rays, lateral}, unfitted),
+         options.floor});
   }
   if (unfitted > 0)
     recording.notes["unfitted"] = fmt::format("{} frames fit no body and have none", unfitted);

@@ -5,6 +5,8 @@
 
 #include <opencv2/calib3d.hpp>
 
+#include "common/sensor/pixel_ray.h"
+
 namespace chorus::importers {
 namespace {
 
@@ -57,6 +59,10 @@ std::optional<CameraFit> fit_camera(const PixelsAndBody& points, const Intrinsic
   return fit;
 }
 
+JointState state_of(double visibility) {
+  return visibility >= kTrackedVisibility ? JointState::Tracked : JointState::Inferred;
+}
+
 layout::Landmark landmark_of(const CameraFit& fit, std::size_t i, double visibility,
                              Lateral lateral) {
   Eigen::Vector3d x_in_camera = fit.in_camera[i];
@@ -64,8 +70,7 @@ layout::Landmark landmark_of(const CameraFit& fit, std::size_t i, double visibil
   if (!x_in_camera.allFinite() || depth < kMinDepth) return {};
   if (lateral == Lateral::PixelRay)
     x_in_camera = Eigen::Vector3d(fit.ray[i].x * depth, fit.ray[i].y * depth, depth);
-  const bool tracked = visibility >= kTrackedVisibility;
-  return {sensor_from_opencv() * x_in_camera, tracked ? JointState::Tracked : JointState::Inferred};
+  return {sensor_from_opencv() * x_in_camera, state_of(visibility)};
 }
 
 }  // namespace
@@ -87,6 +92,17 @@ Result<Landmarks> fit_landmarks(const DetectedLandmarks& detected, const Intrins
   if (in_front < kLandmarkCount / 2)
     return fail(ErrorCode::InvalidArgument, "landmarks",
                 "the pixels fit no body before the camera.");
+  return landmarks;
+}
+
+Landmarks landmark_rays(const DetectedLandmarks& detected, const Intrinsics& intrinsics) {
+  Landmarks landmarks;
+  for (std::size_t i = 0; i < kLandmarkCount; ++i) {
+    const auto ray = ray_of(detected.pixel[i], intrinsics);
+    if (!ray) continue;
+    landmarks[i] = {sensor_from_opencv() * *ray, state_of(detected.visibility[i]),
+                    Measurement::Ray};
+  }
   return landmarks;
 }
 

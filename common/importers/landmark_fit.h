@@ -27,6 +27,10 @@ enum class Lateral {
                                               const Intrinsics& intrinsics,
                                               Lateral lateral = Lateral::PixelRay);
 
+/// The rays of the pixels alone, in sensor space; a landmark whose pixel has none is NotTracked.
+[[nodiscard]] Landmarks landmark_rays(const DetectedLandmarks& detected,
+                                      const Intrinsics& intrinsics);
+
 /// OpenCV camera axes (x right, y down, z ahead) turned half about z: sensor_from_opencv is its own
 /// inverse.
 [[nodiscard]] inline Eigen::Matrix3d sensor_from_opencv() {

@@ -31,6 +31,7 @@ struct ImportArguments {
   std::string start;
   std::string sensor;
   std::string unit = "cm";
+  bool rays = false;
   bool json = false;
 };
 
@@ -202,8 +203,12 @@ Result<int> run_import(const ImportArguments& arguments) {
   if (options.floors.size() == 1) options.floors.clear();
   if (!arguments.start.empty()) options.start = parse_iso8601(arguments.start).value();
   if (!arguments.sensor.empty()) options.sensor = SensorId::parse(arguments.sensor).value();
+  options.rays = arguments.rays;
   options.metres_per_unit = arguments.unit == "m" ? 1.0 : 0.01;
   const auto format = importers::format_named(arguments.format);
+  if (options.rays && format != importers::FileFormat::Pose2Sim)
+    return fail(ErrorCode::InvalidArgument, "--rays",
+                "only pose2sim has landmarks of cameras; leave it out");
   const auto set =
       importers::import_files(*format, {arguments.inputs.begin(), arguments.inputs.end()}, options);
   if (!set) return pass(set);
@@ -248,6 +253,8 @@ Run add_import(CLI::App& options) {
   options.add_option("--unit", arguments->unit, "Of lengths in BVH, which does not say")
       ->check(CLI::IsMember({"cm", "m"}))
       ->capture_default_str();
+  options.add_flag("--rays", arguments->rays,
+                   "Of camera landmarks only their directions, without the depth of a fit");
   options.add_flag("--json", arguments->json, "Report as JSON");
   return [arguments] { return run_import(*arguments); };
 }

@@ -29,6 +29,8 @@ constexpr double kRateHz = 60.0;                                  // of the reco
 constexpr double kPlainMeanMm = 104;   // measured outside this project: plain mean of the four
 constexpr double kBestCameraMm = 140;  // and the best single camera
 
+constexpr double kNoWorseMm = 5;
+
 /// What the importer's depth and bearing are worth, from the same recording (see landmark_fit.h).
 constexpr fusion::NoiseModel kCameraNoise{0.25, 0.025, 3.0};
 
@@ -76,6 +78,7 @@ struct FusedScore {
   double shape_mm = std::numeric_limits<double>::quiet_NaN();  ///< After the best rigid motion.
   double bodies_per_frame = 0.0;
   std::size_t frames = 0;
+  double missing_percent = 0.0;  ///< Of the true joints, in all frames of the recording.
 };
 
 /// The rigid motion that lays most joints on the truth; views that mixed up left and right count
@@ -97,6 +100,13 @@ Eigen::Isometry3d best_motion(const JointPairs& pairs) {
   return motion;
 }
 
+double joints_of(const Truth& truth) {
+  double joints = 0.0;
+  for (const importers::TruthFrame& frame : truth)
+    joints += static_cast<double>(std::ranges::count_if(frame.skeleton.joints, &Joint::seen));
+  return joints;
+}
+
 FusedScore score(const pipeline::OfflineResult& result, const Eigen::Isometry3d& truth_from_world,
                  const Truth& truth) {
   JointPairs pairs;
@@ -112,6 +122,8 @@ FusedScore score(const pipeline::OfflineResult& result, const Eigen::Isometry3d&
   if (score.frames > 0) score.bodies_per_frame /= static_cast<double>(score.frames);
   score.median_mm = pairs.percentile_mm(truth_from_world, 0.5);
   score.p90_mm = pairs.percentile_mm(truth_from_world, 0.9);
+  score.missing_percent =
+      100.0 * (1.0 - static_cast<double>(pairs.fused.size()) / joints_of(truth));
   score.shape_mm = pairs.percentile_mm(best_motion(pairs), 0.5);
   return score;
 }
@@ -224,6 +236,33 @@ Result<double> add_methods(Report& report, const Run& run, const ImportedSet& se
   return last;
 }
 
+/// The same landmarks as rays, without a depth of their own: all cameras, and two of them.
+Result<double> add_rays(Report& report, double mean_mm) {
+  importers::ImportOptions options;
+  options.rays = true;
+  const auto set = importers::import_files(importers::FileFormat::Pose2Sim, {kFolder}, options);
+  if (!set) return pass(set);
+  const Registration published = published_registration(*set);
+  double of_all = std::numeric_limits<double>::quiet_NaN();
+  for (const std::size_t cameras : {2U, 3U, 4U}) {
+    const std::vector views(set->recordings.begin(),
+                            set->recordings.begin() + static_cast<std::ptrdiff_t>(cameras));
+    const auto result = pipeline::fuse_offline(tracks_of(views), published,
+                                               config_for({"rays", Method::PointsAndRays, {}}));
+    if (!result) return pass(result);
+    const FusedScore fused = score(*result, Eigen::Isometry3d::Identity(), set->truth);
+    const std::string name = fmt::format("published-rays-{}-cameras", cameras);
+    report.row(name, "joint_median_mm", fused.median_mm, "mm", "plain-mean",
+               fused.median_mm / mean_mm);
+    report.row(name, "joint_p90_mm", fused.p90_mm, "mm");
+    report.row(name, "shape_median_mm", fused.shape_mm, "mm");
+    report.row(name, "missing_percent", fused.missing_percent, "%");
+    report.row(name, "bodies_per_frame", fused.bodies_per_frame, "1");
+    of_all = fused.median_mm;
+  }
+  return of_all;
+}
+
 /// Each camera's place from the person alone beside the published one.
 Result<void> add_places(Report& report, const ImportedSet& set) {
   const Registration published = published_registration(set);
@@ -276,6 +315,10 @@ void add_notes(Report& report) {
       "and fusion then differ by decimetres and neither is known to be right");
   report.note("shape_median_mm: after the best rigid motion onto the truth");
   report.note(
+      "published-rays-*: only the directions of the landmarks, no perspective-n-point; the first "
+      "2, "
+      "3 or all cameras; missing: also instants without any body");
+  report.note(
       "person-*: registered from the person alone; the world is laid on the published one by the "
       "master");
 }
@@ -297,6 +340,8 @@ Result<void> run_real(Report& report) {
   const auto person = add_methods(report, {"person", set->recordings, std::nullopt}, *set, *mean);
   if (!person) return pass(person);
   if (const auto places = add_places(report, *set); !places) return pass(places);
+  const auto rays = add_rays(report, *mean);
+  if (!rays) return pass(rays);
 
   report.condition(
       fmt::format("fused with published extrinsics: below {} mm and below the plain mean",
@@ -304,6 +349,8 @@ Result<void> run_real(Report& report) {
       *fused < kPlainMeanMm && *fused < *mean);
   report.condition(fmt::format("and below {} mm and the best camera alone", kBestCameraMm),
                    *fused < kBestCameraMm && *fused < best_mm);
+  report.condition("rays of four cameras, without any depth: no worse than their points",
+                   *rays <= *fused + kNoWorseMm);
   add_notes(report);
   return {};
 }

@@ -91,6 +91,27 @@ TEST(CameraViews, PixelRaysBeatTheRigidBodyAcrossTheLineOfSight) {
   }
 }
 
+TEST(CameraViews, AsRaysPointAtTheTriangulation) {
+  ImportOptions options;
+  options.rays = true;
+  const auto set = import_files(FileFormat::Pose2Sim, {kFolder}, options);
+  ASSERT_THAT(set, IsOk());
+  for (const auto& view : set->recordings) {
+    const Eigen::Isometry3d sensor_from_world = set->world_from_sensor.at(view.sensor).inverse();
+    std::vector<double> across;
+    for (std::size_t i = 0; i < view.frames.size(); ++i) {
+      for (std::size_t j = 0; j < kJointCount; ++j) {
+        const Joint& joint = view.frames[i].bodies.at(0).skeleton.joints[j];
+        ASSERT_TRUE(joint.bears());
+        const Eigen::Vector3d wanted =
+            sensor_from_world * set->truth[i].skeleton.joints[j].position;
+        across.push_back((wanted - joint.position * joint.position.dot(wanted)).norm());
+      }
+    }
+    EXPECT_LT(median(across), 0.04) << view.sensor.str();
+  }
+}
+
 /// Ours: x to the sensor's left, y up, z ahead.  All four cameras stand upright above the floor.
 TEST(CameraViews, SpeakOurAxes) {
   const auto set = import_files(FileFormat::Pose2Sim, {kFolder});

@@ -30,10 +30,12 @@ struct Recording {
   std::vector<importers::TruthFrame> truth;
 };
 
-Recording load() {
+Recording load(bool rays = false) {
   Recording recording;
-  const auto set =
-      importers::import_files(importers::FileFormat::Pose2Sim, {"tests/data/pose2sim_mediapipe"});
+  importers::ImportOptions options;
+  options.rays = rays;
+  const auto set = importers::import_files(importers::FileFormat::Pose2Sim,
+                                           {"tests/data/pose2sim_mediapipe"}, options);
   if (!set) return recording;
   for (const auto& view : set->recordings) recording.tracks.push_back({view.sensor, view.frames});
   for (const auto& [id, place] : set->world_from_sensor) {
@@ -107,6 +109,26 @@ TEST(FourRealCameras, WithPublishedExtrinsicsFusionBeatsTheMeanAndEverySingleCam
     if (method != Method::InverseVariance) continue;
     EXPECT_LT(error, 0.3 * kPlainMean);
     EXPECT_LT(error, kBestSingleCamera);
+  }
+}
+
+/// Directions only: no depth from perspective-n-point.
+TEST(FourRealCameras, AsRaysFusionFindsTheTriangulationAndTwoCamerasAreEnough) {
+  Recording recording = load(true);
+  ASSERT_EQ(recording.tracks.size(), 4u);
+  OfflineConfig config;
+  config.rate_hz = kFrameRate;
+  config.pipeline.fusion.method = Method::PointsAndRays;
+  for (; recording.tracks.size() >= 2; recording.tracks.pop_back()) {
+    const auto fused = fuse_offline(recording.tracks, recording.published, config);
+    ASSERT_TRUE(fused) << fused.error().message;
+    std::size_t with_one = 0;
+    for (const Snapshot& snapshot : fused->snapshots) with_one += snapshot.bodies.size() == 1;
+    const double error = median_error(fused->snapshots, recording);
+    const auto cameras = std::to_string(recording.tracks.size());
+    RecordProperty("median_mm_x10_of_" + cameras, static_cast<int>(to_mm(10.0 * error)));
+    EXPECT_GE(with_one, 95u) << cameras << " cameras";
+    EXPECT_LT(error, recording.tracks.size() == 4 ? 0.015 : 0.06) << cameras << " cameras";
   }
 }
 
