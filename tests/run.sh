@@ -62,6 +62,7 @@ deploy/install-packages.sh build tests
 [ -z "$sanitizer" ] || run_sanitized "$@"
 npm_packages tests
 npm_packages services/viewer
+npm_packages services/pose-runner
 
 step "build (dev, $jobs at a time)"
 cmake --preset dev "${launcher[@]}" --log-level=WARNING

@@ -1,0 +1,111 @@
+// BlazePose: one person, 33 landmarks of MediaPipe with places in metres.  A detector finds where somebody is; from then
+// on each image says where to look in the next.
+import { cropped, toImage, wholeImage } from './crop.js';
+import { People, placeOf } from './people.js';
+
+const DETECTOR_SIDE = 224;
+const SIDE = 256;
+const LANDMARKS = 33;
+const VALUES = 5; // x, y, z, visibility, presence
+const DETECTION = 13; // logit, box, four key points
+const LEAST_PERSON = 0.5;
+const MARGIN = 1.25;
+const MIDDLE = 33; // the two auxiliary landmarks: mid hips, and a point on the circle around the person
+const RIM = 34;
+
+export const FILES = { lite: ['blazepose-detector', 'blazepose-lite'], full: ['blazepose-detector', 'blazepose-full'] };
+export const HELLO = { layout: 'mediapipe_33', pixelSigma: 4, image: { maxSide: 640 } };
+
+const sigmoid = (x) => 1 / (1 + Math.exp(-x));
+const round = (value, digits) => Number(value.toFixed(digits));
+
+/// Where the detector's answers are at home: centres of cells, 0 to 1.
+export function anchors() {
+  const list = [];
+  for (const [cells, each] of [[28, 2], [14, 2], [7, 6]]) {
+    for (let y = 0; y < cells; ++y) {
+      for (let x = 0; x < cells; ++x) {
+        for (let i = 0; i < each; ++i) list.push([(x + 0.5) / cells, (y + 0.5) / cells]);
+      }
+    }
+  }
+  return list;
+}
+
+/// The square around somebody whose middle of the hips and a point of whose circle are known; his feet are down in it.
+export function squareAround([x, y], [rimX, rimY]) {
+  const [dx, dy] = [rimX - x, rimY - y];
+  return { x, y, size: 2 * Math.hypot(dx, dy) * MARGIN, angle: Math.atan2(dx, -dy) };
+}
+
+/// The square around the surest person of the detector's answer, or null.
+export function detected(values, homes, square) {
+  let best = -1;
+  for (let i = 0; i < homes.length; ++i) {
+    if (best < 0 || values[i * DETECTION] > values[best * DETECTION]) best = i;
+  }
+  if (best < 0 || sigmoid(values[best * DETECTION]) < LEAST_PERSON) return null;
+  const point = (i) => {
+    const at = best * DETECTION + 5 + 2 * i;
+    return toImage(square, values[at] / DETECTOR_SIDE + homes[best][0], values[at + 1] / DETECTOR_SIDE + homes[best][1]);
+  };
+  return squareAround(point(0), point(1));
+}
+
+/// Landmarks in pixels of the image, and in metres around the middle of the hips: right, down, ahead of the camera.
+export function readLandmarks(values, world, square) {
+  const [cos, sin] = [Math.cos(square.angle), Math.sin(square.angle)];
+  const place = (i) => toImage(square, values[i * VALUES] / SIDE, values[i * VALUES + 1] / SIDE);
+  const pixels = [];
+  const metres = [];
+  for (let i = 0; i < LANDMARKS; ++i) {
+    const sure = Math.min(sigmoid(values[i * VALUES + 3]), sigmoid(values[i * VALUES + 4]));
+    pixels.push([...place(i).map((c) => round(c, 2)), round(sure, 3)]);
+    const [x, y, z] = [world[3 * i], world[3 * i + 1], world[3 * i + 2]];
+    metres.push([x * cos - y * sin, x * sin + y * cos, z].map((c) => round(c, 4)));
+  }
+  return { pixels, metres, next: squareAround(place(MIDDLE), place(RIM)) };
+}
+
+export class BlazePose {
+  constructor(tf, models, size) {
+    this.tf = tf;
+    this.detector = models['blazepose-detector'];
+    this.network = models[`blazepose-${size}`];
+    this.homes = anchors();
+    this.people = new People();
+    this.square = null;
+  }
+
+  /// The bodies of a frame (proto/bridge.md, section 3).  `time`: of the capture [s].
+  async bodies(image, time) {
+    const before = this.square;
+    let found = before && (await this.#landmarks(image, before));
+    if (!found) {
+      const square = await this.#detect(image);
+      found = square && (await this.#landmarks(image, square));
+    }
+    this.square = found ? found.next : null;
+    const where = found && placeOf(found.pixels, 0);
+    if (!where) return [];
+    const [id] = this.people.numbers([where], time);
+    return [{ id, pixels: found.pixels, world: found.metres }];
+  }
+
+  async #detect(image) {
+    const square = wholeImage(image.width, image.height);
+    const input = this.tf.tensor4d(cropped(image, square, DETECTOR_SIDE), [1, DETECTOR_SIDE, DETECTOR_SIDE, 3]);
+    const output = this.detector.execute(input);
+    const values = await output.data();
+    this.tf.dispose([input, output]);
+    return detected(values, this.homes, square);
+  }
+
+  async #landmarks(image, square) {
+    const input = this.tf.tensor4d(cropped(image, square, SIDE), [1, SIDE, SIDE, 3]);
+    const outputs = this.network.execute(input, ['ld_3d', 'world_3d', 'output_poseflag']);
+    const [values, world, [sure]] = await Promise.all(outputs.map((output) => output.data()));
+    this.tf.dispose([input, ...outputs]);
+    return sure >= LEAST_PERSON ? readLandmarks(values, world, square) : null;
+  }
+}

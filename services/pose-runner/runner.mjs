@@ -1,0 +1,66 @@
+#!/usr/bin/env node
+// Finds people in images: images come in on the standard input, landmarks go out on the standard output (proto/runner.md).
+//   runner.mjs [--model movenet|blazepose-lite|blazepose-full] [--check]
+import { parseArgs } from 'node:util';
+
+import * as blazepose from './blazepose.js';
+import { ImageReader } from './image_reader.js';
+import { check, engine, load } from './models.js';
+import * as movenet from './movenet.js';
+
+const NANOSECONDS = 1e9;
+const MODELS = {
+  movenet: { hello: movenet.HELLO, files: movenet.FILES, make: (tf, models) => new movenet.MoveNet(tf, models) },
+  'blazepose-lite': ofBlazePose('lite'),
+  'blazepose-full': ofBlazePose('full'),
+};
+
+function ofBlazePose(size) {
+  return {
+    hello: { name: `BlazePose ${size}`, ...blazepose.HELLO },
+    files: blazepose.FILES[size],
+    make: (tf, models) => new blazepose.BlazePose(tf, models, size),
+  };
+}
+
+function chosen() {
+  const { values } = parseArgs({ options: { model: { type: 'string', default: 'movenet' }, check: { type: 'boolean', default: false } } });
+  const model = MODELS[values.model];
+  if (!model) throw new Error(`there is no model "${values.model}"; there are ${Object.keys(MODELS).join(', ')}`);
+  return { model, checkOnly: values.check };
+}
+
+const say = (message) => process.stdout.write(`${JSON.stringify(message)}\n`);
+
+/// The first look takes longer than all others: the engine prepares itself.
+async function warmUp(network) {
+  const side = 64;
+  await network.bodies({ width: side, height: side, pixels: new Uint8Array(side * side * 3) }, 0);
+}
+
+async function answer(network, { header, pixels }) {
+  const began = performance.now();
+  const time = Number(header.captured) / NANOSECONDS;
+  const bodies = await network.bodies({ width: header.width, height: header.height, pixels }, time);
+  say({ type: 'frame', sequence: header.sequence, captured: header.captured, bodies, milliseconds: Number((performance.now() - began).toFixed(1)) });
+}
+
+async function run() {
+  const { model, checkOnly } = chosen();
+  await check(model.files);
+  if (checkOnly) return;
+  const tf = await engine();
+  const network = model.make(tf, await load(tf, model.files));
+  await warmUp(network);
+  say({ type: 'hello', version: 1, ...model.hello });
+  const reader = new ImageReader();
+  for await (const chunk of process.stdin) {
+    for (const image of reader.feed(chunk)) await answer(network, image);
+  }
+}
+
+process.stdout.on('error', () => process.exit(0)); // the sensor has gone
+run().then(() => process.exit(0), (error) => {
+  process.stderr.write(`${error.message}\n`);
+  process.exit(1);
+});
