@@ -37,6 +37,7 @@ Run add_record(CLI::App& options);
 Run add_replay(CLI::App& options);
 Run add_fuse(CLI::App& options);
 Run add_export(CLI::App& options);
+Run add_camera(CLI::App& options);
 
 /// The whole program: parses, runs, prints errors to standard error.  Never throws.
 [[nodiscard]] int run_command_line(int argc, const char* const* argv);

@@ -76,6 +76,12 @@ constexpr std::array kCommands{
             "  chorus export fused.ndjson --format csv --person 2 --out - | head\n"
             "What each format holds, and what is lost: docs/guide/export.md.",
             &add_export},
+    Command{"camera", "Shows the webcams of this host",
+            "Examples:\n"
+            "  chorus camera list\n"
+            "  chorus camera list --json | jq -r .[0].source\n"
+            "Then: chorus-sensor --camera /dev/video0 (docs/guide/cameras.md).",
+            &add_camera},
 };
 
 struct Added {
