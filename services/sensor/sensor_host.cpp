@@ -183,10 +183,14 @@ service::About about_sensor() {
           "  chorus-sensor --config deploy/config/sensor.json\n"
           "  chorus-sensor --port 8082 --id s2 --set device.simulated.ring.index=1\n"
           "  chorus-sensor --recording walk.mcap --set device.replay.speed=0.5\n"
-          "  chorus-sensor --device bridge    (then push frames to /push: docs/guide/bridge.md)\n",
+          "  chorus-sensor --device bridge    (then push frames to /push: docs/guide/bridge.md)\n"
+          "  chorus-sensor --camera /dev/video0    (docs/guide/cameras.md)\n",
           {{"--id", "id", "Sensor id (id)"},
            {"--recording", "device.replay.recording", "Replays this file (device.replay.recording)",
             true, "device.kind=\"replay\""},
+           {"--camera", "device.camera.source",
+            "Looks through this webcam, stream or video file (device.camera.source)", true,
+            "device.kind=\"camera\""},
            {"--device", "device.kind", kinds + " (device.kind)"}}};
 }
 

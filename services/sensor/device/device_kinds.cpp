@@ -6,6 +6,8 @@
 
 #include "services/sensor/device/bridge/bridge.h"
 #include "services/sensor/device/bridge/bridge_settings.h"
+#include "services/sensor/device/camera/camera.h"
+#include "services/sensor/device/camera/camera_settings.h"
 #include "services/sensor/device/replay/replay.h"
 #include "services/sensor/device/simulated/simulated.h"
 #include "services/sensor/device/simulated/simulated_settings.h"
@@ -30,6 +32,10 @@ constexpr std::array kKinds{
         "bridge",
         [](ConfigReader& section, const SensorId&) { (void)bridge::read_bridge_settings(section); },
         &bridge::make_bridge},
+    DeviceKind{
+        "camera",
+        [](ConfigReader& section, const SensorId&) { (void)camera::read_camera_settings(section); },
+        &camera::make_camera},
 };
 
 }  // namespace

@@ -88,7 +88,7 @@ TEST(SensorConfig, AFileThatIsNotThereIsNamed) {
 /// A key of the section of a device counts when that device is chosen.
 std::string choosing_its_device(const std::string& key, const std::string& text) {
   auto root = ConfigReader::parse(text, "test");
-  for (const std::string kind : {"replay", "bridge"}) {
+  for (const std::string kind : {"replay", "bridge", "camera"}) {
     const bool chosen = key.starts_with("device." + kind + ".");
     EXPECT_TRUE(!chosen || root->set("device.kind=" + kind));
   }

@@ -1,0 +1,214 @@
+#include "services/sensor/device/camera/camera.h"
+
+#include <filesystem>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "common/base/log.h"
+#include "services/sensor/device/camera/apparent_size.h"
+#include "services/sensor/device/camera/camera_resource.h"
+#include "services/sensor/device/camera/grabber.h"
+#include "services/sensor/device/camera/restart_pause.h"
+#include "services/sensor/device/camera/runner_process.h"
+#include "services/sensor/device/camera/runner_wire.h"
+#include "services/sensor/device/camera/shipped_runner.h"
+#include "services/sensor/host_clock.h"
+
+namespace chorus::camera {
+namespace {
+
+constexpr Duration kReadyWithin = std::chrono::seconds(60);
+constexpr Duration kAnswerWithin = std::chrono::seconds(10);
+constexpr Duration kPatience = std::chrono::milliseconds(200);
+constexpr Duration kShortestPause = std::chrono::milliseconds(500);
+constexpr Duration kLongestPause = std::chrono::seconds(30);
+
+struct Parts {
+  SensorId sensor;
+  CameraSettings settings;
+  std::vector<std::string> command;
+  std::shared_ptr<const Clock> clock;
+  std::shared_ptr<CameraState> state = std::make_shared<CameraState>();
+};
+
+/// The newest picture, from a thread of its own that lives as long as this.
+class Pictures {
+ public:
+  explicit Pictures(const Parts& parts)
+      : grabber_(parts.settings, *parts.clock, *parts.state, newest_) {}
+  void begin() {
+    if (thread_.joinable()) return;
+    thread_ = std::jthread([this](const std::stop_token& stop) { grabber_.run(stop); });
+  }
+
+  [[nodiscard]] Handover<Shot>& newest() { return newest_; }
+
+ private:
+  Handover<Shot> newest_{1};
+  Grabber grabber_;
+  std::jthread thread_;
+};
+
+class Camera final : public FrameSource {
+ public:
+  explicit Camera(Parts parts) : parts_(std::move(parts)) {}
+
+  [[nodiscard]] DeviceDescription describe() const override;
+  [[nodiscard]] Result<void> run(std::stop_token stop, const Sink& sink) override;
+  [[nodiscard]] std::string trouble() const override { return parts_.state->trouble(); }
+
+ private:
+  struct Runner {
+    std::unique_ptr<RunnerProcess> process;
+    RunnerHello about;
+  };
+  [[nodiscard]] Result<Runner> start_runner(const std::stop_token& stop) const;
+  [[nodiscard]] Result<void> look(Pictures& pictures, const std::stop_token& stop,
+                                  const Sink& sink);
+  [[nodiscard]] Result<Capture> ask(Runner& runner, const Shot& shot, const std::stop_token& stop);
+  [[nodiscard]] bool too_soon(const Shot& shot) const;
+
+  Parts parts_;
+  std::uint64_t sequence_ = 0;
+  std::optional<Timestamp> last_;  ///< Of the last picture that was looked at.
+};
+
+DeviceDescription Camera::describe() const {
+  DeviceDescription device;
+  device.kind = "camera";
+  const CameraSettings& settings = parts_.settings;
+  device.label = settings.label.empty() ? "camera " + told_source(settings.source) : settings.label;
+  device.depth_camera = std::nullopt;
+  device.nominal_rate_hz = settings.max_rate_hz;
+  device.resources = {{"camera", "source and runner of the pictures, and their rates"}};
+  return device;
+}
+
+Result<Camera::Runner> Camera::start_runner(const std::stop_token& stop) const {
+  auto process = RunnerProcess::start(parts_.command);
+  if (!process) return pass(process);
+  const auto line = (*process)->read_line(kReadyWithin, stop);
+  if (!line) return pass(line);
+  auto about = read_runner_hello(*line);
+  if (!about) return pass(about);
+  parts_.state->runner_ready(about->hello.name, std::string(about->hello.layout->name));
+  return Runner{std::move(*process), std::move(*about)};
+}
+
+bool Camera::too_soon(const Shot& shot) const {
+  constexpr double kNearly = 0.9;  // of a step: pictures do not come evenly
+  if (!last_ || shot.captured < *last_) return false;
+  return seconds(shot.captured - *last_) * parts_.settings.max_rate_hz < kNearly;
+}
+
+Capture capture_of(SensorFrame frame, const Picture& picture, const Lens& lens) {
+  Capture capture;
+  capture.color = [picture, camera = lens.camera, captured = frame.captured] {
+    return jpeg_of(picture).map([&](std::string bytes) {
+      return CameraImage{captured, camera, "image/jpeg", std::move(bytes)};
+    });
+  };
+  capture.frame = std::move(frame);
+  return capture;
+}
+
+void widen_all(std::vector<BodyFrame>& bodies, double focal_sigma) {
+  for (BodyFrame& body : bodies) {
+    for (Joint& joint : body.skeleton.joints) {
+      widen(joint, focal_sigma);
+      widen_depth(joint, focal_sigma);
+    }
+  }
+}
+
+/// One picture to the runner, and its answer.
+Result<Capture> Camera::ask(Runner& runner, const Shot& shot, const std::stop_token& stop) {
+  const auto lens = lens_for(parts_.settings, shot.picture.size);
+  if (!lens) return pass(lens);
+  const Question question{++sequence_, shot.captured,
+                          sent_size(shot.picture.size, runner.about.max_side)};
+  const auto began = std::chrono::steady_clock::now();
+  const std::string bytes = image_header(question) + rgb_bytes(shot.picture, question.size);
+  if (const auto ok = runner.process->send(bytes, kAnswerWithin, stop); !ok) return pass(ok);
+  const auto line = runner.process->read_line(kAnswerWithin, stop);
+  if (!line) return pass(line);
+  bridge::Hello hello = runner.about.hello;
+  hello.camera = sent_camera(lens->camera, question.size);
+  const Depth depth = parts_.settings.depth_from_size ? Depth::FromSize : Depth::None;
+  auto bodies = read_runner_answer(*line, question, hello, depth);
+  if (!bodies) return pass(bodies);
+  widen_all(*bodies, lens->focal_sigma);
+  SensorFrame frame{parts_.sensor,       sequence_,          shot.captured,
+                    parts_.clock->now(), std::move(*bodies), hello.floor};
+  parts_.state->answered(question.size, std::chrono::steady_clock::now() - began,
+                         frame.received - frame.captured);
+  return capture_of(std::move(frame), shot.picture, *lens);
+}
+
+/// As long as one runner lives: success at the end of the pictures.
+Result<void> Camera::look(Pictures& pictures, const std::stop_token& stop, const Sink& sink) {
+  auto runner = start_runner(stop);
+  if (!runner) return pass(runner);
+  pictures.begin();
+  while (!stop.stop_requested()) {
+    if (const auto alive = runner->process->listen(); !alive) return alive;
+    const bool over = pictures.newest().closed();
+    const std::vector<Shot> shots = pictures.newest().take(kPatience);
+    if (shots.empty() && over) return {};
+    if (shots.empty() || too_soon(shots.back())) continue;
+    last_ = shots.back().captured;
+    auto capture = ask(*runner, shots.back(), stop);
+    if (!capture) return pass(capture);
+    sink(std::move(*capture));
+  }
+  return {};
+}
+
+Result<void> Camera::run(std::stop_token stop, const Sink& sink) {
+  Pictures pictures(parts_);
+  const bool once = kind_of(parts_.settings.source) == SourceKind::File && !parts_.settings.loop;
+  if (!once) pictures.begin();  // a file that is shown once waits for who looks at it
+  RestartPause pause(kShortestPause, kLongestPause);
+  while (!stop.stop_requested()) {
+    const auto began = std::chrono::steady_clock::now();
+    const auto looked = look(pictures, stop, sink);
+    if (looked || stop.stop_requested()) break;
+    parts_.state->runner_failed(to_string(looked.error()));
+    if (!rest(stop, pause.after(std::chrono::steady_clock::now() - began))) break;
+  }
+  return {};
+}
+
+/// A file that is not there will not come; a camera may.
+Result<void> check_source(const CameraSettings& settings) {
+  std::error_code failed;
+  if (kind_of(settings.source) == SourceKind::Stream ||
+      std::filesystem::exists(settings.source, failed))
+    return {};
+  if (kind_of(settings.source) == SourceKind::File)
+    return fail(ErrorCode::NotFound, settings.source,
+                "there is no such file; device.camera.source names a video");
+  log::warn("the camera is not there yet", {{"source", settings.source}});
+  return {};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<FrameSource>> make_camera(ConfigReader& section,
+                                                 const sensor_service::DeviceContext& context) {
+  Parts parts;
+  parts.sensor = context.sensor;
+  parts.settings = read_camera_settings(section);
+  if (auto ok = check_source(parts.settings); !ok) return pass(ok);
+  if (auto ok = check_runner(parts.settings); !ok) return pass(ok);
+  auto command = runner_command(parts.settings);
+  if (!command) return pass(command);
+  parts.command = std::move(*command);
+  parts.clock =
+      std::make_shared<sensor_service::ErringClock>(context.time.world, context.time.host);
+  add_camera_route(context.router, told_source(parts.settings.source), parts.state);
+  return std::make_unique<Camera>(std::move(parts));
+}
+
+}  // namespace chorus::camera

@@ -1,0 +1,18 @@
+// The device `camera`: a webcam, a stream or a video file, and a runner that finds people in its
+// pictures (proto/runner.md).
+#pragma once
+
+#include <memory>
+
+#include "common/base/config_reader.h"
+#include "common/sensor/frame_source.h"
+#include "services/sensor/device/device_kinds.h"
+
+namespace chorus::camera {
+
+/// The reader's finish() reports mistakes.  An Error says what is not there: the file, the runner,
+/// its models.  A webcam or a stream may come later.  Adds `/camera` to the context's router.
+[[nodiscard]] Result<std::unique_ptr<FrameSource>> make_camera(
+    ConfigReader& section, const sensor_service::DeviceContext& context);
+
+}  // namespace chorus::camera

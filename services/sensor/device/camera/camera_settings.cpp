@@ -1,0 +1,81 @@
+#include "services/sensor/device/camera/camera_settings.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace chorus::camera {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr int kMaxSide = 16384;
+constexpr double kMaxPixels = 1e5;
+
+void read_distortion(ConfigReader& section, Intrinsics& out) {
+  std::vector<double> distortion;
+  section.read("distortion", distortion);
+  if (distortion.empty()) return;
+  if (distortion.size() != out.distortion.size())
+    return section.complain("distortion", "must be k1, k2, p1, p2, k3, as OpenCV has them");
+  std::copy(distortion.begin(), distortion.end(), out.distortion.begin());
+}
+
+Intrinsics read_intrinsics(ConfigReader section) {
+  Intrinsics camera;
+  for (const char* key : {"width", "height", "fx", "fy", "cx", "cy"}) {
+    if (!section.has(key)) section.complain(key, "is missing; a lens is stated as a whole");
+  }
+  section.read("width", camera.width, 16, kMaxSide);
+  section.read("height", camera.height, 16, kMaxSide);
+  section.read("fx", camera.fx, 1.0, kMaxPixels);
+  section.read("fy", camera.fy, 1.0, kMaxPixels);
+  section.read("cx", camera.cx, -kMaxPixels, kMaxPixels);
+  section.read("cy", camera.cy, -kMaxPixels, kMaxPixels);
+  read_distortion(section, camera);
+  return camera;
+}
+
+void read_lens(ConfigReader& section, CameraSettings& out) {
+  out.fov = 65.0 * kDegree;
+  out.fov_sigma = 6.0 * kDegree;
+  section.read_deg("fov_deg", out.fov, 5.0, 150.0);
+  section.read_deg("fov_sigma_deg", out.fov_sigma, 0.0, 30.0);
+  if (section.has("intrinsics")) out.intrinsics = read_intrinsics(section.child("intrinsics"));
+}
+
+}  // namespace
+
+SourceKind kind_of(const std::string& source) {
+  if (source.find("://") != std::string::npos) return SourceKind::Stream;
+  return source.starts_with("/dev/") ? SourceKind::Device : SourceKind::File;
+}
+
+std::string told_source(const std::string& source) {
+  const std::size_t scheme = source.find("://");
+  if (scheme == std::string::npos) return source;
+  const std::size_t begin = scheme + 3;
+  const std::size_t slash = std::min(source.find('/', begin), source.size());
+  const std::size_t at = source.rfind('@', slash);
+  if (at == std::string::npos || at < begin) return source;
+  return source.substr(0, begin) + source.substr(at + 1);
+}
+
+CameraSettings read_camera_settings(ConfigReader& section) {
+  CameraSettings settings;
+  section.read("source", settings.source);
+  if (settings.source.empty())
+    section.complain("source", "is empty; say /dev/video0, an rtsp:// address or a video file");
+  section.read("label", settings.label);
+  section.read("width", settings.width, 0, kMaxSide);
+  section.read("height", settings.height, 0, kMaxSide);
+  section.read("rate_hz", settings.rate_hz, 0.0, 1000.0);
+  section.read("loop", settings.loop);
+  section.read_ms("latency_ms", settings.latency, Duration{0}, std::chrono::seconds(5));
+  section.read("max_rate_hz", settings.max_rate_hz, 0.1, 1000.0);
+  section.read("runner", settings.runner);
+  section.read("model", settings.model);
+  section.read("depth_from_size", settings.depth_from_size);
+  read_lens(section, settings);
+  return settings;
+}
+
+}  // namespace chorus::camera

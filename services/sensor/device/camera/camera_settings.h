@@ -1,0 +1,46 @@
+// The section device.camera of the configuration.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/config_reader.h"
+#include "common/base/duration.h"
+#include "common/sensor/camera_image.h"
+
+namespace chorus::camera {
+
+/// What stands behind device.camera.source.
+enum class SourceKind {
+  Device,  ///< A webcam: /dev/video0.
+  Stream,  ///< rtsp://..., http://...: anything with a scheme.
+  File,
+};
+
+struct CameraSettings {
+  std::string source = "/dev/video0";
+  std::string label = {};  ///< For people; empty: the source.
+  int width = 0;           ///< Wanted of a webcam [px]; 0: its own choice, as for height and rate.
+  int height = 0;
+  double rate_hz = 0.0;
+  bool loop = true;  ///< A file starts again at its end.
+  /// From light to arrival, where no clock of the camera tells.
+  Duration latency = std::chrono::milliseconds(60);
+  double max_rate_hz = 30.0;          ///< Images a second that are looked at, at most.
+  std::vector<std::string> runner{};  ///< The command; empty: the runner that comes with Chorus.
+  std::string model = "movenet";      ///< Handed to the runner as --model; empty: not handed.
+  bool depth_from_size = false;       ///< Points instead of rays, where the runner allows it.
+  std::optional<Intrinsics> intrinsics = {};
+  double fov = 1.13;  ///< Across the image's longer side [rad], when nothing better is known.
+  double fov_sigma = 0.105;  ///< Standard deviation of that statement [rad].
+};
+
+[[nodiscard]] SourceKind kind_of(const std::string& source);
+/// The source as people may read it: without the password of an address.
+[[nodiscard]] std::string told_source(const std::string& source);
+
+/// The reader's finish() reports mistakes.
+[[nodiscard]] CameraSettings read_camera_settings(ConfigReader& section);
+
+}  // namespace chorus::camera

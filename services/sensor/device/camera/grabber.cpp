@@ -1,0 +1,113 @@
+#include "services/sensor/device/camera/grabber.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <mutex>
+#include <utility>
+
+#include "services/sensor/device/camera/restart_pause.h"
+
+namespace chorus::camera {
+namespace {
+
+constexpr Duration kShortestPause = std::chrono::milliseconds(500);
+constexpr Duration kLongestPause = std::chrono::seconds(5);
+constexpr Duration kTooLate = std::chrono::milliseconds(500);
+constexpr Duration kLost = std::chrono::seconds(5);
+constexpr Duration kWorthSkipping = std::chrono::seconds(3);
+
+}  // namespace
+
+bool rest(const std::stop_token& stop, Duration pause) {
+  std::mutex mutex;
+  std::condition_variable_any never;
+  std::unique_lock lock(mutex);
+  never.wait_for(lock, stop, pause, [] { return false; });
+  return !stop.stop_requested();
+}
+
+Grabber::Grabber(const CameraSettings& settings, const Clock& clock, CameraState& state,
+                 Handover<Shot>& newest)
+    : settings_(settings),
+      clock_(clock),
+      state_(state),
+      newest_(newest),
+      kind_(kind_of(settings.source)),
+      stream_(settings.latency),
+      pace_(settings.loop) {}
+
+/// In steps, because a clock may be set meanwhile.
+void Grabber::wait_for(Timestamp due, const std::stop_token& stop) {
+  constexpr Duration kStep = std::chrono::milliseconds(100);
+  constexpr Duration kNever = std::chrono::seconds(10);
+  for (Duration left = due - clock_.now(); left > Duration::zero() && left < kNever;
+       left = due - clock_.now()) {
+    if (!rest(stop, std::min(left, kStep))) return;
+  }
+}
+
+/// Nothing for a picture of a file whose turn is over: reading it took too long.
+std::optional<Timestamp> Grabber::captured(const VideoPicture& taken) {
+  const Timestamp arrived = clock_.now();
+  if (kind_ == SourceKind::Device)
+    return captured_by_driver(arrived, taken.time, settings_.latency);
+  if (kind_ == SourceKind::Stream) return stream_.captured(arrived, taken.time);
+  const Timestamp due = pace_.due(taken.time);
+  late_ = arrived - due;
+  if (late_ <= kTooLate) return due;
+  if (settings_.loop) return std::nullopt;  // others may play in step
+  pace_.fall_behind(late_);
+  return arrived;
+}
+
+void Grabber::begin_file(Video& video) {
+  over_ = pace_.begin(video.timing(), clock_.now());
+  if (over_ > kWorthSkipping) video.skip_to(over_);
+}
+
+/// The file was begun in the middle, and this picture's turn has been before that.
+bool Grabber::is_over(const VideoPicture& taken) const {
+  return kind_ == SourceKind::File && taken.time && *taken.time < over_;
+}
+
+Result<bool> Grabber::play(Video& video, const std::stop_token& stop) {
+  bool any = false;
+  if (kind_ == SourceKind::File) begin_file(video);
+  while (!stop.stop_requested()) {
+    auto taken = video.next();
+    if (!taken) return pass(taken);
+    if (!*taken) {
+      if (any) return true;
+      return fail(ErrorCode::Unavailable, told_source(settings_.source),
+                  "no pictures can be read from the file; is it a video?");
+    }
+    any = true;
+    if (is_over(**taken)) continue;
+    const auto when = captured(**taken);
+    if (!when && late_ > kLost) return true;  // begins again where it should be
+    if (!when) continue;
+    Shot shot{std::move((*taken)->picture), *when};
+    if (kind_ == SourceKind::File) wait_for(shot.captured, stop);
+    state_.picture(shot.picture.size);
+    newest_.give(std::move(shot));
+  }
+  return false;
+}
+
+void Grabber::run(const std::stop_token& stop) {
+  RestartPause pause(kShortestPause, kLongestPause);
+  while (!stop.stop_requested()) {
+    const auto began = std::chrono::steady_clock::now();
+    auto video = open_video(settings_);
+    if (video) state_.source_opened();
+    const Result<bool> ended = video ? play(**video, stop) : pass(video);
+    if (ended && *ended && !settings_.loop) break;
+    if (ended) continue;
+    state_.source_failed(to_string(ended.error()));
+    video = pass(ended);  // a webcam that comes back needs its device free
+    if (!rest(stop, pause.after(std::chrono::steady_clock::now() - began))) break;
+  }
+  newest_.close();
+}
+
+}  // namespace chorus::camera

@@ -1,0 +1,52 @@
+// Takes pictures from the source as long as there are any, and tries again when there are none.
+// Only the newest one waits: who is slower than the camera misses pictures, never falls behind.
+#pragma once
+
+#include <optional>
+#include <stop_token>
+
+#include "common/base/handover.h"
+#include "common/time/clock.h"
+#include "services/sensor/device/camera/camera_state.h"
+#include "services/sensor/device/camera/capture_clock.h"
+#include "services/sensor/device/camera/video.h"
+
+namespace chorus::camera {
+
+struct Shot {
+  Picture picture;
+  Timestamp captured;  ///< By this host's clock.
+};
+
+class Grabber {
+ public:
+  /// Refers to its arguments.
+  Grabber(const CameraSettings& settings, const Clock& clock, CameraState& state,
+          Handover<Shot>& newest);
+
+  /// Until stopped, or at the end of a file that does not loop; closes `newest` then.
+  void run(const std::stop_token& stop);
+
+ private:
+  /// True at the end of a file.
+  [[nodiscard]] Result<bool> play(Video& video, const std::stop_token& stop);
+  void begin_file(Video& video);
+  [[nodiscard]] bool is_over(const VideoPicture& taken) const;
+  [[nodiscard]] std::optional<Timestamp> captured(const VideoPicture& taken);
+  void wait_for(Timestamp due, const std::stop_token& stop);
+
+  const CameraSettings& settings_;
+  const Clock& clock_;
+  CameraState& state_;
+  Handover<Shot>& newest_;
+  SourceKind kind_;
+  StreamClock stream_;
+  FilePace pace_;
+  Duration late_{0};  ///< How long the last picture of a file came after its turn.
+  Duration over_{0};  ///< Which part of a file was over when it was begun.
+};
+
+/// Sleeps, unless it is stopped; false then.
+bool rest(const std::stop_token& stop, Duration pause);
+
+}  // namespace chorus::camera

@@ -1,0 +1,29 @@
+#include "services/sensor/device/camera/picture.h"
+
+#include <vector>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace chorus::camera {
+
+std::string rgb_bytes(const Picture& picture, Size size) {
+  constexpr std::size_t kChannels = 3;
+  cv::Mat small = *picture.pixels;
+  if (picture.size != size)
+    cv::resize(*picture.pixels, small, {size.width, size.height}, 0.0, 0.0, cv::INTER_AREA);
+  std::string bytes(kChannels * static_cast<std::size_t>(size.width * size.height), '\0');
+  cv::Mat rgb(size.height, size.width, CV_8UC3, bytes.data());
+  cv::cvtColor(small, rgb, cv::COLOR_BGR2RGB);
+  return bytes;
+}
+
+Result<std::string> jpeg_of(const Picture& picture) {
+  constexpr int kQuality = 85;
+  std::vector<uchar> bytes;
+  if (!cv::imencode(".jpg", *picture.pixels, bytes, {cv::IMWRITE_JPEG_QUALITY, kQuality}))
+    return fail(ErrorCode::Internal, "image", "the picture could not be encoded");
+  return std::string(bytes.begin(), bytes.end());
+}
+
+}  // namespace chorus::camera

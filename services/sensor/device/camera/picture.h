@@ -1,0 +1,26 @@
+// One picture of a camera, and what is made of it.  OpenCV's own type stays in .cpp files.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "common/base/result.h"
+#include "services/sensor/device/camera/lens.h"
+
+namespace cv {
+class Mat;
+}
+
+namespace chorus::camera {
+
+struct Picture {
+  std::shared_ptr<const cv::Mat> pixels;  ///< Rows of blue, green, red; never null.
+  Size size;
+};
+
+/// Red, green, blue of the picture at that size, row by row.
+[[nodiscard]] std::string rgb_bytes(const Picture& picture, Size size);
+
+[[nodiscard]] Result<std::string> jpeg_of(const Picture& picture);
+
+}  // namespace chorus::camera

@@ -1,0 +1,31 @@
+// How long to wait before trying again: doubled each time, short again after what went well.  Pure.
+#pragma once
+
+#include <algorithm>
+
+#include "common/base/duration.h"
+
+namespace chorus::camera {
+
+class RestartPause {
+ public:
+  RestartPause(Duration shortest, Duration longest)
+      : shortest_(shortest), longest_(longest), next_(shortest) {}
+
+  /// `lived`: how long it went well before it failed.
+  [[nodiscard]] Duration after(Duration lived) {
+    if (lived >= kWell) next_ = shortest_;
+    const Duration pause = next_;
+    next_ = std::min(2 * next_, longest_);
+    return pause;
+  }
+
+ private:
+  static constexpr Duration kWell = std::chrono::seconds(10);
+
+  Duration shortest_;
+  Duration longest_;
+  Duration next_;
+};
+
+}  // namespace chorus::camera

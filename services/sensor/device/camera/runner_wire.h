@@ -1,0 +1,44 @@
+// What is said between the sensor and a runner (proto/runner.md).  No IO.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "services/sensor/device/bridge/hello.h"
+#include "services/sensor/device/camera/lens.h"
+
+namespace chorus::camera {
+
+/// What a runner says about itself.
+struct RunnerHello {
+  bridge::Hello hello;  ///< Without a camera: that is the sensor's affair.
+  int max_side = 640;   ///< Of an image, in either direction [px].
+};
+
+/// An image on its way to the runner.
+struct Question {
+  std::uint64_t sequence = 0;
+  Timestamp captured;
+  Size size;  ///< As it is sent.
+};
+
+[[nodiscard]] Result<RunnerHello> read_runner_hello(std::string_view line);
+
+/// The line that stands before an image's bytes, its line feed included.
+[[nodiscard]] std::string image_header(const Question& question);
+
+/// What landmarks become.
+enum class Depth {
+  None,      ///< Rays.
+  FromSize,  ///< Points, of people whose shape the runner tells in metres; else rays.
+};
+
+/// The people in that image.  `hello.camera` is the camera of the image as it was sent.
+[[nodiscard]] Result<std::vector<BodyFrame>> read_runner_answer(std::string_view line,
+                                                                const Question& question,
+                                                                const bridge::Hello& hello,
+                                                                Depth depth);
+
+}  // namespace chorus::camera

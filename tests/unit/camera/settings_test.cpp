@@ -1,0 +1,77 @@
+#include "services/sensor/device/camera/camera_settings.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace chorus::camera {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+struct Read {
+  CameraSettings settings;
+  std::string problems;
+};
+
+Read read(std::string_view text) {
+  auto root = ConfigReader::parse(text, "test");
+  EXPECT_TRUE(root);
+  Read out{read_camera_settings(*root), ""};
+  if (const auto ok = root->finish(); !ok) out.problems = to_string(ok.error());
+  return out;
+}
+
+TEST(CameraSettings, KindsOfSourcesAreToldByTheirNames) {
+  EXPECT_EQ(kind_of("/dev/video0"), SourceKind::Device);
+  EXPECT_EQ(kind_of("rtsp://10.0.0.5/stream"), SourceKind::Stream);
+  EXPECT_EQ(kind_of("http://10.0.0.5/video.mjpg"), SourceKind::Stream);
+  EXPECT_EQ(kind_of("walk.mp4"), SourceKind::File);
+  EXPECT_EQ(kind_of("/data/walk.mp4"), SourceKind::File);
+}
+
+TEST(CameraSettings, APasswordIsNotTold) {
+  EXPECT_EQ(told_source("rtsp://me:secret@10.0.0.5:554/a@b"), "rtsp://10.0.0.5:554/a@b");
+  EXPECT_EQ(told_source("rtsp://me:p@ss@10.0.0.5"), "rtsp://10.0.0.5");
+  EXPECT_EQ(told_source("rtsp://10.0.0.5/a@b"), "rtsp://10.0.0.5/a@b");
+  EXPECT_EQ(told_source("me@home.mp4"), "me@home.mp4");
+}
+
+TEST(CameraSettings, EverythingIsRead) {
+  const auto [settings, problems] =
+      read(R"({"source": "a.mp4", "label": "door", "width": 1280, "height": 720, "rate_hz": 25,
+               "loop": false, "latency_ms": 80, "max_rate_hz": 12, "runner": ["python3", "r.py"],
+               "model": "", "depth_from_size": true, "fov_deg": 90, "fov_sigma_deg": 2,
+               "intrinsics": {"width": 640, "height": 480, "fx": 500, "fy": 501, "cx": 320,
+                              "cy": 240, "distortion": [1, 2, 3, 4, 5]}})");
+  EXPECT_EQ(problems, "");
+  EXPECT_EQ(settings.source, "a.mp4");
+  EXPECT_EQ(settings.label, "door");
+  EXPECT_EQ(settings.width, 1280);
+  EXPECT_EQ(settings.height, 720);
+  EXPECT_EQ(settings.rate_hz, 25.0);
+  EXPECT_FALSE(settings.loop);
+  EXPECT_EQ(settings.latency, std::chrono::milliseconds(80));
+  EXPECT_EQ(settings.max_rate_hz, 12.0);
+  EXPECT_THAT(settings.runner, ElementsAre("python3", "r.py"));
+  EXPECT_EQ(settings.model, "");
+  EXPECT_TRUE(settings.depth_from_size);
+  EXPECT_NEAR(settings.fov, 1.5707963, 1e-6);
+  EXPECT_NEAR(settings.fov_sigma, 0.0349066, 1e-6);
+  EXPECT_EQ(settings.intrinsics, (Intrinsics{640, 480, 500, 501, 320, 240, {1, 2, 3, 4, 5}}));
+}
+
+TEST(CameraSettings, MistakesAreNamed) {
+  EXPECT_THAT(read(R"({"source": ""})").problems, HasSubstr("source"));
+  EXPECT_THAT(read(R"({"fov_deg": 200})").problems, HasSubstr("fov_deg"));
+  EXPECT_THAT(
+      read(R"({"intrinsics": {"width": 640, "height": 480, "fx": 500, "fy": 500, "cx": 320}})")
+          .problems,
+      HasSubstr("cy: is missing"));
+  EXPECT_THAT(read(R"({"intrinsics": {"distortion": [1, 2]}})").problems,
+              HasSubstr("k1, k2, p1, p2, k3"));
+  EXPECT_THAT(read(R"({"modell": "x"})").problems, HasSubstr("did you mean 'model'"));
+}
+
+}  // namespace
+}  // namespace chorus::camera

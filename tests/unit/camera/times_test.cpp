@@ -1,0 +1,126 @@
+// Capture times, the pace of files, and pauses between tries.
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "services/sensor/device/camera/capture_clock.h"
+#include "services/sensor/device/camera/file_pace.h"
+#include "services/sensor/device/camera/restart_pause.h"
+
+namespace chorus::camera {
+namespace {
+
+using namespace std::chrono_literals;
+
+const Timestamp kNoon = from_unix_ns(1'795'246'200'000'000'000);
+
+TEST(CapturedByDriver, TheDriversStampCountsUnlessItCannotBeTrue) {
+  EXPECT_EQ(captured_by_driver(kNoon, 25ms, 60ms), kNoon - 25ms);
+  EXPECT_EQ(captured_by_driver(kNoon, std::nullopt, 60ms), kNoon - 60ms);
+  EXPECT_EQ(captured_by_driver(kNoon, -1ms, 60ms), kNoon - 60ms);
+  EXPECT_EQ(captured_by_driver(kNoon, 3s, 60ms), kNoon - 60ms);
+}
+
+TEST(StreamClock, StepsAreTheStreamsAndTheFastestPictureSetsTheRest) {
+  StreamClock clock(50ms);
+  // Pictures every 40 ms that arrive with a delay of 100 ms and a jitter of up to 30 ms.
+  const Duration jitter[] = {20ms, 0ms, 30ms, 10ms, 25ms};
+  std::vector<Timestamp> captured;
+  for (int i = 0; i < 5; ++i) {
+    const Duration position = i * 40ms;
+    captured.push_back(clock.captured(kNoon + 100ms + position + jitter[i], position));
+  }
+  for (int i = 2; i < 5; ++i) EXPECT_NEAR(seconds(captured[i] - captured[i - 1]), 0.040, 1e-4);
+  EXPECT_NEAR(seconds(captured[4] - (kNoon + 100ms + 160ms - 50ms)), 0.0, 1e-4);
+}
+
+TEST(StreamClock, FollowsAStreamWhoseClockIsSlower) {
+  StreamClock clock(0ms);
+  Timestamp last{};
+  for (int i = 0; i < 3000; ++i) {  // 2 minutes, 100 ppm slow
+    const Duration position = i * 40ms;
+    last = clock.captured(kNoon + i * (40ms + 4us), position);
+  }
+  EXPECT_LT(seconds(kNoon + 2999 * (40ms + 4us) - last), 0.001);
+}
+
+TEST(StreamClock, BeginsAnewWhenTheStreamDoes) {
+  StreamClock clock(0ms);
+  (void)clock.captured(kNoon, 100s);
+  (void)clock.captured(kNoon + 1s, 101s);
+  EXPECT_EQ(clock.captured(kNoon + 10s, 0s), kNoon + 10s);
+  EXPECT_EQ(clock.captured(kNoon + 11s, 1s), kNoon + 11s);
+  EXPECT_EQ(clock.captured(kNoon + 60s, 2s), kNoon + 60s);
+}
+
+TEST(StreamClock, WithoutPositionsArrivalCounts) {
+  StreamClock clock(60ms);
+  EXPECT_EQ(clock.captured(kNoon, std::nullopt), kNoon - 60ms);
+  (void)clock.captured(kNoon + 1s, 0s);
+  EXPECT_EQ(clock.captured(kNoon + 2s, 0s), kNoon + 2s - 60ms);
+}
+
+TEST(FilePace, OneRoundBeginsNow) {
+  FilePace pace(false);
+  EXPECT_EQ(pace.begin({40ms, 10s}, kNoon), 0s);
+  EXPECT_EQ(pace.due(0s), kNoon);
+  EXPECT_EQ(pace.due(40ms), kNoon + 40ms);
+  EXPECT_EQ(pace.due(0s), kNoon + 80ms) << "a picture without a time follows the one before";
+  EXPECT_EQ(pace.due(std::nullopt), kNoon + 120ms);
+}
+
+TEST(FilePace, RoundsOfFilesOfOneLengthAreInStepWhoeverBeginsWhen) {
+  const FileTiming timing{40ms, 7s};
+  FilePace one(true);
+  FilePace other(true);
+  const Duration over = one.begin(timing, kNoon);
+  EXPECT_LT(over, 7s);
+  EXPECT_EQ(one.due(0s), kNoon - over);
+  EXPECT_EQ(other.begin(timing, kNoon + 1s), (over + 1s) % 7s);
+  EXPECT_EQ((one.due(3s) - other.due(3s)) % 7s, 0s);
+  EXPECT_EQ(one.begin(timing, one.due(6960ms)), 0s);
+  EXPECT_EQ(one.due(0s), kNoon - over + 7s) << "the next round follows the one before";
+}
+
+TEST(FilePace, ARoundThatEndsEarlyOrLateStillFollows) {
+  FilePace pace(true);
+  const FileTiming timing{40ms, 7s};
+  const Timestamp began = kNoon - pace.begin(timing, kNoon);
+  EXPECT_EQ(pace.begin(timing, began + 6500ms), 0s);
+  EXPECT_EQ(pace.due(0s), began + 7s);
+  EXPECT_EQ(pace.begin(timing, began + 14s + 400ms), 0s);
+  EXPECT_EQ(pace.due(0s), began + 14s);
+  EXPECT_EQ(pace.begin(timing, began + 100s), Duration(100s) % Duration(7s))
+      << "after a long pause the step is found anew";
+}
+
+TEST(FilePace, WithoutALengthRoundsFollowEachOther) {
+  FilePace pace(true);
+  EXPECT_EQ(pace.begin({40ms, std::nullopt}, kNoon), 0s);
+  (void)pace.due(0s);
+  (void)pace.due(40ms);
+  EXPECT_EQ(pace.begin({40ms, std::nullopt}, kNoon + 50ms), 0s);
+  EXPECT_EQ(pace.due(0s), kNoon + 80ms);
+}
+
+TEST(FilePace, WhoFallsBehindGoesOnFromThere) {
+  FilePace pace(false);
+  (void)pace.begin({40ms, 10s}, kNoon);
+  (void)pace.due(0s);
+  pace.fall_behind(2s);
+  EXPECT_EQ(pace.due(40ms), kNoon + 2040ms);
+}
+
+TEST(RestartPause, DoublesAndForgetsAfterGoodTimes) {
+  RestartPause pause(500ms, 3s);
+  EXPECT_EQ(pause.after(0s), 500ms);
+  EXPECT_EQ(pause.after(1s), 1s);
+  EXPECT_EQ(pause.after(1s), 2s);
+  EXPECT_EQ(pause.after(1s), 3s);
+  EXPECT_EQ(pause.after(1s), 3s);
+  EXPECT_EQ(pause.after(10s), 500ms);
+  EXPECT_EQ(pause.after(0s), 1s);
+}
+
+}  // namespace
+}  // namespace chorus::camera
