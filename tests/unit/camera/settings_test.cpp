@@ -41,7 +41,7 @@ TEST(CameraSettings, EverythingIsRead) {
   const auto [settings, problems] =
       read(R"({"source": "a.mp4", "label": "door", "width": 1280, "height": 720, "rate_hz": 25,
                "loop": false, "latency_ms": 80, "max_rate_hz": 12, "runner": ["python3", "r.py"],
-               "model": "", "depth_from_size": true, "fov_deg": 90, "fov_sigma_deg": 2,
+               "model": "", "depth_from_size": true, "height_m": 2, "pitch_deg": 30, "fov_deg": 90, "fov_sigma_deg": 2,
                "intrinsics": {"width": 640, "height": 480, "fx": 500, "fy": 501, "cx": 320,
                               "cy": 240, "distortion": [1, 2, 3, 4, 5]}})");
   EXPECT_EQ(problems, "");
@@ -59,6 +59,16 @@ TEST(CameraSettings, EverythingIsRead) {
   EXPECT_NEAR(settings.fov, 1.5707963, 1e-6);
   EXPECT_NEAR(settings.fov_sigma, 0.0349066, 1e-6);
   EXPECT_EQ(settings.intrinsics, (Intrinsics{640, 480, 500, 501, 320, 240, {1, 2, 3, 4, 5}}));
+}
+
+TEST(CameraSettings, TheFloorLiesAsFarBelowAsTheCameraIsHigh) {
+  const auto floor = read(R"({"height_m": 2, "pitch_deg": 30})").settings.floor;
+  ASSERT_TRUE(floor);
+  // Straight ahead the line of sight, 30 degrees downwards, meets the floor after 4 m.
+  EXPECT_NEAR(floor->normal.dot(Eigen::Vector3d(0, 0, 4)) + floor->offset, 0.0, 1e-12);
+  EXPECT_NEAR(floor->normal.norm(), 1.0, 1e-12);
+  EXPECT_GT(floor->normal.y(), 0.0);
+  EXPECT_FALSE(read(R"({"pitch_deg": 30})").settings.floor) << "a pitch alone says no height";
 }
 
 TEST(CameraSettings, MistakesAreNamed) {

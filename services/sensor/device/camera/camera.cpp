@@ -139,8 +139,9 @@ Result<Capture> Camera::ask(Runner& runner, const Shot& shot, const std::stop_to
   auto bodies = read_runner_answer(*line, question, hello, depth);
   if (!bodies) return pass(bodies);
   widen_all(*bodies, lens->focal_sigma);
-  SensorFrame frame{parts_.sensor,       sequence_,          shot.captured,
-                    parts_.clock->now(), std::move(*bodies), hello.floor};
+  SensorFrame frame{parts_.sensor,      sequence_,
+                    shot.captured,      parts_.clock->now(),
+                    std::move(*bodies), hello.floor ? hello.floor : parts_.settings.floor};
   parts_.state->answered(question.size, std::chrono::steady_clock::now() - began,
                          frame.received - frame.captured);
   return capture_of(std::move(frame), shot.picture, *lens);

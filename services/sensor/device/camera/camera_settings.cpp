@@ -1,6 +1,7 @@
 #include "services/sensor/device/camera/camera_settings.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace chorus::camera {
@@ -42,6 +43,16 @@ void read_lens(ConfigReader& section, CameraSettings& out) {
   if (section.has("intrinsics")) out.intrinsics = read_intrinsics(section.child("intrinsics"));
 }
 
+/// A camera that looks down by `pitch` sees "up" lean back towards it.
+void read_place(ConfigReader& section, CameraSettings& out) {
+  double height = 0.0;
+  double pitch = 0.0;
+  section.read("height_m", height, 0.0, 100.0);
+  section.read_deg("pitch_deg", pitch, -80.0, 80.0);
+  if (height > 0.0)
+    out.floor = FloorPlane{Eigen::Vector3d(0.0, std::cos(pitch), -std::sin(pitch)), height};
+}
+
 }  // namespace
 
 SourceKind kind_of(const std::string& source) {
@@ -75,6 +86,7 @@ CameraSettings read_camera_settings(ConfigReader& section) {
   section.read("model", settings.model);
   section.read("depth_from_size", settings.depth_from_size);
   read_lens(section, settings);
+  read_place(section, settings);
   return settings;
 }
 

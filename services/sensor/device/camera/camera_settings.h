@@ -8,6 +8,7 @@
 #include "common/base/config_reader.h"
 #include "common/base/duration.h"
 #include "common/sensor/camera_image.h"
+#include "common/sensor/sensor_frame.h"
 
 namespace chorus::camera {
 
@@ -27,10 +28,11 @@ struct CameraSettings {
   bool loop = true;  ///< A file starts again at its end.
   /// From light to arrival, where no clock of the camera tells.
   Duration latency = std::chrono::milliseconds(60);
-  double max_rate_hz = 30.0;          ///< Images a second that are looked at, at most.
-  std::vector<std::string> runner{};  ///< The command; empty: the runner that comes with Chorus.
-  std::string model = "movenet";      ///< Handed to the runner as --model; empty: not handed.
-  bool depth_from_size = false;       ///< Points instead of rays, where the runner allows it.
+  double max_rate_hz = 30.0;             ///< Images a second that are looked at, at most.
+  std::vector<std::string> runner{};     ///< The command; empty: the runner that comes with Chorus.
+  std::string model = "movenet";         ///< Handed to the runner as --model; empty: not handed.
+  bool depth_from_size = false;          ///< Points instead of rays, where the runner allows it.
+  std::optional<FloorPlane> floor = {};  ///< From height and pitch, where they are stated.
   std::optional<Intrinsics> intrinsics = {};
   double fov = 1.13;  ///< Across the image's longer side [rad], when nothing better is known.
   double fov_sigma = 0.105;  ///< Standard deviation of that statement [rad].
