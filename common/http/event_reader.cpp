@@ -1,26 +1,51 @@
 #include "common/http/event_reader.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace chorus::http {
 
+namespace {
+
+/// Finds the ends of lines one after the other; looks at each byte once for each of the two.
+/// (find_first_of would call memchr for every byte.)
+class LineEnds {
+ public:
+  explicit LineEnds(std::string_view bytes) : bytes_(bytes) {}
+
+  /// The first '\r' or '\n' from here on; the size when there is none.
+  [[nodiscard]] std::size_t after(std::size_t here) {
+    if (feed_ < here || here == 0) feed_ = std::min(bytes_.find('\n', here), bytes_.size());
+    if (return_ < here || here == 0) return_ = std::min(bytes_.find('\r', here), bytes_.size());
+    return std::min(feed_, return_);
+  }
+
+ private:
+  std::string_view bytes_;
+  std::size_t feed_ = 0;
+  std::size_t return_ = 0;
+};
+
+}  // namespace
+
 Result<std::vector<ServerEvent>> EventReader::take(std::string_view bytes) {
   std::vector<ServerEvent> events;
-  while (!bytes.empty()) {
-    if (std::exchange(after_return_, false) && bytes.front() == '\n') {
-      bytes.remove_prefix(1);
+  LineEnds ends(bytes);
+  for (std::size_t here = 0; here < bytes.size();) {
+    if (std::exchange(after_return_, false) && bytes[here] == '\n') {
+      ++here;
       continue;
     }
-    const std::size_t end = bytes.find_first_of("\r\n");
-    const std::string_view part = bytes.substr(0, end);
+    const std::size_t end = ends.after(here);
+    const std::string_view part = bytes.substr(here, end - here);
     if (line_.size() + part.size() + data_.size() > most_) {
       return fail(ErrorCode::TooLarge, "event stream",
                   "an event is larger than " + std::to_string(most_) + " bytes");
     }
     line_.append(part);
-    if (end == std::string_view::npos) break;
+    if (end == bytes.size()) break;
     after_return_ = bytes[end] == '\r';
-    bytes.remove_prefix(end + 1);
+    here = end + 1;
     end_line(events);
   }
   return events;

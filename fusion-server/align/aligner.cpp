@@ -21,9 +21,11 @@ struct Bracket {
 Bracket bracket(Timestamp instant, Timestamp now, const History& history,
                 const AlignConfig& config) {
   const auto& frames = history.frames();
+  const bool over = frames.empty() || frames.back().captured < instant;  // asked most often
   const auto next =
-      std::lower_bound(frames.begin(), frames.end(), instant,
-                       [](const SensorFrame& f, Timestamp t) { return f.captured < t; });
+      over ? frames.end()
+           : std::lower_bound(frames.begin(), frames.end(), instant,
+                              [](const SensorFrame& f, Timestamp t) { return f.captured < t; });
   Bracket found;
   if (next != frames.end() && next->captured == instant) {
     return {Basis::Exact, &*next, &*next};

@@ -36,11 +36,13 @@ void FusionCore::reconfigure(CoreConfig config) {
   registrar_.reconfigure(registrar_config(config_));
   std::erase_if(histories_,
                 [&](const auto& entry) { return !config_.sensors.contains(entry.first); });
+  awaited_by_ = 0;
 }
 
 void FusionCore::take(SensorFrame frame) {
   if (!config_.sensors.contains(frame.sensor)) return;
   sift(frame);
+  if (!histories_.contains(frame.sensor)) awaited_by_ = 0;  // one more to wait for
   const align::PushVerdict verdict = histories_[frame.sensor].push(frame);
   if (verdict == align::PushVerdict::Duplicate) return;
   if (verdict == align::PushVerdict::Backwards || verdict == align::PushVerdict::Future) {
@@ -81,9 +83,9 @@ std::optional<Snapshot> FusionCore::tick(Timestamp now) {
     if (!spoke && registration().sensors.contains(report.sensor))
       answered.without.push_back(report.sensor);
   }
-  shares_.answered(step.snapshot, awaited_);
+  shares_.answered(step.snapshot, last_awaited_);
   if (answered.without.empty()) shares_.settled(answered.parts);
-  awaited_.clear();
+  last_awaited_.clear();
   hindsight_.remember(std::move(answered));
   schedule_.answered(now);
   return std::move(step.snapshot);
@@ -113,13 +115,19 @@ bool FusionCore::improves(const Answered& answered, Timestamp now) const {
   });
 }
 
+/// Asked whenever a frame arrives, so who is awaited is decided once for each instant.
 Duration FusionCore::idle(Timestamp now) {
   const Tick tick = schedule_.next(now);
-  auto awaited = pipeline::awaited({tick.instant, now, tick.sequence}, histories_, registration(),
-                                   config_.pipeline);
-  const bool ready = awaited.empty();
-  if (!ready && now > tick.instant) awaited_ = std::move(awaited);
-  return schedule_.wait(now, ready);
+  if (awaited_by_ != tick.sequence) {
+    awaited_ = pipeline::all_awaited(histories_, registration(), config_.pipeline);
+    awaited_by_ = tick.sequence;
+  }
+  pipeline::drop_settled(awaited_, {tick.instant, now, tick.sequence}, histories_);
+  if (!awaited_.empty() && now > tick.instant) {
+    last_awaited_.clear();
+    for (const pipeline::Awaited& one : awaited_) last_awaited_.push_back(one.sensor);
+  }
+  return schedule_.wait(now, awaited_.empty());
 }
 
 void FusionCore::forget() {

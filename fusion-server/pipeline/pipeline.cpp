@@ -158,16 +158,22 @@ void leave_out_the_unplaced(std::vector<FusedBody>& bodies, const std::vector<Pe
 
 }  // namespace
 
-std::vector<SensorId> awaited(const Inputs& in, const Histories& histories,
-                              const Registration& registration, const PipelineConfig& config) {
+std::vector<Awaited> all_awaited(const Histories& histories, const Registration& registration,
+                                 const PipelineConfig& config) {
   const align::Patience patience = patience_of(histories, registration, config);
-  std::vector<SensorId> sensors;
+  std::vector<Awaited> awaited;
   for (const auto& [sensor, history] : histories) {
-    if (!registration.sensors.contains(sensor)) continue;
-    const Basis basis = align::basis_at(in.instant, in.now, history, patience.of(history));
-    if (basis == Basis::Pending) sensors.push_back(sensor);
+    if (registration.sensors.contains(sensor)) awaited.push_back({sensor, patience.of(history)});
   }
-  return sensors;
+  return awaited;
+}
+
+void drop_settled(std::vector<Awaited>& awaited, const Inputs& in, const Histories& histories) {
+  std::erase_if(awaited, [&](const Awaited& one) {
+    const auto history = histories.find(one.sensor);
+    return history == histories.end() ||
+           align::basis_at(in.instant, in.now, history->second, one.align) != Basis::Pending;
+  });
 }
 
 Perceived perceive(const Inputs& in, const Histories& histories, const Registration& registration,

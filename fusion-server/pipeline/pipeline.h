@@ -54,11 +54,20 @@ struct Step {
   Memory memory;
 };
 
-/// The sensors with a place whose answer for the instant may still come.  None: waiting longer
-/// cannot improve it.
-[[nodiscard]] std::vector<SensorId> awaited(const Inputs& in, const Histories& histories,
-                                            const Registration& registration,
-                                            const PipelineConfig& config);
+/// A sensor whose answer for an instant may still come, and how long it is waited for.
+struct Awaited {
+  SensorId sensor;
+  align::AlignConfig align;
+};
+
+/// Before an instant: every sensor with a place.
+[[nodiscard]] std::vector<Awaited> all_awaited(const Histories& histories,
+                                               const Registration& registration,
+                                               const PipelineConfig& config);
+
+/// Takes out those whose answer is there, or too late.  When none is left, waiting longer cannot
+/// improve the instant.
+void drop_settled(std::vector<Awaited>& awaited, const Inputs& in, const Histories& histories);
 
 /// Everything in `step` before fusion: the views it hands to it.
 [[nodiscard]] Perceived perceive(const Inputs& in, const Histories& histories,

@@ -167,17 +167,21 @@ TEST(StepProperty, MovingAllSensorsByOneTransformMovesTheResult) {
   }
 }
 
-TEST(Ready, WaitsForRegisteredSensorsOnlyAndOnlySoLong) {
+TEST(Awaited, AreRegisteredSensorsOnlyAndOnlySoLong) {
   Histories histories = ring_histories({});
   const Registration registration = ring_registration(6);
+  const auto at = [&](Timestamp instant, Timestamp now) {
+    auto awaited = all_awaited(histories, registration, {});
+    drop_settled(awaited, {instant, now, 0}, histories);
+    return awaited.size();
+  };
   const Timestamp inside = kStart + milliseconds(500);
-  EXPECT_TRUE(awaited({inside, inside, 0}, histories, registration, {}).empty());
+  EXPECT_EQ(at(inside, inside), 0u);
   const Timestamp beyond = kStart + milliseconds(2010);
-  EXPECT_FALSE(awaited({beyond, beyond, 0}, histories, registration, {}).empty());
-  EXPECT_TRUE(
-      awaited({beyond, beyond + milliseconds(201), 0}, histories, registration, {}).empty());
+  EXPECT_EQ(at(beyond, beyond), 6u);
+  EXPECT_EQ(at(beyond, beyond + milliseconds(201)), 0u);
   histories[sensor(77)] = align::History();
-  EXPECT_TRUE(awaited({inside, inside, 0}, histories, registration, {}).empty());
+  EXPECT_EQ(at(inside, inside), 0u);
 }
 
 TEST(StepCost, TenSensorsAndSixPeopleFitManyTimesIntoAFrame) {
