@@ -1,19 +1,20 @@
 #include "common/synthetic/render.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <opencv2/imgcodecs.hpp>
+#include <vector>
 
 #include "common/synthetic/body_shape.h"
+#include "common/synthetic/picture.h"
 
 namespace chorus::synthetic {
 namespace {
 
 constexpr std::uint64_t kDrawDepth = 401;
 constexpr double kMaxDepthCode = 65535;  // 16 bit
-constexpr int kJpegQuality = 85;
-constexpr double kTileSize = 0.5;  // of the floor pattern [m]
+constexpr double kTileSize = 0.5;        // of the floor pattern [m]
 constexpr std::uint16_t kNobody = 0;
 constexpr std::uint16_t kThing = 65535;
 constexpr int kMaxPixels = 4'000'000;
@@ -130,41 +131,32 @@ Result<RangeImage> look(const Scene& scene, std::size_t sensor, Timestamp instan
   return image;
 }
 
-/// Blue, green, red; a person's colour, a thing's, a chequered floor or the wall.
-cv::Vec3b shade(const RangeImage& image, std::size_t i,
-                const Eigen::Isometry3d& world_from_sensor) {
+/// Red, green, blue; a person's colour, a thing's, a chequered floor or the wall.
+std::array<std::uint8_t, 3> shade(const RangeImage& image, std::size_t i,
+                                  const Eigen::Isometry3d& world_from_sensor) {
   const double range = static_cast<double>(image.range[i]);
-  if (!std::isfinite(range)) return {196, 190, 184};
+  if (!std::isfinite(range)) return {184, 190, 196};
   const double light = std::clamp(1.15 - 0.13 * range, 0.35, 1.0);
-  Eigen::Vector3d colour(96, 120, 210);
+  Eigen::Vector3d colour(210, 120, 96);
   if (image.person[i] == kNobody) {
     const Eigen::Vector3d x = world_from_sensor * (range * image.rays[i].cast<double>());
     const double tile = std::floor(x.x() / kTileSize) + std::floor(x.z() / kTileSize);
-    colour = std::fmod(std::abs(tile), 2.0) < 0.5 ? Eigen::Vector3d(150, 160, 165)
-                                                  : Eigen::Vector3d(120, 128, 132);
+    colour = std::fmod(std::abs(tile), 2.0) < 0.5 ? Eigen::Vector3d(165, 160, 150)
+                                                  : Eigen::Vector3d(132, 128, 120);
   } else if (image.person[i] == kThing) {
-    colour = Eigen::Vector3d(70, 78, 84);
+    colour = Eigen::Vector3d(84, 78, 70);
   } else if (image.person[i] % 2 == 0) {
-    colour = Eigen::Vector3d(110, 170, 90);
+    colour = Eigen::Vector3d(90, 170, 110);
   }
   const Eigen::Vector3d lit = light * colour;
-  return {static_cast<uchar>(lit.x()), static_cast<uchar>(lit.y()), static_cast<uchar>(lit.z())};
+  return {static_cast<std::uint8_t>(lit.x()), static_cast<std::uint8_t>(lit.y()),
+          static_cast<std::uint8_t>(lit.z())};
 }
 
-Result<CameraImage> encode(const cv::Mat& pixels, Timestamp instant, const Intrinsics& camera,
-                           bool jpeg) {
-  try {
-    std::vector<uchar> bytes;
-    const std::vector<int> options =
-        jpeg ? std::vector<int>{cv::IMWRITE_JPEG_QUALITY, kJpegQuality} : std::vector<int>{};
-    if (cv::imencode(jpeg ? ".jpg" : ".png", pixels, bytes, options)) {
-      return CameraImage{instant, camera, jpeg ? "image/jpeg" : "image/png",
-                         std::string(bytes.begin(), bytes.end())};
-    }
-  } catch (const cv::Exception& problem) {
-    return fail(ErrorCode::Internal, "render", problem.what());
-  }
-  return fail(ErrorCode::Internal, "render", "the image could not be encoded");
+Result<CameraImage> image_of(const Result<std::string>& bytes, const char* media_type,
+                             Timestamp instant, const Intrinsics& camera) {
+  if (!bytes) return pass(bytes);
+  return CameraImage{instant, camera, media_type, *bytes};
 }
 
 }  // namespace
@@ -174,29 +166,30 @@ Result<CameraImage> render_depth(const Scene& scene, std::size_t sensor, Timesta
   const Result<RangeImage> image = look(scene, sensor, instant, camera.intrinsics);
   if (!image) return pass(image);
   Draw draw{camera.seed, kDrawDepth, sensor, static_cast<std::uint64_t>(to_unix_ns(instant))};
-  cv::Mat pixels(image->height, image->width, CV_16UC1, cv::Scalar(0));
+  std::vector<std::uint16_t> pixels(image->rays.size(), 0);
   for (std::size_t i = 0; i < image->rays.size(); ++i) {
     const double exact =
         static_cast<double>(image->range[i]) * static_cast<double>(image->rays[i].z());
     if (!(exact <= camera.most_depth)) continue;
     const double measured = std::round(to_mm(exact + camera.depth_noise * draw.gauss()));
-    pixels.at<std::uint16_t>(static_cast<int>(i) / image->width,
-                             static_cast<int>(i) % image->width) =
-        static_cast<std::uint16_t>(std::clamp(measured, 0.0, kMaxDepthCode));
+    pixels[i] = static_cast<std::uint16_t>(std::clamp(measured, 0.0, kMaxDepthCode));
   }
-  return encode(pixels, instant, camera.intrinsics, false);
+  return image_of(png_of(pixels, {image->width, image->height}), "image/png", instant,
+                  camera.intrinsics);
 }
 
 Result<CameraImage> render_color(const Scene& scene, std::size_t sensor, Timestamp instant,
                                  const CameraModel& camera) {
   const Result<RangeImage> image = look(scene, sensor, instant, camera.intrinsics);
   if (!image) return pass(image);
-  cv::Mat pixels(image->height, image->width, CV_8UC3);
+  std::vector<std::uint8_t> pixels;
+  pixels.reserve(3 * image->rays.size());
   for (std::size_t i = 0; i < image->rays.size(); ++i) {
-    pixels.at<cv::Vec3b>(static_cast<int>(i) / image->width, static_cast<int>(i) % image->width) =
-        shade(*image, i, scene.world_from_sensor[sensor]);
+    const auto colour = shade(*image, i, scene.world_from_sensor[sensor]);
+    pixels.insert(pixels.end(), colour.begin(), colour.end());
   }
-  return encode(pixels, instant, camera.intrinsics, true);
+  return image_of(jpeg_of(pixels, {image->width, image->height}), "image/jpeg", instant,
+                  camera.intrinsics);
 }
 
 }  // namespace chorus::synthetic

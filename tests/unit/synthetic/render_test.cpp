@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "common/synthetic/body_shape.h"
+#include "common/synthetic/picture.h"
 
 namespace chorus::synthetic {
 namespace {
@@ -85,6 +86,33 @@ TEST(Color, IsAJpegWithAPersonInIt) {
   }
   EXPECT_GT(changed, 4000);
   EXPECT_LT(changed, 40000);
+}
+
+TEST(Picture, APngKeepsEveryValueAndAJpegTheColours) {
+  std::vector<std::uint16_t> depth(7 * 5);
+  for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = static_cast<std::uint16_t>(i * 9973);
+  const std::string png = png_of(depth, {7, 5}).value();
+  const cv::Mat values = decoded({{}, {}, "image/png", png});
+  ASSERT_EQ(values.type(), CV_16UC1);
+  ASSERT_EQ(values.size(), cv::Size(7, 5));
+  for (std::size_t i = 0; i < depth.size(); ++i)
+    EXPECT_EQ(values.at<std::uint16_t>(int(i) / 7, int(i) % 7), depth[i]) << i;
+  std::vector<std::uint8_t> red(16 * 8 * 3, 0);
+  for (std::size_t i = 0; i < red.size(); i += 3) red[i] = 200;
+  const cv::Mat colour = decoded({{}, {}, "image/jpeg", jpeg_of(red, {16, 8}).value()});
+  ASSERT_EQ(colour.size(), cv::Size(16, 8));
+  const cv::Vec3b pixel = colour.at<cv::Vec3b>(4, 4);  // Blue, green, red.
+  EXPECT_LT(pixel[0], 10);
+  EXPECT_NEAR(pixel[2], 200, 10);
+}
+
+TEST(Picture, RefusesPixelsThatDoNotFillIt) {
+  const std::vector<std::uint16_t> depth(6);
+  const std::vector<std::uint8_t> colour(6);
+  EXPECT_FALSE(png_of(depth, {7, 1}));
+  EXPECT_FALSE(png_of({}, {0, 0}));
+  EXPECT_FALSE(png_of(depth, {-2, -3}));
+  EXPECT_FALSE(jpeg_of(colour, {3, 1}));
 }
 
 TEST(Render, RefusesImpossibleCameras) {
