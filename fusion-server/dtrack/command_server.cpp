@@ -98,6 +98,10 @@ void CommandServer::Impl::welcome(net::Socket socket) {
   error_code error;
   const tcp::endpoint peer = socket.remote_endpoint(error);
   if (error) return;  // it has left; leaving here closes the socket
+  if (const std::string why =
+          options.allow.objection(peer.address(), "outputs.dtrack.command.allow");
+      !why.empty())
+    return refuse(why);
   const std::string host = peer.address().to_string();
   if (const std::string why = objection(host); !why.empty()) return refuse(why);
   auto connection = std::make_shared<Connection>(std::move(socket), next_serial++);

@@ -13,6 +13,7 @@
 
 #include "common/base/duration.h"
 #include "common/base/result.h"
+#include "common/net/allow_list.h"
 #include "fusion-server/sink.h"
 
 namespace chorus::dtrack {
@@ -20,6 +21,7 @@ namespace chorus::dtrack {
 struct CommandServerOptions {
   std::string address = "127.0.0.1";  ///< Numeric.
   int port = 50105;                   ///< 0: any.
+  net::AllowList allow = {};          ///< Who is answered.
   int max_connections = 8;
   int max_connections_per_address = 4;             ///< So that one host cannot take all places.
   Duration idle = std::chrono::hours(1);           ///< Clients are silent while they receive.

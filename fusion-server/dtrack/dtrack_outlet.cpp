@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include "fusion-server/outlet/allowed_clients.h"
 #include "fusion-server/outlet/datagram_sender.h"
 
 namespace chorus::dtrack {
@@ -68,6 +69,7 @@ void read_command(ConfigReader reader, Settings& out) {
   reader.read("enabled", out.commands);
   reader.read("address", out.command.address);
   reader.read("port", out.command.port, 0, kMaxPort);
+  outlet::read_allow(reader, out.command.allow);
   reader.read("max_connections", out.command.max_connections, 1, kMaxConnections);
   reader.read("max_connections_per_address", out.command.max_connections_per_address, 1,
               kMaxConnections);

@@ -8,6 +8,7 @@
 #include "common/base/log.h"
 #include "common/net/asio.h"
 #include "fusion-server/natnet/natnet_server.h"
+#include "fusion-server/outlet/allowed_clients.h"
 
 namespace chorus::natnet {
 namespace {
@@ -86,6 +87,7 @@ void read_settings(ConfigReader& reader, Settings& out) {
   constexpr int kMaxHops = 255;
   reader.read("address", out.address);
   reader.read("command_port", out.command_port, 0, kMaxPort);
+  outlet::read_allow(reader, out.allow);
   auto transmission = static_cast<std::size_t>(out.transmission);
   reader.read_choice("transmission", transmission, {"unicast", "multicast"});
   out.transmission = static_cast<Transmission>(transmission);
@@ -107,6 +109,7 @@ Result<std::unique_ptr<outlet::Outlet>> open_outlet(const Settings& settings,
   ServerOptions options;
   options.address = settings.address;
   options.command_port = static_cast<std::uint16_t>(settings.command_port);
+  options.allow = settings.allow;
   options.multicast_hops = settings.multicast_hops;
   options.desk.info.data_port = static_cast<std::uint16_t>(settings.data_port);
   options.desk.info.multicast = settings.transmission == Transmission::Multicast;

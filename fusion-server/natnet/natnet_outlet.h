@@ -6,6 +6,7 @@
 
 #include "common/base/config_reader.h"
 #include "common/base/result.h"
+#include "common/net/allow_list.h"
 #include "fusion-server/natnet/natnet_encoder.h"
 #include "fusion-server/outlet/outlet.h"
 
@@ -16,6 +17,7 @@ enum class Transmission { Unicast, Multicast };
 struct Settings {
   std::string address = "127.0.0.1";
   int command_port = 1510;  ///< 0: any.
+  net::AllowList allow = {};
   Transmission transmission = Transmission::Unicast;
   std::string group = "239.255.42.99";
   int data_port = 1511;  ///< Of the group.

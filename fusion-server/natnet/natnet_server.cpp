@@ -117,7 +117,12 @@ void Server::Impl::receive() {
 
 void Server::Impl::on_datagram(error_code error, std::size_t size) {
   if (!commands.is_open()) return;  // stopped
-  if (!error) {
+  const std::string stranger =
+      error ? std::string() : options.allow.objection(sender.address(), "outputs.natnet.allow");
+  if (!stranger.empty()) {
+    ++refused;
+    turned_away.hit(stranger);
+  } else if (!error) {
     const Now now{std::chrono::steady_clock::now(), options.clock->now()};
     const Reply reply = desk.answer({incoming.data(), size}, address_of(sender), now);
     if (!reply.refusal.empty()) {

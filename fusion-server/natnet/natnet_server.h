@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/base/result.h"
+#include "common/net/allow_list.h"
 #include "common/time/clock.h"
 #include "fusion-server/natnet/command_desk.h"
 #include "fusion-server/sink.h"
@@ -17,6 +18,7 @@ struct ServerOptions {
   /// Numeric IPv4: where we listen, and the interface that the group is sent from.
   std::string address = "127.0.0.1";
   std::uint16_t command_port = 1510;  ///< 0: any.
+  net::AllowList allow = {};  ///< Who is answered; nothing keeps others from the group's frames.
   int multicast_hops = 1;
   DeskOptions desk;                    ///< `info` says where frames go.
   std::shared_ptr<const Clock> clock;  ///< What echo requests are answered with.

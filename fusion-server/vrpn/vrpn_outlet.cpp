@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "common/base/log.h"
+#include "fusion-server/outlet/allowed_clients.h"
 #include "fusion-server/vrpn/vrpn_server.h"
 
 namespace chorus::vrpn {
@@ -34,6 +35,7 @@ class VrpnOutlet final : public outlet::Outlet {
 void read_settings(ConfigReader& reader, Settings& out) {
   reader.read("address", out.address);
   reader.read("port", out.port, 0, 65535);
+  outlet::read_allow(reader, out.allow);
   reader.read("joint_trackers", out.joint_trackers);
   reader.read("max_clients", out.max_clients, 1, kMaxClients);
   reader.read("max_clients_per_address", out.max_clients_per_address, 1, kMaxClients);
@@ -44,6 +46,7 @@ Result<std::unique_ptr<outlet::Outlet>> open_outlet(const Settings& settings,
   ServerOptions options;
   options.address = settings.address;
   options.port = static_cast<std::uint16_t>(settings.port);
+  options.allow = settings.allow;
   options.max_clients = static_cast<std::size_t>(settings.max_clients);
   options.max_clients_per_address = static_cast<std::size_t>(settings.max_clients_per_address);
   options.clock = context.clock;

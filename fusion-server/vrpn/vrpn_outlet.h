@@ -6,6 +6,7 @@
 
 #include "common/base/config_reader.h"
 #include "common/base/result.h"
+#include "common/net/allow_list.h"
 #include "fusion-server/outlet/outlet.h"
 
 namespace chorus::vrpn {
@@ -13,6 +14,7 @@ namespace chorus::vrpn {
 struct Settings {
   std::string address = "127.0.0.1";
   int port = 3883;  ///< 0: any.
+  net::AllowList allow = {};
   bool joint_trackers = true;
   int max_clients = 128;
   int max_clients_per_address = 64;

@@ -62,7 +62,7 @@ struct Server::Impl {
   void stop();
   void turn_away(const std::string& reason);
   /// Why another client of this address is refused; empty: it is accepted.
-  [[nodiscard]] std::string objection(const std::string& address) const;
+  [[nodiscard]] std::string objection(const asio::ip::address& of) const;
 
   struct Client {
     std::shared_ptr<Connection> connection;
@@ -122,7 +122,10 @@ void Server::Impl::ensure() {
   if (!receiving && !stopping) receive_request();
 }
 
-std::string Server::Impl::objection(const std::string& address) const {
+std::string Server::Impl::objection(const asio::ip::address& of) const {
+  if (std::string stranger = options.allow.objection(of, "outputs.vrpn.allow"); !stranger.empty())
+    return stranger;
+  const std::string address = text_of(of);
   const auto connected = std::ranges::count_if(
       clients, [&](const auto& entry) { return entry.second.address == address; });
   const auto under_way = std::ranges::count_if(
@@ -137,9 +140,7 @@ void Server::Impl::on_accepted(net::Socket socket) {
   error_code gone;
   const auto remote = socket.remote_endpoint(gone);
   if (gone) return;
-  if (const std::string why = objection(text_of(remote.address())); !why.empty()) {
-    return turn_away(why);
-  }
+  if (const std::string why = objection(remote.address()); !why.empty()) return turn_away(why);
   welcome(std::move(socket), std::nullopt);
 }
 
@@ -167,7 +168,7 @@ void Server::Impl::on_request(error_code failed, std::size_t size) {
 
 void Server::Impl::answer_request(const tcp::endpoint& to) {
   const Asker asker{text_of(to.address()), to.port()};
-  if (const std::string why = objection(asker.address); !why.empty()) return turn_away(why);
+  if (const std::string why = objection(to.address()); !why.empty()) return turn_away(why);
   const auto verdict = gate.ask(asker, std::chrono::steady_clock::now());
   if (verdict == RequestGate::Verdict::Refused) turn_away("too many requests");
   if (verdict == RequestGate::Verdict::Connect) connect_back(to, asker);

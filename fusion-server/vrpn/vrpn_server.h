@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/base/result.h"
+#include "common/net/allow_list.h"
 #include "common/time/clock.h"
 #include "fusion-server/sink.h"
 #include "fusion-server/vrpn/vrpn_connection.h"
@@ -15,6 +16,7 @@ namespace chorus::vrpn {
 struct ServerOptions {
   std::string address = "127.0.0.1";
   std::uint16_t port = 3883;  ///< TCP and UDP; 0: any that is free for both.
+  net::AllowList allow = {};  ///< Who is answered.
   std::size_t max_clients = 128;
   std::size_t max_clients_per_address = 64;  ///< So that one host cannot take all places.
   ClientLimits limits = {};

@@ -46,7 +46,9 @@ void check_rest(Trial& trial, Cell& cell) {
 
 Result<void> vrpn_seats(Trial& trial) {
   constexpr int kMany = 80;
-  auto rig = crowded(trial, {"outputs.vrpn.enabled=true", "outputs.vrpn.address=0.0.0.0"},
+  auto rig = crowded(trial,
+                     {"outputs.vrpn.enabled=true", "outputs.vrpn.address=0.0.0.0",
+                      "outputs.vrpn.allow=[\"0.0.0.0/0\"]"},
                      "outputs.vrpn.port");
   if (!rig) return pass(rig);
   std::vector<RawSocket> idle;
@@ -63,10 +65,11 @@ Result<void> vrpn_seats(Trial& trial) {
 
 Result<void> dtrack_seats(Trial& trial) {
   constexpr int kMany = 8;
-  auto rig = crowded(trial,
-                     {"outputs.dtrack.enabled=true", "outputs.dtrack.command.enabled=true",
-                      "outputs.dtrack.command.address=0.0.0.0"},
-                     "outputs.dtrack.command.port");
+  auto rig = crowded(
+      trial,
+      {"outputs.dtrack.enabled=true", "outputs.dtrack.command.enabled=true",
+       "outputs.dtrack.command.address=0.0.0.0", "outputs.dtrack.command.allow=[\"0.0.0.0/0\"]"},
+      "outputs.dtrack.command.port");
   if (!rig) return pass(rig);
   std::vector<RawSocket> idle;
   for (int i = 0; i < kMany; ++i) idle.push_back(connect_to({rig->host, rig->port}));
@@ -102,6 +105,7 @@ bool natnet_serves(const End& end) {
 
 Settings natnet_settings() {
   return {"outputs.natnet.enabled=true", "outputs.natnet.address=0.0.0.0",
+          "outputs.natnet.allow=[\"0.0.0.0/0\"]",
           fmt::format("outputs.natnet.data_port={}", testing::free_port())};
 }
 
