@@ -1,6 +1,7 @@
 #include "common/http/access.h"
 
 #include <openssl/crypto.h>
+#include <openssl/evp.h>
 #include <openssl/sha.h>
 #include <unistd.h>
 
@@ -35,14 +36,65 @@ bool is_fixed_name(std::string_view host) {
   return !host.empty() && host.find_first_not_of("0123456789.") == std::string_view::npos;
 }
 
-constexpr std::string_view kBearer = "bearer ";
+/// What follows "scheme " in an Authorization field of that scheme.
+std::optional<std::string_view> credentials(const RequestHead& head, std::string_view scheme) {
+  const std::string_view given = head.authorization;
+  if (given.size() <= scheme.size() || given[scheme.size()] != ' ' ||
+      !equal_ignoring_case(given.substr(0, scheme.size()), scheme)) {
+    return std::nullopt;
+  }
+  return trimmed(given.substr(scheme.size()));
+}
 
-bool has_token(const RequestHead& head, std::string_view bearer_token) {
-  std::string_view given = head.authorization;
-  const bool is_bearer = given.size() > kBearer.size() &&
-                         equal_ignoring_case(given.substr(0, kBearer.size()), kBearer);
-  given.remove_prefix(std::min(given.size(), kBearer.size()));
-  return is_bearer && same_secret(trimmed(given), bearer_token);
+/// The password of Basic credentials (RFC 7617): what follows the colon, decoded.
+std::optional<std::string> password_in(std::string_view encoded) {
+  constexpr std::size_t kMost = 4096;
+  if (encoded.empty() || encoded.size() % 4 != 0 || encoded.size() > kMost) return std::nullopt;
+  std::string text(encoded.size() / 4 * 3, '\0');
+  const int size = EVP_DecodeBlock(reinterpret_cast<unsigned char*>(text.data()),
+                                   reinterpret_cast<const unsigned char*>(encoded.data()),
+                                   static_cast<int>(encoded.size()));
+  if (size < 0) return std::nullopt;
+  const std::size_t padding = encoded.ends_with("==") ? 2 : encoded.ends_with('=') ? 1 : 0;
+  text.resize(static_cast<std::size_t>(size) - padding);
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) return std::nullopt;
+  return text.substr(colon + 1);
+}
+
+bool is_reading(const RequestHead& head) {
+  return head.method == Method::Get || head.method == Method::Head;
+}
+
+/// A browser sends Basic credentials with whatever any page makes it ask for, so they never write.
+std::optional<std::string> secret_in(const RequestHead& head) {
+  if (const auto bearer = credentials(head, "bearer")) return std::string(*bearer);
+  const auto basic = is_reading(head) ? credentials(head, "basic") : std::nullopt;
+  return basic ? password_in(*basic) : std::nullopt;
+}
+
+/// The role that the request has proved; nothing without one of our tokens.  Every token is
+/// compared, so that the time does not tell which.
+std::optional<Role> role_of(const RequestHead& head, const Guard& guard) {
+  const auto secret = secret_in(head);
+  if (!secret) return std::nullopt;
+  std::optional<Role> best;
+  for (const Token& token : guard.tokens) {
+    if (same_secret(*secret, token.secret)) best = std::max(best, std::optional(token.role));
+  }
+  return best;
+}
+
+Error without_tokens(Role needed) {
+  if (needed == Role::Control) {
+    return {ErrorCode::Forbidden, "Authorization",
+            "writing methods are refused from here: this service has no bearer token "
+            "configured, so only direct requests from its own host are accepted"};
+  }
+  return {ErrorCode::Unauthorized, "Authorization",
+          "this service listens to the network and has no token yet, so only its own host may "
+          "read: set http.tokens in its configuration (chorus init writes one with tokens), then "
+          "send one: \"Authorization: Bearer TOKEN\""};
 }
 
 }  // namespace
@@ -83,17 +135,44 @@ bool is_trusted_local(const RequestHead& head, const Peer& peer) {
   return !is_present(head.origin) || from_own_page(head);
 }
 
-std::optional<Error> refuse_writing(const RequestHead& head, const Peer& peer,
-                                    std::string_view bearer_token) {
-  if (bearer_token.empty()) {
-    if (is_trusted_local(head, peer)) return std::nullopt;
+bool Guard::knows_readers() const {
+  return std::any_of(tokens.begin(), tokens.end(),
+                     [](const Token& token) { return token.role < Role::Control; });
+}
+
+std::optional<Error> refuse_access(const RequestHead& head, const Peer& peer, Role needed,
+                                   const Guard& guard) {
+  const bool reading = needed != Role::Control;
+  if (reading && !guard.guards_reading()) return std::nullopt;
+  const bool trusts_local = reading ? !guard.knows_readers() : guard.tokens.empty();
+  if (trusts_local && is_trusted_local(head, peer)) return std::nullopt;
+  if (guard.tokens.empty()) return without_tokens(needed);
+  const auto role = role_of(head, guard);
+  if (role && *role >= needed) return std::nullopt;
+  if (role) {
     return Error{ErrorCode::Forbidden, "Authorization",
-                 "writing methods are refused from here: this service has no bearer token "
-                 "configured, so only direct requests from its own host are accepted"};
+                 "this token has the role " + std::string(name_of(*role)) + ", and this needs " +
+                     std::string(name_of(needed)) + ": send another one of this service"};
   }
-  if (has_token(head, bearer_token)) return std::nullopt;
   return Error{ErrorCode::Unauthorized, "Authorization",
-               "send the bearer token of this service: \"Authorization: Bearer TOKEN\""};
+               "send a bearer token of this service with the role " + std::string(name_of(needed)) +
+                   " (http.tokens in its configuration): \"Authorization: Bearer TOKEN\""};
+}
+
+bool has_wrong_token(const RequestHead& head, const Guard& guard) {
+  return is_present(head.authorization) && !guard.tokens.empty() && !role_of(head, guard);
+}
+
+std::string_view name_of(Role role) noexcept {
+  constexpr std::array<std::string_view, 3> kNames{"read", "images", "control"};
+  return kNames[static_cast<std::size_t>(role)];
+}
+
+std::optional<Role> role_named(std::string_view name) {
+  for (const Role role : {Role::Read, Role::Images, Role::Control}) {
+    if (name_of(role) == name) return role;
+  }
+  return std::nullopt;
 }
 
 bool is_our_authority(std::string_view authority, const Peer& peer) {

@@ -22,6 +22,31 @@ struct Peer {
   std::string account = {};  ///< Whom limits count the connection for (net::account_of).
 };
 
+/// What a token allows; each role includes those before it.
+enum class Role {
+  Read,     ///< Everything but pictures and recordings.
+  Images,   ///< These too (Router::shows_people).
+  Control,  ///< Writing methods.
+};
+
+struct Token {
+  std::string secret;
+  Role role = Role::Control;
+
+  bool operator==(const Token&) const = default;
+};
+
+/// What a server asks of those who come.
+struct Guard {
+  std::vector<Token> tokens = {};
+  bool open = false;  ///< It listens to more than this host.
+
+  /// Somebody has made tokens for reading, so that everybody needs one.
+  [[nodiscard]] bool knows_readers() const;
+  /// Reading needs a token, at least for others than this host.
+  [[nodiscard]] bool guards_reading() const { return open || knows_readers(); }
+};
+
 /// Constant time whatever the bytes are: compares SHA-256 digests.
 [[nodiscard]] bool same_secret(std::string_view a, std::string_view b);
 
@@ -40,11 +65,21 @@ struct Peer {
 /// included).
 [[nodiscard]] bool is_trusted_local(const RequestHead& head, const Peer& peer);
 
-/// Nothing when a writing method is allowed: with the right bearer token if one is configured, else
-/// for trusted local requests.  Being local does not replace the token: a proxy on this host is
-/// local as well.
-[[nodiscard]] std::optional<Error> refuse_writing(const RequestHead& head, const Peer& peer,
-                                                  std::string_view bearer_token);
+/// Nothing when the request is allowed what it needs.  Writing: with a token of role Control if any
+/// token is configured, else for trusted local requests.  Reading, on an open server: with a token,
+/// or for trusted local requests while no token for reading is configured; elsewhere with a token
+/// once there is one for reading.  Being local does not replace such tokens: a proxy on this host
+/// is local as well.  For GET and HEAD the token may also come as the password of Basic
+/// authentication, which browsers ask people for.
+[[nodiscard]] std::optional<Error> refuse_access(const RequestHead& head, const Peer& peer,
+                                                 Role needed, const Guard& guard);
+
+/// True when the request names a token that is none of ours.
+[[nodiscard]] bool has_wrong_token(const RequestHead& head, const Guard& guard);
+
+[[nodiscard]] std::string_view name_of(Role role) noexcept;
+/// "read", "images" or "control".
+[[nodiscard]] std::optional<Role> role_named(std::string_view name);
 
 /// True when `authority` (host[:port] of an absolute-form target) is this end of the connection.
 [[nodiscard]] bool is_our_authority(std::string_view authority, const Peer& peer);

@@ -2,7 +2,9 @@
 
 #include <utility>
 
+#include "common/base/log.h"
 #include "common/http/admission.h"
+#include "common/http/route_table.h"
 #include "common/http/status.h"
 #include "common/http/websocket_handshake.h"
 
@@ -14,6 +16,15 @@ constexpr std::size_t kLingerBytes = 1u << 20;  // What a refused client may sti
 
 // The client holds the body back until it reads this.
 constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
+
+/// For whoever looks for a mistake (log.level "debug").  Neither query nor fields: they may hold
+/// secrets.
+void note(const RequestHead& head, const Peer& peer, int status) {
+  log::debug("request", {{"method", name_of(head.method)},
+                         {"path", head.path},
+                         {"status", status},
+                         {"from", peer.account}});
+}
 
 }  // namespace
 
@@ -158,6 +169,7 @@ void Conversation::serve(std::size_t head_size) {
   if (!head_.keep_alive) close_after_ = true;
   if (!may_ask()) return refuse(status::kUnavailable, "too many connections; keep fewer open");
   reaction_ = context_.responder.react(head_, peer_);
+  if (reaction_.kind != Reaction::Kind::ReadBody) note(head_, peer_, reaction_.answer.status);
   switch (reaction_.kind) {
     case Reaction::Kind::Answer:
       return send(std::move(reaction_.answer));
@@ -207,7 +219,9 @@ void Conversation::advance_body() {
       return refuse(status::kFieldsTooLarge, "shorten the header fields of a request with a body");
     return read();
   }
-  send(context_.responder.act(reaction_, head_, peer_, body_));
+  Answer answer = context_.responder.act(reaction_, head_, peer_, body_);
+  note(head_, peer_, answer.status);
+  send(std::move(answer));
 }
 
 void Conversation::send(Answer answer) {

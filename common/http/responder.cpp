@@ -99,9 +99,11 @@ std::optional<Answer> redirected(const RequestHead& head, std::string_view path,
 }  // namespace
 
 Responder::Responder(const ServerConfig& config, std::shared_ptr<const Router> router)
-    : bearer_token_(config.bearer_token),
+    : guard_{all_tokens(config.bearer_token, config.tokens), !is_loopback(config.address)},
       allowed_origin_(config.allowed_origin),
       challenge_("WWW-Authenticate: Bearer realm=\"" + config.policy.realm + "\"\r\n"),
+      reading_challenge_(challenge_ + "WWW-Authenticate: Basic realm=\"" + config.policy.realm +
+                         "\"\r\n"),
       hosts_(host_names()),
       limits_(config.limits),
       router_(std::move(router)),
@@ -132,6 +134,8 @@ Reaction Responder::react(const RequestHead& head, const Peer& peer) const {
   const auto path = decode_path(head.path, storage);
   if (!path) return Reaction::of(fault(path.error(), head, any_route_));
   auto match = named(*router_, *path);
+  if (auto refused = turn_away(head, peer, match ? match->entry : nullptr))
+    return Reaction::of(std::move(*refused));
   if (!match) {
     auto elsewhere = redirected(head, *path, *router_);
     if (elsewhere) elsewhere->route = any_route_;
@@ -278,7 +282,9 @@ Answer Responder::represent(const DocumentPtr& document, const RequestHead& head
 Answer Responder::fault(const Error& error, const RequestHead& head, std::string_view route) const {
   if (error.code == ErrorCode::Internal) faults_->hit(to_string(error));
   Answer answer = complaint(problem_of(error), head, route);
-  if (error.code == ErrorCode::Unauthorized) answer.extra = challenge_;
+  const bool reading = head.method == Method::Get || is_head(head);
+  if (error.code == ErrorCode::Unauthorized)
+    answer.extra = reading ? reading_challenge_ : challenge_;
   return answer;
 }
 

@@ -67,7 +67,7 @@ class Responder {
 
   [[nodiscard]] const Router& router() const { return *router_; }
 
-  void set_bearer_token(std::string token) { bearer_token_ = std::move(token); }
+  void set_tokens(std::vector<Token> tokens) { guard_.tokens = std::move(tokens); }
 
  private:
   [[nodiscard]] Reaction read(const RequestHead& head, const Router::Match& match, const Peer& peer,
@@ -79,7 +79,9 @@ class Responder {
   [[nodiscard]] Reaction write(const RequestHead& head, Router::Match match,
                                const Peer& peer) const;
   [[nodiscard]] std::optional<Answer> turn_down(const RequestHead& head, const Peer& peer,
-                                                std::string_view route) const;
+                                                Role needed, std::string_view route) const;
+  [[nodiscard]] std::optional<Answer> turn_away(const RequestHead& head, const Peer& peer,
+                                                const Router::Entry* entry) const;
   [[nodiscard]] Reaction options(const std::string& route, std::string_view allowed) const;
   [[nodiscard]] Answer represent(const DocumentPtr& document, const RequestHead& head,
                                  std::string_view route) const;
@@ -87,9 +89,10 @@ class Responder {
                              std::string_view route) const;
   [[nodiscard]] std::string_view route_lines(const Router::Entry& entry) const;
 
-  std::string bearer_token_;
+  Guard guard_;
   std::string allowed_origin_;
   std::string challenge_;           ///< Header line of a 401.
+  std::string reading_challenge_;   ///< The same of a GET: another way to log in.
   std::vector<std::string> hosts_;  ///< The names of this service.
   ServerLimits limits_;
   std::shared_ptr<const Router> router_;

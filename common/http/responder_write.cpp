@@ -25,13 +25,29 @@ Result<Answer> answer_of(const ActionResult& done, std::string_view accept) {
   return answer;
 }
 
+/// Browsers cannot send Authorization with a WebSocket, so the token may come as a subprotocol.
+struct Asking {
+  Asking(const RequestHead& as_sent, const Router::Entry& entry)
+      : offered(subprotocols_of(as_sent, entry.dialogue->protocol)),
+        bearer("Bearer " + offered.token),
+        head(as_sent) {
+    if (!offered.token.empty() && !is_present(head.authorization)) head.authorization = bearer;
+  }
+  Asking(const Asking&) = delete;
+  Asking& operator=(const Asking&) = delete;
+
+  Subprotocols offered;
+  std::string bearer;
+  RequestHead head;  ///< Points into the above.
+};
+
 }  // namespace
 
-/// The answer that refuses this request; nothing when it may write.
-std::optional<Answer> Responder::turn_down(const RequestHead& head, const Peer& peer,
+/// The answer that refuses this request; nothing when it is allowed what it needs.
+std::optional<Answer> Responder::turn_down(const RequestHead& head, const Peer& peer, Role needed,
                                            std::string_view route) const {
   const auto now = std::chrono::steady_clock::now();
-  const bool tries = !bearer_token_.empty() && is_present(head.authorization);
+  const bool tries = !guard_.tokens.empty() && is_present(head.authorization);
   if (tries && !tries_->may_try(peer.account, now)) {
     const std::string detail =
         "too many wrong tokens came from your address; try again in a second";
@@ -40,13 +56,27 @@ std::optional<Answer> Responder::turn_down(const RequestHead& head, const Peer& 
     answer.extra = "Retry-After: 1\r\n";
     return answer;
   }
-  const auto refused = refuse_writing(head, peer, bearer_token_);
+  const auto refused = refuse_access(head, peer, needed, guard_);
   if (!refused) return std::nullopt;
-  if (tries) {
+  if (has_wrong_token(head, guard_)) {
     tries_->note_wrong(peer.account, now);
     wrong_tokens_->hit(peer.account);
   }
   return fault(*refused, head, route);
+}
+
+/// Whatever is asked for, whether it is there or not: who may not read learns neither.
+std::optional<Answer> Responder::turn_away(const RequestHead& head, const Peer& peer,
+                                           const Router::Entry* entry) const {
+  const bool for_everybody = entry != nullptr && entry->for_everybody;
+  if (for_everybody || head.method == Method::Options || !guard_.guards_reading())
+    return std::nullopt;
+  const bool reads = head.method == Method::Get || head.method == Method::Head;
+  const Role to_read = entry != nullptr && entry->shows_people ? Role::Images : Role::Read;
+  const Role needed = reads ? to_read : Role::Control;
+  if (entry == nullptr || !entry->dialogue) return turn_down(head, peer, needed, any_route_);
+  const Asking asking(head, *entry);
+  return turn_down(asking.head, peer, needed, any_route_);
 }
 
 Reaction Responder::write(const RequestHead& head, Router::Match match, const Peer& peer) const {
@@ -58,7 +88,8 @@ Reaction Responder::write(const RequestHead& head, Router::Match match, const Pe
     return Reaction::of(
         complaint({status::kMethodNotAllowed, "unsupported", {}, {}, detail}, head, route));
   }
-  if (auto refused = turn_down(head, peer, route)) return Reaction::of(std::move(*refused));
+  if (auto refused = turn_down(head, peer, Role::Control, route))
+    return Reaction::of(std::move(*refused));
   if (head.content_length > limits_.max_body_bytes)
     return Reaction::of(fault({ErrorCode::TooLarge, "Content-Length",
                                "send at most " + std::to_string(limits_.max_body_bytes) + " bytes"},
@@ -71,17 +102,14 @@ Reaction Responder::write(const RequestHead& head, Router::Match match, const Pe
   return reaction;
 }
 
-/// A WebSocket whose client speaks.  Browsers cannot send Authorization with one, so the token may
-/// come as a subprotocol.
+/// A WebSocket whose client speaks.
 Reaction Responder::converse(const RequestHead& head, const Router::Entry& entry,
                              const Peer& peer) const {
   const std::string_view route = route_lines(entry);
   if (!may_open(head, allowed_origin_)) return upgrade(head, entry);
-  const Subprotocols offered = subprotocols_of(head, entry.dialogue->protocol);
-  const std::string token = "Bearer " + offered.token;
-  RequestHead asking = head;
-  if (!offered.token.empty() && !is_present(head.authorization)) asking.authorization = token;
-  if (auto refused = turn_down(asking, peer, route)) return Reaction::of(std::move(*refused));
+  const Asking asking(head, entry);
+  if (auto refused = turn_down(asking.head, peer, Role::Control, route))
+    return Reaction::of(std::move(*refused));
   auto begun =
       guarded<std::unique_ptr<Dialogue>>(head, [&] { return entry.dialogue->open(peer.account); });
   if (!begun) return Reaction::of(fault(begun.error(), head, route));
@@ -89,7 +117,7 @@ Reaction Responder::converse(const RequestHead& head, const Router::Entry& entry
   reaction.kind = Reaction::Kind::Upgrade;
   reaction.entry = &entry;
   reaction.dialogue = std::move(*begun);
-  if (offered.named) reaction.protocol = entry.dialogue->protocol;
+  if (asking.offered.named) reaction.protocol = entry.dialogue->protocol;
   return reaction;
 }
 

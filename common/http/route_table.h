@@ -26,6 +26,7 @@ struct Router::Entry {
   std::map<Method, Action> actions;
   std::optional<DialogueRoute> dialogue;  ///< Of WebSockets.
   bool vital = false;                     ///< See Router::vital.
+  bool for_everybody = false;             ///< See Router::for_everybody.
   bool shows_people = false;              ///< See Router::shows_people.
   std::unique_ptr<StaticFiles> files;     ///< The pattern is a prefix then.
 

@@ -125,6 +125,8 @@ void Router::files(std::string prefix, std::string folder, std::string_view line
 
 void Router::vital(const std::string& pattern) { entry_of(pattern).vital = true; }
 
+void Router::for_everybody(const std::string& pattern) { entry_of(pattern).for_everybody = true; }
+
 void Router::shows_people(const std::string& pattern) { entry_of(pattern).shows_people = true; }
 
 Result<Router::Match> Router::match(std::string_view path) const {

@@ -57,15 +57,17 @@ class Router {
   void live(std::string pattern, std::shared_ptr<LiveDocument> document);
   /// GET/HEAD with ?key=... of a path given to live(): answered by the getter instead.
   void by_query(const std::string& pattern, std::string key, Getter getter);
-  /// A writing method; who may use it: ServerConfig::bearer_token.
+  /// A writing method; who may use it: refuse_access() in access.h.
   void action(Method method, std::string pattern, Action action);
-  /// WebSockets whose clients speak.  That is writing: ServerConfig::bearer_token says who may.
+  /// WebSockets whose clients speak.  That is writing: Role::Control.
   void dialogue(const std::string& pattern, DialogueRoute route);
   /// GET/HEAD of the files below `folder`, never outside it; types by extension.  Prefix ends in
   /// '/'.
   /// `lines`: header lines of each of them, with CR LF; constant.
   void files(std::string prefix, std::string folder, std::string_view lines = {});
 
+  /// Answered without a token, whatever else needs one.
+  void for_everybody(const std::string& pattern);
   /// For monitors: still answered when the limit of connections is reached.
   void vital(const std::string& pattern);
   /// Pictures and recordings: a web page of another origin reads them only if that very origin is

@@ -1,9 +1,11 @@
 #include "common/http/server.h"
 
+#include <atomic>
 #include <thread>
 #include <utility>
 
 #include "common/http/server_core.h"
+#include "common/net/address.h"
 #include "common/net/event_loop.h"
 
 namespace chorus::http {
@@ -12,6 +14,7 @@ struct Server::Impl {
   std::shared_ptr<ServerCore> core;
   std::thread thread;
   std::uint16_t port = 0;
+  std::shared_ptr<std::atomic<bool>> moved = std::make_shared<std::atomic<bool>>(true);
 };
 
 Server::Server(ServerConfig config, std::shared_ptr<const Router> router)
@@ -46,10 +49,27 @@ ServerCounters Server::counters() const {
           read(now.closed_for_room),    read(now.connections_limit)};
 }
 
-void Server::set_bearer_token(std::string token) {
-  asio::post(impl_->core->io, [core = impl_->core.get(), token = std::move(token)]() mutable {
-    core->responder.set_bearer_token(std::move(token));
+void Server::set_tokens(std::vector<Token> tokens) {
+  asio::post(impl_->core->io, [core = impl_->core.get(), tokens = std::move(tokens)]() mutable {
+    core->responder.set_tokens(std::move(tokens));
   });
+}
+
+std::vector<Token> all_tokens(const std::string& bearer_token, std::vector<Token> tokens) {
+  if (!bearer_token.empty()) tokens.push_back({bearer_token, Role::Control});
+  return tokens;
+}
+
+bool is_loopback(const std::string& address) {
+  net::error_code failed;
+  const auto parsed = asio::ip::make_address(address, failed);
+  return !failed && net::unmapped(parsed).is_loopback();
+}
+
+bool Server::alive() {
+  if (!impl_->moved->exchange(false)) return false;
+  asio::post(impl_->core->io, [moved = impl_->moved] { moved->store(true); });
+  return true;
 }
 
 void Server::stop() {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/http/access.h"
 #include "common/http/answer_policy.h"
 #include "common/http/router.h"
 #include "common/time/clock.h"
@@ -36,7 +37,8 @@ struct ServerLimits {
 struct ServerConfig {
   std::string address = "127.0.0.1";
   std::uint16_t port = 0;  ///< 0: any free port; ask port() after start.
-  /// Once set, every writing method needs it.  Empty: only direct requests from loopback may write.
+  /// A token of role Control; empty: none.  Without any, only direct requests from loopback may
+  /// write.
   std::string bearer_token = {};
   /// Origin whose web pages may read, besides our own pages; "*": all.  Empty: none.
   std::string allowed_origin = {};
@@ -44,12 +46,20 @@ struct ServerConfig {
   std::vector<std::string> hosts = {};
   /// Numeric addresses whose X-Forwarded-For is believed, for limits; never treated as this host.
   std::vector<std::string> trusted_proxies = {};
+  std::vector<Token> tokens = {};           ///< Besides the above.  See Guard for what needs one.
   std::shared_ptr<const Clock> clock = {};  ///< Stamps answers; null: the host's.
   AnswerPolicy policy = {};
   ServerLimits limits = {};
 
   bool operator==(const ServerConfig&) const = default;
 };
+
+/// Every token of a configuration.
+[[nodiscard]] std::vector<Token> all_tokens(const std::string& bearer_token,
+                                            std::vector<Token> tokens);
+
+/// True for an address of this host alone ("127.0.0.1", "::1").
+[[nodiscard]] bool is_loopback(const std::string& address);
 
 /// Values for /metrics; those without _open, _waiting or _limit only grow.
 struct ServerCounters {
@@ -64,8 +74,8 @@ struct ServerCounters {
   std::uint64_t events_skipped = 0;  ///< Events that a slow reader of a stream did not get.
   std::uint64_t bytes_sent = 0;
   std::uint64_t downloads_open = 0;
-  std::uint64_t unauthorized = 0;       ///< Writing requests with a wrong token, or with none.
-  std::uint64_t closed_for_room = 0;    ///< Idle connections closed to make room for others.
+  std::uint64_t unauthorized = 0;     ///< Requests with a wrong token, or without a necessary one.
+  std::uint64_t closed_for_room = 0;  ///< Idle connections closed to make room for others.
   std::uint64_t connections_limit = 0;  ///< The most connections at once, given the descriptors.
 };
 
@@ -80,8 +90,12 @@ class Server {
   [[nodiscard]] std::uint16_t port() const;
   [[nodiscard]] ServerCounters counters() const;
 
-  /// Sets another bearer token, from the next request on; from any thread, before or while serving.
-  void set_bearer_token(std::string token);
+  /// Sets other tokens, from the next request on; from any thread, before or while serving.
+  void set_tokens(std::vector<Token> tokens);
+
+  /// False when the server's thread has not come to do what the last call asked of it: it stands
+  /// still, if the calls are seconds apart.  From one thread.
+  [[nodiscard]] bool alive();
 
   /// Stops accepting, answers waiting long polls with 503, lets writes finish (2 s), joins.
   void stop();

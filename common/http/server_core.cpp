@@ -11,13 +11,12 @@ constexpr std::chrono::milliseconds kSweepInterval{250};
 constexpr std::chrono::seconds kStopTime{2};
 
 void warn_of_open_door(const ServerConfig& config) {
-  net::error_code failed;
-  const auto address = asio::ip::make_address(config.address, failed);
-  if (failed || address.is_loopback() || !config.bearer_token.empty()) return;
+  if (is_loopback(config.address) || !all_tokens(config.bearer_token, config.tokens).empty())
+    return;
   log::warn("open to the network without a token",
             {{"address", config.address},
-             {"means", "everybody there may read where people are; nobody there may write"},
-             {"advice", "set http.bearer_token, or http.address to 127.0.0.1"}});
+             {"means", "nobody there may read or write; only this host itself may"},
+             {"advice", "set http.tokens, or http.address to 127.0.0.1"}});
 }
 
 }  // namespace

@@ -131,6 +131,7 @@ void add_routes(http::Router& router, const CommonResources& options) {
   if (options.metrics) {
     router.vital("/metrics");
     router.get("/metrics",
+  router.for_everybody("/healthz");
                [clock, metrics = options.metrics](const Request&,
                                                   const PathParams&) -> Result<DocumentPtr> {
                  return metrics_document(metrics() + process_metrics(), clock->now());

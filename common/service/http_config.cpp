@@ -25,6 +25,23 @@ void read_names(ConfigReader& config, http::ServerConfig& out) {
   }
 }
 
+void read_tokens(ConfigReader& config, std::vector<http::Token>& out) {
+  constexpr std::size_t kShortest = 12;
+  const auto names = {http::name_of(http::Role::Read), http::name_of(http::Role::Images),
+                      http::name_of(http::Role::Control)};
+  for (ConfigReader& reader : config.items("tokens")) {
+    http::Token token{{}, http::Role::Read};
+    std::size_t role = 0;
+    reader.read("token", token.secret);
+    reader.read_choice("role", role, names);
+    token.role = static_cast<http::Role>(role);
+    if (token.secret.size() < kShortest)
+      reader.complain("token",
+                      "needs at least 12 characters, such as `openssl rand -hex 16` makes");
+    out.push_back(std::move(token));
+  }
+}
+
 void read_limits(ConfigReader& config, http::ServerLimits& out) {
   constexpr int kMax = 60'000;
   const auto read_count = [&](std::string_view key, std::size_t& count, int least) {
@@ -46,6 +63,7 @@ void read_http(ConfigReader config, http::ServerConfig& out) {
   config.read("port", port, 0, 65535);
   out.port = static_cast<std::uint16_t>(port);
   config.read("bearer_token", out.bearer_token);
+  read_tokens(config, out.tokens);
   config.read("allowed_origin", out.allowed_origin);
   read_names(config, out);
   read_limits(config, out.limits);

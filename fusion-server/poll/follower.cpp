@@ -39,6 +39,11 @@ http::ClientLimits limits_of(const PollerOptions& options) {
   return limits;
 }
 
+std::vector<http::Header> authorization_of(const PolledSensor& sensor) {
+  if (sensor.token.empty()) return {};
+  return {{"Authorization", "Bearer " + sensor.token}};
+}
+
 std::string target_of(const Send& send) {
   switch (send.resource) {
     case Resource::Frame:
@@ -119,6 +124,7 @@ void Follower::act(const Send& send) {
   timer_.cancel();
   http::ClientRequest request;
   request.target = url_.target + target_of(send);
+  request.headers = authorization_of(sensor_);
   if (send.resource != Resource::Clock) request.headers.emplace_back("Accept", kAccept);
   if (!send.etag.empty()) request.headers.emplace_back("If-None-Match", send.etag);
   if (send.wait > Duration{0}) {
@@ -147,6 +153,7 @@ void Follower::act(const Sleep& sleep) {
 void Follower::open_stream() {
   http::ClientRequest request;
   request.target = url_.target + "frame";
+  request.headers = authorization_of(sensor_);
   request.headers.emplace_back("Accept", kAcceptStream);
   const auto weak = weak_from_this();
   const auto guarded = [weak](const auto& doing) {

@@ -34,6 +34,16 @@ Duration backoff(const PollTimings& timings, int failures_in_row, double jitter)
   return whole / 2 + from_seconds(seconds(whole) * 0.5 * fraction);
 }
 
+/// Why there was no frame, and what to do.
+std::string refusal_words(int status) {
+  const bool of_token = status == http::status::kUnauthorized ||
+                        status == http::status::kForbidden ||
+                        status == http::status::kTooManyRequests;
+  return "GET frame answers " + std::to_string(status) +
+         (of_token ? "; give the sensor's entry here a token of its http.tokens"
+                   : "; check that the url is that of a sensor service");
+}
+
 }  // namespace
 
 std::string_view name_of(SensorState state) noexcept {
@@ -71,10 +81,7 @@ Step PollFsm::on(const FrameAnswered& answer, Duration now, double jitter) {
   }
   if (answer.status != http::status::kNotModified &&
       (answer.status != http::status::kOk || !answer.captured)) {
-    return fail(SensorState::Refused,
-                "GET frame answers " + std::to_string(answer.status) +
-                    "; check that the url is that of a sensor service",
-                jitter);
+    return fail(SensorState::Refused, refusal_words(answer.status), jitter);
   }
   failures_in_row_ = 0;
   const bool news = answer.captured && answer.captured != last_captured_;

@@ -22,7 +22,8 @@ namespace chorus::poll {
 
 struct PolledSensor {
   SensorId id;
-  std::string url;  ///< Of the service's `/`: "http://127.0.0.1:8081/".
+  std::string url;         ///< Of the service's `/`: "http://127.0.0.1:8081/".
+  std::string token = {};  ///< Sent with every request; empty: none.
 
   bool operator==(const PolledSensor&) const = default;
 };

@@ -286,7 +286,7 @@ Result<void> FusionServer::start() {
   if (!sinks) return pass(sinks);
   s.sinks = std::move(*sinks);
   http::ServerConfig http = s.config.at_start.http;
-  http.bearer_token = s.config.live.bearer_token;
+  http.tokens = s.config.live.tokens;
   http.clock = s.clock;
   http.policy = resource::answer_policy();
   s.http = std::make_unique<http::Server>(http, s.make_router());
@@ -309,7 +309,7 @@ void FusionServer::take(const LiveSettings& live) {
   }
   s.loop->ask(core_config(s.config));
   s.poller->poll(live.sensors);
-  s.http->set_bearer_token(live.bearer_token);
+  s.http->set_tokens(live.tokens);
 }
 
 void FusionServer::stop() {

@@ -28,6 +28,7 @@ void read_sensor(ConfigReader& reader, LiveSettings& out, std::set<SensorId>& kn
   poll::PolledSensor sensor;
   reader.read("id", name);
   reader.read("url", sensor.url);
+  reader.read("token", sensor.token);
   auto id = SensorId::parse(name);
   if (!id) return reader.complain("id", id.error().message);
   if (!known.insert(*id).second) return reader.complain("id", "is the id of another sensor too");
@@ -169,7 +170,8 @@ Result<FusionSettings> read_fusion_settings(ConfigReader root) {
   at_start.state_dir = "auto";
   root.read("title", at_start.title);
   service::read_http(root.child("http"), at_start.http);
-  live.bearer_token = std::exchange(at_start.http.bearer_token, {});
+  live.tokens = http::all_tokens(std::exchange(at_start.http.bearer_token, {}),
+                                 std::exchange(at_start.http.tokens, {}));
   service::read_log(root.child("log"), live.log);
   read_poll(root.child("poll"), at_start.poll);
   read_output(root.child("output"), settings);

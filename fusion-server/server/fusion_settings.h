@@ -20,7 +20,7 @@ namespace chorus::server {
 /// What a reload takes over.
 struct LiveSettings {
   service::LogConfig log;
-  std::string bearer_token;  ///< Of http.
+  std::vector<http::Token> tokens;  ///< Of http.
   std::vector<poll::PolledSensor> sensors;
   core::TickConfig output;
   pipeline::PipelineConfig pipeline;
@@ -33,7 +33,7 @@ struct LiveSettings {
 /// What needs a restart.
 struct StartSettings {
   std::string title = "Chorus fusion server";
-  http::ServerConfig http = {.port = 8080};  ///< Without its token.
+  http::ServerConfig http = {.port = 8080};  ///< Without its tokens.
   poll::PollTimings poll;
   Duration history = std::chrono::seconds(10);  ///< How long /frames/{seq} and ?at= reach back.
   outputs::OutputsConfig outputs;

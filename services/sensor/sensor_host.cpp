@@ -51,7 +51,7 @@ service::RecordingsOptions recordings_options(const Setup& setup, const ServiceO
 
 http::ServerConfig server_config(const Setup& setup) {
   http::ServerConfig config = setup.settings.at_start.http;
-  config.bearer_token = setup.settings.live.bearer_token;
+  config.tokens = setup.settings.live.tokens;
   config.clock = setup.clock;
   config.policy = resource::answer_policy();
   return config;
@@ -169,7 +169,7 @@ void SensorHost::stop() {
 void SensorHost::take(const LiveSettings& live) {
   setup_.settings.live = live;
   service_.show_images(live.images);
-  server_.set_bearer_token(live.bearer_token);
+  server_.set_tokens(live.tokens);
 }
 
 service::About about_sensor() {

@@ -26,7 +26,8 @@ Result<SensorSettings> read_sensor_settings(ConfigReader root) {
   auto& [live, at_start] = settings;
   read_id(root, at_start.id);
   service::read_http(root.child("http"), at_start.http);
-  live.bearer_token = std::exchange(at_start.http.bearer_token, {});
+  live.tokens = http::all_tokens(std::exchange(at_start.http.bearer_token, {}),
+                                 std::exchange(at_start.http.tokens, {}));
   root.read("images", live.images);
   root.read_s("history_s", at_start.history, std::chrono::seconds(1), std::chrono::seconds(120));
   read_clock_errors(root.child("clock"), at_start.clock);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "common/base/config_reader.h"
 #include "common/base/strong_id.h"
@@ -16,7 +17,7 @@ namespace chorus::sensor_service {
 /// What a reload takes over.
 struct LiveSettings {
   service::LogConfig log;
-  std::string bearer_token;  ///< Of http.
+  std::vector<http::Token> tokens;  ///< Of http.
   bool images = false;
 
   bool operator==(const LiveSettings&) const = default;
@@ -25,7 +26,7 @@ struct LiveSettings {
 /// What needs a restart.
 struct StartSettings {
   SensorId id;
-  http::ServerConfig http = {.port = 8081};    ///< Without its token.
+  http::ServerConfig http = {.port = 8081};    ///< Without its tokens.
   Duration history = std::chrono::seconds(3);  ///< How long /frames/{seq} and ?at= reach back.
   ClockErrors clock;  ///< Of a simulated host; a real host's clock is kept by NTP.
   service::RecordingConfig recording;

@@ -203,7 +203,7 @@ TEST(Server, ActionsOfForeignPagesNeedTheToken) {
   EXPECT_TRUE(
       service.ask("/registration", {page}, "POST", "x").headers.contains("www-authenticate"));
 
-  service.server.set_bearer_token("another");
+  service.server.set_tokens({{"another", Role::Control}});
   EXPECT_EQ(status({page, {"Authorization", "Bearer open sesame"}}), 401);
   EXPECT_EQ(status({page, {"Authorization", "Bearer another"}}), 201);
 

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/base/log.h"
+#include "common/base/log_queue.h"
 #include "common/http/route_table.h"
 #include "tests/integration/http/raw_client.h"
 #include "tests/integration/http/test_server.h"
@@ -80,6 +82,76 @@ TEST(Strangers, WrongTokensAreCountedAndSlowed) {
   EXPECT_EQ(slowed.headers.at("retry-after"), "1");
   EXPECT_EQ(write("secret").status, 429) << "or a guess would tell";
   EXPECT_EQ(service.server.counters().unauthorized, 13u);
+}
+
+ServerConfig guarded() {
+  ServerConfig config;
+  config.tokens = {
+      {"a reader's", Role::Read}, {"a viewer's", Role::Images}, {"the owner's", Role::Control}};
+  return config;
+}
+
+TEST(Guarded, NothingButHealthIsAnsweredWithoutAToken) {
+  TestServer service(guarded());
+  service.frame->publish(frame_document(1));
+  for (const std::string path :
+       {"/frame", "/frame.json", "/frames/1", "/echo", "/nowhere", "/frame/", "/image"}) {
+    const auto answer = service.ask(path);
+    EXPECT_EQ(answer.status, 401) << path;
+    EXPECT_THAT(answer.body, HasSubstr("Authorization: Bearer TOKEN")) << path;
+    EXPECT_THAT(answer.headers.at("www-authenticate"), HasSubstr("Bearer")) << path;
+  }
+  EXPECT_EQ(service.ask("/frame", {}, "HEAD").status, 401);
+  EXPECT_EQ(service.ask("/registration", {}, "POST", "x").status, 401);
+  EXPECT_EQ(service.ask("/nowhere", {}, "DELETE").status, 401);
+  EXPECT_EQ(service.ask("/health").status, 200);
+}
+
+TEST(Guarded, EachRoleGetsWhatIsItsOwn) {
+  TestServer service(guarded());
+  service.frame->publish(frame_document(1));
+  const auto status = [&](const std::string& token, const std::string& path) {
+    return service.ask(path, {{"Authorization", "Bearer " + token}}).status;
+  };
+  EXPECT_EQ(status("a reader's", "/frame"), 200);
+  EXPECT_EQ(status("a reader's", "/nowhere"), 404);
+  EXPECT_EQ(status("a reader's", "/image"), 403);
+  EXPECT_EQ(status("a viewer's", "/image"), 200);
+  const auto write = [&](const std::string& token) {
+    return service.ask("/registration", {{"Authorization", "Bearer " + token}}, "POST", "x").status;
+  };
+  EXPECT_EQ(write("a viewer's"), 403);
+  EXPECT_EQ(write("the owner's"), 201);
+}
+
+TEST(Guarded, GuessingAtReadingIsSlowedToo) {
+  TestServer service(guarded());
+  for (int i = 0; i < 10; ++i)
+    EXPECT_EQ(service.ask("/frame", {{"Authorization", "Bearer guess"}}).status, 401);
+  EXPECT_EQ(service.ask("/frame", {{"Authorization", "Bearer a reader's"}}).status, 429);
+}
+
+TEST(Guarded, TokensChangeWhileItServes) {
+  TestServer service(guarded());
+  service.server.set_tokens({{"another", Role::Read}});
+  EXPECT_EQ(service.ask("/echo", {{"Authorization", "Bearer a reader's"}}).status, 401);
+  EXPECT_EQ(service.ask("/echo", {{"Authorization", "Bearer another"}}).status, 200);
+}
+
+TEST(RequestLog, NamesWhoAskedForWhatAndNoSecret) {
+  TestServer service(guarded());
+  ::testing::internal::CaptureStderr();
+  log::configure(log::Level::Debug, log::Format::Text);
+  (void)service.ask("/echo?key=hidden-in-query", {{"Authorization", "Bearer a reader's"}});
+  (void)service.ask("/registration", {{"Authorization", "Bearer guess"}}, "POST", "hidden-in-body");
+  service.server.stop();
+  ASSERT_TRUE(log::flush(std::chrono::seconds(5)));
+  log::configure(log::Level::Info, log::Format::Text);
+  const std::string log = ::testing::internal::GetCapturedStderr();
+  EXPECT_THAT(log, HasSubstr("path=/echo status=200 from=127.0.0.1"));
+  EXPECT_THAT(log, HasSubstr("path=/registration status=401 from=127.0.0.1"));
+  EXPECT_THAT(log,
+              Not(::testing::AnyOf(HasSubstr("hidden"), HasSubstr("reader"), HasSubstr("guess"))));
 }
 
 }  // namespace

@@ -77,6 +77,14 @@ struct TestServer {
       for (const auto& [key, value] : request.headers) text += key + ":" + value + ";";
       return make_document("text/plain", text, {"1"});
     });
+    router->get("/health", [](const Request&, const PathParams&) -> Result<DocumentPtr> {
+      return make_document("text/plain", "ok", {"1"});
+    });
+    router->for_everybody("/health");
+    router->get("/image", [](const Request&, const PathParams&) -> Result<DocumentPtr> {
+      return make_document("image/png", "x", {"1"});
+    });
+    router->shows_people("/image");
     router->get("/vital", [](const Request&, const PathParams&) -> Result<DocumentPtr> {
       return make_document("text/plain", "well", {"1"});
     });

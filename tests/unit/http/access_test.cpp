@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 namespace chorus::http {
 namespace {
 
@@ -72,26 +74,108 @@ TEST(OwnPage, SchemeAndHostOfThisService) {
   EXPECT_FALSE(from_own_page(head_of("cell-2:8080"))) << "no page at all";
 }
 
+const Guard kNoToken{};
+const Guard kOneToken{{{"secret", Role::Control}}, false};
+
+std::optional<Error> refuse_writing(const RequestHead& head, const Peer& peer, const Guard& guard) {
+  return refuse_access(head, peer, Role::Control, guard);
+}
+
 TEST(RefuseWriting, OnceThereIsATokenLoopbackNeedsItToo) {
   RequestHead head = head_of("127.0.0.1:8080");
-  EXPECT_FALSE(refuse_writing(head, kLocal, ""));
-  ASSERT_TRUE(refuse_writing(head, kLocal, "secret")) << "it may be a proxy's connection";
-  EXPECT_EQ(refuse_writing(head, kLocal, "secret")->code, ErrorCode::Unauthorized);
+  EXPECT_FALSE(refuse_writing(head, kLocal, kNoToken));
+  ASSERT_TRUE(refuse_writing(head, kLocal, kOneToken)) << "it may be a proxy's connection";
+  EXPECT_EQ(refuse_writing(head, kLocal, kOneToken)->code, ErrorCode::Unauthorized);
   head.authorization = "Bearer secret";
-  EXPECT_FALSE(refuse_writing(head, kLocal, "secret"));
+  EXPECT_FALSE(refuse_writing(head, kLocal, kOneToken));
 }
 
 TEST(RefuseWriting, RemoteNeedsTheToken) {
   RequestHead head = head_of("10.0.0.1:8080");
-  EXPECT_EQ(refuse_writing(head, kRemote, "")->code, ErrorCode::Forbidden);
-  EXPECT_EQ(refuse_writing(head, kRemote, "secret")->code, ErrorCode::Unauthorized);
+  EXPECT_EQ(refuse_writing(head, kRemote, kNoToken)->code, ErrorCode::Forbidden);
+  EXPECT_EQ(refuse_writing(head, kRemote, kOneToken)->code, ErrorCode::Unauthorized);
   for (const auto wrong : {"Bearer wrong", "secret", "Bearer", "Bearer ", "Basic secret", ""}) {
     head.authorization = wrong;
-    EXPECT_TRUE(refuse_writing(head, kRemote, "secret")) << wrong;
-    EXPECT_TRUE(refuse_writing(head, kRemote, "")) << wrong;
+    EXPECT_TRUE(refuse_writing(head, kRemote, kOneToken)) << wrong;
+    EXPECT_TRUE(refuse_writing(head, kRemote, kNoToken)) << wrong;
   }
   head.authorization = "BEARER secret";
-  EXPECT_FALSE(refuse_writing(head, kRemote, "secret"));
+  EXPECT_FALSE(refuse_writing(head, kRemote, kOneToken));
+}
+
+// Base64 of "anybody:secret" and of "anybody:reader-1".
+constexpr const char* kBasicSecret = "Basic YW55Ym9keTpzZWNyZXQ=";
+constexpr const char* kBasicReader = "Basic YW55Ym9keTpyZWFkZXItMQ==";
+const Guard kRoles{
+    {{"reader-1", Role::Read}, {"viewer-1", Role::Images}, {"secret", Role::Control}}, true};
+
+std::optional<Error> refusal(std::string_view authorization, Role needed, const Guard& guard,
+                             const Peer& peer = kRemote) {
+  RequestHead head = head_of("10.0.0.1:8080");
+  head.method = needed == Role::Control ? Method::Post : Method::Get;
+  if (!authorization.empty()) head.authorization = authorization;
+  return refuse_access(head, peer, needed, guard);
+}
+
+TEST(Reading, NeedsNoTokenOnLoopbackUntilThereIsOneForReading) {
+  EXPECT_FALSE(refusal("", Role::Read, kNoToken));
+  EXPECT_FALSE(refusal("", Role::Images, kOneToken)) << "of somebody who writes";
+  const Guard with_reader{{{"reader-1", Role::Read}}, false};
+  EXPECT_TRUE(refusal("", Role::Read, with_reader, kLocal)) << "it may be a proxy's connection";
+  EXPECT_FALSE(refusal("Bearer reader-1", Role::Read, with_reader));
+}
+
+TEST(Reading, OnAnOpenAddressIsForThisHostUntilThereAreTokens) {
+  const Guard open{{}, true};
+  EXPECT_FALSE(refusal("", Role::Read, open, kLocal));
+  const auto refused = refusal("", Role::Read, open);
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->code, ErrorCode::Unauthorized);
+  EXPECT_NE(refused->message.find("http.tokens"), std::string::npos) << "what to do";
+  EXPECT_TRUE(refusal("Bearer ", Role::Read, open));
+  const Guard of_one_who_writes{{{"secret", Role::Control}}, true};
+  EXPECT_FALSE(refusal("", Role::Read, of_one_who_writes, kLocal));
+  EXPECT_TRUE(refusal("", Role::Read, of_one_who_writes));
+  EXPECT_FALSE(refusal("Bearer secret", Role::Read, of_one_who_writes));
+}
+
+TEST(Roles, EachIncludesThoseBeforeIt) {
+  const std::array<const char*, 3> tokens{"Bearer reader-1", "Bearer viewer-1", "Bearer secret"};
+  for (std::size_t has = 0; has < 3; ++has) {
+    for (std::size_t needs = 0; needs < 3; ++needs) {
+      const auto refused = refusal(tokens[has], static_cast<Role>(needs), kRoles);
+      EXPECT_EQ(!refused, has >= needs) << tokens[has] << needs;
+      if (!refused) continue;
+      EXPECT_EQ(refused->code, ErrorCode::Forbidden) << "known, but not enough";
+    }
+  }
+  EXPECT_EQ(refusal("Bearer other", Role::Read, kRoles)->code, ErrorCode::Unauthorized);
+}
+
+TEST(Roles, HaveNames) {
+  for (const Role role : {Role::Read, Role::Images, Role::Control})
+    EXPECT_EQ(role_named(name_of(role)), role);
+  EXPECT_FALSE(role_named("admin"));
+}
+
+TEST(Basic, IsForReadingOnly) {
+  EXPECT_FALSE(refusal(kBasicReader, Role::Read, kRoles));
+  EXPECT_FALSE(refusal(kBasicSecret, Role::Images, kRoles));
+  EXPECT_TRUE(refusal(kBasicSecret, Role::Control, kRoles))
+      << "any page can make a browser send it";
+  for (const char* wrong :
+       {"Basic", "Basic ", "Basic !!!!", "Basic c2VjcmV0", "Basic YW55Ym9keTp3cm9uZw=="})
+    EXPECT_TRUE(refusal(wrong, Role::Read, kRoles)) << wrong;
+}
+
+TEST(WrongToken, IsOneThatIsNoneOfOurs) {
+  RequestHead head = head_of("10.0.0.1:8080");
+  EXPECT_FALSE(has_wrong_token(head, kRoles)) << "none at all";
+  head.authorization = "Bearer reader-1";
+  EXPECT_FALSE(has_wrong_token(head, kRoles));
+  head.authorization = "Bearer reader-2";
+  EXPECT_TRUE(has_wrong_token(head, kRoles));
+  EXPECT_FALSE(has_wrong_token(head, kNoToken)) << "there is nothing to guess";
 }
 
 TEST(OurAuthority, ThisEndOfTheConnectionOnly) {

@@ -137,7 +137,7 @@ TEST(PollFsm, AnUnreachableSensorIsConnectingAndALiveOneIsLost) {
 }
 
 TEST(PollFsm, StatusesThatNoSensorGivesAreRefusedWithAdvice) {
-  for (const int status : {301, 400, 401, 404, 406, 500, 204, 0}) {
+  for (const int status : {301, 400, 404, 406, 500, 204, 0}) {
     PollFsm fsm = at_first_frame(milliseconds(0));
     const Step step = fsm.resume(FrameAnswered{status}, milliseconds(1), kFull);
     EXPECT_FALSE(step.deliver);
@@ -145,6 +145,16 @@ TEST(PollFsm, StatusesThatNoSensorGivesAreRefusedWithAdvice) {
     EXPECT_EQ(fsm.last_error(), "GET frame answers " + std::to_string(status) +
                                     "; check that the url is that of a sensor service");
     EXPECT_NEAR(chorus::seconds(sleep_of(step)), 0.1, 1e-6);
+  }
+}
+
+TEST(PollFsm, AWrongTokenIsRefusedWithWhereToPutTheRightOne) {
+  for (const int status : {401, 403, 429}) {
+    PollFsm fsm = at_first_frame(milliseconds(0));
+    (void)fsm.resume(FrameAnswered{status}, milliseconds(1), kFull);
+    EXPECT_EQ(fsm.state(), SensorState::Refused);
+    EXPECT_EQ(fsm.last_error(), "GET frame answers " + std::to_string(status) +
+                                    "; give the sensor's entry here a token of its http.tokens");
   }
 }
 

@@ -55,7 +55,7 @@ TEST(SensorConfig, EveryKeyIsRead) {
   const auto& [live, at_start] = settings;
   EXPECT_EQ(at_start.id.str(), "cam-2");
   EXPECT_EQ(at_start.http, (http::ServerConfig{"0.0.0.0", 9000, "", "http://a"}));
-  EXPECT_EQ(live.bearer_token, "secret");
+  EXPECT_EQ(live.tokens, (std::vector<http::Token>{{"secret", http::Role::Control}}));
   EXPECT_TRUE(live.images);
   EXPECT_EQ(at_start.history, std::chrono::seconds(7));
   EXPECT_EQ(at_start.clock, (ClockErrors{std::chrono::milliseconds(-250), 50e-6,
@@ -98,7 +98,8 @@ std::string choosing_its_device(const std::string& key, const std::string& text)
 TEST(SensorConfig, AReloadTakesEveryKeyOverOrItWaits) {
   const std::string text = read_file("deploy/config/sensor.json", 1 << 20).value();
   const auto is_good = [](const std::string& t) { return read_text(t).has_value(); };
-  const std::set<std::string> live{"log.level", "log.format", "http.bearer_token", "images"};
+  const std::set<std::string> live{"log.level", "log.format", "http.bearer_token", "http.tokens",
+                                   "images"};
   for (const auto& [key, changed] : chorus::testing::every_key_changed(text, is_good)) {
     if (key == "device.simulated.scene.motion") continue;  // needs a file
     ASSERT_NE(changed, "") << "no other value is accepted for " << key;
