@@ -1,9 +1,12 @@
 #include "common/service/command_line.h"
 
+#include <cstdio>
+
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "common/base/version.h"
+#include "common/service/manual.h"
 
 namespace chorus::service {
 namespace {
@@ -51,6 +54,11 @@ CommandLine read_command_line(const About& about, int argc, const char* const* a
   std::vector<std::optional<std::string>> given(shortcuts.size());
   for (std::size_t i = 0; i < shortcuts.size(); ++i) {
     app.add_option(shortcuts[i].option, given[i], shortcuts[i].help);
+  }
+  if (const auto page = printed(app, {8, about.files}, argc, argv)) {
+    std::fputs(page->c_str(), stdout);
+    out.exit = kExitStopped;
+    return out;
   }
   try {
     app.parse(argc, argv);

@@ -35,6 +35,7 @@ struct About {
   std::string description;
   std::string examples;  ///< Lines, indented, each with its end.
   std::vector<Shortcut> shortcuts = {};
+  std::string files = {};  ///< For the manual page: lines "NAME meaning".
 };
 
 struct CommandLine {

@@ -7,6 +7,7 @@
 
 #include "common/base/fnv.h"
 #include "common/base/log_queue.h"
+#include "common/base/version.h"
 #include "common/resource/clock_resource.h"
 #include "common/resource/link_lines.h"
 #include "common/resource/node.h"
@@ -76,6 +77,8 @@ Result<DocumentPtr> health_document(const Health& health, Timestamp now) {
 /// Metrics of the process rather than of a service.
 std::string process_metrics() {
   MetricsText text;
+  text.gauge({"chorus_build", "1, with the version of the program."}, 1,
+             {{"version", std::string(version())}});
   text.counter({"chorus_log_dropped_lines_total", "Log lines dropped because nobody read them."},
                static_cast<double>(log::dropped_lines()));
   return text.text();
@@ -128,10 +131,10 @@ void add_routes(http::Router& router, const CommonResources& options) {
         return health_document(health ? health() : Health{}, clock->now());
       });
   router.vital("/healthz");
+  router.for_everybody("/healthz");
   if (options.metrics) {
     router.vital("/metrics");
     router.get("/metrics",
-  router.for_everybody("/healthz");
                [clock, metrics = options.metrics](const Request&,
                                                   const PathParams&) -> Result<DocumentPtr> {
                  return metrics_document(metrics() + process_metrics(), clock->now());

@@ -16,7 +16,8 @@ namespace chorus::service {
 
 /// `Settings`: `live` with a LogConfig `log`, and `at_start`.
 /// `Host`: static Result<std::unique_ptr<Host>> make(const Settings&), binds nothing yet;
-///         Result<void> start(); void take(const live part&); void stop().
+///         Result<void> start(); void take(const live part&); void stop();
+///         and if it can tell, bool alive(); Concerns concerns().
 template <class Settings, class Host>
 class HostedProgram final : public Program {
  public:
@@ -35,6 +36,11 @@ class HostedProgram final : public Program {
     return settings_.live.log;
   }
 
+  [[nodiscard]] std::vector<std::string> concerns() override {
+    if constexpr (requires(Host & host) { host.concerns(); }) return host_->concerns();
+    return {};
+  }
+
   [[nodiscard]] Result<void> start() override { return host_->start(); }
 
   [[nodiscard]] Result<LogConfig> reload(ConfigReader config) override {
@@ -50,6 +56,11 @@ class HostedProgram final : public Program {
   }
 
   void stop() override { host_->stop(); }
+
+  [[nodiscard]] bool alive() override {
+    if constexpr (requires(Host & host) { host.alive(); }) return host_->alive();
+    return true;
+  }
 
  private:
   [[nodiscard]] bool needs_restart(const Settings& wanted) const {

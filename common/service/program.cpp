@@ -1,8 +1,12 @@
 #include "common/service/program.h"
 
+#include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <exception>
+
+#include "common/service/supervisor.h"
 
 namespace chorus::service {
 namespace {
@@ -32,6 +36,41 @@ void reload(Program& program, const ConfigSource& source) {
   log::info("configuration reloaded");
 }
 
+timespec timespec_of(std::chrono::microseconds time) {
+  constexpr std::int64_t kPerSecond = 1'000'000;
+  return {time.count() / kPerSecond, time.count() % kPerSecond * 1000};
+}
+
+/// The next signal; tells the supervisor meanwhile, as often as it wants, that the program is
+/// alive.
+int next_signal(const sigset_t& signals, const Supervisor& supervisor, Program& program) {
+  if (!supervisor.pulse()) {
+    int signal = 0;
+    sigwait(&signals, &signal);
+    return signal;
+  }
+  const timespec pulse = timespec_of(*supervisor.pulse());
+  while (true) {
+    if (program.alive()) {
+      supervisor.tell("WATCHDOG=1");
+    } else {
+      log::error("a thread stands still; the watchdog will start the service again");
+    }
+    if (const int signal = sigtimedwait(&signals, nullptr, &pulse); signal > 0) return signal;
+  }
+}
+
+/// From the start to the signal that ends it.
+void run(Program& program, const ConfigSource& source, const sigset_t& signals) {
+  const Supervisor supervisor(own_environment());
+  supervisor.tell("READY=1");
+  int signal = 0;
+  while ((signal = next_signal(signals, supervisor, program)) == SIGHUP) reload(program, source);
+  supervisor.tell("STOPPING=1");
+  log::info("stopping", {{"signal", signal}});
+  program.stop();
+}
+
 int serve(const About& about, Program& program, const CommandLine& command) {
   const sigset_t signals = block_signals();  // before any thread starts
   const auto log = read_config(command.source).and_then([&](const ConfigReader& config) {
@@ -40,14 +79,14 @@ int serve(const About& about, Program& program, const CommandLine& command) {
   if (!log) return refuse(about, log.error());
   if (command.check_only) {
     std::puts("The configuration is good.");
+    std::fflush(stdout);
+    for (const std::string& concern : program.concerns())
+      std::fprintf(stderr, "%s: but now, %s\n", about.name.c_str(), concern.c_str());
     return kExitStopped;
   }
   apply(*log);
   if (const auto started = program.start(); !started) return refuse(about, started.error());
-  int signal = 0;
-  while (sigwait(&signals, &signal) == 0 && signal == SIGHUP) reload(program, command.source);
-  log::info("stopping", {{"signal", signal}});
-  program.stop();
+  run(program, command.source, signals);
   return kExitStopped;
 }
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
+#include <atomic>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -169,6 +169,7 @@ struct FusionServer::Impl {
   std::vector<std::unique_ptr<Sink>> sinks;  ///< Filled before the first request.
   mutable std::mutex mutex;
   Status status;  ///< Guarded by mutex.
+  std::atomic<std::chrono::steady_clock::time_point> status_at{};
   RegistrationStore store{""};
   std::string store_trouble;
   std::optional<service::FrameResources> frames;
@@ -218,6 +219,7 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
 }
 
 void FusionServer::Impl::take_status(const Status& next) {
+  status_at = std::chrono::steady_clock::now();
   sensors->publish(next.sensors);
   registration->publish(next.registration, next.progress);
   tap->places(next.registration);
@@ -273,11 +275,27 @@ FusionServer::FusionServer(FusionSettings settings, std::shared_ptr<const Clock>
 
 FusionServer::~FusionServer() { stop(); }
 
+service::Concerns FusionServer::concerns() const {
+  const StartSettings& config = impl_->config.at_start;
+  service::Concerns all = service::common_concerns(config.http, config.recording);
+  const auto add = [&all](const std::string& what, const Result<void>& probe) {
+    if (!probe) all.push_back(what + to_string(probe.error()));
+  };
+  const std::string state = state_folder(config.state_dir, config.http.port, own_environment());
+  if (!state.empty())
+    add("where the sensors stand cannot be kept: ", service::usable_folder(state));
+  if (!config.viewer_dir.empty())
+    add("the viewer cannot be served: ", probe_viewer(config.viewer_dir));
+  if (impl_->config.live.sensors.empty())
+    all.emplace_back("no sensor is named in the section \"sensors\"");
+  return all;
+}
+
 Result<void> FusionServer::start() {
   Impl& s = *impl_;
   const std::string folder =
-      state_folder(s.config.at_start.state_dir, s.config.at_start.http.port,
-                   [](const char* name) -> const char* { return std::getenv(name); });
+      state_folder(s.config.at_start.state_dir, s.config.at_start.http.port, own_environment());
+  service::log_concerns({});
   s.store = RegistrationStore(folder);
   s.store_trouble = probe_folders(s.config.at_start, folder);
   auto registration = initial_registration(s.config, s.store);
@@ -294,6 +312,7 @@ Result<void> FusionServer::start() {
   s.loop = std::make_unique<PipelineLoop>(s.loop_options(std::move(*registration)));
   if (auto bound = s.http->start(); !bound) return bound;
   s.start_polling();
+  s.status_at = std::chrono::steady_clock::now();
   s.loop->start();
   report_start(s.config, s.http->port());
   return {};
@@ -312,6 +331,12 @@ void FusionServer::take(const LiveSettings& live) {
   s.http->set_tokens(live.tokens);
 }
 
+bool FusionServer::alive() {
+  constexpr auto kStill = std::chrono::seconds(5);  // The status comes several times a second.
+  const auto since = std::chrono::steady_clock::now() - impl_->status_at.load();
+  return impl_->http->alive() && since < kStill;
+}
+
 void FusionServer::stop() {
   Impl& s = *impl_;
   // From the rim inwards: first nobody asks any more, then nothing arrives, then the pipeline ends.
@@ -327,7 +352,12 @@ service::About about_fusion() {
       "chorus-fusion: polls body-tracking sensors, registers and fuses them, and answers as one "
       "tracker.",
       "  chorus-fusion --config deploy/config/fusion.json\n"
-      "  chorus-fusion --config deploy/config/fusion.json --set outputs.vrpn.enabled=true\n"};
+      "  chorus-fusion --config deploy/config/fusion.json --set outputs.vrpn.enabled=true\n",
+      {},
+      "/etc/chorus/fusion.json the configuration that the service of the package reads\n"
+      "/var/lib/chorus where the sensors stand, and recordings\n"
+      "/usr/share/chorus/viewer the files of the viewer\n"
+      "/usr/share/doc/chorus-fusion/examples/fusion.json every key with its default\n"};
 }
 
 }  // namespace chorus::server

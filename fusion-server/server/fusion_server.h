@@ -7,6 +7,7 @@
 
 #include "common/base/result.h"
 #include "common/service/command_line.h"
+#include "common/service/concerns.h"
 #include "common/time/clock.h"
 #include "fusion-server/server/fusion_settings.h"
 
@@ -26,6 +27,12 @@ class FusionServer {
 
   /// Everything that can change while running.
   void take(const LiveSettings& live);
+
+  /// What would not work here and now.
+  [[nodiscard]] service::Concerns concerns() const;
+
+  /// For a watchdog: the threads of network and pipeline move.
+  [[nodiscard]] bool alive();
 
   void stop();
 

@@ -10,18 +10,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string_view value_of(const Environment& environment, const char* name) {
-  const char* value = environment(name);
-  return value == nullptr ? std::string_view() : std::string_view(value);
-}
-
 }  // namespace
 
 std::string state_folder(std::string_view configured, std::uint16_t port,
                          const Environment& environment) {
   if (configured != "auto") return std::string(configured);
-  const std::string_view given = value_of(environment, "STATE_DIRECTORY");
-  if (!given.empty()) return std::string(given.substr(0, given.find(':')));
+  const std::string given = value_of(environment, "STATE_DIRECTORY");
+  if (!given.empty()) return given.substr(0, given.find(':'));
   if (port == 0) return {};
   const std::string own = "chorus/fusion-" + std::to_string(port);
   // The XDG base directory specification says that relative paths are ignored.

@@ -2,16 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <string_view>
 
+#include "common/base/environment.h"
 #include "common/base/result.h"
 
 namespace chorus::server {
-
-/// The value of an environment variable; null when it is not set.
-using Environment = std::function<const char*(const char* name)>;
 
 /// `configured` unchanged, unless it is "auto": then the first of $STATE_DIRECTORY (systemd's),
 /// $XDG_STATE_HOME/chorus/fusion-PORT and $HOME/.local/state/chorus/fusion-PORT; empty when none is

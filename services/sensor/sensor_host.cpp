@@ -108,7 +108,13 @@ std::shared_ptr<http::Router> SensorHost::routes() {
 
 SensorHost::~SensorHost() { stop(); }
 
+service::Concerns SensorHost::concerns() const {
+  const StartSettings& at_start = setup_.settings.at_start;
+  return service::common_concerns(at_start.http, at_start.recording);
+}
+
 Result<void> SensorHost::start() {
+  service::log_concerns(setup_.settings.at_start.recording);
   if (auto ok = server_.start(); !ok) return ok;
   log::info("sensor serving", {{"sensor", setup_.settings.at_start.id.str()},
                                {"url", "http://" + setup_.settings.at_start.http.address + ":" +
@@ -191,7 +197,10 @@ service::About about_sensor() {
            {"--camera", "device.camera.source",
             "Looks through this webcam, stream or video file (device.camera.source)", true,
             "device.kind=\"camera\""},
-           {"--device", "device.kind", kinds + " (device.kind)"}}};
+           {"--device", "device.kind", kinds + " (device.kind)"}},
+          "/etc/chorus/sensor.json the configuration that the service of the package reads\n"
+          "/var/lib/chorus/sensor/recordings what it records\n"
+          "/usr/share/doc/chorus-sensor/examples/sensor.json every key with its default\n"};
 }
 
 }  // namespace chorus::sensor_service

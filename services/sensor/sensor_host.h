@@ -8,6 +8,7 @@
 
 #include "common/http/server.h"
 #include "common/service/command_line.h"
+#include "common/service/concerns.h"
 #include "common/service/recordings.h"
 #include "services/sensor/sensor_service.h"
 #include "services/sensor/sensor_settings.h"
@@ -38,6 +39,12 @@ class SensorHost {
 
   /// Everything that can change while running.
   void take(const LiveSettings& live);
+
+  /// What would not work here and now.
+  [[nodiscard]] service::Concerns concerns() const;
+
+  /// For a watchdog: the network's thread moves.  A device may be silent for as long as it likes.
+  [[nodiscard]] bool alive() { return server_.alive(); }
 
   [[nodiscard]] std::uint16_t port() const { return server_.port(); }
 

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "common/base/log_queue.h"
+#include "tests/support/notify_socket.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chorus::service {
@@ -28,6 +29,10 @@ class NotingProgram final : public Program {
   std::function<void()> on_reload = [] {};
 
   Result<LogConfig> prepare(ConfigReader config) override { return read("prepare", config); }
+  bool moves = true;
+  std::vector<std::string> worries;
+  std::vector<std::string> concerns() override { return worries; }
+  bool alive() override { return moves; }
   Result<void> start() override {
     asked.emplace_back("start");
     if (throws) throw std::runtime_error("out of luck");
@@ -106,12 +111,48 @@ TEST(ProgramShell, CheckStartsNothing) {
               HasSubstr("log.level"));
 }
 
+TEST(ProgramShell, CheckSaysWhatWouldNotWorkNow) {
+  NotingProgram program;
+  program.worries = {"the moon is full: wait"};
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(run(program, {"--check"}), kExitStopped) << "the configuration is good";
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
+              HasSubstr("chorus-noting: but now, the moon is full: wait\n"));
+}
+
 TEST(ProgramShell, NamesItselfAndTheMistake) {
   NotingProgram program;
   EXPECT_THAT(complaint_of(program, {"--config", "/no/such.json"}),
               HasSubstr("chorus-noting: /no/such.json: the configuration file cannot be read"));
   program.starts = false;
   EXPECT_THAT(complaint_of(program, {}), HasSubstr("chorus-noting: 127.0.0.1:1: address in use"));
+}
+
+/// Sets a variable of this process for a while.
+class Variable {
+ public:
+  Variable(const char* name, const std::string& value) : name_(name) {
+    ::setenv(name, value.c_str(), 1);
+  }
+  ~Variable() { ::unsetenv(name_); }
+
+ private:
+  const char* name_;
+};
+
+TEST(ProgramShell, TellsSystemdThatItIsReadyAliveAndStopping) {
+  const chorus::testing::TemporaryFolder folder;
+  const chorus::testing::NotifySocket socket((folder / "notify").string());
+  const Variable path("NOTIFY_SOCKET", (folder / "notify").string());
+  const Variable watchdog("WATCHDOG_USEC", "20000");
+  NotingProgram program;
+  program.signals = {SIGHUP, SIGTERM};
+  program.on_reload = [&] {
+    EXPECT_THAT(socket.received(), ::testing::Contains("WATCHDOG=1"));
+    program.moves = false;
+  };
+  EXPECT_EQ(run(program, {}), kExitStopped);
+  EXPECT_THAT(socket.received(), ElementsAre("STOPPING=1")) << "no pulse of a still program";
 }
 
 TEST(ProgramShell, WhatIsThrownEndsItWithAReason) {

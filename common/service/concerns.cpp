@@ -1,0 +1,71 @@
+#include "common/service/concerns.h"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <system_error>
+
+#include "common/base/log.h"
+#include "common/net/asio.h"
+#include "common/net/listen.h"
+
+namespace chorus::service {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The folder itself, or the first one above it that is there.
+fs::path nearest_existing(fs::path folder) {
+  std::error_code ignored;
+  while (!fs::exists(folder, ignored) && folder.has_relative_path()) folder = folder.parent_path();
+  return folder.empty() ? fs::path(".") : folder;
+}
+
+}  // namespace
+
+Result<void> usable_folder(const std::string& folder) {
+  const fs::path there = nearest_existing(folder);
+  std::error_code ignored;
+  if (!fs::is_directory(there, ignored))
+    return fail(ErrorCode::Io, folder, there.string() + " is no folder");
+  if (::access(there.c_str(), W_OK | X_OK) == 0) return {};
+  const std::string what =
+      there == fs::path(folder) ? "cannot be written to" : "cannot be created in " + there.string();
+  return fail(ErrorCode::Io, folder,
+              what + " by this user; give it to the user of the service (chown), or name another");
+}
+
+Result<void> free_to_listen(const http::ServerConfig& config) {
+  if (config.port == 0) return {};
+  asio::io_context io;
+  net::Acceptor acceptor(io);
+  return net::listen_on(acceptor, {config.address, config.port, "http.port"});
+}
+
+std::optional<std::string> clock_concern(const NtpStatus& clock) {
+  if (clock.synchronised) return std::nullopt;
+  return "the clock of this host is not synchronised, and bodies are fused by the time they were "
+         "seen: install chrony (apt install chrony), or let it finish";
+}
+
+Concerns common_concerns(const http::ServerConfig& http, const RecordingConfig& recording) {
+  Concerns all;
+  if (const auto free = free_to_listen(http); !free) all.push_back(to_string(free.error()));
+  if (!recording.folder.empty()) {
+    if (const auto usable = usable_folder(recording.folder); !usable)
+      all.push_back("nothing can be recorded: " + to_string(usable.error()));
+  }
+  if (auto clock = clock_concern(read_ntp_status())) all.push_back(std::move(*clock));
+  return all;
+}
+
+void log_concerns(const RecordingConfig& recording) {
+  if (!recording.folder.empty()) {
+    if (const auto usable = usable_folder(recording.folder); !usable)
+      log::error("nothing can be recorded", {{"reason", to_string(usable.error())}});
+  }
+  if (const auto clock = clock_concern(read_ntp_status()))
+    log::warn("clock not synchronised", {{"advice", *clock}});
+}
+
+}  // namespace chorus::service

@@ -1,0 +1,56 @@
+#include "common/service/concerns.h"
+
+#include <filesystem>
+
+#include <gmock/gmock.h>
+
+#include "tests/support/temporary_folder.h"
+
+namespace chorus::service {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+TEST(UsableFolder, IsOneThatIsThereOrCanBeMade) {
+  const chorus::testing::TemporaryFolder folder;
+  EXPECT_TRUE(usable_folder((folder / "deep/er").string()));
+  EXPECT_FALSE(std::filesystem::exists(folder / "deep")) << "looked at, not made";
+  const auto file = folder.write("file", "in the way");
+  EXPECT_FALSE(usable_folder(file.string()));
+  EXPECT_FALSE(usable_folder((file / "below").string()));
+}
+
+TEST(FreeToListen, SeesWhoIsThereAlready) {
+  http::ServerConfig config;
+  http::Server server(config, std::make_shared<http::Router>());
+  ASSERT_TRUE(server.start());
+  config.port = server.port();
+  const auto taken = free_to_listen(config);
+  ASSERT_FALSE(taken);
+  EXPECT_THAT(to_string(taken.error()), HasSubstr("http.port"));
+  server.stop();
+  EXPECT_TRUE(free_to_listen(config));
+  config.address = "203.0.113.1";
+  EXPECT_FALSE(free_to_listen(config)) << "no address of this host";
+}
+
+TEST(Concerns, NameThePortTheFolderAndTheClock) {
+  http::ServerConfig config;
+  http::Server server(config, std::make_shared<http::Router>());
+  ASSERT_TRUE(server.start());
+  config.port = server.port();
+  RecordingConfig recording;
+  const chorus::testing::TemporaryFolder folder;
+  recording.folder = (folder.write("file", "in the way") / "below").string();
+  const Concerns all = common_concerns(config, recording);
+  EXPECT_THAT(all, Contains(HasSubstr("http.port")));
+  EXPECT_THAT(all, Contains(HasSubstr("nothing can be recorded: " + recording.folder)));
+  NtpStatus clock;
+  EXPECT_THAT(clock_concern(clock).value_or(""), HasSubstr("chrony"));
+  clock.synchronised = true;
+  EXPECT_FALSE(clock_concern(clock));
+}
+
+}  // namespace
+}  // namespace chorus::service
