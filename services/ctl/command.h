@@ -1,9 +1,11 @@
 // One subcommand of `chorus`: what it is called, what its help teaches, what it does.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "common/base/result.h"
 
@@ -27,9 +29,16 @@ struct Command {
   Run (*add)(CLI::App& options);  ///< Declares the options; what it returns runs after parsing.
 };
 
-/// In the order of --help.
-[[nodiscard]] std::span<const Command> commands();
+/// In the order of --help.  Apart, so that a program can do without the libraries that the second
+/// need.
+[[nodiscard]] std::span<const Command> host_commands();
+[[nodiscard]] std::span<const Command> recording_commands();
+inline constexpr std::array<std::string_view, 4> kRecordingCommandNames{"import", "replay", "fuse",
+                                                                        "export"};
+[[nodiscard]] std::vector<Command> all_commands();
 
+Run add_init(CLI::App& options);
+Run add_doctor(CLI::App& options);
 Run add_import(CLI::App& options);
 Run add_register(CLI::App& options);
 Run add_status(CLI::App& options);
@@ -40,6 +49,7 @@ Run add_export(CLI::App& options);
 Run add_camera(CLI::App& options);
 
 /// The whole program: parses, runs, prints errors to standard error.  Never throws.
-[[nodiscard]] int run_command_line(int argc, const char* const* argv);
+[[nodiscard]] int run_command_line(std::span<const Command> commands, int argc,
+                                   const char* const* argv);
 
 }  // namespace chorus::ctl

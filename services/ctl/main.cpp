@@ -1,4 +1,7 @@
 // chorus: the command line.
 #include "services/ctl/command.h"
 
-int main(int argc, char** argv) { return chorus::ctl::run_command_line(argc, argv); }
+int main(int argc, char** argv) {
+  using namespace chorus::ctl;
+  return run_command_line(all_commands(), argc, argv);
+}

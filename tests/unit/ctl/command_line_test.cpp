@@ -20,7 +20,8 @@ Outcome run(std::vector<const char*> arguments) {
   ::testing::internal::CaptureStdout();
   ::testing::internal::CaptureStderr();
   Outcome outcome;
-  outcome.code = run_command_line(static_cast<int>(arguments.size()), arguments.data());
+  outcome.code =
+      run_command_line(all_commands(), static_cast<int>(arguments.size()), arguments.data());
   outcome.out = ::testing::internal::GetCapturedStdout();
   outcome.error = ::testing::internal::GetCapturedStderr();
   return outcome;
@@ -28,11 +29,31 @@ Outcome run(std::vector<const char*> arguments) {
 
 TEST(CommandLine, TeachesWithExamplesInEveryHelp) {
   EXPECT_EQ(run({"--help"}).code, kExitOk);
-  for (const Command& command : commands()) {
+  for (const Command& command : all_commands()) {
     const Outcome help = run({command.name.data(), "--help"});
     EXPECT_EQ(help.code, kExitOk) << command.name;
     EXPECT_THAT(help.out, HasSubstr("Examples:\n  chorus " + std::string(command.name)));
   }
+}
+
+TEST(CommandLine, KnowsWhatTheSmallProgramLeavesOut) {
+  std::vector<std::string_view> names;
+  for (const Command& command : recording_commands()) names.push_back(command.name);
+  EXPECT_THAT(names, ::testing::ElementsAreArray(kRecordingCommandNames));
+}
+
+TEST(CommandLine, PrintsItsManualAndItsCompletion) {
+  const Outcome manual = run({"--print", "manual"});
+  EXPECT_EQ(manual.code, kExitOk);
+  EXPECT_THAT(manual.out, HasSubstr(".TH CHORUS 1"));
+  const Outcome completion = run({"--print", "completion"});
+  EXPECT_EQ(completion.code, kExitOk);
+  for (const Command& command : all_commands()) {
+    const std::string name(command.name);
+    EXPECT_THAT(manual.out, HasSubstr(".SS \"chorus " + name + "\"\n"));
+    EXPECT_THAT(completion.out, HasSubstr("\n    " + name + ") words=' --"));
+  }
+  EXPECT_THAT(manual.out, HasSubstr("\\fB\\-\\-cancel\\fR"));
 }
 
 TEST(CommandLine, NamesTheCommandThatWasMeant) {
@@ -41,7 +62,7 @@ TEST(CommandLine, NamesTheCommandThatWasMeant) {
   EXPECT_THAT(wrong.error, HasSubstr("did you mean \"import\"?"));
   const Outcome strange = run({"xyzzyplugh"});
   EXPECT_EQ(strange.code, kExitUsage);
-  EXPECT_THAT(strange.error, HasSubstr("The commands are: import, register"));
+  EXPECT_THAT(strange.error, HasSubstr("The commands are: import, init, doctor, register"));
 }
 
 TEST(CommandLine, TellsWrongUsageFromFailure) {

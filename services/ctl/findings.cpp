@@ -1,0 +1,224 @@
+#include "services/ctl/findings.h"
+
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "common/base/file.h"
+#include "common/base/json.h"
+#include "common/base/version.h"
+#include "common/http/client.h"
+#include "common/http/status.h"
+#include "fusion-server/client/service_client.h"
+
+namespace chorus::ctl {
+namespace {
+
+constexpr http::ClientLimits kBrief{1 << 20, std::chrono::seconds(2), std::chrono::seconds(2)};
+constexpr double kMostClockDifference = 20.0;  // Half a frame at 30 Hz is 17 [ms].
+constexpr double kLeastFree = 1024.0;          // [MB]: half an hour of six sensors
+constexpr double kBytesPerMb = 1e6;
+constexpr double kNsPerMs = 1e6;
+
+Result<http::ClientResponse> ask(const std::string& base, const std::string& path,
+                                 const std::string& token) {
+  const auto url = http::parse_url(base);
+  if (!url) return pass(url);
+  http::ClientRequest request;
+  request.target = url->target + (url->target.ends_with('/') ? "" : "/") + path;
+  request.headers = {{"Accept", "application/json, text/plain;q=0.5"}};
+  if (!token.empty()) request.headers.emplace_back("Authorization", "Bearer " + token);
+  return http::fetch(*url, request, kBrief);
+}
+
+/// What a problem document says; else the bare status.
+std::string words_of(const http::ClientResponse& answer) {
+  const auto document = nlohmann::json::parse(answer.body, nullptr, false);
+  return client::text_at(document, "detail", "status " + std::to_string(answer.status));
+}
+
+std::string text_in(const nlohmann::json& object, const char* key) {
+  return client::text_at(object, key, "");
+}
+
+/// The first folder above that is there.
+std::string existing(std::filesystem::path folder) {
+  std::error_code ignored;
+  while (folder.has_relative_path() && !std::filesystem::exists(folder, ignored))
+    folder = folder.parent_path();
+  return folder.empty() ? "." : folder.string();
+}
+
+Finding folder_finding(const std::string& what, const std::string& folder) {
+  const std::string subject = what + " " + folder;
+  struct statvfs disk {};
+  if (::statvfs(existing(folder).c_str(), &disk) != 0)
+    return {false, subject, "cannot be looked at", "name another folder in the configuration"};
+  const double free =
+      static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_frsize) / kBytesPerMb;
+  if (free >= kLeastFree) return {true, subject, fmt::format("{:.0f} MB free", free)};
+  return {false, subject, fmt::format("only {:.0f} MB free", free),
+          "delete old recordings, or name a folder on another disk"};
+}
+
+/// chorus_build{version="0.1.0"} 1
+std::string version_in(const std::string& metrics) {
+  constexpr std::string_view kBefore = "chorus_build{version=\"";
+  const std::size_t at = metrics.find(kBefore);
+  if (at == std::string::npos) return {};
+  const std::string rest = metrics.substr(at + kBefore.size());
+  return rest.substr(0, rest.find('"'));
+}
+
+/// Their clock minus ours [ms], and how much of that may be the way there and back.
+struct ClockDifference {
+  double ms = 0.0;  ///< NaN when they do not say.
+  double uncertainty = 0.0;
+};
+
+ClockDifference clock_difference(const http::ClientResponse& answer) {
+  const auto document = nlohmann::json::parse(answer.body, nullptr, false);
+  const std::string text = text_in(document, "nowNanoseconds");
+  const double theirs = text.empty() ? client::number_at(document, "nowNanoseconds")
+                                     : std::strtod(text.c_str(), nullptr);
+  const auto sent = static_cast<double>(answer.sent_ns);
+  const auto received = static_cast<double>(answer.received_ns);
+  return {(theirs - (sent + received) / 2) / kNsPerMs, (received - sent) / 2 / kNsPerMs};
+}
+
+Finding of_answering(const std::string& subject, const std::string& url, const std::string& token,
+                     const http::ClientResponse& clock) {
+  const auto [difference, uncertainty] = clock_difference(clock);
+  if (std::abs(difference) - uncertainty > kMostClockDifference) {
+    return {false, subject,
+            fmt::format("its clock is {:.0f} ms {} ours", std::abs(difference),
+                        difference > 0 ? "ahead of" : "behind"),
+            "let chrony on both hosts follow the same server (docs/guide/workshop.md)"};
+  }
+  const auto metrics = ask(url, "metrics", token);
+  const std::string theirs = metrics ? version_in(metrics->body) : "";
+  if (!theirs.empty() && theirs != version()) {
+    return {false, subject, fmt::format("runs version {}, and this is {}", theirs, version()),
+            "install the same packages on all hosts"};
+  }
+  return {true, subject, fmt::format("answers at {}, clock {:+.1f} ms", url, difference)};
+}
+
+Finding sensor_finding(const nlohmann::json& sensor) {
+  const std::string subject = "sensor " + text_in(sensor, "id");
+  const std::string url = text_in(sensor, "url");
+  const std::string token = text_in(sensor, "token");
+  const auto clock = ask(url, "clock", token);
+  if (!clock) {
+    return {false, subject, to_string(clock.error()),
+            "is chorus-sensor running there (systemctl status chorus-sensor), does it listen on "
+            "the network (http.address), does a firewall let its port through?"};
+  }
+  if (clock->status == http::status::kUnauthorized) {
+    return {false, subject, "does not take our token",
+            "copy one of its http.tokens (role read) to \"token\" of this sensor, and reload"};
+  }
+  if (clock->status != http::status::kOk)
+    return {false, subject, words_of(*clock), "ask chorus doctor on that host"};
+  return of_answering(subject, url, token, *clock);
+}
+
+}  // namespace
+
+std::uint16_t ExaminedService::port() const {
+  const double port = client::number_at(client::part_at(config, "http"), "port");
+  if (port > 0 && port <= 65535) return static_cast<std::uint16_t>(port);
+  return kind == "sensor" ? 8081 : 8080;
+}
+
+std::string ExaminedService::url() const {
+  std::string address = text_in(client::part_at(config, "http"), "address");
+  if (address.empty() || address == "0.0.0.0" || address == "::") address = "127.0.0.1";
+  if (address.find(':') != std::string::npos) address = "[" + address + "]";
+  return fmt::format("http://{}:{}/", address, port());
+}
+
+std::string ExaminedService::read_token() const {
+  const auto& section = client::part_at(config, "http");
+  for (const auto& token : client::part_at(section, "tokens")) {
+    if (!text_in(token, "token").empty()) return text_in(token, "token");
+  }
+  return text_in(section, "bearer_token");
+}
+
+Result<ExaminedService> examined_service(const std::string& kind, const std::string& file) {
+  constexpr std::uintmax_t kMaxBytes = 1u << 20;
+  const auto text = read_file(file, kMaxBytes);
+  if (!text) return pass(text);
+  JsonLimits limits;
+  limits.comments = true;
+  auto config = parse_json(*text, limits);
+  if (!config) return pass(config);
+  if (!config->is_object()) return fail(ErrorCode::Malformed, file, "is no JSON object");
+  return ExaminedService{kind, file, std::move(*config)};
+}
+
+Finding clock_finding(const NtpStatus& clock) {
+  if (!clock.synchronised) {
+    return {false, "clock", "is not synchronised",
+            "apt install chrony; chronyc sources says what it follows (docs/guide/workshop.md)"};
+  }
+  return {true, "clock",
+          fmt::format("synchronised, at most {:.1f} ms off",
+                      static_cast<double>(clock.max_error.count()) / kNsPerMs)};
+}
+
+Finding health_finding(const ExaminedService& service) {
+  const std::string subject = "chorus-" + service.kind;
+  const auto answer = ask(service.url(), "healthz", "");
+  if (!answer) {
+    return {
+        false, subject, "does not answer at " + service.url(),
+        fmt::format("systemctl start {0}; journalctl -u {0} says why it does not stay", subject)};
+  }
+  if (answer->status == http::status::kOk) return {true, subject, "answers at " + service.url()};
+  return {false, subject, words_of(*answer),
+          service.kind == "sensor" ? "is the device there, or the program that pushes frames?"
+                                   : "the sensors below say more; then: chorus register"};
+}
+
+Finding token_finding(const ExaminedService& service) {
+  const std::string subject = "token of chorus-" + service.kind;
+  const std::string token = service.read_token();
+  const auto answer = ask(service.url(), "clock", token);
+  if (!answer)
+    return {false, subject, "cannot be tried while the service does not answer", "see above"};
+  if (answer->status == http::status::kOk) {
+    return {true, subject, token.empty() ? "none is needed on this host" : "is taken"};
+  }
+  return {false, subject, words_of(*answer),
+          fmt::format("the file and the running service differ: systemctl reload chorus-{}",
+                      service.kind)};
+}
+
+Findings disk_findings(const ExaminedService& service) {
+  Findings all;
+  const std::string recordings = text_in(client::part_at(service.config, "recording"), "folder");
+  if (!recordings.empty()) all.push_back(folder_finding("recordings", recordings));
+  const std::string state = text_in(service.config, "state_dir");
+  if (!state.empty() && state != "auto") all.push_back(folder_finding("state", state));
+  return all;
+}
+
+Findings sensor_findings(const ExaminedService& service) {
+  Findings all;
+  if (service.kind != "fusion") return all;
+  for (const auto& sensor : client::part_at(service.config, "sensors"))
+    all.push_back(sensor_finding(sensor));
+  if (all.empty())
+    all.push_back({false, "sensors", "none is named in " + service.file,
+                   "chorus init fusion --sensor ID=URL,TOKEN"});
+  return all;
+}
+
+}  // namespace chorus::ctl

@@ -1,0 +1,51 @@
+// The commands that work on recordings.
+#include <array>
+
+#include "services/ctl/command.h"
+
+namespace chorus::ctl {
+namespace {
+
+constexpr std::array kRecordingCommands{
+    Command{"import", "Turns other people's recordings into ours, one .mcap per sensor",
+            "Examples:\n"
+            "  chorus import labanotation Ges01.csv --out rec --floor 0,0.99,0.12,1.1\n"
+            "  chorus import pose2sim tests/data/pose2sim_mediapipe --out rec\n"
+            "  chorus import nw-ucla a04_s01_e00_v0*.json --out rec --start 2026-11-21T07:30:00Z\n"
+            "  chorus import c3d walk.c3d --out rec   (also bvh, mvnx: their world becomes ours)\n"
+            "Writes DIR/SENSOR.mcap, and registration.json and truth.ndjson where the source has "
+            "them.\n"
+            "Then: chorus fuse rec --out fused.ndjson, or chorus replay rec.",
+            &add_import},
+    Command{"replay", "Plays recordings as sensors: one chorus-sensor process for each",
+            "Examples:\n"
+            "  chorus replay rec --loop               all recordings of a folder, ports 8081, "
+            "8082, ...\n"
+            "  chorus replay rec/cam01.mcap --port 9001\n"
+            "  chorus replay walk.mcap --speed 0.5    every sensor of one recording\n"
+            "Ctrl-C stops all of them.",
+            &add_replay},
+    Command{
+        "fuse", "Fuses recordings of several sensors offline, registration included",
+        "Examples:\n"
+        "  chorus fuse rec --out fused.ndjson\n"
+        "  chorus fuse walk.mcap --out fused.mcap --config other.json\n"
+        "  chorus fuse rec --out fused.ndjson --registration rec/registration.json --method otto\n"
+        "  chorus fuse rec --out - --config deploy/config/fusion.json | jq .bodies[0].joints.Head\n"
+        "A recording, or one /frame document a line; the same input gives the same bytes.",
+        &add_fuse},
+    Command{"export", "Writes fused frames as BVH, C3D, TRC, CSV or glTF",
+            "Examples:\n"
+            "  chorus export cell.mcap --format c3d --out walk.c3d\n"
+            "  chorus fuse rec --out - | chorus export - --format bvh --out walk.bvh\n"
+            "  chorus export http://127.0.0.1:8080/ --seconds 20 --format gltf --out walk.glb\n"
+            "  chorus export fused.ndjson --format csv --person 2 --out - | head\n"
+            "What each format holds, and what is lost: docs/guide/export.md.",
+            &add_export},
+};
+
+}  // namespace
+
+std::span<const Command> recording_commands() { return kRecordingCommands; }
+
+}  // namespace chorus::ctl
