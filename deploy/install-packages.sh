@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing: install-packages.sh PURPOSE...  (build, tests, bench; see packages.txt)
+# Installs what is missing: install-packages.sh PURPOSE...  (build, tests, bench, workshop; see packages.txt)
 # As root or through sudo; when nothing is missing it needs neither.  Node.js: any version from 18 on the
 # PATH will do, with npm; otherwise Debian's.
 set -euo pipefail
@@ -36,7 +36,7 @@ as_root() {
   fi
 }
 
-(( $# > 0 )) || { echo "usage: install-packages.sh build|tests|bench ..." >&2; exit 2; }
+(( $# > 0 )) || { echo "usage: install-packages.sh build|tests|bench|workshop ..." >&2; exit 2; }
 command -v dpkg-query >/dev/null || { echo "install-packages: this needs Debian or a relative" >&2; exit 1; }
 
 missing=()

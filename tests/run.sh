@@ -3,6 +3,8 @@
 #   tests/run.sh [ctest arguments, such as -R fusion/]
 #   tests/run.sh --sanitize address|thread [ctest arguments]
 #     the unit, integration and fusion-system tests instead, built with that sanitizer (presets asan and tsan)
+#   tests/run.sh --workshop
+#     instead: makes the packages, installs them into fresh Debian roots without network, and looks (as root, minutes)
 # CHORUS_JOBS=N limits the build (default: all cores, but no more than the memory can feed).
 # CHORUS_TARGETS="base.file_test ..." builds only these with --sanitize; then choose the same tests by -R.
 set -euo pipefail
@@ -25,6 +27,11 @@ npm_packages() {
   npm ci --prefix "$1" --no-progress
   cp "$1/package-lock.json" "$stamp"
 }
+
+if [ "${1:-}" = --workshop ]; then
+  deploy/install-packages.sh build workshop
+  exec python3 -B tests/package/installed_root.py
+fi
 
 sanitizer=""
 if [ "${1:-}" = --sanitize ]; then

@@ -1,0 +1,113 @@
+# What is installed where, and the Debian packages made of it (deploy/make-packages.sh).
+#
+#   common  chorus (small: init, doctor, status, register, record), user, folders
+#   sensor  chorus-sensor and its service; nothing here may link OpenCV or PCL (tests/package measures what it brings)
+#   fusion  chorus-fusion, its service and the viewer
+#   tools   the whole chorus: import, replay, fuse, export
+# A device with libraries of its own is a component and a package of its own.
+include(GNUInstallDirs)
+set(docs ${CMAKE_INSTALL_DATADIR}/doc)
+
+install(PROGRAMS $<TARGET_FILE:chorus-host> DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME chorus COMPONENT common)
+install(PROGRAMS $<TARGET_FILE:chorus> DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/chorus COMPONENT tools)
+install(FILES LICENSE DESTINATION ${docs}/chorus-common RENAME copyright COMPONENT common)
+install(DIRECTORY docs/guide DESTINATION ${docs}/chorus-common COMPONENT common FILES_MATCHING PATTERN *.md)
+install(FILES LICENSE DESTINATION ${docs}/chorus-tools RENAME copyright COMPONENT tools)
+
+# Manual pages and completions come from the programs themselves.
+set(pages ${CMAKE_BINARY_DIR}/pages)
+set(made "")
+function(chorus_pages program section component)
+  foreach(what manual completion)
+    set(file ${pages}/${program}.${section})
+    if(what STREQUAL completion)
+      set(file ${pages}/${program}.bash)
+    endif()
+    add_custom_command(OUTPUT ${file} COMMAND ${CMAKE_COMMAND} -E make_directory ${pages}
+      COMMAND ${program} --print ${what} > ${file} DEPENDS ${program} VERBATIM)
+    list(APPEND made ${file})
+  endforeach()
+  set(made ${made} PARENT_SCOPE)
+  install(FILES ${pages}/${program}.${section} DESTINATION ${CMAKE_INSTALL_MANDIR}/man${section} COMPONENT ${component})
+  install(FILES ${pages}/${program}.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME ${program}
+    COMPONENT ${component})
+endfunction()
+chorus_pages(chorus 1 common)
+
+foreach(service sensor fusion)
+  install(TARGETS chorus-${service} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${service})
+  install(FILES deploy/package/chorus-${service}.service DESTINATION lib/systemd/system COMPONENT ${service})
+  install(FILES deploy/package/chorus-${service}.default DESTINATION /etc/default RENAME chorus-${service} COMPONENT ${service})
+  install(FILES deploy/config/${service}.json DESTINATION ${docs}/chorus-${service}/examples COMPONENT ${service})
+  install(FILES LICENSE DESTINATION ${docs}/chorus-${service} RENAME copyright COMPONENT ${service})
+  chorus_pages(chorus-${service} 8 ${service})
+  foreach(script postinst prerm postrm)
+    file(READ deploy/package/service.${script} text)
+    string(REPLACE @NAME@ ${service} text "${text}")
+    file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/control/${service}/${script} CONTENT "${text}" @ONLY)
+    file(CHMOD ${CMAKE_BINARY_DIR}/control/${service}/${script} PERMISSIONS
+      OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+  endforeach()
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/control/${service}/conffiles CONTENT "/etc/default/chorus-${service}\n")
+  set(control ${CMAKE_BINARY_DIR}/control/${service})
+  string(TOUPPER ${service} upper)
+  set(CPACK_DEBIAN_${upper}_PACKAGE_CONTROL_EXTRA
+    "${control}/postinst;${control}/prerm;${control}/postrm;${control}/conffiles")
+endforeach()
+add_custom_target(pages DEPENDS ${made})
+
+set(viewer ${CMAKE_INSTALL_DATADIR}/chorus/viewer)
+set(three node_modules/three)
+install(DIRECTORY services/viewer/ DESTINATION ${viewer} COMPONENT fusion
+  FILES_MATCHING PATTERN node_modules EXCLUDE PATTERN *.js PATTERN *.html PATTERN *.css)
+install(FILES services/viewer/${three}/LICENSE DESTINATION ${viewer}/${three} COMPONENT fusion OPTIONAL)
+install(FILES services/viewer/${three}/build/three.module.min.js services/viewer/${three}/build/three.core.min.js
+  DESTINATION ${viewer}/${three}/build COMPONENT fusion OPTIONAL)
+install(FILES services/viewer/${three}/examples/jsm/controls/OrbitControls.js
+  DESTINATION ${viewer}/${three}/examples/jsm/controls COMPONENT fusion OPTIONAL)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME chorus)
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_CURRENT_SOURCE_DIR}/deploy/package/versions.cmake)
+set(CPACK_PACKAGE_CONTACT "The Chorus contributors <chorus@localhost>")
+set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/packages)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_VERBATIM_VARIABLES ON)
+set(CPACK_COMPONENTS_ALL common sensor fusion tools)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
+set(CPACK_STRIP_FILES OFF)  # Splitting the debug symbols does it, and would find none after it.
+set(CPACK_DEBIAN_DEBUGINFO_PACKAGE ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+foreach(component common sensor fusion tools)
+  string(TOUPPER ${component} upper)
+  set(CPACK_DEBIAN_${upper}_PACKAGE_NAME chorus-${component})
+  set(CPACK_COMPONENT_${upper}_GROUP ${component})
+endforeach()
+set(control ${CMAKE_BINARY_DIR}/control/common)
+foreach(script postinst postrm)
+  file(COPY deploy/package/common.${script} DESTINATION ${control} FILE_PERMISSIONS
+    OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+  file(RENAME ${control}/common.${script} ${control}/${script})
+endforeach()
+set(CPACK_DEBIAN_COMMON_PACKAGE_CONTROL_EXTRA "${control}/postinst;${control}/postrm")
+set(CPACK_DEBIAN_COMMON_PACKAGE_DEPENDS passwd)
+set(CPACK_DEBIAN_COMMON_PACKAGE_SUGGESTS chrony)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS chorus-sensor)
+set(CPACK_COMPONENT_COMMON_DESCRIPTION "Chorus: the command line, user and folders of a workshop host
+ Writes configurations, checks hosts, registers sensors and records.")
+set(CPACK_COMPONENT_SENSOR_DESCRIPTION "Chorus: a body-tracking device as a web service
+ Serves the skeletons of one device (pushed, replayed or simulated) as linked data over HTTP.")
+set(CPACK_COMPONENT_FUSION_DESCRIPTION "Chorus: many body-tracking sensors, one tracker
+ Reads sensors, finds where they stand from a walking person, and serves one tracker in many protocols.")
+set(CPACK_COMPONENT_TOOLS_DESCRIPTION "Chorus: work on recordings
+ The commands import, replay, fuse and export.")
+include(CPack)
+foreach(component common sensor fusion tools)
+  cpack_add_component_group(${component})
+  cpack_add_component(${component} GROUP ${component})
+endforeach()

@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# Installs Chorus from this folder, without internet: ./install.sh chorus-sensor | chorus-fusion | chorus-tools ...
+# The system's own package sources are neither asked nor changed.
+set -euo pipefail
+folder=$(cd "$(dirname "$0")" && pwd)
+(( $# > 0 )) || { sed -n '2,3s/^# //p' "$0" >&2; exit 2; }
+(( EUID == 0 )) || { echo "install: run this as root (sudo $0 $*)" >&2; exit 1; }
+. /etc/os-release
+built_for=$(cat "$folder/SYSTEM")
+if [[ "${ID:-}-${VERSION_ID:-}-$(dpkg --print-architecture)" != "$built_for" ]]; then
+  echo "install: these packages are for $built_for, and this is ${PRETTY_NAME:-another system} on" \
+    "$(dpkg --print-architecture)" >&2
+  exit 1
+fi
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+chmod 755 "$scratch"
+mkdir -p "$scratch/lists/partial" "$scratch/archives/partial"
+echo "deb [trusted=yes] copy:$folder ./" > "$scratch/sources.list"
+apt=(apt-get -q -o "Dir::Etc::SourceList=$scratch/sources.list" -o Dir::Etc::SourceParts=/dev/null
+  -o "Dir::State::Lists=$scratch/lists" -o "Dir::Cache::Archives=$scratch/archives"
+  -o Dir::Cache::pkgcache= -o Dir::Cache::srcpkgcache= -o APT::Sandbox::User=root)
+"${apt[@]}" update
+DEBIAN_FRONTEND=noninteractive "${apt[@]}" install -y --no-install-recommends --allow-downgrades \
+  -o Dpkg::Options::=--force-confdef -o Dpkg::Options::=--force-confold "$@"  # what the user changed stays

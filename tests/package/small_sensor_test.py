@@ -1,0 +1,54 @@
+"""A sensor host stays small: neither its service nor the small `chorus` links libraries for pictures or point clouds.
+What that saves is measured by tests/run.sh --workshop."""
+
+import os
+import re
+import subprocess
+import unittest
+from pathlib import Path
+
+BIN = Path(os.environ["CHORUS_BIN"])
+NEEDED = re.compile(r"\(NEEDED\)\s+Shared library: \[([^\]]+)\]")
+# Names of libraries that a Debian root has, or that are small.
+SMALL = ("libc", "libm", "libstdc++", "libgcc_s", "ld-linux", "libfmt", "libspdlog", "libserd-0", "libzstd", "libcrypto", "libz", "libexpat",
+         "libjpeg")
+LARGE = ("libopencv", "libpcl")
+
+
+def needed(program):
+    text = subprocess.run(["readelf", "-d", str(BIN / program)], capture_output=True, text=True, check=True).stdout
+    return NEEDED.findall(text)
+
+
+class SmallHost(unittest.TestCase):
+    def test_what_every_host_gets_links_small_libraries_only(self):
+        for program in ("chorus-sensor", "chorus-host"):
+            with self.subTest(program):
+                libraries = needed(program)
+                self.assertGreater(len(libraries), 3)
+                others = [name for name in libraries if not name.startswith(tuple(f"{small}." for small in SMALL) + ("ld-linux",))]
+                self.assertEqual(others, [], "a new library: is it small, and in no package that brings a hundred others?")
+
+    def test_the_whole_program_links_the_large_ones(self):
+        self.assertTrue([name for name in needed("chorus") if name.startswith(LARGE)], "then the test above sees nothing")
+
+
+class SmallChorus(unittest.TestCase):
+    def run_small(self, *arguments):
+        return subprocess.run([str(BIN / "chorus-host"), *arguments], capture_output=True, text=True, check=False)
+
+    def test_it_knows_the_commands_of_a_host(self):
+        text = self.run_small("--help").stdout
+        for command in ("init", "doctor", "status", "register", "record"):
+            self.assertRegex(text, rf"\n  {command} ")
+        self.assertNotRegex(text, r"\n  fuse ")
+
+    def test_it_says_where_the_others_are(self):
+        for command in ("import", "replay", "fuse", "export"):
+            done = self.run_small(command, "x")
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("apt install chorus-tools", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
