@@ -1,0 +1,109 @@
+"""deploy/workshop.sh does on each host what its guide says, in that order, and says what is wrong with an inventory."""
+
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+TOKEN = "0123456789abcdef"
+# Instead of ssh: notes host and command, keeps what came by standard input, and answers as hosts do.
+FAKE_SSH = """#!/bin/bash
+echo "$1 | $2" >> "$NOTES/commands"
+case $2 in
+  *"tar -C"*) tar -tf - > "$NOTES/sent.$1" ;;
+  "cat /etc/chorus/sensor.json") printf '// http://x\\n{"http": {"tokens": [{"token": "%s", "role": "read"}]}}' '""" + TOKEN + """' ;;
+  *"sensors-from"*|*"conf.d/chorus.conf &&"*) cat >> "$NOTES/input.$1" ;;
+  true) [[ "$1" != *away* ]] ;;
+  "chorus doctor") [[ "$1" != *ill* ]] ;;
+esac
+"""
+INVENTORY = {"fusion": {"address": "10.0.0.10", "outputs": ["vrpn=10.0.0.20"]},
+             "sensors": [{"id": "s1", "address": "10.0.0.11"},
+                         {"id": "s2", "address": "10.0.0.12", "ssh": "admin@host-2", "device": "replay"}]}
+
+
+class Workshop(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        (self.folder / "ssh").write_text(FAKE_SSH)
+        (self.folder / "ssh").chmod(0o755)
+        packages = self.folder / "packages"
+        packages.mkdir()
+        (packages / "install.sh").write_text("#!/bin/sh\n")
+        (packages / "install.sh").chmod(0o755)
+
+    def run_it(self, task, inventory=None):
+        file = self.folder / "inventory.json"
+        whole = {**(inventory or INVENTORY), "packages": str(self.folder / "packages")}
+        file.write_text(json.dumps(whole))
+        environment = {**os.environ, "CHORUS_SSH": str(self.folder / "ssh"), "NOTES": str(self.folder)}
+        return subprocess.run(["deploy/workshop.sh", str(file), task], cwd=ROOT, env=environment,
+                              capture_output=True, text=True, check=False)
+
+    def noted(self, name):
+        file = self.folder / name
+        return file.read_text() if file.exists() else ""
+
+    def test_lays_out_sensors_first_then_the_fusion_host(self):
+        done = self.run_it("lay-out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        hosts = [line.split(" | ")[0] for line in self.noted("commands").splitlines() if "install.sh" in line]
+        self.assertEqual(hosts, ["root@10.0.0.11", "admin@host-2", "root@10.0.0.10"])
+        self.assertIn("install.sh", self.noted("sent.admin@host-2"))
+        commands = self.noted("commands")
+        self.assertIn("install.sh chorus-sensor chrony", commands)
+        self.assertIn("chorus init sensor --id s2 --device replay", commands)
+        self.assertIn("test -e /etc/chorus/sensor.json ||", commands, "what is there is kept")
+        self.assertIn("--output vrpn=10.0.0.20", commands)
+
+    def test_the_fusion_host_gets_every_sensor_with_its_token_and_not_on_a_command_line(self):
+        self.run_it("lay-out")
+        given = self.noted("input.root@10.0.0.10")
+        self.assertIn(f"s1=http://10.0.0.11:8081/,{TOKEN}\n", given)
+        self.assertIn(f"s2=http://10.0.0.12:8081/,{TOKEN}\n", given)
+        self.assertNotIn(TOKEN, self.noted("commands"))
+
+    def test_sensor_hosts_follow_the_time_of_the_fusion_host(self):
+        self.run_it("lay-out")
+        self.assertIn("server 10.0.0.10 iburst", self.noted("input.root@10.0.0.11"))
+        self.assertIn("allow 10.0.0.12", self.noted("input.root@10.0.0.10"))
+
+    def test_a_host_that_does_not_let_us_in_is_named_with_what_to_do(self):
+        far = {**INVENTORY, "sensors": [{"id": "s1", "address": "10.0.0.11", "ssh": "root@away"}]}
+        done = self.run_it("lay-out", far)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("ssh-copy-id", done.stderr)
+
+    def test_check_asks_every_host_and_fails_when_one_is_not_well(self):
+        self.assertEqual(self.run_it("check").returncode, 0)
+        self.assertEqual(self.noted("commands").count("chorus doctor"), 3)
+        ill = {**INVENTORY, "fusion": {"address": "10.0.0.10", "ssh": "root@ill"}}
+        done = self.run_it("check", ill)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("1 of 3 hosts are not well", done.stderr)
+
+    def test_takes_everything_away(self):
+        self.assertEqual(self.run_it("purge").returncode, 0)
+        self.assertEqual(self.noted("commands").count("apt-get -q -y purge 'chorus-*'"), 3)
+
+    def test_an_inventory_that_is_wrong_does_nothing_and_says_why(self):
+        for wrong, word in (({"fusion": {}, "sensors": []}, "sensors"),
+                            ({**INVENTORY, "sensors": [{"address": "1"}]}, '"id"'),
+                            ({**INVENTORY, "sensors": [{"id": "a; rm -rf /", "address": "1"}]}, "letters"),
+                            ({**INVENTORY, "fusion": {"address": "-oProxyCommand=x"}}, "letters"),
+                            ({**INVENTORY, "fusion": {"address": "1", "adress": "2"}}, "unknown key"),
+                            ({**INVENTORY, "fusion": {"address": "1", "outputs": ["vrpn=$(x)"]}}, "of the form")):
+            with self.subTest(word):
+                done = self.run_it("lay-out", wrong)
+                self.assertNotEqual(done.returncode, 0)
+                self.assertIn(word, done.stderr)
+        self.assertEqual(self.noted("commands"), "")
+
+
+if __name__ == "__main__":
+    unittest.main()
