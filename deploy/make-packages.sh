@@ -47,8 +47,11 @@ build_jobs() {
   echo $(( jobs < 1 ? 1 : jobs ))
 }
 
-viewer_files() {
-  [[ -d services/viewer/node_modules/three ]] || npm ci --prefix services/viewer --no-progress
+page_files() {
+  local folder
+  for folder in services/viewer services/pose-runner; do
+    [[ -d $folder/node_modules ]] || npm ci --prefix "$folder" --no-progress
+  done
 }
 
 # Everything that our packages need and that not every Debian has, by apt's own reckoning on an empty system.
@@ -70,7 +73,7 @@ download_dependencies() {
 
 [[ -n "$version" ]] || version=$(own_version)
 command -v dpkg-scanpackages >/dev/null || fail "dpkg-scanpackages is missing: apt install dpkg-dev"
-viewer_files
+page_files
 if [[ -z "$tree" ]]; then
   tree=build/package
   step "build of $version"
@@ -78,7 +81,7 @@ if [[ -z "$tree" ]]; then
   export CCACHE_SLOPPINESS=pch_defines,time_macros
   command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   cmake --preset package "${launcher[@]}" --log-level=WARNING >/dev/null
-  cmake --build "$tree" -j "$(build_jobs)" --target chorus-sensor chorus-fusion chorus chorus-host pages
+  cmake --build "$tree" -j "$(build_jobs)" --target chorus-sensor chorus-sensor-small chorus-fusion chorus chorus-host pages
 fi
 
 step "packages"

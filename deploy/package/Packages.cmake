@@ -3,8 +3,8 @@
 #   common  chorus (small: init, doctor, status, register, record), user, folders
 #   sensor  chorus-sensor and its service; nothing here may link OpenCV or PCL (tests/package measures what it brings)
 #   fusion  chorus-fusion, its service and the viewer
+#   camera  the whole chorus-sensor, with the device camera and its runner; the service then runs this one
 #   tools   the whole chorus: import, replay, fuse, export
-# A device with libraries of its own is a component and a package of its own.
 include(GNUInstallDirs)
 set(docs ${CMAKE_INSTALL_DATADIR}/doc)
 
@@ -34,8 +34,14 @@ function(chorus_pages program section component)
 endfunction()
 chorus_pages(chorus 1 common)
 
+install(PROGRAMS $<TARGET_FILE:chorus-sensor-small> DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME chorus-sensor COMPONENT sensor)
+install(PROGRAMS $<TARGET_FILE:chorus-sensor> DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME chorus-camera-sensor COMPONENT camera)
+install(FILES deploy/package/camera.conf DESTINATION lib/systemd/system/chorus-sensor.service.d COMPONENT camera)
+install(FILES LICENSE DESTINATION ${docs}/chorus-camera RENAME copyright COMPONENT camera)
+install(DIRECTORY services/pose-runner DESTINATION ${CMAKE_INSTALL_DATADIR}/chorus COMPONENT camera PATTERN none EXCLUDE)
+
+install(TARGETS chorus-fusion RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT fusion)
 foreach(service sensor fusion)
-  install(TARGETS chorus-${service} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${service})
   install(FILES deploy/package/chorus-${service}.service DESTINATION lib/systemd/system COMPONENT ${service})
   install(FILES deploy/package/chorus-${service}.default DESTINATION /etc/default RENAME chorus-${service} COMPONENT ${service})
   install(FILES deploy/config/${service}.json DESTINATION ${docs}/chorus-${service}/examples COMPONENT ${service})
@@ -74,7 +80,7 @@ set(CPACK_PACKAGE_CONTACT "The Chorus contributors <chorus@localhost>")
 set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/packages)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_VERBATIM_VARIABLES ON)
-set(CPACK_COMPONENTS_ALL common sensor fusion tools)
+set(CPACK_COMPONENTS_ALL common sensor camera fusion tools)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
 set(CPACK_STRIP_FILES OFF)  # Splitting the debug symbols does it, and would find none after it.
@@ -83,7 +89,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
-foreach(component common sensor fusion tools)
+foreach(component common sensor camera fusion tools)
   string(TOUPPER ${component} upper)
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME chorus-${component})
   set(CPACK_COMPONENT_${upper}_GROUP ${component})
@@ -102,12 +108,14 @@ set(CPACK_COMPONENT_COMMON_DESCRIPTION "Chorus: the command line, user and folde
  Writes configurations, checks hosts, registers sensors and records.")
 set(CPACK_COMPONENT_SENSOR_DESCRIPTION "Chorus: a body-tracking device as a web service
  Serves the skeletons of one device (pushed, replayed or simulated) as linked data over HTTP.")
+set(CPACK_COMPONENT_CAMERA_DESCRIPTION "Chorus: webcams, streams and video files as sensors
+ The device camera of chorus-sensor, and the runner that finds people in its pictures.")
 set(CPACK_COMPONENT_FUSION_DESCRIPTION "Chorus: many body-tracking sensors, one tracker
  Reads sensors, finds where they stand from a walking person, and serves one tracker in many protocols.")
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION "Chorus: work on recordings
  The commands import, replay, fuse and export.")
 include(CPack)
-foreach(component common sensor fusion tools)
+foreach(component common sensor camera fusion tools)
   cpack_add_component_group(${component})
   cpack_add_component(${component} GROUP ${component})
 endforeach()

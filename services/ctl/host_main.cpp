@@ -1,23 +1,14 @@
 // chorus as every host has it: small, without what works on recordings.  Where the whole program is
 // installed (the package chorus-tools: ../libexec/chorus/chorus beside our folder), it is run
 // instead.
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <string>
-#include <system_error>
 
+#include "common/service/whole_program.h"
 #include "services/ctl/command.h"
 
 namespace {
-
-std::filesystem::path whole_program() {
-  std::error_code failed;
-  const auto self = std::filesystem::read_symlink("/proc/self/exe", failed);
-  return self.parent_path().parent_path() / "libexec/chorus/chorus";
-}
 
 bool is_elsewhere(const std::string& word) {
   const auto& names = chorus::ctl::kRecordingCommandNames;
@@ -27,7 +18,7 @@ bool is_elsewhere(const std::string& word) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  execv(whole_program().c_str(), argv);  // Returns only when it is not there.
+  chorus::service::become_whole_program("../libexec/chorus/chorus", argv);
   if (argc > 1 && is_elsewhere(argv[1])) {
     std::fprintf(stderr,
                  "chorus: \"%s\" works on recordings and comes with another package: apt install "

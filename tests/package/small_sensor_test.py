@@ -22,7 +22,7 @@ def needed(program):
 
 class SmallHost(unittest.TestCase):
     def test_what_every_host_gets_links_small_libraries_only(self):
-        for program in ("chorus-sensor", "chorus-host"):
+        for program in ("chorus-sensor-small", "chorus-host"):
             with self.subTest(program):
                 libraries = needed(program)
                 self.assertGreater(len(libraries), 3)
@@ -30,7 +30,14 @@ class SmallHost(unittest.TestCase):
                 self.assertEqual(others, [], "a new library: is it small, and in no package that brings a hundred others?")
 
     def test_the_whole_program_links_the_large_ones(self):
-        self.assertTrue([name for name in needed("chorus") if name.startswith(LARGE)], "then the test above sees nothing")
+        for program in ("chorus", "chorus-sensor"):
+            self.assertTrue([name for name in needed(program) if name.startswith(LARGE)], "then the test above sees nothing")
+
+    def test_a_camera_is_refused_with_the_package_to_install(self):
+        done = subprocess.run([str(BIN / "chorus-sensor-small"), "--device", "camera", "--port", "0"], capture_output=True, text=True,
+                              check=False, timeout=20)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("apt install chorus-camera", done.stderr)
 
 
 class SmallChorus(unittest.TestCase):
