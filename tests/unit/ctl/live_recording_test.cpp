@@ -101,7 +101,8 @@ TEST_F(BrokenCell, MakesTheCommandFailThoughSomethingCame) {
                              "--out",  out.c_str(), "--seconds",     "1"};
   ::testing::internal::CaptureStderr();
   ::testing::internal::CaptureStdout();
-  const int code = run_command_line(static_cast<int>(arguments.size()), arguments.data());
+  const int code =
+      run_command_line(all_commands(), static_cast<int>(arguments.size()), arguments.data());
   const std::string table = ::testing::internal::GetCapturedStdout();
   const std::string errors = ::testing::internal::GetCapturedStderr();
   EXPECT_EQ(code, kExitFailed);

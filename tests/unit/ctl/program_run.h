@@ -26,7 +26,8 @@ inline Outcome run_chorus(const std::vector<std::string>& words) {
   ::testing::internal::CaptureStdout();
   ::testing::internal::CaptureStderr();
   Outcome outcome;
-  outcome.code = run_command_line(static_cast<int>(arguments.size()), arguments.data());
+  outcome.code =
+      run_command_line(all_commands(), static_cast<int>(arguments.size()), arguments.data());
   outcome.out = ::testing::internal::GetCapturedStdout();
   outcome.error = ::testing::internal::GetCapturedStderr();
   return outcome;
