@@ -102,6 +102,8 @@ struct SensorView {
 struct Person {
   PersonId id;
   std::vector<SensorView> views;
+  /// Probability that left and right are not exchanged; none: nobody has asked.
+  std::optional<double> sides_confidence = {};
 };
 
 struct FusedBody {
@@ -109,7 +111,8 @@ struct FusedBody {
   Skeleton<WorldSpace> skeleton;
   std::array<double, kJointCount> variance{};             ///< Mean per-axis variance [m^2].
   std::array<std::uint64_t, kJointCount> contributors{};  ///< Bit i: Snapshot::sensors[i].
-  std::optional<std::size_t> slot;  ///< Its number in every output; none: not seated.
+  std::optional<std::size_t> slot;              ///< Its number in every output; none: not seated.
+  std::optional<double> sides_confidence = {};  ///< As Person has it.
 };
 
 /// What one sensor did at this instant, for /sensors/ and the viewer.

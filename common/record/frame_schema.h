@@ -26,6 +26,7 @@ inline constexpr std::string_view kFrameSchema = R"({
       "required": ["bodyId", "joints"],
       "properties": {
         "bodyId": {"type": "integer"},
+        "sidesConfidence": {"type": "number", "minimum": 0, "maximum": 1, "description": "probability that left and right are not exchanged"},
         "slot": {"type": "integer", "minimum": 0, "description": "the person's number in every output of the tracker"},
         "captured": {"type": "string"},
         "capturedNanoseconds": {"type": "string"},

@@ -72,6 +72,10 @@ class ArvidaFrame {
       pen_.put(" ;\n  ch:slot ");
       pen_.put_integer(*body.slot);
     }
+    if (body.sides_confidence) {
+      pen_.put(" ;\n  ch:sidesConfidence ");
+      pen_.put_decimal(writable_confidence(*body.sides_confidence), kConfidenceDecimals);
+    }
     std::string_view before = " ;\n  skel:skeletonJoint <";
     for (const std::string_view joint : kJointNames) {
       pen_.put(before);

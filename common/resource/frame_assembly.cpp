@@ -148,6 +148,10 @@ Result<BodyResource> read_body(const Facts& facts, const SubjectFacts& subject,
     return refuse(subject, "slot", "is above " + std::to_string(kMaxBodies - 1));
   }
   if (subject.slot) body.slot = static_cast<std::size_t>(*subject.slot);
+  body.sides_confidence = number(subject, Number::SidesConfidence);
+  if (body.sides_confidence && !(*body.sides_confidence >= 0.0 && *body.sides_confidence <= 1.0)) {
+    return refuse(subject, "sidesConfidence", "is not between 0 and 1");
+  }
   const auto captured = time_of(subject);
   if (!captured) return pass(captured);
   body.captured = *captured;

@@ -15,7 +15,7 @@
 
 namespace chorus::resource {
 
-/// The decimals of a joint, in this order; names in kNumberNames.
+/// The decimals of a joint, in this order, and of a body at the end; names in kNumberNames.
 enum class Number : std::uint8_t {
   X,
   Y,
@@ -33,11 +33,12 @@ enum class Number : std::uint8_t {
   Cxz,
   Cyy,
   Cyz,
-  Czz
+  Czz,
+  SidesConfidence
 };
-inline constexpr std::array<std::string_view, 17> kNumberNames{
+inline constexpr std::array<std::string_view, 18> kNumberNames{
     "x",    "y",    "z",   "qx",  "qy",  "qz",  "qw",  "variance", "rayX",
-    "rayY", "rayZ", "cxx", "cxy", "cxz", "cyy", "cyz", "czz"};
+    "rayY", "rayZ", "cxx", "cxy", "cxz", "cyy", "cyz", "czz",      "sidesConfidence"};
 
 /// How far from length 1 a quaternion may be; all zero means "not given".
 inline constexpr double kUnitTolerance = 0.1;

@@ -88,6 +88,11 @@ class JsonFrame {
       pen_.put(",\"slot\":");
       pen_.put_integer(*body.slot);
     }
+    if (body.sides_confidence) {
+      pen_.put(linked_ ? ",\"sidesConfidence\":\"" : ",\"sidesConfidence\":");
+      pen_.put_decimal(writable_confidence(*body.sides_confidence), kConfidenceDecimals);
+      pen_.put(linked_ ? "\"" : "");
+    }
     put_times(body.captured);
   }
 

@@ -68,6 +68,8 @@ class Reading {
       const std::size_t body = add_subject(object, "a body");
       facts_[frame].bodies.push_back(body);
       read_common(body, object);
+      constexpr auto kConfidence = static_cast<std::size_t>(Number::SidesConfidence);
+      number(body, object, kNumberNames[kConfidence], facts_[body].numbers[kConfidence]);
       read_joints(body, object);
     }
   }

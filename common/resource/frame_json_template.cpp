@@ -62,6 +62,7 @@ class JsonTemplate : TemplateText {
     if (!text("\",\"@type\":\"Skeleton\",\"bodyId\":") || !id_number(id) || id != body.id)
       return false;
     if (text(",\"slot\":") && !slot(frame_.bodies, body.slot)) return false;
+    if (text(",\"sidesConfidence\":") && !confidence(body.sides_confidence)) return false;
     const auto twin = std::ranges::find(frame_.bodies, id, &BodyResource::id);
     if (&*twin != &body || !captured(body.captured)) return false;
     for (std::size_t i = 0; i < kJointCount; ++i) {

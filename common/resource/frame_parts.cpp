@@ -1,5 +1,6 @@
 #include "common/resource/frame_parts.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/rdf/turtle_writer.h"
@@ -27,6 +28,8 @@ bool writable(const Covariance& covariance) {
 }
 
 }  // namespace
+
+double writable_confidence(double value) { return value > 0.0 ? std::min(value, 1.0) : 0.0; }
 
 WritableJoint writable(const JointResource& joint) {
   WritableJoint out;

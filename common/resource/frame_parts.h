@@ -17,6 +17,7 @@ namespace chorus::resource {
 inline constexpr int kPositionDecimals = 4;
 inline constexpr int kQuaternionDecimals = 5;
 inline constexpr int kVarianceDecimals = 8;
+inline constexpr int kConfidenceDecimals = 4;
 inline constexpr int kRayDecimals = 6;
 
 /// The terms of a covariance on the wire, in the order of Covariance::term().
@@ -34,6 +35,9 @@ struct WritableJoint {
   Covariance covariance;
 };
 [[nodiscard]] WritableJoint writable(const JointResource& joint);
+
+/// Within [0, 1]; what is no number is no confidence.
+[[nodiscard]] double writable_confidence(double value);
 
 /// "text" with the escapes that Turtle and JSON share; broken UTF-8 is replaced.
 [[nodiscard]] std::string quoted(std::string_view text);

@@ -65,6 +65,7 @@ constexpr std::array kRows{
     Row{"rayZ", Property::Number, Number::RayZ},
     Row{"sensor", Property::Sensor},
     Row{"sequence", Property::Sequence},
+    Row{"sidesConfidence", Property::Number, Number::SidesConfidence},
     Row{"slot", Property::Slot},
     Row{"source", Property::Source},
     Row{"space", Property::Space},

@@ -30,6 +30,8 @@ struct JointResource : Joint {
 struct BodyResource {
   std::uint64_t id = 0;
   std::optional<std::size_t> slot;  ///< Fused: its number in every output, below kMaxBodies.
+  /// Fused: probability that left and right are not exchanged, [0, 1].
+  std::optional<double> sides_confidence;
   Timestamp captured;
   std::array<JointResource, kJointCount> joints;
 };

@@ -91,6 +91,10 @@ class TurtleFrame {
       pen_.put(" ;\n  ch:slot ");
       pen_.put_integer(*body.slot);
     }
+    if (body.sides_confidence) {
+      pen_.put(" ;\n  ch:sidesConfidence ");
+      pen_.put_decimal(writable_confidence(*body.sides_confidence), kConfidenceDecimals);
+    }
     put_times(body.captured);
   }
 

@@ -21,6 +21,13 @@ bool plain(char c) {
 
 }  // namespace
 
+bool TemplateText::confidence(std::optional<double>& out) {
+  double value = 0.0;
+  if (!decimal(value) || !(value >= 0.0 && value <= 1.0)) return false;
+  out = value;
+  return true;
+}
+
 bool TemplateText::slot(const std::vector<BodyResource>& others, std::optional<std::size_t>& out) {
   std::size_t slot = 0;
   if (!integer(slot) || slot >= kMaxBodies) return false;

@@ -49,6 +49,9 @@ class TemplateText {
   /// A body's slot: below kMaxBodies, and that of none of `others`.
   bool slot(const std::vector<BodyResource>& others, std::optional<std::size_t>& out);
 
+  /// A decimal in [0, 1].
+  bool confidence(std::optional<double>& out);
+
   /// "-1.2345", at most kMaxCoordinate in size: the double nearest to it.
   bool decimal(double& out);
 

@@ -232,6 +232,7 @@ void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
   apply(now, spans, person);
   mend_limbs(person, sides.spans, config.limbs);
   remember(now, person, spans, sides, config);
+  person.sides_confidence = sides.filter.right();
   memory.people.insert_or_assign(person.id, std::move(sides));
 }
 

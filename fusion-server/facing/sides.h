@@ -55,8 +55,8 @@ struct SidesMemory {
 };
 
 /// Exchanges left and right in the views that have them the wrong way round, sets every view's
-/// `facing` to that of the agreed body, and updates `memory`.  An exchanged view loses its
-/// orientations, because they are those of a body that faces the sensor.
+/// `facing` to that of the agreed body, the person's confidence of sides, and updates `memory`.  An
+/// exchanged view loses its orientations, because they are those of a body that faces the sensor.
 void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
                    const SidesConfig& config);
 

@@ -24,6 +24,7 @@ std::vector<FusedBody> Memory::fuse(const std::vector<Person>& people, const Ins
     auto& estimator = estimators_[person.id];
     if (!estimator) estimator = begin(config);
     bodies.push_back(estimator->fuse(person, instant));
+    bodies.back().sides_confidence = person.sides_confidence;
   }
   return bodies;
 }

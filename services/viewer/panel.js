@@ -1,4 +1,5 @@
 // The words beside the picture.
+import { sidesOf } from './state.js';
 
 const element = (id) => document.getElementById(id);
 const number = (value, digits = 0) => (Number.isFinite(value) ? value.toFixed(digits) : '–');
@@ -17,6 +18,7 @@ export function rateOf(frame) {
 
 export function showFused(frame, rate, age) {
   element('bodies').textContent = frame?.bodies?.length ?? '–';
+  element('sides').textContent = sidesOf(frame);
   element('rate').textContent = `${number(rate, 1)} Hz`;
   element('age').textContent = milliseconds(age);
   element('sequence').textContent = frame?.sequence ?? '–';

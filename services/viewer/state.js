@@ -84,3 +84,10 @@ export function stateOf(known) {
   if (people === 0) return { tone: 'calm', sentence: seen, next: 'Walk to where a sensor can see you.' };
   return { tone: 'good', sentence: `Live: ${many(people, 'person', 'people')}, ${many(Object.keys(sensors).length, 'sensor', 'sensors')}.`, next: '' };
 }
+
+/// How certain left and right are of whom they are least certain of; a dash when nobody has said.
+export function sidesOf(frame) {
+  const all = (frame?.bodies ?? []).map((body) => Number(body.sidesConfidence ?? NaN)).filter(Number.isFinite);
+  if (all.length === 0) return '–';
+  return `${Math.floor(100 * Math.min(...all))} % certain`;
+}

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { Link, ServerClock } from '../../services/viewer/poll.js';
-import { freshness, stateOf } from '../../services/viewer/state.js';
+import { freshness, sidesOf, stateOf } from '../../services/viewer/state.js';
 
 const LIVE = { state: 'live' };
 const GOOD = { verdict: 'Good', reasons: [], awaits: [], session: { state: 'idle' }, sensors: { s1: {}, s2: {} } };
@@ -72,4 +72,11 @@ test('an error status is an answer, no answer is none', () => {
   assert.deepEqual(link.state(), { error: 'refused', silent: 700 });
   link.up();
   assert.deepEqual(link.state(), { error: null, silent: 0 });
+});
+
+test('left and right are as certain as those of the least certain person', () => {
+  assert.equal(sidesOf({ bodies: [{ sidesConfidence: 0.9987 }, { sidesConfidence: 0.516 }, {}] }), '51 % certain');
+  assert.equal(sidesOf({ bodies: [{ sidesConfidence: 0.9999 }] }), '99 % certain', 'never rounded to certainty');
+  assert.equal(sidesOf({ bodies: [{}] }), '–');
+  assert.equal(sidesOf(null), '–');
 });

@@ -110,6 +110,14 @@ TEST(FusionMemory, PeopleWhoLeftAndAnotherConfigurationBeginAnew) {
   EXPECT_EQ(seen.neck_x(milliseconds(99), better(1)), 0.0);
 }
 
+TEST(FusionMemory, ABodyIsAsSureOfItsSidesAsThePerson) {
+  Memory memory;
+  Person person{PersonId{1}, {neck_view(1, {0, 1, 0}, 0.5)}};
+  EXPECT_FALSE(memory.fuse({person}, {kStart, kSensors}, {})[0].sides_confidence);
+  person.sides_confidence = 0.75;
+  EXPECT_EQ(memory.fuse({person}, {kStart, kSensors}, {})[0].sides_confidence, 0.75);
+}
+
 TEST(ErrorModel, BelievesAMeasurementThatBringsItsCovariance) {
   SensorView view = neck_view(1, {0, 1, 0}, 0.5, {0, 1, 5});
   const auto errors = line_of_sight_errors({.along = 0.1, .across = 0.01}, {});

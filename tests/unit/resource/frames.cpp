@@ -152,6 +152,7 @@ FrameResource random_frame(std::uint64_t seed, const FrameKind& kind) {
     BodyResource body;
     body.id = b * 1'000 + dice.number(999);
     if (kind.fused && b != 2) body.slot = kind.bodies - 1 - b;  // one has no seat
+    if (kind.fused && b != 1) body.sides_confidence = rounded(dice.between(0, 1), 1e-4);
     if (b == 1) body.id = 72'057'594'037'928'018;  // as Kinect v2 numbers them: beyond a double
     body.captured =
         dice.chance(0.5) ? frame.captured : frame.captured - Duration(dice.number(30'000'000));
@@ -179,6 +180,7 @@ rdf::Graph expected_graph(const FrameResource& frame) {
     skeleton.say("of", rdf::iri("skeletons/" + std::to_string(body.id)));
     skeleton.integer("bodyId", std::to_string(body.id));
     if (body.slot) skeleton.integer("slot", std::to_string(*body.slot));
+    if (body.sides_confidence) skeleton.decimal("sidesConfidence", *body.sides_confidence, 4);
     skeleton.times(body.captured);
     for (std::size_t i = 0; i < kJointCount; ++i) {
       const std::string joint = iri + "-" + std::string(kJointNames[i]);
@@ -199,6 +201,7 @@ std::string difference(const FrameResource& a, const FrameResource& b) {
   for (std::size_t i = 0; i < a.bodies.size(); ++i) {
     if (a.bodies[i].id != b.bodies[i].id) return "body id";
     if (a.bodies[i].slot != b.bodies[i].slot) return "slot";
+    if (a.bodies[i].sides_confidence != b.bodies[i].sides_confidence) return "confidence of sides";
     if (a.bodies[i].captured != b.bodies[i].captured) return "body captured";
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const std::string left = text_of(a.bodies[i].joints[j]);

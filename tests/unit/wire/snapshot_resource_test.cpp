@@ -22,6 +22,7 @@ Snapshot snapshot(std::uint64_t sequence, double x) {
   FusedBody body;
   body.id = {7};
   body.slot = 3;
+  body.sides_confidence = 0.875;
   body.skeleton = testing::standing_person({x, 0, 0});
   body.variance.fill(1e-4);
   body.contributors.fill(0b11);
@@ -38,6 +39,7 @@ TEST(SnapshotResource, SaysWorldSpaceSensorsAndContributors) {
   EXPECT_EQ(frame.sensors, (std::vector<std::string>{"s1", "s2"}));
   ASSERT_EQ(frame.bodies.size(), 1u);
   EXPECT_EQ(frame.bodies[0].slot, 3u);
+  EXPECT_EQ(frame.bodies[0].sides_confidence, 0.875);
   const auto& neck = frame.bodies[0].joints[index_of(JointId::Neck)];
   EXPECT_EQ(neck.contributors, 0b11u);
   EXPECT_EQ(neck.variance, 1e-4);
@@ -52,6 +54,7 @@ TEST(SnapshotResource, IsValidInputForAnotherFusionServer) {
   ASSERT_TRUE(read) << to_string(read.error());
   EXPECT_EQ(read->bodies.size(), 1u);
   EXPECT_EQ(read->bodies[0].slot, 3u);
+  EXPECT_EQ(read->bodies[0].sides_confidence, 0.875);
 }
 
 TEST(SnapshotResource, MoreBodiesThanAFrameMayHoldAreCut) {
