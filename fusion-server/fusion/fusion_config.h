@@ -5,6 +5,7 @@
 
 #include "fusion-server/flow.h"
 #include "fusion-server/fusion/noise_model.h"
+#include "fusion-server/fusion/pose_error.h"
 
 namespace chorus::fusion {
 
@@ -27,7 +28,8 @@ struct FusionConfig {
   double zero_weight_floor = 0.02;
   NoiseModel noise;  ///< For sensors without an entry of their own.
   std::map<SensorId, NoiseModel> sensor_noise;
-  double common_sigma = 0.0;  ///< Error all sensors share [m]; added to the stated variance.
+  PoseError pose_error;         ///< InverseVariance: part of the stated covariance.
+  double common_sigma = 0.004;  ///< Error all sensors share [m]; added to the stated variance.
   double huber = 1.5;  ///< In standard deviations; robust loss of InverseVariance, PointsAndRays.
   /// BestSkeleton: how long another view must be better before it takes over.
   Duration hysteresis = std::chrono::milliseconds(300);

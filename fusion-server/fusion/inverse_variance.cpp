@@ -35,12 +35,22 @@ double huber_weight(double distance, double huber) {
   return distance <= huber || !(huber > 0) ? 1.0 : huber / distance;
 }
 
+/// Of the estimate, pose errors included.
+Eigen::Matrix3d stated(std::span<const JointView> views, std::span<const double> trust) {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const Eigen::Matrix3d pose = views[i].pose_variance * Eigen::Matrix3d::Identity();
+    information += trust[i] * (views[i].covariance + pose).inverse();
+  }
+  return information.inverse();
+}
+
 FusedJoint finish(std::span<const JointView> views, std::span<const double> trust,
                   const Estimate& estimate) {
   FusedJoint fused;
   fused.joint.position = estimate.position;
   fused.joint.state = JointState::Inferred;
-  state_covariance(fused, estimate.information.inverse());
+  state_covariance(fused, stated(views, trust));
   std::vector<Eigen::Quaterniond> rotations;
   std::vector<double> weights;
   for (std::size_t i = 0; i < views.size(); ++i) {

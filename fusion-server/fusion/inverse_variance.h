@@ -2,6 +2,8 @@
 //
 // Sigma_i is the covariance that the error model gives to each view (error_model.h):
 //   p = argmin sum_i rho(|p_i - p|_Sigma_i),             rho = Huber, solved by re-weighting
+// The covariance stated is the inverse of the information of the views with their pose errors
+// (pose_error.h) added; these have no part in p.
 // Two sensors at right angles thus correct each other's depth.  Convex: the start does not matter.
 #pragma once
 

@@ -18,8 +18,13 @@ std::uint64_t bit_of(const SensorId& sensor, const std::vector<SensorId>& sensor
 
 JointView joint_view_of(const SensorView& view, JointId joint, const std::vector<SensorId>& sensors,
                         const ErrorModel& errors) {
-  return {view.skeleton[joint], Weight::clamped(view.weight).value(),
-          errors.covariance(view, joint), bit_of(view.sensor, sensors), view.eye};
+  JointView found;
+  found.joint = view.skeleton[joint];
+  found.weight = Weight::clamped(view.weight).value();
+  found.covariance = errors.covariance(view, joint);
+  found.contributor = bit_of(view.sensor, sensors);
+  found.eye = view.eye;
+  return found;
 }
 
 }  // namespace

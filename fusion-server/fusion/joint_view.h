@@ -16,7 +16,8 @@ struct JointView {
   double weight = 0.0;  ///< Of the view, Eqs. (1)-(3); >= 0.
   /// By the error model: of a point [m^2], of a ray's direction [rad^2].
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
-  std::uint64_t contributor = 0;                  ///< The sensor's bit in FusedBody::contributors.
+  double pose_variance = 0.0;     ///< What it errs by beyond that, per axis [m^2] (pose_error.h).
+  std::uint64_t contributor = 0;  ///< The sensor's bit in FusedBody::contributors.
   Eigen::Vector3d eye = Eigen::Vector3d::Zero();  ///< Where the sensor stands [m].
 };
 

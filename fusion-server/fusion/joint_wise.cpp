@@ -57,8 +57,13 @@ class JointWise final : public Estimator {
     FusedBody body;
     body.id = person.id;
     for (std::size_t i = 0; i < kJointCount; ++i) {
-      const FusedJoint fused =
-          fuse_joint(joint_views_of(static_cast<JointId>(i), person, instant.sensors, *errors_));
+      const auto id = static_cast<JointId>(i);
+      auto views = joint_views_of(id, person, instant.sensors, *errors_);
+      for (JointView& view : views) {
+        if (!view.joint.covariance.known())
+          view.pose_variance = pose_variance(config_.pose_error, id, view.joint.state);
+      }
+      const FusedJoint fused = fuse_joint(std::move(views));
       body.skeleton.joints[i] = fused.joint;
       body.variance[i] = fused.variance;
       body.contributors[i] = fused.contributors;

@@ -97,6 +97,16 @@ void read_association(ConfigReader reader, associate::AssociationConfig& out) {
   reader.read_s("frozen_s", out.bodies.max_frozen, seconds(0), seconds(3600));
 }
 
+void read_pose_error(ConfigReader reader, fusion::PoseError& out) {
+  reader.read("neck_m", out.neck, 0.0, 1.0);
+  reader.read("trunk_m", out.trunk, 0.0, 1.0);
+  reader.read("girdle_m", out.girdle, 0.0, 1.0);
+  reader.read("elbow_knee_m", out.middle, 0.0, 1.0);
+  reader.read("wrist_ankle_m", out.end, 0.0, 1.0);
+  reader.read("tip_m", out.tip, 0.0, 1.0);
+  reader.read("inferred_factor", out.inferred_factor, 1.0, 100.0);
+}
+
 void read_fusion(ConfigReader reader, fusion::FusionConfig& out) {
   std::vector<std::string_view> names;
   for (const fusion::MethodRow& row : fusion::methods()) names.push_back(row.name);
@@ -110,6 +120,7 @@ void read_fusion(ConfigReader reader, fusion::FusionConfig& out) {
   reader.read("kalman_sigma_m", out.kalman_sigma, 1e-4, 1.0);
   reader.read_ms("kalman_coast_ms", out.kalman_coast, milliseconds(0), seconds(10));
   reader.read("max_sigma_m", out.max_sigma, 1e-3, 100.0);
+  read_pose_error(reader.child("pose_error"), out.pose_error);
   ConfigReader noise = reader.child("noise");
   read_noise(noise, out.noise);
 }

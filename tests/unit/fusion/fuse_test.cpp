@@ -145,6 +145,35 @@ TEST(Fuse, MoreViewsMeanLessVarianceAndTheCommonPartStays) {
   EXPECT_GT(two, 0.015 * 0.015);
 }
 
+TEST(Fuse, StatesMoreErrorFartherOutAndForGuesses) {
+  Person person{PersonId{1}, {neck_view(1, {0, 1, 0}, 0.5)}};
+  Skeleton<WorldSpace>& body = person.views[0].skeleton;
+  for (const JointId id : {JointId::Head, JointId::HipLeft, JointId::KneeLeft, JointId::WristLeft,
+                           JointId::HandTipLeft})
+    body[id] = body[JointId::Neck];
+  const auto variance = [&](JointId id) {
+    return fuse(person, kSensors, by(Method::InverseVariance)).variance[index_of(id)];
+  };
+  EXPECT_LT(variance(JointId::Neck), variance(JointId::Head));
+  EXPECT_LT(variance(JointId::Head), variance(JointId::HipLeft));
+  EXPECT_LT(variance(JointId::HipLeft), variance(JointId::KneeLeft));
+  EXPECT_LT(variance(JointId::KneeLeft), variance(JointId::WristLeft));
+  EXPECT_LT(variance(JointId::WristLeft), variance(JointId::HandTipLeft));
+  const double tracked = variance(JointId::HandTipLeft);
+  body[JointId::HandTipLeft].state = JointState::Inferred;
+  EXPECT_GT(variance(JointId::HandTipLeft), 1.5 * tracked);
+}
+
+TEST(Fuse, BelievesACovarianceThatAMeasurementBrings) {
+  Person person{PersonId{1}, {neck_view(1, {0, 1, 0}, 0.5)}};
+  Joint& tip = person.views[0].skeleton[JointId::HandTipLeft];
+  tip = person.views[0].skeleton[JointId::Neck];
+  tip.covariance = Covariance(Eigen::Matrix3d(1e-4 * Eigen::Matrix3d::Identity()));
+  const double variance =
+      fuse(person, kSensors, by(Method::InverseVariance)).variance[index_of(JointId::HandTipLeft)];
+  EXPECT_NEAR(variance, 1e-4 + 0.004 * 0.004, 1e-6);
+}
+
 Person random_person(std::mt19937& random, int views) {
   std::normal_distribution<double> noise(0.0, 0.05);
   std::uniform_real_distribution<double> weight(0.0, 1.0);

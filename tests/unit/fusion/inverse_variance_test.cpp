@@ -47,6 +47,17 @@ TEST(InverseVariance, InferredCountsLess) {
   EXPECT_NEAR(inverse_variance(views, kHuber).joint.position.x(), 0.001, 1e-5);
 }
 
+TEST(InverseVariance, APoseErrorIsStatedButMovesNothing) {
+  std::vector<JointView> views{from({0, 0, 5}, {0, 0, 0}), from({5, 0, 0}, {0.01, 0, 0.02})};
+  const FusedJoint before = inverse_variance(views, kHuber);
+  for (JointView& view : views) view.pose_variance = 0.04 * 0.04;
+  const FusedJoint after = inverse_variance(views, kHuber);
+  EXPECT_EQ(after.joint.position, before.joint.position);
+  // Two views of 0.04 m and their own noise.
+  EXPECT_GT(after.variance, 0.04 * 0.04 / 2);
+  EXPECT_GT(after.variance, 2 * before.variance);
+}
+
 TEST(InverseVariance, IsTotal) {
   EXPECT_EQ(inverse_variance({}, kHuber).joint.state, JointState::NotTracked);
   const NoiseModel broken{.along = 0, .across = -1, .inferred_factor = 0};

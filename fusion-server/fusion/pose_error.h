@@ -1,0 +1,26 @@
+// What a tracked pose errs by beyond its sensor's noise: slowly, and the more the farther out on a
+// limb a joint is.  It changes no place; stated covariances have it.
+#pragma once
+
+#include "common/body/skeleton.h"
+
+namespace chorus::fusion {
+
+/// Standard deviations per axis and view [m], round.  Fitted on simulated sensors (profiles A, B
+/// and D, seeds from 1001 on; docs/benchmarks/fusion.md, Stated errors).
+struct PoseError {
+  double neck = 0.0;       ///< Neck, upper end of the spine.
+  double trunk = 0.0165;   ///< Spine, head.
+  double girdle = 0.022;   ///< Shoulders, hips.
+  double middle = 0.0305;  ///< Elbows, knees.
+  double end = 0.037;      ///< Wrists, ankles.
+  double tip = 0.0455;     ///< Hands, feet, tips, thumbs.
+  double inferred_factor = 1.5;
+
+  bool operator==(const PoseError&) const = default;
+};
+
+/// Per axis [m^2].
+[[nodiscard]] double pose_variance(const PoseError& error, JointId joint, JointState state);
+
+}  // namespace chorus::fusion
