@@ -67,11 +67,9 @@ class Camera final : public FrameSource {
   [[nodiscard]] Result<void> look(Pictures& pictures, const std::stop_token& stop,
                                   const Sink& sink);
   [[nodiscard]] Result<Capture> ask(Runner& runner, const Shot& shot, const std::stop_token& stop);
-  [[nodiscard]] bool too_soon(const Shot& shot) const;
 
   Parts parts_;
   std::uint64_t sequence_ = 0;
-  std::optional<Timestamp> last_;  ///< Of the last picture that was looked at.
 };
 
 DeviceDescription Camera::describe() const {
@@ -94,12 +92,6 @@ Result<Camera::Runner> Camera::start_runner(const std::stop_token& stop) const {
   if (!about) return pass(about);
   parts_.state->runner_ready(about->hello.name, std::string(about->hello.layout->name));
   return Runner{std::move(*process), std::move(*about)};
-}
-
-bool Camera::too_soon(const Shot& shot) const {
-  constexpr double kNearly = 0.9;  // of a step: pictures do not come evenly
-  if (!last_ || shot.captured < *last_) return false;
-  return seconds(shot.captured - *last_) * parts_.settings.max_rate_hz < kNearly;
 }
 
 Capture capture_of(SensorFrame frame, const Picture& picture, const Lens& lens) {
@@ -157,8 +149,7 @@ Result<void> Camera::look(Pictures& pictures, const std::stop_token& stop, const
     const bool over = pictures.newest().closed();
     const std::vector<Shot> shots = pictures.newest().take(kPatience);
     if (shots.empty() && over) return {};
-    if (shots.empty() || too_soon(shots.back())) continue;
-    last_ = shots.back().captured;
+    if (shots.empty()) continue;
     auto capture = ask(*runner, shots.back(), stop);
     if (!capture) return pass(capture);
     sink(std::move(*capture));

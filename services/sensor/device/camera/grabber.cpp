@@ -13,6 +13,7 @@ namespace {
 constexpr Duration kShortestPause = std::chrono::milliseconds(500);
 constexpr Duration kLongestPause = std::chrono::seconds(5);
 constexpr Duration kTooLate = std::chrono::milliseconds(500);
+constexpr Duration kSlowest = std::chrono::seconds(1);
 constexpr Duration kLost = std::chrono::seconds(5);
 constexpr Duration kWorthSkipping = std::chrono::seconds(3);
 
@@ -46,8 +47,7 @@ void Grabber::wait_for(Timestamp due, const std::stop_token& stop) {
   }
 }
 
-/// Nothing for a picture of a file whose turn is over: reading it took too long.
-std::optional<Timestamp> Grabber::captured(const VideoPicture& taken) {
+Timestamp Grabber::captured(const VideoMoment& taken) {
   const Timestamp arrived = clock_.now();
   if (kind_ == SourceKind::Device)
     return captured_by_driver(arrived, taken.time, settings_.latency);
@@ -55,8 +55,9 @@ std::optional<Timestamp> Grabber::captured(const VideoPicture& taken) {
   const Timestamp due = pace_.due(taken.time);
   late_ = arrived - due;
   if (late_ <= kTooLate) return due;
-  if (settings_.loop) return std::nullopt;  // others may play in step
+  if (settings_.loop) return due;  // others may play in step
   pace_.fall_behind(late_);
+  late_ = Duration{0};
   return arrived;
 }
 
@@ -66,11 +67,22 @@ void Grabber::begin_file(Video& video) {
 }
 
 /// The file was begun in the middle, and this picture's turn has been before that.
-bool Grabber::is_over(const VideoPicture& taken) const {
+bool Grabber::is_over(const VideoMoment& taken) const {
   return kind_ == SourceKind::File && taken.time && *taken.time < over_;
 }
 
+/// No more than are looked at; of a file that is read too slowly one a second, to catch up.
+bool Grabber::is_wanted(Timestamp captured) const {
+  constexpr double kNearly = 0.9;  // of a step: pictures do not come evenly
+  if (!given_ || captured < *given_) return true;
+  const Duration since = captured - *given_;
+  if (late_ > kTooLate) return since >= kSlowest;
+  return seconds(since) * settings_.max_rate_hz >= kNearly;
+}
+
 Result<bool> Grabber::play(Video& video, const std::stop_token& stop) {
+  constexpr int kMostDamaged = 30;
+  int damaged = 0;  // in a row
   bool any = false;
   if (kind_ == SourceKind::File) begin_file(video);
   while (!stop.stop_requested()) {
@@ -83,13 +95,17 @@ Result<bool> Grabber::play(Video& video, const std::stop_token& stop) {
     }
     any = true;
     if (is_over(**taken)) continue;
-    const auto when = captured(**taken);
-    if (!when && late_ > kLost) return true;  // begins again where it should be
-    if (!when) continue;
-    Shot shot{std::move((*taken)->picture), *when};
-    if (kind_ == SourceKind::File) wait_for(shot.captured, stop);
-    state_.picture(shot.picture.size);
-    newest_.give(std::move(shot));
+    const Timestamp when = captured(**taken);
+    if (late_ > kLost) return true;  // begins again where it should be
+    if (kind_ == SourceKind::File) wait_for(when, stop);
+    if (!is_wanted(when)) continue;
+    given_ = when;
+    auto picture = video.picture();
+    if (!picture && ++damaged > kMostDamaged) return pass(picture);
+    if (!picture) continue;  // webcams lose one now and then
+    damaged = 0;
+    state_.picture(picture->size);
+    newest_.give({std::move(*picture), when});
   }
   return false;
 }

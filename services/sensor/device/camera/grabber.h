@@ -31,8 +31,9 @@ class Grabber {
   /// True at the end of a file.
   [[nodiscard]] Result<bool> play(Video& video, const std::stop_token& stop);
   void begin_file(Video& video);
-  [[nodiscard]] bool is_over(const VideoPicture& taken) const;
-  [[nodiscard]] std::optional<Timestamp> captured(const VideoPicture& taken);
+  [[nodiscard]] bool is_over(const VideoMoment& taken) const;
+  [[nodiscard]] Timestamp captured(const VideoMoment& taken);
+  [[nodiscard]] bool is_wanted(Timestamp captured) const;
   void wait_for(Timestamp due, const std::stop_token& stop);
 
   const CameraSettings& settings_;
@@ -42,8 +43,9 @@ class Grabber {
   SourceKind kind_;
   StreamClock stream_;
   FilePace pace_;
-  Duration late_{0};  ///< How long the last picture of a file came after its turn.
-  Duration over_{0};  ///< Which part of a file was over when it was begun.
+  std::optional<Timestamp> given_;  ///< When the last picture was captured that was given.
+  Duration late_{0};                ///< How long the last picture of a file came after its turn.
+  Duration over_{0};                ///< Which part of a file was over when it was begun.
 };
 
 /// Sleeps, unless it is stopped; false then.

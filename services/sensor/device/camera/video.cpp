@@ -57,7 +57,8 @@ class OpenCvVideo final : public Video {
   OpenCvVideo(cv::VideoCapture capture, std::string source)
       : capture_(std::move(capture)), source_(std::move(source)), kind_(kind_of(source_)) {}
 
-  [[nodiscard]] Result<std::optional<VideoPicture>> next() override;
+  [[nodiscard]] Result<std::optional<VideoMoment>> next() override;
+  [[nodiscard]] Result<Picture> picture() override;
   [[nodiscard]] FileTiming timing() const override;
   void skip_to(Duration position) override {
     capture_.set(cv::CAP_PROP_POS_MSEC, seconds(position) * 1e3);
@@ -81,13 +82,9 @@ std::optional<Duration> OpenCvVideo::time_of_picture() const {
   return from_seconds(position * 1e-3);
 }
 
-Result<std::optional<VideoPicture>> OpenCvVideo::next() {
-  auto pixels = std::make_shared<cv::Mat>();
+Result<std::optional<VideoMoment>> OpenCvVideo::next() {
   try {
-    if (capture_.read(*pixels) && !pixels->empty() && pixels->type() == CV_8UC3) {
-      const Size size{pixels->cols, pixels->rows};
-      return VideoPicture{{std::move(pixels), size}, time_of_picture()};
-    }
+    if (capture_.grab()) return VideoMoment{time_of_picture()};
   } catch (const cv::Exception& problem) {
     return fail(ErrorCode::Io, told_source(source_), problem.what());
   }
@@ -95,6 +92,19 @@ Result<std::optional<VideoPicture>> OpenCvVideo::next() {
   return fail(ErrorCode::Unavailable, told_source(source_),
               kind_ == SourceKind::Device ? "the camera gives no more pictures; is it unplugged?"
                                           : "the stream has ended, or stands still");
+}
+
+Result<Picture> OpenCvVideo::picture() {
+  auto pixels = std::make_shared<cv::Mat>();
+  try {
+    if (capture_.retrieve(*pixels) && !pixels->empty() && pixels->type() == CV_8UC3) {
+      const Size size{pixels->cols, pixels->rows};
+      return Picture{std::move(pixels), size};
+    }
+  } catch (const cv::Exception& problem) {
+    return fail(ErrorCode::Io, told_source(source_), problem.what());
+  }
+  return fail(ErrorCode::Unavailable, told_source(source_), "its pictures cannot be read");
 }
 
 FileTiming OpenCvVideo::timing() const {

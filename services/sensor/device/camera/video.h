@@ -9,8 +9,7 @@
 
 namespace chorus::camera {
 
-struct VideoPicture {
-  Picture picture;
+struct VideoMoment {
   /// Of a webcam: how long ago the driver stamped it.  Of streams and files: since their beginning.
   std::optional<Duration> time;
 };
@@ -19,7 +18,9 @@ class Video {
  public:
   virtual ~Video() = default;
   /// Blocks for the next picture, some seconds at most; nothing at the end of a file.
-  [[nodiscard]] virtual Result<std::optional<VideoPicture>> next() = 0;
+  [[nodiscard]] virtual Result<std::optional<VideoMoment>> next() = 0;
+  /// That picture: turning it into pixels costs about half as much as decoding it.
+  [[nodiscard]] virtual Result<Picture> picture() = 0;
   /// Of a file.
   [[nodiscard]] virtual FileTiming timing() const = 0;
   /// Of a file: goes on near that place.
