@@ -24,7 +24,7 @@ LENGTH_NS = round(1e9 * PICTURES / RATE_HZ)
 JOINTS = {"ShoulderLeft": 11, "ShoulderRight": 12, "ElbowLeft": 13, "ElbowRight": 14, "WristLeft": 15, "WristRight": 16, "HipLeft": 23,
           "HipRight": 24, "KneeLeft": 25, "KneeRight": 26, "AnkleLeft": 27, "AnkleRight": 28}
 FARTHEST_PX = 35  # median, in pictures of 1080 x 1920 in which the person is about 1300 high; measured 15 to 20
-PATIENCE_S = 60
+PATIENCE_S = 90
 
 
 def camera():
@@ -84,9 +84,9 @@ class Video(unittest.TestCase):
         return distances
 
     def close_to_mediapipe(self, model, joints):
-        frames = self.frames(self.looking(model), 6)
+        frames = self.frames(self.looking(model), 4)
         distances = self.distances(frames)
-        self.assertGreater(len(distances), 6 * 6)
+        self.assertGreater(len(distances), 4 * 6)
         self.assertLess(statistics.median(distances), FARTHEST_PX)
         body = frames[-1]["bodies"][0]["joints"]
         self.assertLessEqual(joints, {name for name, joint in body.items() if "rayX" in joint})
@@ -102,7 +102,7 @@ class Video(unittest.TestCase):
         stated = json.loads((TRUTH / "cameras.json").read_text(encoding="utf-8"))[0]["camera_from_world"]
         world = json.loads((TRUTH / "triangulated.json").read_text(encoding="utf-8"))["frames"]
         ratios = []
-        for frame in self.frames(self.looking("blazepose-lite", "--set", "device.camera.depth_from_size=true"), 6):
+        for frame in self.frames(self.looking("blazepose-lite", "--set", "device.camera.depth_from_size=true"), 4):
             seen = world[picture_of(frame)]
             for name, joint in frame["bodies"][0]["joints"].items():
                 place = seen[JOINTS[name]] if name in JOINTS else None
@@ -110,7 +110,7 @@ class Video(unittest.TestCase):
                     continue
                 depth = sum(r * p for r, p in zip(stated["R"][2], place)) + stated["t_m"][2]
                 ratios.append((joint["z"] - depth) / joint["czz"] ** 0.5)
-        self.assertGreater(len(ratios), 6 * 6)
+        self.assertGreater(len(ratios), 4 * 6)
         self.assertLess(abs(statistics.median(ratios)), 1.5)
         self.assertLess(statistics.pstdev(ratios), 1.5)
 
