@@ -54,8 +54,7 @@ Timestamp Grabber::captured(const VideoMoment& taken) {
   if (kind_ == SourceKind::Stream) return stream_.captured(arrived, taken.time);
   const Timestamp due = pace_.due(taken.time);
   late_ = arrived - due;
-  if (late_ <= kTooLate) return due;
-  if (settings_.loop) return due;  // others may play in step
+  if (settings_.loop || late_ <= kLost) return due;  // others may play in step
   pace_.fall_behind(late_);
   late_ = Duration{0};
   return arrived;
