@@ -37,7 +37,7 @@ struct ImportOptions {
   std::vector<FloorPlane> floors = {};
   Timestamp start = kDefaultStart;  ///< First frame, where the file has no UTC of its own.
   bool rays = false;  ///< Of camera landmarks: their pixels' rays, without the depth of a fit.
-  double metres_per_unit = 0.01;    ///< Of BVH, which does not say: centimetres by custom.
+  double metres_per_unit = 0.01;  ///< Of BVH, which does not say: centimetres by custom.
   ImportLimits limits;
 };
 

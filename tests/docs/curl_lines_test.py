@@ -23,7 +23,8 @@ START_WITHIN_S = 60
 FIRST_BODY_WITHIN_S = 60
 BLOCK = re.compile(r"^```sh\n(.*?)^```", re.DOTALL | re.MULTILINE)
 SKIPPED = {"node_modules", "build", "var", ".git"}
-TESTED_ALONE = {"docs/guide/bridge.md"}  # wants sensors of its own: bridge_guide_test.py runs its lines
+# They want sensors of their own: bridge_guide_test.py and cameras_guide_test.py run their lines.
+TESTED_ALONE = {"docs/guide/bridge.md", "docs/guide/cameras.md"}
 
 
 def curl_lines():

@@ -18,6 +18,11 @@ def refused(*options):
     return done.returncode, done.stderr.strip()
 
 
+def but_for_the_clock(text):
+    """The lines that do not depend on whether this host's clock is synchronised."""
+    return [line for line in text.splitlines() if "clock" not in line]
+
+
 class Process(unittest.TestCase):
     def setUp(self):
         self.folder = temporary_folder()
@@ -49,7 +54,7 @@ class Process(unittest.TestCase):
             port = other.getsockname()[1]
             code, text = refused("--port", str(port))
         self.assertEqual(code, 2)
-        self.assertEqual(len(text.splitlines()), 1, text)
+        self.assertEqual(len(but_for_the_clock(text)), 1, text)
         self.assertIn(str(port), text)
         self.assertIn("in use", text)
 
@@ -147,7 +152,7 @@ class Process(unittest.TestCase):
     def test_the_commented_configuration_is_good_and_says_the_defaults(self):
         done = subprocess.run([SENSOR, "--config", "deploy/config/sensor.json", "--check"], capture_output=True,
                               text=True, timeout=60)
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual((done.returncode, but_for_the_clock(done.stderr)), (0, []), done.stderr)
 
 
 if __name__ == "__main__":

@@ -108,6 +108,7 @@ TEST(PointsAndRays, PointsAndRaysWorkTogether) {
 
 TEST(PointsAndRays, ARayBelievesItsOwnCovariance) {
   Cell cell;
+  cell.config.common_sigma = 0.0;
   const Eigen::Vector3d neck(0.2, 1.4, 0.1);
   std::vector views{ray_view(1, neck), ray_view(2, neck)};
   for (SensorView& view : views)
