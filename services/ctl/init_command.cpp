@@ -70,7 +70,8 @@ void ask_many(const std::string& question, std::vector<std::string>& values) {
 void ask_for(InitArguments& arguments) {
   if (arguments.service == "sensor") {
     ask("Name of this sensor, unique in the workshop", arguments.sensor.id);
-    ask("Device: bridge, replay or simulated", arguments.sensor.device);
+    ask("Device: bridge, camera, replay or simulated", arguments.sensor.device);
+    if (arguments.sensor.device == "camera") ask("Camera", arguments.sensor.camera);
     if (arguments.sensor.device == "replay") ask("Recording to play", arguments.sensor.recording);
   } else {
     ask_many("A sensor, as ID=URL,TOKEN (its chorus init printed that)", arguments.sensors);
@@ -143,11 +144,10 @@ void tell_next(const InitArguments& arguments, const ServiceWishes& wishes) {
 Result<ServiceWishes> write_sensor(InitArguments& arguments) {
   SensorWishes& wishes = arguments.sensor;
   if (const auto id = SensorId::parse(wishes.id); !id) return pass(id);
-  const bool known =
-      wishes.device == "bridge" || wishes.device == "replay" || wishes.device == "simulated";
-  if (!known) {
+  constexpr std::array<std::string_view, 4> kDevices{"bridge", "camera", "replay", "simulated"};
+  if (std::ranges::find(kDevices, wishes.device) == kDevices.end()) {
     return fail(ErrorCode::InvalidArgument, "--device",
-                "\"" + wishes.device + "\" is none of bridge, replay and simulated");
+                "\"" + wishes.device + "\" is none of bridge, camera, replay and simulated");
   }
   if (wishes.device == "replay" && wishes.recording.empty())
     return fail(ErrorCode::InvalidArgument, "--recording", "a replay needs the file to play");
@@ -218,7 +218,13 @@ Run add_init(CLI::App& options) {
       "--token", arguments->token,
       "Token of role control; default: a new one, unless only this host is listened to");
   options.add_option("--id", arguments->sensor.id, "sensor: its id; default: the host's name");
-  options.add_option("--device", arguments->sensor.device, "sensor: bridge, replay or simulated")
+  options
+      .add_option("--device", arguments->sensor.device,
+                  "sensor: bridge, camera, replay or simulated")
+      ->capture_default_str();
+  options
+      .add_option("--camera", arguments->sensor.camera,
+                  "sensor: a webcam, rtsp://... or a video file")
       ->capture_default_str();
   options.add_option("--recording", arguments->sensor.recording, "sensor: what a replay plays");
   options.add_flag("--images", arguments->sensor.images, "sensor: serve pictures");

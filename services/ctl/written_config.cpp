@@ -94,9 +94,8 @@ std::string http_of(const ServiceWishes& wishes) {
 
 std::string device_of(const SensorWishes& wishes) {
   std::string out =
-      "  // bridge: a program pushes frames to /push; replay: plays a recording; simulated: a "
-      "person "
-      "who is not there.\n"
+      "  // bridge: a program pushes frames to /push; camera: people are found in pictures;\n"
+      "  // replay: plays a recording; simulated: a person who is not there.\n"
       "  \"device\": {\n    \"kind\": " +
       quoted(wishes.device);
   if (wishes.device == "bridge") {
@@ -104,6 +103,12 @@ std::string device_of(const SensorWishes& wishes) {
         ",\n"
         "    // Programs of this host that may open this socket push without a token.\n"
         "    \"bridge\": { \"socket\": \"/run/chorus-sensor/push\" }";
+  } else if (wishes.device == "camera") {
+    out +=
+        ",\n"
+        "    // A webcam (chorus camera list shows them), a stream (rtsp://...) or a video file.\n"
+        "    \"camera\": { \"source\": " +
+        quoted(wishes.camera) + " }";
   } else if (wishes.device == "replay") {
     out += ",\n    \"replay\": { \"recording\": " + quoted(wishes.recording) + " }";
   }

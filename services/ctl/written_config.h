@@ -22,8 +22,9 @@ struct ServiceWishes {
 struct SensorWishes {
   ServiceWishes service;
   std::string id;
-  std::string device = "bridge";  ///< bridge, replay or simulated
-  std::string recording;          ///< Of a replay.
+  std::string device = "bridge";  ///< bridge, camera, replay or simulated
+  std::string camera = "/dev/video0";
+  std::string recording;  ///< Of a replay.
   bool images = false;
 };
 

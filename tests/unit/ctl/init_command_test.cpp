@@ -83,6 +83,14 @@ TEST(Init, TakesSensorsFromAFileSoThatNoTokenIsSeen) {
   EXPECT_EQ(run({"fusion", "--out", "-", "--sensors-from", "/no/such"}).code, kExitFailed);
 }
 
+TEST(Init, ACameraIsOneOption) {
+  const Outcome made =
+      run({"sensor", "--out", "-", "--device", "camera", "--camera", "rtsp://10.0.0.5/1"});
+  ASSERT_EQ(made.code, kExitOk) << made.error;
+  EXPECT_THAT(made.out, HasSubstr("\"kind\": \"camera\""));
+  EXPECT_THAT(made.out, HasSubstr("\"camera\": { \"source\": \"rtsp://10.0.0.5/1\" }"));
+}
+
 TEST(Init, LoopbackNeedsNoTokens) {
   const Outcome made = run({"fusion", "--out", "-", "--listen", "127.0.0.1", "--port", "9000"});
   ASSERT_EQ(made.code, kExitOk) << made.error;
