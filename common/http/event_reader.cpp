@@ -11,19 +11,24 @@ namespace {
 /// (find_first_of would call memchr for every byte.)
 class LineEnds {
  public:
-  explicit LineEnds(std::string_view bytes) : bytes_(bytes) {}
+  explicit LineEnds(std::string_view bytes)
+      : bytes_(bytes), feed_(next('\n', 0)), return_(next('\r', 0)) {}
 
   /// The first '\r' or '\n' from here on; the size when there is none.
   [[nodiscard]] std::size_t after(std::size_t here) {
-    if (feed_ < here || here == 0) feed_ = std::min(bytes_.find('\n', here), bytes_.size());
-    if (return_ < here || here == 0) return_ = std::min(bytes_.find('\r', here), bytes_.size());
+    if (feed_ < here) feed_ = next('\n', here);
+    if (return_ < here) return_ = next('\r', here);
     return std::min(feed_, return_);
   }
 
  private:
+  [[nodiscard]] std::size_t next(char wanted, std::size_t here) const {
+    return std::min(bytes_.find(wanted, here), bytes_.size());
+  }
+
   std::string_view bytes_;
-  std::size_t feed_ = 0;
-  std::size_t return_ = 0;
+  std::size_t feed_;
+  std::size_t return_;
 };
 
 }  // namespace

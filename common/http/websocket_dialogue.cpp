@@ -128,7 +128,7 @@ void DialogueConnection::expire() {
 void DialogueConnection::say_goodbye(Goodbye code) {
   if (state_ != State::Open || !unsent_.empty() || !stream_.say_goodbye(code)) return close();
   state_ = State::Closing;
-  count(core_.counters.websockets_open, static_cast<std::uint64_t>(-1));
+  uncount(core_.counters.websockets_open);
   dialogue_.reset();
   deadline_ = core_.now + kGoodbye;
 }
@@ -137,7 +137,7 @@ void DialogueConnection::close() {
   if (state_ == State::Closed) return;
   const State before = std::exchange(state_, State::Closed);
   const auto keep = shared_from_this();  // forget() drops what may be the last reference.
-  if (before == State::Open) count(core_.counters.websockets_open, static_cast<std::uint64_t>(-1));
+  if (before == State::Open) uncount(core_.counters.websockets_open);
   dialogue_.reset();
   stream_.close();
   core_.forget(this);

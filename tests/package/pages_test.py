@@ -31,7 +31,7 @@ class Pages(unittest.TestCase):
                 with self.subTest(program=program, option=option):
                     self.assertIn(option, page)
 
-    @unittest.skipUnless(shutil.which("groff"), "this system has no groff")
+    @unittest.skipUnless(shutil.which("groff"), "runs where groff is installed (Debian: groff-base)")
     def test_roff_has_nothing_to_complain_of(self):
         for program in PROGRAMS:
             done = subprocess.run(["groff", "-man", "-ww", "-Tutf8"], input=said(program, "--print", "manual"),

@@ -28,7 +28,7 @@ def heard(kind, end, words):
             return b""
 
 
-@unittest.skipUnless(own_address(), "this host has no address beside loopback")
+@unittest.skipUnless(own_address(), "runs on hosts with an address beside loopback")
 class Allow(Rig):
     def served(self, allow):
         ports = {name: free_port() for name in ("vrpn", "natnet", "dtrack")}
