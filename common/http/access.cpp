@@ -66,17 +66,19 @@ bool is_reading(const RequestHead& head) {
   return head.method == Method::Get || head.method == Method::Head;
 }
 
-/// A browser sends Basic credentials with whatever any page makes it ask for, so they never write.
-std::optional<std::string> secret_in(const RequestHead& head) {
+/// A browser sends Basic credentials with whatever any page makes it ask for, so they never write,
+/// by a WebSocket's GET either.
+std::optional<std::string> secret_in(const RequestHead& head, Role needed) {
   if (const auto bearer = credentials(head, "bearer")) return std::string(*bearer);
-  const auto basic = is_reading(head) ? credentials(head, "basic") : std::nullopt;
+  const bool reads = needed != Role::Control && is_reading(head);
+  const auto basic = reads ? credentials(head, "basic") : std::nullopt;
   return basic ? password_in(*basic) : std::nullopt;
 }
 
 /// The role that the request has proved; nothing without one of our tokens.  Every token is
 /// compared, so that the time does not tell which.
-std::optional<Role> role_of(const RequestHead& head, const Guard& guard) {
-  const auto secret = secret_in(head);
+std::optional<Role> role_of(const RequestHead& head, Role needed, const Guard& guard) {
+  const auto secret = secret_in(head, needed);
   if (!secret) return std::nullopt;
   std::optional<Role> best;
   for (const Token& token : guard.tokens) {
@@ -147,7 +149,7 @@ std::optional<Error> refuse_access(const RequestHead& head, const Peer& peer, Ro
   const bool trusts_local = reading ? !guard.knows_readers() : guard.tokens.empty();
   if (trusts_local && is_trusted_local(head, peer)) return std::nullopt;
   if (guard.tokens.empty()) return without_tokens(needed);
-  const auto role = role_of(head, guard);
+  const auto role = role_of(head, needed, guard);
   if (role && *role >= needed) return std::nullopt;
   if (role) {
     return Error{ErrorCode::Forbidden, "Authorization",
@@ -160,7 +162,8 @@ std::optional<Error> refuse_access(const RequestHead& head, const Peer& peer, Ro
 }
 
 bool has_wrong_token(const RequestHead& head, const Guard& guard) {
-  return is_present(head.authorization) && !guard.tokens.empty() && !role_of(head, guard);
+  return is_present(head.authorization) && !guard.tokens.empty() &&
+         !role_of(head, Role::Read, guard);
 }
 
 std::string_view name_of(Role role) noexcept {

@@ -168,6 +168,14 @@ TEST(Basic, IsForReadingOnly) {
     EXPECT_TRUE(refusal(wrong, Role::Read, kRoles)) << wrong;
 }
 
+TEST(Basic, DoesNotWriteByAWebSocket) {
+  RequestHead head = head_of("10.0.0.1:8080");
+  head.method = Method::Get;
+  head.authorization = kBasicSecret;
+  EXPECT_FALSE(refuse_access(head, kRemote, Role::Images, kRoles));
+  EXPECT_TRUE(refuse_access(head, kRemote, Role::Control, kRoles)) << "a handshake is a GET";
+}
+
 TEST(WrongToken, IsOneThatIsNoneOfOurs) {
   RequestHead head = head_of("10.0.0.1:8080");
   EXPECT_FALSE(has_wrong_token(head, kRoles)) << "none at all";
