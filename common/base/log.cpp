@@ -175,6 +175,8 @@ void configure(Level least, Format format) {
   sink().logger.set_pattern(json ? kJsonPattern : kTextPattern, spdlog::pattern_time_type::utc);
 }
 
+bool is_wanted(Level level) { return sink().logger.should_log(row_of(level).in_spdlog); }
+
 Result<Level> parse_level(std::string_view text) {
   for (const LevelName& row : kLevels) {
     if (row.name == text) return row.level;

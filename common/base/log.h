@@ -42,6 +42,10 @@ void configure(Level least, Format format);
 [[nodiscard]] Result<Level> parse_level(std::string_view text);
 [[nodiscard]] Result<Format> parse_format(std::string_view text);
 
+/// Whether lines of this level are written; worth asking before the fields of a frequent line are
+/// made.
+[[nodiscard]] bool is_wanted(Level level);
+
 void event(Level level, std::string_view name, Fields fields = {});
 
 inline void debug(std::string_view name, Fields fields = {}) { event(Level::Debug, name, fields); }

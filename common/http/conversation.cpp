@@ -20,6 +20,7 @@ constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
 /// For whoever looks for a mistake (log.level "debug").  Neither query nor fields: they may hold
 /// secrets.
 void note(const RequestHead& head, const Peer& peer, int status) {
+  if (!log::is_wanted(log::Level::Debug)) return;
   log::debug("request", {{"method", name_of(head.method)},
                          {"path", head.path},
                          {"status", status},
