@@ -14,8 +14,6 @@ namespace {
 namespace beast = boost::beast;
 using Parser = beast::http::response_parser<beast::http::string_body>;
 
-constexpr std::uint32_t kMaxHeadBytes = 16384;
-
 }  // namespace
 
 struct AsyncClient::Impl : std::enable_shared_from_this<AsyncClient::Impl> {
@@ -119,10 +117,10 @@ void AsyncClient::Impl::write() {
 
 void AsyncClient::Impl::read() {
   parser.emplace();
-  parser->header_limit(kMaxHeadBytes);
+  parser->header_limit(kMaxAnswerHeadBytes);
   parser->body_limit(limits.max_body_bytes);
   parser->skip(head_only);
-  in.reserve(kMaxHeadBytes);
+  in.reserve(kMaxAnswerHeadBytes);
   beast::http::async_read_header(
       socket, in, *parser,
       [self = shared_from_this(), mine = attempt](net::error_code failed, std::size_t) {

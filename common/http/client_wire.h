@@ -9,6 +9,9 @@
 
 namespace chorus::http {
 
+/// A longer head of an answer ends the connection.
+inline constexpr std::uint32_t kMaxAnswerHeadBytes = 16384;
+
 /// "127.0.0.1:8080", "[::1]:8080".
 [[nodiscard]] std::string authority_of(const std::string& host, std::uint16_t port);
 

@@ -17,7 +17,6 @@ namespace {
 namespace beast = boost::beast;
 using Parser = beast::http::response_parser<beast::http::string_body>;
 
-constexpr std::uint32_t kMaxHeadBytes = 16384;
 constexpr std::size_t kReadBytes = 65536;
 
 bool is_event_stream(const ClientResponse& head) {
@@ -103,10 +102,10 @@ void AsyncEventStream::Impl::write() {
 
 void AsyncEventStream::Impl::read_head() {
   parser.emplace();
-  parser->header_limit(kMaxHeadBytes);
+  parser->header_limit(kMaxAnswerHeadBytes);
   parser->body_limit(
       std::numeric_limits<std::uint64_t>::max());  // a stream ends when somebody hangs up
-  in.reserve(kMaxHeadBytes);
+  in.reserve(kMaxAnswerHeadBytes);
   beast::http::async_read_header(
       socket, in, *parser,
       [self = shared_from_this(), mine = attempt](net::error_code failed, std::size_t) {
