@@ -20,28 +20,6 @@ constexpr std::size_t kMaxTracks = 256;  // Four times what a frame holds.
 constexpr double kVelocityBlend = 0.2;   // share of the newest difference; smooths 30 Hz to ~0.15 s
 constexpr double kFastest = 4.0;  // [m/s] a sprint; keeps one wild view from throwing the track
 
-template <class Joints>
-std::optional<Eigen::Vector3d> mean_of(const Joints& joints) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  int seen = 0;
-  for (const Joint* joint : joints) {
-    if (!joint->seen()) continue;
-    sum += joint->position;
-    ++seen;
-  }
-  if (seen == 0) return std::nullopt;
-  return sum / seen;
-}
-
-std::optional<Eigen::Vector3d> core_of(const Skeleton<WorldSpace>& body) {
-  std::vector<const Joint*> core;
-  for (const JointId id : kCoreJoints) core.push_back(&body[id]);
-  if (auto mean = mean_of(core)) return mean;
-  std::vector<const Joint*> all;
-  for (const Joint& joint : body.joints) all.push_back(&joint);
-  return mean_of(all);
-}
-
 double horizontal_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::hypot(a.x() - b.x(), a.z() - b.z());
 }
@@ -50,7 +28,7 @@ double horizontal_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 std::vector<PlacedView> placed_views(std::vector<SensorView> views) {
   std::vector<PlacedView> sights;
   for (SensorView& view : views) {
-    const auto core = core_of(view.skeleton);
+    const auto core = middle_of(points_of(view.skeleton));
     const bool rays = has_rays_alone(view.skeleton) && view.eye.allFinite();
     if (core || rays)
       sights.push_back({std::move(view), core.value_or(Eigen::Vector3d::Zero()), rays});

@@ -117,6 +117,14 @@ bool has_rays_alone(const Skeleton<WorldSpace>& body) {
          std::ranges::none_of(body.joints, &Joint::seen);
 }
 
+Located points_of(const Skeleton<WorldSpace>& body) {
+  Located points;
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    if (body.joints[i].seen()) points[i] = body.joints[i].position;
+  }
+  return points;
+}
+
 Located locate(const std::vector<PlacedView>& views) {
   Located body;
   for (std::size_t i = 0; i < kJointCount; ++i) {

@@ -21,6 +21,9 @@ using Located = std::array<std::optional<Eigen::Vector3d>, kJointCount>;
 /// Whether the body has rays and no point.
 [[nodiscard]] bool has_rays_alone(const Skeleton<WorldSpace>& body);
 
+/// The joints that have a place.
+[[nodiscard]] Located points_of(const Skeleton<WorldSpace>& body);
+
 /// Per joint the mean of the points, or where two or more rays meet.
 [[nodiscard]] Located locate(const std::vector<PlacedView>& views);
 
