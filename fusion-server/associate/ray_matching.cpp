@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include "common/base/median.h"
 #include "common/body/bones.h"
 #include "common/geometry/ray.h"
 
@@ -20,9 +21,7 @@ Ray ray_of(const SensorView& view, JointId joint) {
 
 std::optional<double> median_of(std::vector<double> values) {
   if (values.size() < kEnough) return std::nullopt;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return median(std::move(values));
 }
 
 /// Shown by rays in both views.

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "common/base/median.h"
 #include "common/geometry/ray.h"
 
 namespace chorus::fusion {
@@ -181,10 +183,8 @@ double scale_of(const Terms& terms, const Eigen::Vector3d& point) {
     constraints += terms.constraints(i);
   }
   if (ratios.size() < kManyViews) return 1.0;
-  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-  std::nth_element(ratios.begin(), middle, ratios.end());
   const auto count = static_cast<double>(ratios.size());
-  const double found = *middle * constraints / (constraints - 3.0);
+  const double found = median(std::move(ratios)) * constraints / (constraints - 3.0);
   return std::max(1.0, (kScalePrior + count * found) / (kScalePrior + count));
 }
 
