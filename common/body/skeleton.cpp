@@ -1,5 +1,7 @@
 #include "common/body/skeleton.h"
 
+#include <algorithm>
+
 namespace chorus {
 namespace {
 
@@ -18,6 +20,10 @@ Skeleton<To> moved(const Eigen::Isometry3d& to_from_from, const Skeleton<From>& 
 }
 
 }  // namespace
+
+bool has_rays_alone(const std::array<Joint, kJointCount>& joints) {
+  return std::ranges::any_of(joints, &Joint::bears) && std::ranges::none_of(joints, &Joint::seen);
+}
 
 Skeleton<WorldSpace> to_world(const Eigen::Isometry3d& world_from_sensor,
                               const Skeleton<SensorSpace>& body) {

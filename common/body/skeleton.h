@@ -60,6 +60,9 @@ struct Joint {
   }
 };
 
+/// Whether there are rays and no point: what cameras without depth show.
+[[nodiscard]] bool has_rays_alone(const std::array<Joint, kJointCount>& joints);
+
 template <class Space>
 struct Skeleton {
   std::array<Joint, kJointCount> joints;

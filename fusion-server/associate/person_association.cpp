@@ -29,7 +29,7 @@ std::vector<PlacedView> placed_views(std::vector<SensorView> views) {
   std::vector<PlacedView> sights;
   for (SensorView& view : views) {
     const auto core = middle_of(points_of(view.skeleton));
-    const bool rays = has_rays_alone(view.skeleton) && view.eye.allFinite();
+    const bool rays = has_rays_alone(view.skeleton.joints) && view.eye.allFinite();
     if (core || rays)
       sights.push_back({std::move(view), core.value_or(Eigen::Vector3d::Zero()), rays});
   }

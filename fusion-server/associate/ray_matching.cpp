@@ -111,11 +111,6 @@ std::vector<Hypothesis> hypotheses_of(const std::vector<PlacedView>& views, doub
 
 }  // namespace
 
-bool has_rays_alone(const Skeleton<WorldSpace>& body) {
-  return std::ranges::any_of(body.joints, &Joint::bears) &&
-         std::ranges::none_of(body.joints, &Joint::seen);
-}
-
 Located points_of(const Skeleton<WorldSpace>& body) {
   Located points;
   for (std::size_t i = 0; i < kJointCount; ++i) {

@@ -18,9 +18,6 @@ namespace chorus::associate {
 /// Where the joints of a person are, as far as known; world [m].
 using Located = std::array<std::optional<Eigen::Vector3d>, kJointCount>;
 
-/// Whether the body has rays and no point.
-[[nodiscard]] bool has_rays_alone(const Skeleton<WorldSpace>& body);
-
 /// The joints that have a place.
 [[nodiscard]] Located points_of(const Skeleton<WorldSpace>& body);
 

@@ -13,11 +13,6 @@ constexpr double kNearest = 0.3;   // [m] horizontally; a person is not nearer t
 constexpr double kWide = 0.35;     // [m] of all spans together; a person from the front has 0.8
 constexpr double kSteepest = 0.1;  // cosine of a ray to the plane's normal; others meet it far away
 
-bool is_of_rays(const SensorView& view) {
-  return view.eye.allFinite() && std::ranges::any_of(view.skeleton.joints, &Joint::bears) &&
-         std::ranges::none_of(view.skeleton.joints, &Joint::seen);
-}
-
 /// The joint where its ray meets the plane; left out where it does not.
 void put_on_plane(Joint& joint, const Eigen::Vector3d& eye, const Eigen::Vector3d& normal,
                   double range) {
@@ -46,7 +41,7 @@ std::vector<Figure> stand_in(Person& person, const Eigen::Vector3d& core) {
   std::vector<Figure> figures;
   for (std::size_t v = 0; v < person.views.size(); ++v) {
     SensorView& view = person.views[v];
-    if (!is_of_rays(view)) continue;
+    if (!has_rays_alone(view.skeleton.joints) || !view.eye.allFinite()) continue;
     Eigen::Vector3d normal = core - view.eye;
     normal.y() = 0;
     const double range = normal.norm();

@@ -146,9 +146,7 @@ std::vector<SensorReport> report(const std::vector<AlignedSensor>& aligned,
 
 /// A single ray bounds nobody's depth for long: whom only such rays show has no joint any more.
 void leave_out_the_unplaced(std::vector<FusedBody>& bodies, const std::vector<Person>& people) {
-  const auto of_rays = [](const SensorView& view) {
-    return associate::has_rays_alone(view.skeleton);
-  };
+  const auto of_rays = [](const SensorView& view) { return has_rays_alone(view.skeleton.joints); };
   std::erase_if(bodies, [&](const FusedBody& body) {
     const auto person = std::ranges::find(people, body.id, &Person::id);
     return std::ranges::none_of(body.skeleton.joints, &Joint::seen) &&

@@ -80,6 +80,16 @@ TEST(Joint, ARayHasADirectionAndNoPlace) {
   EXPECT_FALSE(joint.bears());
 }
 
+TEST(Body, IsOfRaysAloneWithOneRayAndNoPoint) {
+  Skeleton<WorldSpace> body;
+  EXPECT_FALSE(has_rays_alone(body.joints));
+  body[JointId::Head] = {Eigen::Vector3d::UnitZ(), Eigen::Quaterniond(0, 0, 0, 0),
+                         JointState::Inferred, Measurement::Ray};
+  EXPECT_TRUE(has_rays_alone(body.joints));
+  body[JointId::Neck].state = JointState::Tracked;
+  EXPECT_FALSE(has_rays_alone(body.joints));
+}
+
 TEST(ToWorld, TurnsRaysAndCovariancesButDoesNotMoveRays) {
   Skeleton<SensorSpace> seen;
   Joint& head = seen[JointId::Head];
