@@ -2,35 +2,17 @@
 
 #include <gmock/gmock.h>
 
-#include "services/ctl/command.h"
+#include "tests/unit/ctl/program_run.h"
 
 namespace chorus::ctl {
 namespace {
 
 using ::testing::HasSubstr;
 
-struct Outcome {
-  int code = 0;
-  std::string out;
-  std::string error;
-};
-
-Outcome run(std::vector<const char*> arguments) {
-  arguments.insert(arguments.begin(), "chorus");
-  ::testing::internal::CaptureStdout();
-  ::testing::internal::CaptureStderr();
-  Outcome outcome;
-  outcome.code =
-      run_command_line(all_commands(), static_cast<int>(arguments.size()), arguments.data());
-  outcome.out = ::testing::internal::GetCapturedStdout();
-  outcome.error = ::testing::internal::GetCapturedStderr();
-  return outcome;
-}
-
 TEST(CommandLine, TeachesWithExamplesInEveryHelp) {
-  EXPECT_EQ(run({"--help"}).code, kExitOk);
+  EXPECT_EQ(run_chorus({"--help"}).code, kExitOk);
   for (const Command& command : all_commands()) {
-    const Outcome help = run({command.name.data(), "--help"});
+    const Outcome help = run_chorus({std::string(command.name), "--help"});
     EXPECT_EQ(help.code, kExitOk) << command.name;
     EXPECT_THAT(help.out, HasSubstr("Examples:\n  chorus " + std::string(command.name)));
   }
@@ -43,10 +25,10 @@ TEST(CommandLine, KnowsWhatTheSmallProgramLeavesOut) {
 }
 
 TEST(CommandLine, PrintsItsManualAndItsCompletion) {
-  const Outcome manual = run({"--print", "manual"});
+  const Outcome manual = run_chorus({"--print", "manual"});
   EXPECT_EQ(manual.code, kExitOk);
   EXPECT_THAT(manual.out, HasSubstr(".TH CHORUS 1"));
-  const Outcome completion = run({"--print", "completion"});
+  const Outcome completion = run_chorus({"--print", "completion"});
   EXPECT_EQ(completion.code, kExitOk);
   for (const Command& command : all_commands()) {
     const std::string name(command.name);
@@ -57,28 +39,29 @@ TEST(CommandLine, PrintsItsManualAndItsCompletion) {
 }
 
 TEST(CommandLine, NamesTheCommandThatWasMeant) {
-  const Outcome wrong = run({"improt"});
+  const Outcome wrong = run_chorus({"improt"});
   EXPECT_EQ(wrong.code, kExitUsage);
   EXPECT_THAT(wrong.error, HasSubstr("did you mean \"import\"?"));
-  const Outcome strange = run({"xyzzyplugh"});
+  const Outcome strange = run_chorus({"xyzzyplugh"});
   EXPECT_EQ(strange.code, kExitUsage);
   EXPECT_THAT(strange.error, HasSubstr("The commands are: import, init, doctor, register"));
 }
 
 TEST(CommandLine, TellsWrongUsageFromFailure) {
-  EXPECT_EQ(run({}).code, kExitUsage);
-  EXPECT_EQ(run({"import"}).code, kExitUsage);
-  EXPECT_EQ(run({"import", "foo", "x", "--out", "y"}).code, kExitUsage);
-  EXPECT_EQ(run({"import", "ntu", "x", "--out", "y", "--start", "yesterday"}).code, kExitUsage);
-  EXPECT_EQ(run({"import", "ntu", "x", "--out", "y", "--floor", "1,2,3"}).code, kExitUsage);
-  EXPECT_EQ(run({"fuse", "x", "--out", "y", "--method", "magic"}).code, kExitUsage);
+  EXPECT_EQ(run_chorus({}).code, kExitUsage);
+  EXPECT_EQ(run_chorus({"import"}).code, kExitUsage);
+  EXPECT_EQ(run_chorus({"import", "foo", "x", "--out", "y"}).code, kExitUsage);
+  EXPECT_EQ(run_chorus({"import", "ntu", "x", "--out", "y", "--start", "yesterday"}).code,
+            kExitUsage);
+  EXPECT_EQ(run_chorus({"import", "ntu", "x", "--out", "y", "--floor", "1,2,3"}).code, kExitUsage);
+  EXPECT_EQ(run_chorus({"fuse", "x", "--out", "y", "--method", "magic"}).code, kExitUsage);
   for (const char* seconds : {"0", "7.9", "300.1"}) {
-    EXPECT_EQ(run({"register", "--seconds", seconds}).code, kExitUsage) << seconds;
+    EXPECT_EQ(run_chorus({"register", "--seconds", seconds}).code, kExitUsage) << seconds;
   }
-  EXPECT_EQ(run({"replay", "x", "--port", "70000"}).code, kExitUsage);
-  EXPECT_EQ(run({"fuse", "/nowhere", "--out", "y"}).code, kExitFailed);
-  EXPECT_EQ(run({"import", "ntu", "/nowhere", "--out", "y"}).code, kExitFailed);
-  EXPECT_EQ(run({"status", "--url", "ftp://x/"}).code, kExitFailed);
+  EXPECT_EQ(run_chorus({"replay", "x", "--port", "70000"}).code, kExitUsage);
+  EXPECT_EQ(run_chorus({"fuse", "/nowhere", "--out", "y"}).code, kExitFailed);
+  EXPECT_EQ(run_chorus({"import", "ntu", "/nowhere", "--out", "y"}).code, kExitFailed);
+  EXPECT_EQ(run_chorus({"status", "--url", "ftp://x/"}).code, kExitFailed);
 }
 
 }  // namespace

@@ -7,9 +7,9 @@
 
 #include "common/service/config_source.h"
 #include "fusion-server/server/fusion_settings.h"
-#include "services/ctl/command.h"
 #include "services/ctl/written_config.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/unit/ctl/program_run.h"
 
 namespace chorus::ctl {
 namespace {
@@ -18,24 +18,9 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-struct Outcome {
-  int code = 0;
-  std::string out;
-  std::string error;
-};
-
 Outcome run(std::vector<std::string> words) {
-  words.insert(words.begin(), {"chorus", "init"});
-  std::vector<const char*> arguments;
-  for (const std::string& word : words) arguments.push_back(word.c_str());
-  ::testing::internal::CaptureStdout();
-  ::testing::internal::CaptureStderr();
-  Outcome outcome;
-  outcome.code =
-      run_command_line(all_commands(), static_cast<int>(arguments.size()), arguments.data());
-  outcome.out = ::testing::internal::GetCapturedStdout();
-  outcome.error = ::testing::internal::GetCapturedStderr();
-  return outcome;
+  words.insert(words.begin(), "init");
+  return run_chorus(words);
 }
 
 server::FusionSettings settings_of(const std::string& text) {

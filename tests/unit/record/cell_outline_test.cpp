@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "common/record/cell_stream.h"
-#include "common/record/cell_writer.h"
 #include "tests/support/builders.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/unit/record/cell_rig.h"
 
 namespace chorus::record {
 namespace {
@@ -26,12 +26,8 @@ resource::FrameResource frame_of(const char* source, int i) {
   return frame;
 }
 
-RawFrame raw(const char* sensor, int i, Duration applied = Duration{0}) {
-  auto frame = std::make_shared<const resource::FrameResource>(frame_of(sensor, i));
-  const Timestamp received = frame->captured + applied + milliseconds(5);
-  return {chorus::testing::sensor_id(sensor), std::move(frame), received,
-          FloorPlane{Eigen::Vector3d::UnitY(), 1.25},
-          ClockModel{applied, applied, milliseconds(1)}};
+std::shared_ptr<const resource::FrameResource> seen_by(const char* sensor, int i) {
+  return std::make_shared<const resource::FrameResource>(frame_of(sensor, i));
 }
 
 FusedFrame fused(int i) {
@@ -43,17 +39,8 @@ FusedFrame fused(int i) {
           }};
 }
 
-/// Two sensors and what was fused of them; the clock of the second is corrected half-way.
 void write_cell(const std::filesystem::path& path) {
-  auto writer = CellWriter::create(path, {});
-  ASSERT_TRUE(writer);
-  ASSERT_TRUE(writer->write(PlacesChanged{kStart, R"({"version":1,"sensors":{}})", {}}));
-  for (int i = 0; i < 40; ++i) {
-    ASSERT_TRUE(writer->write(raw("s1", i)));
-    ASSERT_TRUE(writer->write(raw("s2", i, milliseconds(i < 20 ? 400 : 410))));
-    ASSERT_TRUE(writer->write(fused(i)));
-  }
-  ASSERT_TRUE(writer->close());
+  write_cell(path, {kStart, R"({"version":1,"sensors":{}})", {}}, seen_by, fused);
 }
 
 TEST(CellOutline, TellsWhoWasThereAndWhenWithoutReadingItThrough) {

@@ -5,9 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/record/cell_writer.h"
 #include "tests/support/builders.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/unit/record/cell_rig.h"
 
 namespace chorus::record {
 namespace {
@@ -33,11 +33,7 @@ std::shared_ptr<const resource::FrameResource> seen_by(const char* sensor, int i
 }
 
 RawFrame raw(const char* sensor, int i, Duration applied = Duration{0}) {
-  auto frame = seen_by(sensor, i);
-  const Timestamp received = frame->captured + applied + milliseconds(5);
-  return {chorus::testing::sensor_id(sensor), std::move(frame), received,
-          FloorPlane{Eigen::Vector3d::UnitY(), 1.25},
-          ClockModel{applied, applied, milliseconds(1)}};
+  return raw_frame(sensor, seen_by(sensor, i), applied);
 }
 
 FusedFrame fused(int i) {
@@ -57,15 +53,7 @@ PlacesChanged places(const std::string& json) {
 }
 
 void write_cell(const std::filesystem::path& path) {
-  auto writer = CellWriter::create(path, {});
-  ASSERT_TRUE(writer);
-  ASSERT_TRUE(writer->write(places(R"({"version":1,"sensors":{}})")));
-  for (int i = 0; i < 40; ++i) {
-    ASSERT_TRUE(writer->write(raw("s1", i)));
-    ASSERT_TRUE(writer->write(raw("s2", i, milliseconds(i < 20 ? 400 : 410))));
-    ASSERT_TRUE(writer->write(fused(i)));
-  }
-  ASSERT_TRUE(writer->close());
+  write_cell(path, places(R"({"version":1,"sensors":{}})"), seen_by, fused);
 }
 
 TEST(CellRecording, GivesBackEverySensorsFramesByTheRecordersClock) {
