@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "fusion-server/fusion/inverse_variance.h"
-#include "fusion-server/fusion/joint_view.h"
+#include "fusion-server/fusion/joint_filters.h"
 #include "fusion-server/fusion/view_score.h"
 #include "fusion-server/fusion/weight.h"
 #include "fusion-server/fusion/weighted_mean.h"
@@ -54,21 +54,14 @@ class JointWise final : public Estimator {
 
  private:
   [[nodiscard]] FusedBody fuse_views(const Person& person, const Instant& instant) const {
-    FusedBody body;
-    body.id = person.id;
-    for (std::size_t i = 0; i < kJointCount; ++i) {
-      const auto id = static_cast<JointId>(i);
-      auto views = joint_views_of(id, person, instant.sensors, *errors_);
+    return joint_by_joint(person.id, [&](JointId joint) {
+      auto views = joint_views_of(joint, person, instant.sensors, *errors_);
       for (JointView& view : views) {
         if (!view.joint.covariance.known())
-          view.pose_variance = pose_variance(config_.pose_error, id, view.joint.state);
+          view.pose_variance = pose_variance(config_.pose_error, joint, view.joint.state);
       }
-      const FusedJoint fused = fuse_joint(std::move(views));
-      body.skeleton.joints[i] = fused.joint;
-      body.variance[i] = fused.variance;
-      body.contributors[i] = fused.contributors;
-    }
-    return body;
+      return fuse_joint(std::move(views));
+    });
   }
 
   [[nodiscard]] FusedJoint fuse_joint(std::vector<JointView> views) const {

@@ -1,25 +1,15 @@
 #include "fusion-server/fusion/otto_kalman.h"
 
-#include <algorithm>
+#include <array>
 #include <optional>
-#include <utility>
 
-#include "common/body/bones.h"
-#include "fusion-server/fusion/joint_view.h"
-#include "fusion-server/fusion/point_filter.h"
+#include "fusion-server/fusion/joint_filters.h"
 #include "fusion-server/fusion/weighted_mean.h"
 
 namespace chorus::fusion {
 namespace {
 
-constexpr double kTrunkDensity = 3.0;
-constexpr double kLimbDensity = 40.0;
 constexpr double kWeightFloor = 0.02;  // decision 0007: a view of weight zero says a little
-
-template <std::size_t... I>
-std::array<PointFilter, kJointCount> filters(std::index_sequence<I...>) {
-  return {PointFilter(process_density(static_cast<JointId>(I)))...};
-}
 
 class OttoKalman final : public Estimator {
  public:
@@ -27,16 +17,10 @@ class OttoKalman final : public Estimator {
       : config_(config), errors_(line_of_sight_errors(config.noise, config.sensor_noise)) {}
 
   FusedBody fuse(const Person& person, const Instant& instant) override {
-    FusedBody body;
-    body.id = person.id;
-    for (std::size_t i = 0; i < kJointCount; ++i) {
-      auto views = joint_views_of(static_cast<JointId>(i), person, instant.sensors, *errors_);
-      const FusedJoint fused = fuse_joint(i, instant.at, views);
-      body.skeleton.joints[i] = fused.joint;
-      body.variance[i] = fused.variance;
-      body.contributors[i] = fused.contributors;
-    }
-    return body;
+    return joint_by_joint(person.id, [&](JointId joint) {
+      auto views = joint_views_of(joint, person, instant.sensors, *errors_);
+      return fuse_joint(index_of(joint), instant.at, views);
+    });
   }
 
   [[nodiscard]] std::unique_ptr<Estimator> clone() const override {
@@ -63,16 +47,11 @@ class OttoKalman final : public Estimator {
 
   FusionConfig config_;
   std::shared_ptr<const ErrorModel> errors_;
-  std::array<PointFilter, kJointCount> filters_ = filters(std::make_index_sequence<kJointCount>{});
+  JointFilters filters_ = joint_filters();
   std::array<std::optional<Timestamp>, kJointCount> seen_;
 };
 
 }  // namespace
-
-double process_density(JointId joint) {
-  const bool trunk = std::ranges::find(kCoreJoints, joint) != kCoreJoints.end();
-  return trunk ? kTrunkDensity : kLimbDensity;
-}
 
 std::unique_ptr<Estimator> otto_kalman(const FusionConfig& config) {
   return std::make_unique<OttoKalman>(config);

@@ -7,15 +7,11 @@
 
 #include <memory>
 
-#include "common/body/skeleton.h"
 #include "fusion-server/fusion/estimator.h"
 #include "fusion-server/fusion/fusion_config.h"
 
 namespace chorus::fusion {
 
 [[nodiscard]] std::unique_ptr<Estimator> otto_kalman(const FusionConfig& config);
-
-/// Density of the white acceleration of a joint: 3 for the trunk, 40 for limbs [m^2 / s^3].
-[[nodiscard]] double process_density(JointId joint);
 
 }  // namespace chorus::fusion

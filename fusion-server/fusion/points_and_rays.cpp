@@ -4,22 +4,15 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include <Eigen/Eigenvalues>
 
 #include "common/geometry/rotation.h"
+#include "fusion-server/fusion/joint_filters.h"
 #include "fusion-server/fusion/least_squares.h"
-#include "fusion-server/fusion/otto_kalman.h"
-#include "fusion-server/fusion/point_filter.h"
 
 namespace chorus::fusion {
 namespace {
-
-template <std::size_t... I>
-std::array<PointFilter, kJointCount> filters(std::index_sequence<I...>) {
-  return {PointFilter(process_density(static_cast<JointId>(I)))...};
-}
 
 bool any_point(std::span<const JointView> views) {
   return std::ranges::any_of(views, [](const JointView& view) { return view.joint.seen(); });
@@ -57,17 +50,10 @@ class PointsAndRays final : public Estimator {
       : config_(config), errors_(line_of_sight_errors(config.noise, config.sensor_noise)) {}
 
   FusedBody fuse(const Person& person, const Instant& instant) override {
-    FusedBody body;
-    body.id = person.id;
-    for (std::size_t i = 0; i < kJointCount; ++i) {
-      const auto views =
-          points_and_rays_of(static_cast<JointId>(i), person, instant.sensors, *errors_);
-      const FusedJoint fused = fuse_joint(i, instant.at, views);
-      body.skeleton.joints[i] = fused.joint;
-      body.variance[i] = fused.variance;
-      body.contributors[i] = fused.contributors;
-    }
-    return body;
+    return joint_by_joint(person.id, [&](JointId joint) {
+      const auto views = points_and_rays_of(joint, person, instant.sensors, *errors_);
+      return fuse_joint(index_of(joint), instant.at, views);
+    });
   }
 
   [[nodiscard]] std::unique_ptr<Estimator> clone() const override {
@@ -110,7 +96,7 @@ class PointsAndRays final : public Estimator {
 
   FusionConfig config_;
   std::shared_ptr<const ErrorModel> errors_;
-  std::array<PointFilter, kJointCount> filters_ = filters(std::make_index_sequence<kJointCount>{});
+  JointFilters filters_ = joint_filters();
   std::array<std::optional<Timestamp>, kJointCount> seen_;
 };
 

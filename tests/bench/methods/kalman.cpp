@@ -1,13 +1,14 @@
 #include "tests/bench/methods/kalman.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <utility>
 
 #include "common/base/units.h"
-#include "common/body/bones.h"
 #include "fusion-server/associate/person_association.h"
 #include "fusion-server/facing/sides.h"
+#include "fusion-server/fusion/joint_filters.h"
 
 namespace chorus::bench::baselines {
 namespace {
@@ -15,14 +16,9 @@ namespace {
 constexpr double kTrackedSigma = mm(25);
 constexpr double kInferredSigma = mm(75);
 
-template <std::size_t... I>
-std::array<PointFilter, kJointCount> filters(std::index_sequence<I...>) {
-  return {PointFilter(process_density(static_cast<JointId>(I)))...};
-}
-
 /// The filters of one person.
 struct BodyFilter {
-  std::array<PointFilter, kJointCount> joints = filters(std::make_index_sequence<kJointCount>{});
+  fusion::JointFilters joints = fusion::joint_filters();
   std::array<Timestamp, kJointCount> seen{};
   std::array<JointState, kJointCount> state{};
 

@@ -3,19 +3,12 @@
 // The filter of one point is the product's (fusion/point_filter.h); what is made of it differs.
 #pragma once
 
-#include <array>
-#include <optional>
 #include <vector>
 
-#include "fusion-server/fusion/otto_kalman.h"
-#include "fusion-server/fusion/point_filter.h"
 #include "fusion-server/registration/registration.h"
 #include "tests/bench/methods/baseline.h"
 
 namespace chorus::bench::baselines {
-
-using fusion::PointFilter;
-using fusion::process_density;
 
 /// A body as a tracker states it, with the time it states for it.
 struct Stated {
