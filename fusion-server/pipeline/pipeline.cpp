@@ -89,6 +89,11 @@ std::vector<associate::Observer> observers_of(const std::vector<AlignedSensor>& 
   return observers;
 }
 
+associate::Scene scene_of(const Inputs& in, const std::vector<AlignedSensor>& aligned,
+                          const Registration& registration) {
+  return {in.instant, views_in_world(aligned, registration), observers_of(aligned, registration)};
+}
+
 /// Who is still tracked, seen now or not.
 std::set<PersonId> ids_of(const associate::Tracks& tracks) {
   std::set<PersonId> ids;
@@ -174,13 +179,16 @@ void drop_settled(std::vector<Awaited>& awaited, const Inputs& in, const Histori
   });
 }
 
+associate::Scene scene_at(const Inputs& in, const Histories& histories,
+                          const Registration& registration, const PipelineConfig& config) {
+  return scene_of(in, align_all(in, histories, registration, config), registration);
+}
+
 Perceived perceive(const Inputs& in, const Histories& histories, const Registration& registration,
                    const Memory& memory, const PipelineConfig& config) {
   const auto aligned = align_all(in, histories, registration, config);  // 5.2.4
-  auto views = views_in_world(aligned, registration);                   // 5.2.2, 5.2.3
-  auto grouped =
-      associate::group({in.instant, std::move(views), observers_of(aligned, registration)},
-                       memory.tracks, config.association);
+  auto grouped = associate::group(scene_of(in, aligned, registration),  // 5.2.2, 5.2.3
+                                  memory.tracks, config.association);
   Perceived perceived;
   perceived.memory = {std::move(grouped.tracks), memory.sides, memory.fusion, memory.seating};
   perceived.people = std::move(grouped.people);

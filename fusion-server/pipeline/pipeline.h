@@ -69,6 +69,11 @@ struct Awaited {
 /// improve the instant.
 void drop_settled(std::vector<Awaited>& awaited, const Inputs& in, const Histories& histories);
 
+/// Everything before association: all bodies of all sensors that have a place, in the world.
+[[nodiscard]] associate::Scene scene_at(const Inputs& in, const Histories& histories,
+                                        const Registration& registration,
+                                        const PipelineConfig& config);
+
 /// Everything in `step` before fusion: the views it hands to it.
 [[nodiscard]] Perceived perceive(const Inputs& in, const Histories& histories,
                                  const Registration& registration, const Memory& memory,

@@ -1,7 +1,9 @@
 #include "tests/judge/crowd.h"
 
 #include <algorithm>
+#include <array>
 #include <numbers>
+#include <utility>
 
 #include "common/geometry/rotation.h"
 #include "common/synthetic/draw.h"
@@ -19,6 +21,9 @@ constexpr double kWorkRing = 1.0;                   // where the working places 
 constexpr double kGap = 0.4;                        // between people at work [m]
 constexpr double kStint = 10.0;                     // of one person of a relay [s]
 constexpr double kMinPause = 0.3, kMaxPause = 2.0;  // [s]
+constexpr double kNever = 1e9;                      // [s]
+constexpr double kBeside = 0.5;                     // from the middle, of two side by side [m]
+constexpr double kBench = 0.2;                      // from one of their stations to the next [m]
 enum Purpose : std::uint64_t { kBuild = 701, kSpeed, kHour, kPause };
 
 /// Of different build, and somewhere in their loop.
@@ -56,6 +61,37 @@ synthetic::Person placed(const WalkerScript& script, const Placing& placing) {
                                      Eigen::Translation3d(placing.aside, 0, 0));
     return turned(walker.at(time), to_world);
   };
+}
+
+/// A time in the room, after the beginning [s]; `behind`: how long the walk stood still before.
+struct Stint {
+  double enters = 0.0;
+  double leaves = kNever;
+  double behind = 0.0;
+};
+
+/// Somebody who is out of the room between their stints.
+synthetic::Person in_stints(synthetic::Person walk, Timestamp begin, std::vector<Stint> stints) {
+  return [walk = std::move(walk), begin, stints = std::move(stints)](Duration since_epoch) {
+    const double time = seconds(Timestamp{since_epoch} - begin);
+    for (const Stint& stint : stints) {
+      if (time >= stint.enters && time < stint.leaves)
+        return walk(since_epoch - from_seconds(stint.behind));
+    }
+    Skeleton<WorldSpace> body = walk(since_epoch);
+    for (Joint& joint : body.joints) joint.position.x() += 2.0 * kOutside;
+    return body;
+  };
+}
+
+/// When somebody who walks along z next passes the middle, from `time` on [s since 1970].
+double next_middle(const synthetic::Person& walk, double time) {
+  constexpr double kStep = 0.01;  // [s]
+  const auto z_at = [&](double t) { return walk(from_seconds(t))[JointId::Neck].position.z(); };
+  for (double before = z_at(time);; before = z_at(time)) {
+    time += kStep;
+    if (before * z_at(time) <= 0.0) return time;
+  }
 }
 
 double heading_of_line(const WalkerScript& script) {
@@ -120,23 +156,61 @@ std::vector<synthetic::Person> people_around(double radius, std::uint64_t seed) 
 std::vector<synthetic::Person> relayed_people(std::uint64_t seed, Timestamp begin) {
   std::vector<synthetic::Person> people;
   synthetic::Draw pauses{seed, kPause};
-  double enters = -kStint;  // the first one was there before
-  double behind = 0.0;      // the walk stands still while nobody walks it [s]
+  Stint stint{-kStint, kStint, 0.0};  // the first one was there before
   for (std::size_t i = 0; i < 3; ++i) {
     WalkerScript script = script_of(seed, i, PathKind::Random);
     script.seed = seed;  // one walk for all
-    const double leaves = i < 2 ? kStint * static_cast<double>(i + 1) : 1e9;
-    people.push_back(
-        [walk = placed(script, {0.0, 0.0, -behind}), begin, enters, leaves](Duration since_epoch) {
-          Skeleton<WorldSpace> body = walk(since_epoch);
-          const double time = seconds(Timestamp{since_epoch} - begin);
-          if (time >= enters && time < leaves) return body;
-          for (Joint& joint : body.joints) joint.position.x() += 2.0 * kOutside;
-          return body;
-        });
+    if (i == 2) stint.leaves = kNever;
+    people.push_back(in_stints(placed(script, {}), begin, {stint}));
     const double pause = pauses.uniform(kMinPause, kMaxPause);
-    enters = leaves + pause;
-    behind += pause;
+    stint = {stint.leaves + pause, stint.leaves + kStint, stint.behind + pause};
+  }
+  return people;
+}
+
+std::vector<synthetic::Person> returning_people(std::uint64_t seed, Timestamp begin) {
+  constexpr double kAway = 20.0, kFirst = 8.0, kAgain = 26.0;  // [s]
+  const double back = kFirst + synthetic::Draw{seed, kPause}.uniform(kMinPause, kMaxPause);
+  std::vector<synthetic::Person> people = people_at_work(3, seed);
+  people[0] =
+      in_stints(people[0], begin, {{-kStint, kFirst}, {back, kAgain}, {kAgain + kAway, kNever}});
+  for (const auto& [person, leaves] : {std::pair{1U, 14.0}, std::pair{2U, 16.0}}) {
+    people[person] =
+        in_stints(people[person], begin, {{-kStint, leaves}, {leaves + kAway, kNever}});
+  }
+  return people;
+}
+
+std::vector<synthetic::Person> booth_people(std::uint64_t seed, Timestamp begin) {
+  constexpr int kStints = 16;
+  WalkerScript script = script_of(seed, 0, PathKind::Line);
+  script.reach = kReach;
+  const Placing along_z{-heading_of_line(script), 0.0, 0.0};
+  const synthetic::Person way = placed(script, along_z);
+  const double origin = seconds(begin.time_since_epoch());
+  synthetic::Draw pauses{seed, kPause};
+  std::array<std::vector<Stint>, 2> stints;
+  Stint stint{-kStint, 0.0, 0.0};
+  for (std::size_t i = 0; i < kStints; ++i) {
+    const double walked = origin + std::max(stint.enters, 0.0) - stint.behind;
+    stint.leaves = next_middle(way, walked + kStint) + stint.behind - origin;
+    stints[i % 2].push_back(stint);
+    const double pause = pauses.uniform(kMinPause, kMaxPause);
+    stint = {stint.leaves + pause, 0.0, stint.behind + pause};
+  }
+  WalkerScript other = script_of(seed, 1, PathKind::Line);
+  other.seed = script.seed;  // one way for both
+  other.reach = kReach;
+  return {in_stints(way, begin, stints[0]), in_stints(placed(other, along_z), begin, stints[1])};
+}
+
+std::vector<synthetic::Person> side_by_side(std::uint64_t seed) {
+  std::vector<synthetic::Person> people;
+  const double yaw = synthetic::Draw{seed, kHour}.uniform(0.0, kFullTurn);
+  for (const double aside : {-kBeside, kBeside}) {
+    WalkerScript script = script_of(seed, people.size(), PathKind::Assembly);
+    script.reach = kBench;
+    people.push_back(placed(script, {yaw, aside, 0.0}));
   }
   return people;
 }

@@ -21,6 +21,19 @@ namespace chorus::bench {
 /// enters there, 0.3 to 2 s later.  The first is there at `begin`; nobody comes back.
 [[nodiscard]] std::vector<synthetic::Person> relayed_people(std::uint64_t seed, Timestamp begin);
 
+/// Three people at work.  The first goes out for 0.3 to 2 s and, later, for 20 s; the two others go
+/// out soon after one another and stay out for 20 s each.  Everybody comes back to where they work.
+/// All are there at `begin`, and again from its 50th second on.
+[[nodiscard]] std::vector<synthetic::Person> returning_people(std::uint64_t seed, Timestamp begin);
+
+/// Two who take turns in going through a booth: one goes behind the screen(), and 0.3 to 2 s later
+/// the other one comes out on the other side, after stints of ten seconds at least.  Whoever is not
+/// walking is out of the room.
+[[nodiscard]] std::vector<synthetic::Person> booth_people(std::uint64_t seed, Timestamp begin);
+
+/// Two at assembly work beside each other, 1 m apart, who stood there before anybody looked.
+[[nodiscard]] std::vector<synthetic::Person> side_by_side(std::uint64_t seed);
+
 /// Out of the room: further from the middle than anybody in it [m].
 inline constexpr double kOutside = 50.0;
 

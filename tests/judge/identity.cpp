@@ -27,6 +27,7 @@ class Census {
   explicit Census(const IdentityConfig& config) : config_(config) {}
 
   void take(const Roll& roll) {
+    ++instants_;
     people_.resize(std::max(people_.size(), roll.exact.size()));
     const auto before = people_;
     for (Followed& person : people_) person.now.reset();
@@ -48,6 +49,7 @@ class Census {
       found.ghosts += followed < config_.ghost ? 1U : 0U;
     }
     found.first_answer = first_answer();
+    if (minutes > 0) count_heirs(found, static_cast<double>(instants_) / (60.0 * minutes));
     const std::size_t all = present_ + claims_;
     found.idf1 = all > 0 ? 2.0 * share(true_positives(), all) : 0.0;
     return found;
@@ -112,6 +114,19 @@ class Census {
     }
   }
 
+  /// `rate`: instants in a second.
+  void count_heirs(Identity& found, double rate) const {
+    std::map<std::uint64_t, std::size_t> people;  // that an id followed
+    std::map<std::size_t, std::size_t> ids;       // that mostly followed a person
+    for (const auto& [pair, count] : together_) {
+      const auto& [person, id] = pair;
+      if (static_cast<double>(count) < rate * config_.lasting) continue;
+      found.inherited += people[id]++ > 0 ? 1U : 0U;
+      const bool mostly = share(count, lives_.at(id)) >= config_.ghost;
+      found.spare_ids += mostly && ids[person]++ > 0 ? 1U : 0U;
+    }
+  }
+
   [[nodiscard]] double first_answer() const {
     double sum = 0.0;
     std::size_t count = 0;
@@ -150,6 +165,7 @@ class Census {
   std::map<std::uint64_t, std::size_t> lives_;
   std::map<std::uint64_t, std::size_t> followed_;
   std::map<std::pair<std::size_t, std::uint64_t>, std::size_t> together_;
+  std::size_t instants_ = 0;
   std::size_t claims_ = 0;
   std::size_t present_ = 0;
   std::size_t answered_ = 0;

@@ -28,8 +28,9 @@ struct Roll {
 };
 
 struct IdentityConfig {
-  double reach = 0.5;  ///< An answer further away is not that person [m].
-  double ghost = 0.5;  ///< Share of its life that a track must follow somebody not to be a ghost.
+  double reach = 0.5;    ///< An answer further away is not that person [m].
+  double ghost = 0.5;    ///< Share of its life that a track must follow somebody not to be a ghost.
+  double lasting = 1.0;  ///< An id has followed a person, not just passed by, after so long [s].
 };
 
 struct Identity {
@@ -42,6 +43,9 @@ struct Identity {
   double minutes = 0.0;
   /// From when a person is there to its first answer, mean of those that were answered [s].
   double first_answer = 0.0;
+  /// Times that an id followed a further person for a second or longer.
+  std::size_t inherited = 0;
+  std::size_t spare_ids = 0;  ///< Ids that follow people who had one already.
 };
 
 [[nodiscard]] Identity identity_of(const std::vector<Roll>& rolls,

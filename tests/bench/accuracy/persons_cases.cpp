@@ -6,6 +6,7 @@
 #include "tests/bench/methods/moments.h"
 #include "tests/bench/methods/nearest_neighbour.h"
 #include "tests/judge/crowd.h"
+#include "tests/judge/labelled_error.h"
 
 namespace chorus::bench {
 namespace {
@@ -24,6 +25,8 @@ People crossing_six(std::uint64_t seed) { return crossing_people(6, seed); }
 People four_at_work(std::uint64_t seed) { return people_at_work(4, seed); }
 People around_car(std::uint64_t seed) { return people_around(1.5, seed); }
 People relayed(std::uint64_t seed) { return relayed_people(seed, begin_of(seed)); }
+People returning(std::uint64_t seed) { return returning_people(seed, begin_of(seed)); }
+People in_booth(std::uint64_t seed) { return booth_people(seed, begin_of(seed)); }
 
 std::vector<Eigen::Isometry3d> ring(std::size_t count, double radius = 3.0) {
   synthetic::Ring ring;
@@ -40,14 +43,31 @@ using Grouper = std::function<std::vector<Person>(const Sights& sights)>;
 
 /// Profile A tracks many joints falsely where they are occluded, by an error about their true
 /// place: it would see through the screen.  Here what is occluded is known to be.
-void know_the_occluded(synthetic::kinect::Profile& profile) {
+void know_the_occluded(synthetic::kinect::Profile& profile, std::size_t) {
   profile.visibility.inferred_occluded = 1.0;
 }
 
-PersonsCase behind_screen() {
-  PersonsCase hidden{"crossing-2-hidden", "A", places_behind_screen(), crossing_two, {screen()}};
+PersonsCase behind_screen(std::string name, People (*people)(std::uint64_t seed)) {
+  PersonsCase hidden{std::move(name), "A", places_behind_screen(), people, {screen()}};
   hidden.adjust = know_the_occluded;
   return hidden;
+}
+
+/// One sensor takes furniture for people, often and for long.
+PersonsCase beside_furniture() {
+  PersonsCase each{"furniture-2-B", "B", ring(6), crossing_two};
+  each.adjust = [](synthetic::kinect::Profile& profile, std::size_t place) {
+    if (place > 0) return;
+    profile.gross.ghosts_per_minute = 6.0;
+    profile.gross.ghost_time = 4.0;  // [s]
+  };
+  return each;
+}
+
+PersonsCase at_work_side_by_side(std::string name, std::size_t sensors) {
+  PersonsCase each{std::move(name), "A", ring(sensors), side_by_side};
+  each.sides = true;
+  return each;
 }
 
 Setting setting_of(const PersonsCase& each, std::uint64_t seed) {
@@ -58,11 +78,7 @@ Setting setting_of(const PersonsCase& each, std::uint64_t seed) {
   setting.people = each.people(seed);
   setting.occluders = each.occluders;
   setting.length = each.length;
-  if (each.adjust) {
-    setting.adjust = [adjust = each.adjust](synthetic::kinect::Profile& profile, std::size_t) {
-      adjust(profile);
-    };
-  }
+  setting.adjust = each.adjust;
   return setting;
 }
 
@@ -140,42 +156,39 @@ Roll roll_at(const Workshop& workshop, Timestamp instant) {
   return roll;
 }
 
-std::vector<associate::Observer> observers_in(const Moment& moment, const Registration& places) {
-  std::vector<associate::Observer> observers;
-  for (const SensorReport& report : moment.reports) {
-    const bool spoke = report.basis == Basis::Exact || report.basis == Basis::Interpolated;
-    if (spoke)
-      observers.push_back({report.sensor, places.sensors.at(report.sensor).world_from_sensor});
-  }
-  return observers;
+Period period_of(const Workshop& workshop) {
+  return {workshop.begin + kStart, workshop.begin + workshop.setting.length - kTail};
 }
 
 /// Everybody at every instant, by every method.
 void call_rolls(const Workshop& workshop, std::vector<Contestant>& contestants) {
   const Registration places = true_registration(workshop, workshop.tracks.front().sensor);
-  const Timestamp end = workshop.begin + workshop.setting.length;
-  pipeline::PipelineConfig config;
-  config.association.alone = Duration{0};
-  config.association.confirm_frames = 1;  // every body of every sensor is in somebody's views
-  const auto take = [&](Moment moment) {
-    Sights sights{moment.instant, {}, observers_in(moment, places)};
-    for (Person& person : moment.people) {
-      std::ranges::move(person.views, std::back_inserter(sights.views));
-    }
-    const Roll nobody = roll_at(workshop, moment.instant);
+  visit_scenes(workshop.tracks, places, period_of(workshop), [&](const Sights& sights) {
+    const Roll nobody = roll_at(workshop, sights.instant);
     for (Contestant& contestant : contestants) {
       Roll roll = nobody;
       for (const Person& person : contestant.group(sights)) roll.claimed.push_back(claimed(person));
       contestant.rolls.push_back(std::move(roll));
     }
-  };
-  visit_moments(workshop.tracks, places, {workshop.begin + kStart, end - kTail}, take, config);
+  });
+}
+
+/// Whether the person's views together fit better with left and right exchanged.
+bool is_exchanged(const Person& person, const Skeleton<WorldSpace>& exact) {
+  LabelledError sum;
+  for (const SensorView& view : person.views) {
+    const LabelledError error = labelled_error(view.skeleton, exact);
+    sum.as_given += error.as_given;
+    sum.exchanged += error.exchanged;
+  }
+  return sum.exchanged < sum.as_given;
 }
 
 }  // namespace
 
 std::vector<PersonsCase> persons_cases() {
   constexpr Duration kFiveMinutes = std::chrono::minutes(5);
+  constexpr Duration kMinute = std::chrono::minutes(1);
   // Profile C renders images; what hides whom costs with the square of the people.
   constexpr Duration kRendered = std::chrono::seconds(12);
   constexpr Duration kOfFour = std::chrono::seconds(20);
@@ -185,13 +198,18 @@ std::vector<PersonsCase> persons_cases() {
           {"crossing-2-C", "C", ring(6), crossing_two, {}, kRendered},
           {"crossing-2-ring3", "A", ring(3), crossing_two},
           {"crossing-2-close", "A", ring(3), crossing_close},
-          behind_screen(),
+          behind_screen("crossing-2-hidden", crossing_two),
+          behind_screen("booth-2", in_booth),
           {"crossing-2-hidden-C", "C", places_behind_screen(), crossing_two, {screen()}, kRendered},
           {"crossing-2-pillar", "A", ring(6), crossing_two, {pillar()}},
           {"crossing-4", "A", ring(6), crossing_four, {}, kOfFour},
           {"crossing-4-B", "B", ring(6), crossing_four, {}, kOfFour},
           {"crossing-6", "A", ring(6), crossing_six, {}, kOfSix},
           {"relay-3", "A", ring(6), relayed},
+          {"return-3", "A", ring(6), returning, {}, kMinute},
+          beside_furniture(),
+          at_work_side_by_side("side-2", 6),
+          at_work_side_by_side("side-2-ring3", 3),
           {"circled-2", "A", ring(6), circled_person},
           {"work-4", "A", ring(6), four_at_work, {}, kOfFour},
           {"around-2-car", "A", ring(6, 3.5), around_car, {car_body()}},
@@ -211,6 +229,28 @@ Identities identities_in(const PersonsCase& each, std::uint64_t seed,
     if (!fresh && found.idf1 > known->second.idf1) known->second = found;  // the best sensor
   }
   return identities;
+}
+
+double sides_wrong_in(const PersonsCase& each, std::uint64_t seed) {
+  constexpr double kReach = 0.5;  // [m]
+  const Workshop workshop = draw_workshop(setting_of(each, seed));
+  const SensorId& master = workshop.tracks.front().sensor;
+  double instants = 0.0;
+  double wrong = 0.0;
+  const auto look = [&](const Moment& moment) {
+    for (std::size_t i = 0; i < workshop.scene.people.size(); ++i) {
+      const Skeleton<WorldSpace> exact = true_body(workshop, i, moment.instant, master);
+      const Eigen::Vector2d place = baselines::place_of(exact);
+      const auto found = std::ranges::find_if(moment.people, [&](const Person& person) {
+        return !person.views.empty() && (claimed(person).place - place).norm() <= kReach;
+      });
+      if (found == moment.people.end()) continue;
+      instants += 1.0;
+      wrong += is_exchanged(*found, exact) ? 1.0 : 0.0;
+    }
+  };
+  visit_moments(workshop.tracks, true_registration(workshop, master), period_of(workshop), look);
+  return wrong / instants;
 }
 
 }  // namespace chorus::bench

@@ -19,8 +19,10 @@ struct PersonsCase {
   std::vector<synthetic::Person> (*people)(std::uint64_t seed);
   std::vector<synthetic::Occluder> occluders = {};
   Duration length = std::chrono::seconds(30);
-  std::function<void(synthetic::kinect::Profile&)> adjust = {};
+  /// Changes the sensor at a place after the draw.
+  std::function<void(synthetic::kinect::Profile&, std::size_t place)> adjust = {};
   std::size_t draws = 20;
+  bool sides = false;  ///< Is asked for sides_wrong_in() too.
 };
 
 /// The one that is measured in quick runs and swept.
@@ -41,5 +43,9 @@ using Identities = std::map<std::string, Identity>;
 /// `best-sensor-ids` (one sensor's own ids at face value, the sensor chosen knowing the truth).
 [[nodiscard]] Identities identities_in(const PersonsCase& each, std::uint64_t seed,
                                        const std::vector<Association>& ours);
+
+/// The whole product's perception: share of the instants at which somebody's views together fit
+/// them better with left and right exchanged, people who are not answered left out.
+[[nodiscard]] double sides_wrong_in(const PersonsCase& each, std::uint64_t seed);
 
 }  // namespace chorus::bench

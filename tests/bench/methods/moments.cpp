@@ -17,21 +17,44 @@ const pipeline::Histories& Arriving::until(Timestamp instant) {
   return histories_;
 }
 
+namespace {
+
+/// Instant after instant, each when everything for it has come in.
+template <class Take>
+void each_instant(const std::vector<registration::WalkTrack>& tracks, const Period& period,
+                  const align::AlignConfig& config, const Take& take) {
+  Arriving arriving(tracks);
+  std::uint64_t sequence = 0;
+  const Duration step = from_seconds(1.0 / period.rate_hz);
+  for (Timestamp instant = period.begin; instant <= period.end; instant += step) {
+    const Timestamp late = instant + config.patience + Duration(1);
+    take(pipeline::Inputs{instant, late, sequence++}, arriving.until(instant));
+  }
+}
+
+}  // namespace
+
 void visit_moments(const std::vector<registration::WalkTrack>& tracks,
                    const Registration& registration, const Period& period,
                    const std::function<void(Moment)>& visit,
                    const pipeline::PipelineConfig& config) {
-  Arriving arriving(tracks);
   pipeline::Memory memory;
-  std::uint64_t sequence = 0;
-  const Duration step = from_seconds(1.0 / period.rate_hz);
-  for (Timestamp instant = period.begin; instant <= period.end; instant += step) {
-    const Timestamp late = instant + config.align.patience + Duration(1);
-    auto perceived = pipeline::perceive({instant, late, sequence++}, arriving.until(instant),
-                                        registration, memory, config);
-    memory = std::move(perceived.memory);
-    visit({instant, std::move(perceived.people), std::move(perceived.reports)});
-  }
+  each_instant(tracks, period, config.align,
+               [&](const pipeline::Inputs& in, const pipeline::Histories& histories) {
+                 auto perceived = pipeline::perceive(in, histories, registration, memory, config);
+                 memory = std::move(perceived.memory);
+                 visit({in.instant, std::move(perceived.people), std::move(perceived.reports)});
+               });
+}
+
+void visit_scenes(const std::vector<registration::WalkTrack>& tracks,
+                  const Registration& registration, const Period& period,
+                  const std::function<void(const associate::Scene&)>& visit) {
+  const pipeline::PipelineConfig config;
+  each_instant(tracks, period, config.align,
+               [&](const pipeline::Inputs& in, const pipeline::Histories& histories) {
+                 visit(pipeline::scene_at(in, histories, registration, config));
+               });
 }
 
 std::vector<Moment> moments_of(const std::vector<registration::WalkTrack>& tracks,

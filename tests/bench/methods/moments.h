@@ -42,6 +42,11 @@ void visit_moments(const std::vector<registration::WalkTrack>& tracks,
                    const std::function<void(Moment)>& visit,
                    const pipeline::PipelineConfig& config = {});
 
+/// What association gets, at each instant of the period.
+void visit_scenes(const std::vector<registration::WalkTrack>& tracks,
+                  const Registration& registration, const Period& period,
+                  const std::function<void(const associate::Scene&)>& visit);
+
 /// All of them.
 [[nodiscard]] std::vector<Moment> moments_of(const std::vector<registration::WalkTrack>& tracks,
                                              const Registration& registration, const Period& period,

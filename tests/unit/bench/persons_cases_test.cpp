@@ -38,13 +38,23 @@ TEST(PersonsCases, WhoCrossesUnseenKeepsTheIdByPredictionOnly) {
 
 TEST(PersonsCases, AdjustedParametersReachTheSensors) {
   PersonsCase each = case_of("crossing-2-ring3", std::chrono::seconds(10));
-  each.adjust = [](synthetic::kinect::Profile& profile) { profile.delivery.drop_share = 0.9; };
+  each.adjust = [](synthetic::kinect::Profile& profile, std::size_t) {
+    profile.delivery.drop_share = 0.9;
+  };
   const Identities thinned = identities_in(each, 1, {{"ours"}});
-  each.adjust = [](synthetic::kinect::Profile&) {};
+  each.adjust = [](synthetic::kinect::Profile&, std::size_t) {};
   const Identities usual = identities_in(each, 1, {{"ours"}});
   EXPECT_LT(thinned.at("ours").coverage, usual.at("ours").coverage);
   each.adjust = {};
   EXPECT_EQ(identities_in(each, 1, {{"ours"}}).at("ours").idf1, usual.at("ours").idf1);
+}
+
+TEST(PersonsCases, OfTwoAtWorkTellWhoseSidesAreWrong) {
+  PersonsCase each = case_of("side-2-ring3", std::chrono::seconds(3));
+  EXPECT_TRUE(each.sides);
+  const double wrong = sides_wrong_in(each, 1);
+  EXPECT_GE(wrong, 0.0);
+  EXPECT_LT(wrong, 1.0);
 }
 
 }  // namespace

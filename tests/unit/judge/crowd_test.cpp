@@ -110,5 +110,55 @@ TEST(PeopleAround, AreOppositeToEachOther) {
   EXPECT_GT(least_distance(people_around(1.5, 1)), 2.3);
 }
 
+const Timestamp kBegin = from_unix_ns(1'795'000'000'000'000'000);
+
+/// Who is in the room, so long after the beginning.
+std::vector<bool> inside_at(const std::vector<synthetic::Person>& people, double time) {
+  std::vector<bool> inside;
+  for (const auto& person : people)
+    inside.push_back(neck_at(person, seconds(kBegin.time_since_epoch()) + time).norm() < kOutside);
+  return inside;
+}
+
+TEST(ReturningPeople, GoOutAndComeBackAfterAMomentAndAfterTwentySeconds) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const auto people = returning_people(seed, kBegin);
+    using Room = std::vector<bool>;
+    EXPECT_EQ(inside_at(people, 0.0), (Room{true, true, true}));
+    EXPECT_EQ(inside_at(people, 8.2), (Room{false, true, true}));
+    EXPECT_EQ(inside_at(people, 10.1), (Room{true, true, true}));
+    EXPECT_EQ(inside_at(people, 33.0), (Room{false, false, false}));
+    EXPECT_EQ(inside_at(people, 35.0), (Room{false, true, false}));
+    EXPECT_EQ(inside_at(people, 50.0), (Room{true, true, true}));
+  }
+}
+
+TEST(BoothPeople, TakeTurnsBehindTheScreen) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const auto people = booth_people(seed, kBegin);
+    auto before = inside_at(people, 0.0);
+    EXPECT_EQ(before, (std::vector<bool>{true, false}));
+    int left = 0;
+    for (double time = 0; time < 60; time += 0.01) {
+      const auto now = inside_at(people, time);
+      EXPECT_FALSE(now[0] && now[1]) << seed << " " << time;
+      for (std::size_t i = 0; i < 2; ++i) {
+        if (now[i] == before[i]) continue;
+        left += before[i] ? 1 : 0;
+        const double there = seconds(kBegin.time_since_epoch()) + time - (now[i] ? 0.0 : 0.01);
+        EXPECT_NEAR(neck_at(people[i], there).y(), 0.0, 0.1) << seed << " " << time;
+      }
+      before = now;
+    }
+    EXPECT_GE(left, 3) << seed;
+  }
+}
+
+TEST(SideBySide, StandBesideEachOtherAndNeverMeet) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    EXPECT_GT(least_distance(side_by_side(seed)), 0.4) << seed;
+  }
+}
+
 }  // namespace
 }  // namespace chorus::bench

@@ -94,5 +94,28 @@ TEST(Identity, OfNothingIsZero) {
   EXPECT_EQ(identity_of({}).coverage, 0.0);
 }
 
+TEST(Identity, AnIdThatFollowsTwoPeopleForASecondEachIsInherited) {
+  auto rolls = two_people(101);
+  for (std::size_t i = 0; i < rolls.size(); ++i) {
+    rolls[i].claimed.pop_back();
+    rolls[i].exact[i < 50 ? 1 : 0].setConstant(kNan);
+    if (i >= 50) rolls[i].claimed[0].place = {1, 0};
+  }
+  EXPECT_EQ(identity_of(rolls).inherited, 1u);
+  for (std::size_t i = 50; i < 80; ++i) rolls[i].claimed[0].id = 2;
+  EXPECT_EQ(identity_of(rolls).inherited, 0u) << "21 instants, and a second has 25";
+  IdentityConfig strict;
+  strict.lasting = 0.5;
+  EXPECT_EQ(identity_of(rolls, strict).inherited, 1u);
+}
+
+TEST(Identity, ANewIdOfSomebodyWhoHadOneIsSpare) {
+  auto rolls = two_people(100);
+  EXPECT_EQ(identity_of(rolls).spare_ids, 0u);
+  for (std::size_t i = 50; i < 100; ++i) rolls[i].claimed[1].id = 3;
+  EXPECT_EQ(identity_of(rolls).spare_ids, 1u);
+  EXPECT_EQ(identity_of(rolls).inherited, 0u);
+}
+
 }  // namespace
 }  // namespace chorus::bench
