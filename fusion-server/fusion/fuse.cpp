@@ -5,8 +5,8 @@
 namespace chorus::fusion {
 
 Memory::Memory(const Memory& other) : config_(other.config_) {
-  for (const auto& [id, estimator] : other.estimators_) {
-    estimators_.emplace(id, estimator->clone());
+  for (const auto& [key, estimator] : other.estimators_) {
+    estimators_.emplace(key, estimator->clone());
   }
 }
 
@@ -21,8 +21,9 @@ std::vector<FusedBody> Memory::fuse(const std::vector<Person>& people, const Ins
   config_ = config;
   std::vector<FusedBody> bodies;
   for (const Person& person : people) {
-    auto& estimator = estimators_[person.id];
-    if (!estimator) estimator = begin(config);
+    const Method method = method_for(person, config);
+    auto& estimator = estimators_[{person.id, method}];
+    if (!estimator) estimator = begin(method, config);
     bodies.push_back(estimator->fuse(person, instant));
     bodies.back().sides_confidence = person.sides_confidence;
   }
@@ -30,12 +31,13 @@ std::vector<FusedBody> Memory::fuse(const std::vector<Person>& people, const Ins
 }
 
 void Memory::keep_only(const std::set<PersonId>& tracked) {
-  std::erase_if(estimators_, [&](const auto& entry) { return !tracked.contains(entry.first); });
+  std::erase_if(estimators_,
+                [&](const auto& entry) { return !tracked.contains(entry.first.first); });
 }
 
 FusedBody fuse(const Person& person, const std::vector<SensorId>& sensors,
                const FusionConfig& config) {
-  return begin(config)->fuse(person, {Timestamp{}, sensors});
+  return begin(method_for(person, config), config)->fuse(person, {Timestamp{}, sensors});
 }
 
 }  // namespace chorus::fusion

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "fusion-server/flow.h"
@@ -13,7 +14,8 @@
 
 namespace chorus::fusion {
 
-/// One estimator per person.  A value: a copy remembers the same and then goes its own way.
+/// One estimator per person and method.  A value: a copy remembers the same and then goes its own
+/// way.
 class Memory {
  public:
   Memory() = default;
@@ -23,7 +25,8 @@ class Memory {
   Memory& operator=(Memory&&) noexcept = default;
   ~Memory() = default;
 
-  /// One body per person, in their order.  When the configuration changes, everybody is forgotten.
+  /// One body per person, in their order, each by method_for it.  When the configuration changes,
+  /// everybody is forgotten.
   [[nodiscard]] std::vector<FusedBody> fuse(const std::vector<Person>& people,
                                             const Instant& instant, const FusionConfig& config);
   /// Forgets people who are no longer tracked.
@@ -31,7 +34,7 @@ class Memory {
 
  private:
   FusionConfig config_;
-  std::map<PersonId, std::unique_ptr<Estimator>> estimators_;
+  std::map<std::pair<PersonId, Method>, std::unique_ptr<Estimator>> estimators_;
 };
 
 /// One instant by itself, as a method without memories answers it.  The order of the views affects

@@ -36,9 +36,18 @@ std::optional<Method> method_named(std::string_view name) {
   return row->method;
 }
 
-std::unique_ptr<Estimator> begin(const FusionConfig& config) {
-  const auto* const row = std::ranges::find(kMethods, config.method, &MethodRow::method);
+std::unique_ptr<Estimator> begin(Method method, const FusionConfig& config) {
+  const auto* const row = std::ranges::find(kMethods, method, &MethodRow::method);
   return (row == kMethods.end() ? kMethods.front() : *row).begin(config);
+}
+
+Method method_for(const Person& person, const FusionConfig& config) {
+  const auto any = [&](auto wanted) {
+    return std::ranges::any_of(person.views, [&](const SensorView& view) {
+      return std::ranges::any_of(view.skeleton.joints, wanted);
+    });
+  };
+  return !any(&Joint::seen) && any(&Joint::bears) ? Method::PointsAndRays : config.method;
 }
 
 }  // namespace chorus::fusion

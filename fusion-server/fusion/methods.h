@@ -22,7 +22,10 @@ struct MethodRow {
 [[nodiscard]] std::string_view name_of(Method method);
 [[nodiscard]] std::optional<Method> method_named(std::string_view name);
 
-/// The configured method, for one person.
-[[nodiscard]] std::unique_ptr<Estimator> begin(const FusionConfig& config);
+/// A method with the configured parameters, for one person.
+[[nodiscard]] std::unique_ptr<Estimator> begin(Method method, const FusionConfig& config);
+
+/// The configured method, or for a person of whom there are rays alone the one that uses them.
+[[nodiscard]] Method method_for(const Person& person, const FusionConfig& config);
 
 }  // namespace chorus::fusion
