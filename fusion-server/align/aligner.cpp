@@ -10,6 +10,7 @@ namespace {
 
 /// Later than ever before, but still expected.
 constexpr Duration kGrace = std::chrono::milliseconds(15);
+constexpr int kPeriods = 2;  // of a slow sensor, that are interpolated across
 
 /// The frames around an instant; `before` and `after` are the same frame when it is hit exactly.
 struct Bracket {
@@ -26,6 +27,7 @@ Bracket bracket(Timestamp instant, Timestamp now, const History& history,
       over ? frames.end()
            : std::lower_bound(frames.begin(), frames.end(), instant,
                               [](const SensorFrame& f, Timestamp t) { return f.captured < t; });
+  const Duration widest = widest_gap(history, config);
   Bracket found;
   if (next != frames.end() && next->captured == instant) {
     return {Basis::Exact, &*next, &*next};
@@ -34,11 +36,11 @@ Bracket bracket(Timestamp instant, Timestamp now, const History& history,
   if (next != frames.end()) found.after = &*next;
   if (!found.after) {
     // A silent sensor is given up early: no later frame could close a bracket this wide.
-    const bool hopeless = found.before && instant - found.before->captured > config.max_gap;
+    const bool hopeless = found.before && instant - found.before->captured > widest;
     const Duration wait =
         std::min(config.patience, longest_wait(history).value_or(config.patience));
     found.basis = hopeless || now - instant > wait ? Basis::Lost : Basis::Pending;
-  } else if (found.before && found.after->captured - found.before->captured <= config.max_gap) {
+  } else if (found.before && found.after->captured - found.before->captured <= widest) {
     found.basis = Basis::Interpolated;
   }
   return found;
@@ -64,6 +66,11 @@ std::vector<BodyFrame> bodies_between(const Bracket& around, Timestamp instant) 
 }
 
 }  // namespace
+
+Duration widest_gap(const History& history, const AlignConfig& config) {
+  const Duration own = kPeriods * history.period().value_or(Duration{0});
+  return std::max(config.max_gap, std::min(own, config.slowest));
+}
 
 std::optional<Duration> longest_wait(const History& history) {
   if (!history.habit()) return std::nullopt;

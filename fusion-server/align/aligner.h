@@ -13,7 +13,8 @@
 namespace chorus::align {
 
 struct AlignConfig {
-  /// Widest bracket that is interpolated across.
+  /// Widest bracket that is interpolated across, unless the sensor's own period is long
+  /// (widest_gap).
   Duration max_gap = std::chrono::milliseconds(120);
   /// Age at which Pending turns into Lost, unless the sensor's own habit says sooner
   /// (longest_wait).
@@ -22,6 +23,9 @@ struct AlignConfig {
   /// is usual among the others, is waited for no longer than the others usually need, so that one
   /// bad link does not make everybody's bodies old.
   Duration unsteady = std::chrono::milliseconds(30);
+  /// Where sensors are slow (cameras whose pictures take long), `max_gap` and `patience` grow with
+  /// their periods and delays, up to this.  Less than both: they never grow.
+  Duration slowest = std::chrono::milliseconds(2000);
 
   bool operator==(const AlignConfig&) const = default;
 };
@@ -33,6 +37,9 @@ struct AlignConfig {
 /// How `at` would answer, without building the bodies.
 [[nodiscard]] Basis basis_at(Timestamp instant, Timestamp now, const History& history,
                              const AlignConfig& config);
+
+/// Widest bracket of this sensor that is interpolated across: max_gap, or two of its periods.
+[[nodiscard]] Duration widest_gap(const History& history, const AlignConfig& config);
 
 /// How long after an instant this sensor's next frame comes at the latest, judged by its recent
 /// frames; none before enough frames with a time of arrival have come.

@@ -8,7 +8,9 @@ namespace chorus::align {
 namespace {
 
 constexpr std::size_t kHabit = 30;     ///< Frames that make a habit: one second.
-constexpr std::size_t kMinHabit = 10;  ///< Fewer say nothing.
+constexpr std::size_t kMinHabit = 10;  ///< Fewer say nothing,
+constexpr std::size_t kMinSlow = 4;    ///< but of a slow sensor these, if they took this long.
+constexpr Duration kSlow = std::chrono::seconds(1);
 
 /// Two bodies of a frame with one id cannot be told apart later: the first keeps it, the others are
 /// left out.
@@ -31,9 +33,17 @@ Duration tenths_of(std::vector<Duration>& values, std::size_t tenths) {
   return *place;
 }
 
+/// How many of the newest frames tell a habit; zero: there are too few.
+std::size_t recent(const std::deque<SensorFrame>& frames) {
+  if (frames.size() >= kMinHabit) return std::min(frames.size(), kHabit);
+  const bool slow =
+      frames.size() >= kMinSlow && frames.back().captured - frames.front().captured >= kSlow;
+  return slow ? frames.size() : 0;
+}
+
 std::optional<Habit> habit_of(const std::deque<SensorFrame>& frames) {
-  const std::size_t count = std::min(frames.size(), kHabit);
-  if (count < kMinHabit) return std::nullopt;
+  const std::size_t count = recent(frames);
+  if (count == 0) return std::nullopt;
   std::vector<Duration> waits;
   std::vector<Duration> delays;
   Timestamp first_received = Timestamp::max();  // of this frame and those captured later
@@ -50,6 +60,15 @@ std::optional<Habit> habit_of(const std::deque<SensorFrame>& frames) {
   habit.least_delay = *std::ranges::min_element(delays);
   habit.late_delay = tenths_of(delays, 9);
   return habit;
+}
+
+std::optional<Duration> period_of(const std::deque<SensorFrame>& frames) {
+  const std::size_t count = recent(frames);
+  if (count == 0) return std::nullopt;
+  std::vector<Duration> steps;
+  for (std::size_t i = frames.size() - count + 1; i < frames.size(); ++i)
+    steps.push_back(frames[i].captured - frames[i - 1].captured);
+  return tenths_of(steps, 5);
 }
 
 }  // namespace
@@ -77,8 +96,13 @@ PushVerdict History::push(SensorFrame frame) {
     if (restarted) place = frames_.end();
   }
   keep_first_of_each_id(frame.bodies);
+  if (!frame.bodies.empty()) {
+    rays_only_ = std::ranges::all_of(
+        frame.bodies, [](const BodyFrame& body) { return has_rays_alone(body.skeleton.joints); });
+  }
   frames_.insert(place, std::move(frame));
   habit_ = habit_of(frames_);
+  period_ = period_of(frames_);
   const Timestamp oldest = frames_.back().captured - limits_.max_age;
   while (frames_.size() > 1 &&
          (frames_.size() > limits_.max_frames || frames_.front().captured < oldest)) {

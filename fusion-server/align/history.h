@@ -54,11 +54,17 @@ class History {
   [[nodiscard]] std::optional<Timestamp> newest() const;
   /// None before enough frames with a time of receipt.  Late frames do not count.
   [[nodiscard]] const std::optional<Habit>& habit() const noexcept { return habit_; }
+  /// From capture to capture, by the median of the recent ones; none before enough of them.
+  [[nodiscard]] const std::optional<Duration>& period() const noexcept { return period_; }
+  /// It sees directions only: all bodies of the newest frame that shows any are rays alone.
+  [[nodiscard]] bool rays_only() const noexcept { return rays_only_; }
 
  private:
   HistoryLimits limits_;
   std::deque<SensorFrame> frames_;
   std::optional<Habit> habit_;
+  std::optional<Duration> period_;
+  bool rays_only_ = false;
 };
 
 }  // namespace chorus::align

@@ -1,40 +1,63 @@
 #include "fusion-server/align/patience.h"
 
 #include <algorithm>
-#include <vector>
 
 namespace chorus::align {
 namespace {
 
 constexpr int kWorse = 2;  // times the spread of the middle sensor
+/// A bodies' worth of rays: one camera without depth makes none.
+constexpr std::size_t kCameras = 2;
 
-/// The lower one of two.
-Duration middle_of(std::vector<Duration>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+/// Three halves of what the middle sensor needs: none is exactly like another.
+Duration with_slack(Duration wait) { return wait * 3 / 2; }
+
+/// The one that is waited for whatever the slower ones do: the middle, of two the quicker one.
+/// Where nobody has depth it is at least the second, because there is no body without it.
+std::size_t middle(std::size_t count, bool rays) {
+  const std::size_t least = rays ? std::min(count, kCameras) - 1 : 0;
+  return std::max((count - 1) / 2, least);
+}
+
+Duration at_place(std::vector<Duration>& values, std::size_t place) {
+  const auto found = values.begin() + static_cast<std::ptrdiff_t>(place);
+  std::nth_element(values.begin(), found, values.end());
+  return *found;
 }
 
 }  // namespace
 
 Patience::Patience(const std::map<SensorId, const History*>& histories, const AlignConfig& config)
-    : config_(config), common_(config.patience), steady_(config.unsteady) {
+    : config_(config),
+      patience_(config.patience),
+      common_(config.patience),
+      steady_(config.unsteady) {
   std::vector<Duration> waits;
   std::vector<Duration> spreads;
+  bool rays = true;
   for (const auto& [sensor, history] : histories) {
     if (!history->habit()) continue;
     waits.push_back(*usual_wait(*history));
     spreads.push_back(history->habit()->spread());
+    rays = rays && history->rays_only();
   }
   if (waits.empty()) return;
-  common_ = std::min(common_, middle_of(waits));
-  steady_ = std::max(steady_, kWorse * middle_of(spreads));
+  const std::size_t place = middle(waits.size(), rays);
+  const Duration needed = at_place(waits, place);
+  patience_ = std::max(patience_, std::min(with_slack(needed), config.slowest));
+  common_ = std::min(patience_, needed);
+  steady_ = std::max(steady_, kWorse * at_place(spreads, place));
+  all_needed_ = rays && waits.size() <= kCameras;
 }
 
 AlignConfig Patience::of(const History& history) const {
   AlignConfig own = config_;
+  own.patience = patience_;
   const auto& habit = history.habit();
-  if (habit && habit->spread() > steady_) own.patience = std::min(own.patience, common_);
+  if (!habit || all_needed_) return own;
+  // A slow sensor's pictures wait for each other; half a period more or less is its nature.
+  const Duration steady = std::max(steady_, history.period().value_or(Duration{0}) / 2);
+  if (habit->spread() > steady) own.patience = std::min(own.patience, common_);
   return own;
 }
 

@@ -1,7 +1,9 @@
-// How long an instant waits for each sensor, so that one bad link cannot delay everybody.
+// How long an instant waits for each sensor: long enough where they are slow, and never so that one
+// bad link delays everybody.
 #pragma once
 
 #include <map>
+#include <vector>
 
 #include "fusion-server/align/aligner.h"
 
@@ -17,10 +19,16 @@ class Patience {
   /// none is to blame).
   [[nodiscard]] AlignConfig of(const History& history) const;
 
+  /// How much longer than `config.patience` an instant may wait, because most of the sensors are
+  /// slow.
+  [[nodiscard]] Duration extension() const { return patience_ - config_.patience; }
+
  private:
   AlignConfig config_;
-  Duration common_;  ///< The median of what the sensors usually need.
-  Duration steady_;  ///< The widest spread that is not unsteady.
+  Duration patience_;        ///< With steady sensors.
+  Duration common_;          ///< The middle of what the sensors usually need.
+  Duration steady_;          ///< The widest spread that is not unsteady.
+  bool all_needed_ = false;  ///< There is no body without each of them.
 };
 
 }  // namespace chorus::align

@@ -75,8 +75,11 @@ std::optional<Snapshot> FusionCore::tick(Timestamp now) {
   const Tick tick = schedule_.next(now);
   pipeline::Step step = pipeline::step({tick.instant, now, tick.sequence}, histories_,
                                        registration(), memory_, config_.pipeline);
-  Answered answered{
-      tick, std::exchange(memory_, std::move(step.memory)), {}, parts_of(step.snapshot)};
+  Answered answered{tick,
+                    std::exchange(memory_, std::move(step.memory)),
+                    {},
+                    parts_of(step.snapshot),
+                    awaited_.extension};
   reports_ = step.snapshot.reports;
   for (const SensorReport& report : reports_) {
     const bool spoke = report.basis == Basis::Exact || report.basis == Basis::Interpolated;
@@ -121,13 +124,15 @@ Duration FusionCore::idle(Timestamp now) {
   if (awaited_by_ != tick.sequence) {
     awaited_ = pipeline::all_awaited(histories_, registration(), config_.pipeline);
     awaited_by_ = tick.sequence;
+    schedule_.extend(awaited_.extension);
   }
-  pipeline::drop_settled(awaited_, {tick.instant, now, tick.sequence}, histories_);
-  if (!awaited_.empty() && now > tick.instant) {
+  std::vector<pipeline::Awaited>& sensors = awaited_.sensors;
+  pipeline::drop_settled(sensors, {tick.instant, now, tick.sequence}, histories_);
+  if (!sensors.empty() && now > tick.instant) {
     last_awaited_.clear();
-    for (const pipeline::Awaited& one : awaited_) last_awaited_.push_back(one.sensor);
+    for (const pipeline::Awaited& one : sensors) last_awaited_.push_back(one.sensor);
   }
-  return schedule_.wait(now, awaited_.empty());
+  return schedule_.wait(now, sensors.empty());
 }
 
 void FusionCore::forget() {

@@ -92,9 +92,9 @@ class FusionCore {
   Registrar registrar_;
   std::map<SensorId, Refusals> refused_;
   std::map<SensorId, associate::FrozenBodies> frozen_;
-  std::vector<pipeline::Awaited> awaited_;  ///< By the pending instant, when last asked about.
-  std::uint64_t awaited_by_ = 0;            ///< Sequence of that instant; zero: none.
-  std::vector<SensorId> last_awaited_;      ///< Those it waited for to the last.
+  pipeline::Waiting awaited_;           ///< By the pending instant, when last asked about.
+  std::uint64_t awaited_by_ = 0;        ///< Sequence of that instant; zero: none.
+  std::vector<SensorId> last_awaited_;  ///< Those it waited for to the last.
   Hindsight hindsight_;
   Shares shares_;
   std::vector<SensorReport> reports_;

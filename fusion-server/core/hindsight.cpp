@@ -38,7 +38,9 @@ void Hindsight::remember(Answered answered) {
 }
 
 std::optional<Answered> Hindsight::due(Timestamp now) {
-  if (waiting_.empty() || now - waiting_.front().tick.instant < delay_) return std::nullopt;
+  if (waiting_.empty()) return std::nullopt;
+  const Answered& first = waiting_.front();
+  if (now - first.tick.instant < delay_ + first.extension) return std::nullopt;
   Answered oldest = std::move(waiting_.front());
   waiting_.pop_front();
   return oldest;

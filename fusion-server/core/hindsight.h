@@ -22,6 +22,7 @@ struct Answered {
   pipeline::Memory before;        ///< What earlier instants had left.
   std::vector<SensorId> without;  ///< Sensors with a place whose frames did not arrive in time.
   Parts parts;
+  Duration extension{0};  ///< How much longer than usual it may have waited.
 };
 
 class Hindsight {

@@ -40,8 +40,7 @@ Tick TickSchedule::next(Timestamp now) {
   };
   if (index_ == 0) {
     index_ = current + 1;
-  } else if (now - grid_instant(index_, config_.rate_hz) >
-             config_.alignment_delay + config_.max_lag) {
+  } else if (now - grid_instant(index_, config_.rate_hz) > delay() + config_.max_lag) {
     jump(current);
   } else if (grid_instant(index_, config_.rate_hz) - now > config_.max_lag) {
     jump(current + 1);
@@ -58,7 +57,7 @@ Duration TickSchedule::wait(Timestamp now, bool ready) const {
   const Timestamp instant = grid_instant(index_, config_.rate_hz);
   const Timestamp earliest = std::max(instant, last_answer_ + spacing());
   if (now < earliest) return earliest - now;
-  const Timestamp latest = std::max(earliest, instant + config_.alignment_delay);
+  const Timestamp latest = std::max(earliest, instant + delay());
   return ready || now >= latest ? Duration{0} : latest - now;
 }
 

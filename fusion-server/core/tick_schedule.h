@@ -11,7 +11,7 @@ namespace chorus::core {
 
 struct TickConfig {
   int rate_hz = 30;
-  /// An instant is answered at most this long after it.
+  /// An instant is answered at most this long after it, and what TickSchedule::extend says.
   Duration alignment_delay = std::chrono::milliseconds(200);
   /// Between two answers, but at most half an interval: after a stall the late answers come one by
   /// one, so that whoever polls the latest frame sees each of them.
@@ -41,6 +41,9 @@ class TickSchedule {
   /// Zero: answer it now.  Else: wait at most this long, and ask again when a frame arrives.
   [[nodiscard]] Duration wait(Timestamp now, bool ready) const;
 
+  /// Instants may wait this much longer than the alignment delay, from now on.
+  void extend(Duration extension) { extension_ = extension; }
+
   /// The tick of next() has been answered.
   void answered(Timestamp now);
 
@@ -54,8 +57,10 @@ class TickSchedule {
 
  private:
   [[nodiscard]] Duration spacing() const;
+  [[nodiscard]] Duration delay() const { return config_.alignment_delay + extension_; }
 
   TickConfig config_;
+  Duration extension_{0};
   std::int64_t index_ = 0;  ///< Of the pending instant; zero: not started.
   std::uint64_t sequence_;
   std::uint64_t skipped_ = 0;

@@ -161,14 +161,15 @@ void leave_out_the_unplaced(std::vector<FusedBody>& bodies, const std::vector<Pe
 
 }  // namespace
 
-std::vector<Awaited> all_awaited(const Histories& histories, const Registration& registration,
-                                 const PipelineConfig& config) {
+Waiting all_awaited(const Histories& histories, const Registration& registration,
+                    const PipelineConfig& config) {
   const align::Patience patience = patience_of(histories, registration, config);
-  std::vector<Awaited> awaited;
+  Waiting waiting{{}, patience.extension()};
   for (const auto& [sensor, history] : histories) {
-    if (registration.sensors.contains(sensor)) awaited.push_back({sensor, patience.of(history)});
+    if (registration.sensors.contains(sensor))
+      waiting.sensors.push_back({sensor, patience.of(history)});
   }
-  return awaited;
+  return waiting;
 }
 
 void drop_settled(std::vector<Awaited>& awaited, const Inputs& in, const Histories& histories) {

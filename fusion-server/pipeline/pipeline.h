@@ -60,10 +60,14 @@ struct Awaited {
   align::AlignConfig align;
 };
 
+struct Waiting {
+  std::vector<Awaited> sensors;
+  Duration extension{0};  ///< How much longer than usual, because most of them are slow.
+};
+
 /// Before an instant: every sensor with a place.
-[[nodiscard]] std::vector<Awaited> all_awaited(const Histories& histories,
-                                               const Registration& registration,
-                                               const PipelineConfig& config);
+[[nodiscard]] Waiting all_awaited(const Histories& histories, const Registration& registration,
+                                  const PipelineConfig& config);
 
 /// Takes out those whose answer is there, or too late.  When none is left, waiting longer cannot
 /// improve the instant.

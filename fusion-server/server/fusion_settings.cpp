@@ -74,6 +74,7 @@ void read_align(ConfigReader reader, align::AlignConfig& out) {
   reader.read_ms("max_gap_ms", out.max_gap, milliseconds(1), seconds(2));
   reader.read_ms("patience_ms", out.patience, milliseconds(1), seconds(5));
   reader.read_ms("unsteady_ms", out.unsteady, milliseconds(0), seconds(5));
+  reader.read_ms("slowest_ms", out.slowest, milliseconds(0), seconds(3));
 }
 
 void read_quality(ConfigReader reader, fusion::QualityLimits& out) {

@@ -111,6 +111,29 @@ TEST(Align, AWideGapIsNotBridged) {
   EXPECT_EQ(ask(two_frames(milliseconds(121)), milliseconds(60)).basis, Basis::Lost);
 }
 
+/// Frames every `period`, and one more after the gap.
+History then_gap(Duration period, Duration gap) {
+  History history;
+  for (int i = 0; i < 8; ++i) history.push(frame_at(i * period, 0.0));
+  history.push(frame_at(7 * period + gap, 0.3));
+  return history;
+}
+
+TEST(Align, ASlowSensorsGapIsBridgedWhereOneFrameIsMissing) {
+  const Duration period = milliseconds(200);
+  const auto basis = [&](const History& history, const AlignConfig& config) {
+    const Timestamp instant = kStart + 7 * period + milliseconds(100);
+    return basis_at(instant, instant + milliseconds(50), history, config);
+  };
+  EXPECT_EQ(basis(then_gap(period, period), {}), Basis::Interpolated);
+  EXPECT_EQ(basis(then_gap(period, 2 * period), {}), Basis::Interpolated);
+  EXPECT_EQ(basis(then_gap(period, 2 * period + milliseconds(1)), {}), Basis::Lost);
+  AlignConfig bounded;
+  bounded.slowest = milliseconds(300);
+  EXPECT_EQ(basis(then_gap(period, 2 * period), bounded), Basis::Lost);
+  EXPECT_EQ(basis(then_gap(period, milliseconds(300)), bounded), Basis::Interpolated);
+}
+
 TEST(Align, ABodyAtOneEndOnlyIsNotShown) {
   History history = two_frames(milliseconds(30));
   SensorFrame third = frame_at(milliseconds(60), 0.6);

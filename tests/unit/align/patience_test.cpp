@@ -91,6 +91,58 @@ TEST(Patience, OnABusyMachineTheWorstOfAllIsUnsteady) {
   EXPECT_EQ(patience.of(bad).patience, *usual_wait(busy));
 }
 
+/// Five frames a second, rays or points, `delay` after their capture.
+History camera(Duration delay, bool rays = true) {
+  History history;
+  for (int i = 0; i < 20; ++i) {
+    SensorFrame frame;
+    frame.sequence = static_cast<std::uint64_t>(i);
+    frame.captured = kStart + milliseconds(200 * i);
+    frame.received = frame.captured + delay;
+    frame.bodies.resize(1);
+    Joint& neck = frame.bodies[0].skeleton[JointId::Neck];
+    neck.position = {0, 0, 1};
+    neck.state = JointState::Tracked;
+    neck.measurement = rays ? Measurement::Ray : Measurement::Point;
+    history.push(frame);
+  }
+  return history;
+}
+
+TEST(Patience, GrowsWhereMostAreSlow) {
+  const History slow = camera(milliseconds(250));
+  const History quick = sensor(milliseconds(2), milliseconds(5));
+  const Patience most(
+      {{sensor_id("s1"), &quick}, {sensor_id("s2"), &slow}, {sensor_id("s3"), &slow}}, {});
+  // Three halves of a period, its delay and the grace.
+  EXPECT_EQ(most.of(slow).patience, Duration(milliseconds(465)) * 3 / 2);
+  EXPECT_EQ(most.extension(), Duration(milliseconds(465)) * 3 / 2 - AlignConfig{}.patience);
+  const Patience few(
+      {{sensor_id("s1"), &quick}, {sensor_id("s2"), &quick}, {sensor_id("s3"), &slow}}, {});
+  EXPECT_EQ(few.of(slow).patience, AlignConfig{}.patience);
+  EXPECT_EQ(few.extension(), Duration{0});
+}
+
+TEST(Patience, OfTwoCamerasBothAreNeeded) {
+  const History slow = camera(milliseconds(250));
+  const History quick = camera(milliseconds(10));
+  const History points = camera(milliseconds(10), false);
+  const Patience rays({{sensor_id("s1"), &quick}, {sensor_id("s2"), &slow}}, {});
+  EXPECT_GT(rays.of(slow).patience, milliseconds(465));
+  const Patience mixed({{sensor_id("s1"), &points}, {sensor_id("s2"), &slow}}, {});
+  EXPECT_LT(mixed.of(slow).patience, milliseconds(465));
+}
+
+TEST(Patience, GrowsUpToALimit) {
+  const History slow = camera(milliseconds(1800));
+  const std::map<SensorId, const History*> two{{sensor_id("s1"), &slow}, {sensor_id("s2"), &slow}};
+  EXPECT_EQ(Patience(two, {}).of(slow).patience, AlignConfig{}.slowest);
+  AlignConfig never;
+  never.slowest = Duration{0};
+  EXPECT_EQ(Patience(two, never).of(slow).patience, never.patience);
+  EXPECT_EQ(Patience(two, never).extension(), Duration{0});
+}
+
 TEST(Patience, OfNewSensorsNothingIsKnown) {
   const History young = sensor(milliseconds(0), milliseconds(100), 5);
   const Patience patience({{sensor_id("s1"), &young}}, {});

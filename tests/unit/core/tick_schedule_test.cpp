@@ -38,6 +38,17 @@ TEST(TickSchedule, AnswersWhenReadyAndAtTheDeadlineWhenNot) {
   EXPECT_EQ(schedule.wait(tick.instant + milliseconds(80), false), Duration{0});
 }
 
+TEST(TickSchedule, WaitsLongerForSlowSensorsWithoutSkipping) {
+  TickSchedule schedule({.alignment_delay = milliseconds(80), .max_lag = milliseconds(100)});
+  schedule.extend(milliseconds(500));
+  const Tick tick = schedule.next(kT0);
+  const Timestamp later = tick.instant + milliseconds(570);
+  EXPECT_EQ(schedule.next(later).instant, tick.instant);
+  EXPECT_EQ(schedule.wait(later, false), milliseconds(10));
+  schedule.extend(milliseconds(480));
+  EXPECT_EQ(schedule.wait(later, false), Duration{0});
+}
+
 TEST(TickSchedule, NoInstantIsLostOrDoubledOverAMinuteOfUnevenWork) {
   TickSchedule schedule({});
   Timestamp now = kT0;

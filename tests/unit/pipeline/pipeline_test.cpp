@@ -172,8 +172,8 @@ TEST(Awaited, AreRegisteredSensorsOnlyAndOnlySoLong) {
   const Registration registration = ring_registration(6);
   const auto at = [&](Timestamp instant, Timestamp now) {
     auto awaited = all_awaited(histories, registration, {});
-    drop_settled(awaited, {instant, now, 0}, histories);
-    return awaited.size();
+    drop_settled(awaited.sensors, {instant, now, 0}, histories);
+    return awaited.sensors.size();
   };
   const Timestamp inside = kStart + milliseconds(500);
   EXPECT_EQ(at(inside, inside), 0u);
