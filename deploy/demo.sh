@@ -8,6 +8,9 @@
 #                                   recorded, and the settings of DIR/fusion.json if it is there; a folder of
 #                                   camera landmarks is imported first; without DIR, the four real cameras
 #                                   that travel with the tests
+#   --cameras                       looks at videos of four cameras that travel with the tests: each has a
+#                                   sensor whose runner finds the person in its pictures, and the fusion server
+#                                   makes bodies of their rays, with the published extrinsics
 #   --register                      with --recording: find the extrinsics from the person alone
 #   --port N                        the fusion server's port (8080); the sensors take the ports after it
 #   --set PATH=VALUE                handed to chorus-fusion, any number of times
@@ -20,12 +23,14 @@ cd "$(dirname "$0")/.."
 readonly sensor_count=6
 readonly start_within_s=15
 readonly bundled_recording=tests/data/pose2sim_mediapipe
+readonly bundled_cameras=tests/data/pose2sim_videos/four
+readonly camera_count=4
 
 usage() { sed -n '2,/^$/s/^# \{0,1\}//p' "$0"; }
 step() { printf '\n== %s\n' "$*"; }
 fail() { printf '\ndemo: %s\n' "$*" >&2; exit 1; }
 
-seconds='' recording='' register='' port=8080 overrides=() bin=build/release/bin build=yes
+seconds='' recording='' cameras='' register='' port=8080 overrides=() bin=build/release/bin build=yes
 read_arguments() {
   while (( $# > 0 )); do
     case $1 in
@@ -33,6 +38,7 @@ read_arguments() {
       --recording)
         recording=$bundled_recording
         if [[ -n "${2:-}" && "${2:0:2}" != -- ]]; then recording=$2; shift; fi ;;
+      --cameras) cameras=yes ;;
       --register) register=yes ;;
       --port) port=${2:?--port needs a number}; shift ;;
       --set) overrides+=(--set "${2:?--set needs PATH=VALUE}"); shift ;;
@@ -45,6 +51,8 @@ read_arguments() {
   [[ -z "$seconds" || "$seconds" =~ ^[0-9]+$ ]] || fail "--seconds needs a whole number, not '$seconds'"
   [[ "$port" =~ ^[0-9]+$ ]] || fail "--port needs a number, not '$port'"
   [[ -z "$recording" || -d "$recording" ]] || fail "there is no folder '$recording'"
+  [[ -z "$recording" || -z "$cameras" ]] || fail "--cameras and --recording are two demos: choose one"
+  [[ -n "$recording" || -z "$register" ]] || fail "--register goes with --recording"
 }
 
 # --- what we started, and stopping it -------------------------------------------------------------
@@ -99,16 +107,21 @@ show_logs() {
 build() {
   step "packages"
   deploy/install-packages.sh build
-  if ! cmp -s services/viewer/package-lock.json services/viewer/node_modules/.chorus-lock; then
-    npm ci --prefix services/viewer --no-progress
-    cp services/viewer/package-lock.json services/viewer/node_modules/.chorus-lock
-  fi
+  install_modules services/viewer
+  [[ -z "$cameras" ]] || install_modules services/pose-runner
   step "build"
   local launcher=()
   export CCACHE_SLOPPINESS=pch_defines,time_macros
   command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   cmake --preset release "${launcher[@]}" --log-level=WARNING > "$logs/configure.out"
   cmake --build build/release -j "$(build_jobs)" --target chorus-sensor chorus-fusion chorus
+}
+
+# install_modules FOLDER: what its package-lock.json names, unless that is there.
+install_modules() {
+  cmp -s "$1/package-lock.json" "$1/node_modules/.chorus-lock" && return
+  npm ci --prefix "$1" --no-progress
+  cp "$1/package-lock.json" "$1/node_modules/.chorus-lock"
 }
 
 # The largest translation units take about 1.5 GB each.
@@ -174,6 +187,15 @@ start_replays() {
   while read -r id _ url _; do add_sensor "$id" "$url"; done < <(grep ' at http' "$logs/replay.out")
 }
 
+start_cameras() {
+  local i
+  for (( i = 1; i <= camera_count; ++i )); do
+    local p=$(( port + i ))
+    start "cam0$i" "$bin/chorus-sensor" --config "$bundled_cameras/cam0$i.json" --set "http.port=$p"
+    add_sensor "cam0$i" "http://127.0.0.1:$p/"
+  done
+}
+
 start_fusion() {
   local config=deploy/config/fusion.json list
   list=$(IFS=,; echo "[${sensors[*]}]")
@@ -185,6 +207,9 @@ start_fusion() {
     if [[ -z "$register" && -f "$places" ]]; then
       options+=(--set "registration.file=$places" --set registration.auto=false)
     fi
+  fi
+  if [[ -n "$cameras" ]]; then
+    options+=(--set "registration.file=$bundled_cameras/registration.json" --set registration.auto=false)
   fi
   start fusion "$bin/chorus-fusion" --config "$config" "${options[@]}" "${overrides[@]}"
 }
@@ -204,7 +229,7 @@ trap stop_all EXIT
 trap 'exit 130' INT
 trap 'exit 143' TERM
 step "start"
-if [[ -n "$recording" ]]; then start_replays; else start_simulated; fi
+if [[ -n "$recording" ]]; then start_replays; elif [[ -n "$cameras" ]]; then start_cameras; else start_simulated; fi
 sensor_processes=${#children[@]}
 for sensor in "${sensors[@]}"; do
   url=${sensor##*\"url\":\"}; url=${url%%\"*}

@@ -70,6 +70,16 @@ class Demo(unittest.TestCase):
         output = self.run_to_its_end("--seconds", "10", "--recording")
         self.assertIn("4 sensors", output)
 
+    def test_videos_of_four_cameras_become_one_tracker(self):
+        output = self.run_to_its_end("--seconds", "30", "--cameras")
+        self.assertIn("4 sensors", output)
+        self.assertIn("registration: good, 4 sensors", output)
+
+    def test_two_demos_at_once_are_refused(self):
+        done = subprocess.run(["deploy/demo.sh", "--cameras", "--recording"], cwd=ROOT, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("choose one", done.stderr)
+
     def test_plays_what_chorus_record_wrote_in_its_place(self):
         """One file of six sensors, with the registration that it was recorded with."""
         folder = tempfile.TemporaryDirectory()
