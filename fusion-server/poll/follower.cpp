@@ -112,8 +112,10 @@ void Follower::feed(const Event& event) {
   const Step step = fsm_.resume(event, steady_now(), jitter);
   if (step.stream == StreamOrder::Close) stream_.close();
   if (step.stream == StreamOrder::Open) open_stream();
-  if (auto arrival = std::exchange(answered_, std::nullopt); arrival && step.deliver)
+  if (auto arrival = std::exchange(answered_, std::nullopt); arrival && step.deliver) {
+    arrival->late |= step.late;
     deliver(std::move(*arrival));
+  }
   if (!held_.empty() && !in_doubt()) hand_on_held();
   if (step.notice) tell(*step.notice);
   publish_state();

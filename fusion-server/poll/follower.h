@@ -30,7 +30,7 @@ class Follower : public std::enable_shared_from_this<Follower> {
 
  private:
   using FramePtr = std::shared_ptr<const resource::FrameResource>;
-  /// A frame read, its time of receipt, and whether a stream had left it out.
+  /// A frame read, its time of receipt, and whether a newer one was here before.
   struct Arrival {
     FramePtr raw;
     Timestamp received;

@@ -12,7 +12,7 @@ namespace chorus::poll {
 class FrameTally {
  public:
   void note(const SensorFrame& frame);
-  /// A frame that was fetched after the stream had left it out: counted as missed until now.
+  /// A frame that came after a newer one: counted as missed until now.
   void note_late(const SensorFrame& frame);
 
   /// Frames per second that arrived lately, by our clock.

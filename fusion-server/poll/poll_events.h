@@ -107,6 +107,7 @@ struct Notice {
 struct Step {
   std::optional<Action> action = {};  ///< None: the request or sleep in progress continues.
   bool deliver = false;               ///< The frame just answered is new: pass it on.
+  bool late = false;                  ///< A newer one has been delivered already.
   StreamOrder stream = StreamOrder::None;
   std::optional<Notice> notice = {};
 };

@@ -23,6 +23,7 @@ constexpr Duration kClockInterval = std::chrono::milliseconds(500);
 constexpr Duration kNoClockInterval = std::chrono::seconds(5);
 constexpr Duration kWellKnown = std::chrono::microseconds(300);
 constexpr Duration kOddInterval = std::chrono::seconds(2);
+constexpr std::size_t kMaxBeside = 100;
 constexpr int kClockChecks = 4;  // the filter believes a step at the third
 
 Duration backoff(const PollTimings& timings, int failures_in_row, double jitter) {
@@ -75,7 +76,7 @@ Step PollFsm::on(const Started&, Duration now, double) { return go_on(now); }
 Step PollFsm::on(const Woke&, Duration now, double) { return go_on(now); }
 
 Step PollFsm::on(const FrameAnswered& answer, Duration now, double jitter) {
-  if (streaming_) return go_on(now);  // asked before the stream began, which brings the same frames
+  if (streaming_) return beside_stream(answer, now);
   if (answer.status == http::status::kUnavailable) {
     return fail(gone(), "the sensor service answers 503: its device delivers no frames", jitter);
   }
@@ -100,6 +101,30 @@ Step PollFsm::on(const FrameAnswered& answer, Duration now, double jitter) {
   }
   // A server that ignores Prefer, or sends the same frame again.
   return {after(timings_.idle_interval, now, answer.rest)};
+}
+
+/// Asked for because the stream is held up, which will bring the same frame later; or before the
+/// stream began.
+Step PollFsm::beside_stream(const FrameAnswered& answer, Duration now) {
+  if (answer.status == http::status::kOk) etag_ = answer.etag;
+  const bool news = answer.status == http::status::kOk && answer.captured && last_captured_ &&
+                    *answer.captured > *last_captured_;
+  if (news) {
+    last_captured_ = answer.captured;
+    taken_beside_.push_back(*answer.captured);
+    if (taken_beside_.size() > kMaxBeside) taken_beside_.pop_front();
+  }
+  Step step = go_on(now);
+  step.deliver = news;
+  if (answer.rest > Duration{0}) step.action = Sleep{answer.rest};
+  return step;
+}
+
+/// What came beside the stream is forgotten as the stream passes it.
+bool PollFsm::was_taken_beside(Timestamp captured) {
+  const bool taken = std::ranges::find(taken_beside_, captured) != taken_beside_.end();
+  std::erase_if(taken_beside_, [&](Timestamp each) { return each <= captured; });
+  return taken;
 }
 
 Step PollFsm::on(const FloorAnswered& answer, Duration now, double) {
@@ -162,8 +187,12 @@ Step PollFsm::on(const StreamFrame& frame, Duration now, double) {
   if (now - streamed_since_ > kStreamProven) stream_pause_ = Duration{0};
   streamed_at_ = now;
   backfill_.saw(frame.sequence, now);
-  step.deliver = frame.captured != last_captured_;
-  last_captured_ = frame.captured;
+  rhythm_.saw(now);
+  if (frame.odd) taken_beside_.clear();  // perhaps its clock was set, and times start anew
+  const bool taken = was_taken_beside(frame.captured);
+  step.deliver = !taken && frame.captured != last_captured_;
+  step.late = !taken_beside_.empty();
+  if (!step.late) last_captured_ = frame.captured;
   became_live(now);
   if (frame.odd && (!clock_checked_at_ || now - *clock_checked_at_ > kOddInterval)) {
     clock_checked_at_ = now;
@@ -223,6 +252,8 @@ bool PollFsm::wants_stream(Duration now) {
 void PollFsm::leave_stream(Duration now, Duration pause) {
   stream_asked_ = false;
   streaming_ = false;
+  rhythm_.restart();
+  taken_beside_.clear();
   clock_checks_ = 0;
   stream_pause_ = std::clamp(2 * stream_pause_, pause, kNoStreamPause);
   stream_due_ = now + stream_pause_;
@@ -237,6 +268,10 @@ Action PollFsm::next_request(Duration now) {
     return Send{asked_, {}, Duration{0}, timings_.answer_slack};
   }
   if (streaming_) return next_beside_stream(now);
+  return next_frame();
+}
+
+Action PollFsm::next_frame() {
   asked_ = Resource::Frame;
   asked_wait_ = etag_.empty() ? Duration{0} : timings_.wait;
   return Send{asked_, etag_, asked_wait_, asked_wait_ + timings_.answer_slack};
@@ -249,7 +284,10 @@ Action PollFsm::next_beside_stream(Duration now) {
       return Send{asked_, {}, Duration{0}, timings_.answer_slack, *sequence};
     }
   }
-  if (now < clock_due_) return Sleep{std::min(clock_due_ - now, kClockInterval)};
+  const auto overdue = rhythm_.overdue_from(now);
+  if (overdue && now >= *overdue) return next_frame();
+  const Duration next = overdue ? std::min(*overdue, clock_due_) : clock_due_;
+  if (now < next) return Sleep{std::min(next - now, kClockInterval)};
   asked_ = Resource::Clock;
   return Send{asked_, {}, Duration{0}, timings_.answer_slack};
 }

@@ -3,13 +3,14 @@
 // First by long poll (If-None-Match + Prefer: wait), which every sensor answers, and which tells
 // what is wrong with a service that is no sensor.  Once frames come, an event stream is opened
 // beside it; when that delivers, it takes over, and requests only keep the clock, ask for the floor
-// plane now and then and fetch what the stream left out.  A stream that ends, falls silent or is
-// refused leaves the polling as it was.  Jittered exponential back-off when nothing answers.  Time
-// and randomness are arguments; the Asio shell (follower.h) executes the actions and feeds the
-// answers back.
+// plane now and then, fetch what the stream left out, and the newest frame where lost packets hold
+// it up.  A stream that ends, falls silent or is refused leaves the polling as it was.  Jittered
+// exponential back-off when nothing answers.  Time and randomness are arguments; the Asio shell
+// (follower.h) executes the actions and feeds the answers back.
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <string>
 
@@ -17,6 +18,7 @@
 #include "common/time/timestamp.h"
 #include "fusion-server/poll/backfill.h"
 #include "fusion-server/poll/poll_events.h"
+#include "fusion-server/poll/stream_rhythm.h"
 
 namespace chorus::poll {
 
@@ -53,12 +55,15 @@ class PollFsm {
   Step fail(SensorState state, std::string reason, double jitter);
   Step go_on(Duration now);
   Action next_request(Duration now);
+  Action next_frame();
   Action next_beside_stream(Duration now);
   Action after(Duration interval, Duration now, Duration rest = Duration{0});
   [[nodiscard]] SensorState gone() const;
   void became_live(Duration now);
   bool wants_stream(Duration now);
   void leave_stream(Duration now, Duration pause);
+  [[nodiscard]] Step beside_stream(const FrameAnswered& answer, Duration now);
+  [[nodiscard]] bool was_taken_beside(Timestamp captured);
   void enter(SensorState state, std::string reason);
   std::optional<Notice> due_notice(Duration now);
 
@@ -84,6 +89,8 @@ class PollFsm {
   Duration streamed_since_{0};
   Duration streamed_at_{0};
   Backfill backfill_;
+  StreamRhythm rhythm_;
+  std::deque<Timestamp> taken_beside_;  ///< Frames that the stream is still to bring.
   Duration clock_due_{0};
   int clock_checks_ = 0;
   std::optional<Duration> clock_checked_at_;

@@ -171,5 +171,57 @@ TEST(PollFsmStream, ASensorThatTellsNoTimeIsHardlyAskedForIt) {
   EXPECT_EQ(asked, 0);
 }
 
+/// Streaming at 30 Hz, with a gap of a quarter of a second once; asleep, the newest at `now`.
+PollFsm late_once(Duration now) {
+  PollFsm fsm = streaming(now - milliseconds(600));
+  for (int i = 3; i <= 10; ++i)
+    (void)fsm.resume(streamed(i, 33 * (i - 1)), now - milliseconds(600 - 33 * (i - 2)), kFull);
+  (void)fsm.resume(streamed(11, 330), now, kFull);
+  (void)fsm.resume(Woke{}, now, kFull);
+  (void)fsm.resume(ClockAnswered{std::chrono::microseconds(100)}, now, kFull);
+  (void)fsm.resume(Woke{}, now + milliseconds(4), kFull);
+  return fsm;
+}
+
+TEST(PollFsmStream, TheNewestFrameIsAskedForBesideAStreamThatIsHeldUp) {
+  PollFsm fsm = late_once(seconds(1));
+  EXPECT_FALSE(fsm.asking());
+  const Step asked = fsm.resume(Woke{}, seconds(1) + milliseconds(80), kFull);
+  EXPECT_EQ(send_of(asked).resource, Resource::Frame);
+  const Step newest = fsm.resume(frame(396, "\"13\""), seconds(1) + milliseconds(95), kFull);
+  EXPECT_TRUE(newest.deliver);
+  EXPECT_FALSE(newest.late);
+  EXPECT_EQ(send_of(newest).etag, "\"13\"") << "and the one after it";
+}
+
+TEST(PollFsmStream, WhatTheStreamBringsAfterItIsLateAndNothingComesTwice) {
+  PollFsm fsm = late_once(seconds(1));
+  (void)fsm.resume(Woke{}, seconds(1) + milliseconds(80), kFull);
+  (void)fsm.resume(frame(396, "\"13\""), seconds(1) + milliseconds(95), kFull);
+  const Step before = fsm.resume(streamed(12, 363), seconds(1) + milliseconds(200), kFull);
+  EXPECT_TRUE(before.deliver);
+  EXPECT_TRUE(before.late);
+  EXPECT_FALSE(fsm.resume(streamed(13, 396), seconds(1) + milliseconds(200), kFull).deliver);
+  const Step after = fsm.resume(streamed(14, 429), seconds(1) + milliseconds(201), kFull);
+  EXPECT_TRUE(after.deliver);
+  EXPECT_FALSE(after.late);
+  EXPECT_FALSE(fsm.resume(frame(429, "\"14\""), seconds(1) + milliseconds(202), kFull).deliver);
+}
+
+TEST(PollFsmStream, NobodyIsAskedBesideAStreamThatIsNeverHeldUp) {
+  PollFsm fsm = streaming(milliseconds(0));
+  Duration now{0};
+  for (int i = 3; i < 300; ++i) {
+    now += milliseconds(33);
+    (void)fsm.resume(streamed(i, 33 * (i - 1)), now, kFull);
+    const Step step = fsm.resume(Woke{}, now + milliseconds(20), kFull);
+    if (const auto* send = std::get_if<Send>(&*step.action)) {
+      EXPECT_NE(send->resource, Resource::Frame);
+      (void)fsm.resume(ClockAnswered{std::chrono::microseconds(100)}, now + milliseconds(21),
+                       kFull);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace chorus::poll
