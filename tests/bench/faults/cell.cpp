@@ -73,15 +73,46 @@ std::vector<std::string> Cell::placed() const {
   return out;
 }
 
-void Cell::take_ports() {
+Result<void> Cell::take_ports() {
   port_ = testing::free_port();
+  if (plan_.path) {
+    auto opened = LossyPath::open(*plan_.path);
+    if (!opened) return pass(opened);
+    path_ = std::move(*opened);
+  }
   for (int i = 0; i < plan_.sensors; ++i) {
     sensor_ports_.push_back(testing::free_port());
     sensors_.emplace_back();
     if (const auto it = plan_.links.find(i); it != plan_.links.end())
-      links_[i] = std::make_unique<Pump>(sensor_ports_.back(), it->second,
+      links_[i] = std::make_unique<Pump>(on_loopback(sensor_ports_.back()), it->second,
                                          static_cast<std::uint32_t>(i + 1));
+    if (!path_) continue;
+    if (auto led = lead_through_path(i); !led) return led;
   }
+  return {};
+}
+
+/// Two pumps that only hand on, one at each end of the path.
+Result<void> Cell::lead_through_path(int index) {
+  std::uint16_t port = 0;
+  Result<void> listens;
+  PumpEnds far = on_loopback(sensor_port(index));
+  far.listen = [&](asio::io_context& io) {
+    auto acceptor = path_->listen_far(io);
+    if (acceptor) port = acceptor->local_endpoint().port();
+    if (!acceptor) listens = pass(acceptor);
+    return acceptor ? std::move(*acceptor) : net::Acceptor(io);
+  };
+  far_ends_.push_back(std::make_unique<Pump>(std::move(far), LinkModel{}));
+  if (!listens) return listens;
+  PumpEnds near = on_loopback(port);
+  near.socket = [path = path_.get()](asio::io_context& io) {
+    auto socket = path->near_socket(io);
+    return socket ? std::move(*socket) : net::Socket(io);
+  };
+  near.target.address(LossyPath::far_address());
+  links_[index] = std::make_unique<Pump>(std::move(near), LinkModel{});
+  return {};
 }
 
 std::string Cell::write_places() const {
@@ -176,7 +207,7 @@ Result<Cell> Cell::start(CellPlan plan) {
   const auto all = plan.sensors + static_cast<int>(plan.neighbours.size());
   if (plan.ring == 0) plan.ring = all;
   Cell cell(std::move(plan), std::move(*folder));
-  cell.take_ports();
+  if (auto taken = cell.take_ports(); !taken) return pass(taken);
   if (!cell.plan_.start_all) return cell;
   for (int i = 0; i < cell.plan_.sensors; ++i) {
     if (auto started = cell.start_sensor(i); !started) return pass(started);

@@ -17,6 +17,7 @@
 #include "common/http/client.h"
 #include "common/time/timestamp.h"
 #include "tests/bench/faults/link.h"
+#include "tests/bench/faults/lossy_path.h"
 #include "tests/bench/live/child_process.h"
 #include "tests/bench/live/scratch_folder.h"
 
@@ -37,7 +38,8 @@ struct CellPlan {
   std::vector<Neighbour> neighbours = {};
   int ring = 0;  ///< Places on the ring; 0: as many as sensors and neighbours.
   std::map<int, Settings> of_sensor = {};
-  std::map<int, LinkModel> links = {};  ///< Before these sensors.
+  std::map<int, LinkModel> links = {};   ///< Before these sensors.
+  std::optional<PacketModel> path = {};  ///< Between all sensors and the server.
   Settings fusion = {};
   ChildSurroundings surroundings = {};  ///< Of chorus-fusion.
   bool placed = true;     ///< Extrinsics are given; else nobody knows where the sensors stand.
@@ -61,6 +63,7 @@ class Cell {
     return *sensors_.at(static_cast<std::size_t>(index));
   }
   [[nodiscard]] Pump& link(int index) { return *links_.at(index); }
+  [[nodiscard]] LossyPath& path() { return *path_; }
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] std::uint16_t sensor_port(int index) const {
     return sensor_ports_.at(static_cast<std::size_t>(index));
@@ -78,7 +81,8 @@ class Cell {
 
  private:
   Cell(CellPlan plan, ScratchFolder folder) : plan_(std::move(plan)), folder_(std::move(folder)) {}
-  void take_ports();
+  [[nodiscard]] Result<void> take_ports();
+  [[nodiscard]] Result<void> lead_through_path(int index);
   std::string write_places() const;
   [[nodiscard]] std::string polled() const;
 
@@ -86,6 +90,8 @@ class Cell {
   ScratchFolder folder_;  // goes last
   std::uint16_t port_ = 0;
   std::vector<std::uint16_t> sensor_ports_;
+  std::unique_ptr<LossyPath> path_;
+  std::vector<std::unique_ptr<Pump>> far_ends_;
   std::map<int, std::unique_ptr<Pump>> links_;
   std::vector<std::optional<ChildProcess>> sensors_;
   std::optional<ChildProcess> fusion_;

@@ -4,6 +4,7 @@
 #include <array>
 #include <deque>
 #include <list>
+#include <random>
 #include <string>
 #include <thread>
 #include <vector>
@@ -32,6 +33,13 @@ struct Surroundings {
   Switches* switches = nullptr;
   std::mt19937* random = nullptr;
 };
+
+/// How long a message is under way.
+Duration time_under_way(const LinkModel& link, std::mt19937& random) {
+  double out = link.delay;
+  if (link.jitter > 0.0) out += std::uniform_real_distribution<>(0.0, link.jitter)(random);
+  return from_seconds(out);
+}
 
 /// One direction of one connection: reads, holds back, writes.
 class Direction {
@@ -92,8 +100,7 @@ void Direction::read() {
 }
 
 void Direction::take(std::size_t size) {
-  const Duration under_way = from_seconds(time_under_way(*around_.model, size, *around_.random));
-  Instant due = std::chrono::steady_clock::now() + under_way;
+  Instant due = std::chrono::steady_clock::now() + time_under_way(*around_.model, *around_.random);
   if (!waiting_.empty()) due = std::max(due, waiting_.back().due);
   waiting_.push_back({std::string(bytes_.data(), size), due});
   waiting_bytes_ += size;
@@ -149,9 +156,9 @@ void Direction::end() {
 }
 
 struct Connection : std::enable_shared_from_this<Connection> {
-  Connection(net::Socket accepted, Surroundings around)
+  Connection(net::Socket accepted, net::Socket onward, Surroundings around)
       : client(std::move(accepted)),
-        server(client.get_executor()),
+        server(std::move(onward)),
         requests(client, server, around, false),
         answers(server, client, around, true) {}
 
@@ -169,62 +176,31 @@ struct Connection : std::enable_shared_from_this<Connection> {
   Direction answers;
 };
 
-/// Segments a message travels in, without headers.
-constexpr std::size_t kSegmentBytes = 1448;
-
-/// Where a segment stands in its message; it decides how soon its loss is noticed.
-enum class Standing { Alone, AtTheEnd, Followed };
-
-double stall(const LinkModel& link, Standing standing, std::mt19937& random) {
-  constexpr double kTimeout = 0.2;  // Linux: the shortest retransmission timeout [s]
-  constexpr double kProbe = 2.0;    // a tail loss probe goes after so many round trips
-  constexpr int kMaxTries = 6;
-  std::bernoulli_distribution lost(link.loss);
-  const double round_trip = 2 * link.delay + link.jitter;
-  const double timeout = kTimeout + round_trip;
-  double out = 0.0;
-  double wait = standing == Standing::Alone      ? timeout
-                : standing == Standing::AtTheEnd ? (kProbe + 1) * round_trip
-                                                 : round_trip;
-  for (int i = 0; i < kMaxTries && lost(random); ++i) {
-    out += wait;
-    wait = std::max(timeout, 2 * wait);
-  }
-  return out;
-}
-
 }  // namespace
 
-double time_under_way(const LinkModel& link, std::size_t bytes, std::mt19937& random) {
-  constexpr std::size_t kTail = 3;
-  double out = link.delay;
-  if (link.jitter > 0.0) out += std::uniform_real_distribution<>(0.0, link.jitter)(random);
-  if (link.loss <= 0.0) return out;
-  const std::size_t segments = (bytes + kSegmentBytes - 1) / kSegmentBytes;
-  double longest = 0.0;
-  for (std::size_t i = 0; i < segments; ++i) {
-    const Standing standing = segments == 1           ? Standing::Alone
-                              : i + kTail >= segments ? Standing::AtTheEnd
-                                                      : Standing::Followed;
-    longest = std::max(longest, stall(link, standing, random));
-  }
-  return out + longest;
+PumpEnds on_loopback(std::uint16_t target) {
+  const auto loopback = asio::ip::address_v4::loopback();
+  return {[loopback](asio::io_context& io) {
+            return net::Acceptor(io, {loopback, 0});
+          },
+          [](asio::io_context& io) { return net::Socket(io); },
+          {loopback, target}};
 }
 
 struct Pump::Impl {
-  Impl(std::uint16_t to, const LinkModel& first, std::uint32_t seed)
+  Impl(PumpEnds both, const LinkModel& first, std::uint32_t seed)
       : model(first),
         random(seed),
         around{&model, &switches, &random},
-        target(asio::ip::address_v4::loopback(), to),
-        acceptor(io, {asio::ip::address_v4::loopback(), 0}) {}
+        ends(std::move(both)),
+        acceptor(ends.listen(io)) {}
 
   void accept() {
     acceptor.async_accept([this](const error_code& failed, net::Socket socket) {
       if (failed) return;
-      auto connection = std::make_shared<Connection>(std::move(socket), around);
+      auto connection = std::make_shared<Connection>(std::move(socket), ends.socket(io), around);
       connections.push_back(connection);
-      connection->server.async_connect(target, [connection](const error_code& refused) {
+      connection->server.async_connect(ends.target, [connection](const error_code& refused) {
         if (refused) return connection->cut();
         error_code ignored;
         for (net::Socket* each : {&connection->client, &connection->server})
@@ -251,14 +227,14 @@ struct Pump::Impl {
   Switches switches;
   std::mt19937 random;
   Surroundings around;
-  net::tcp::endpoint target;
+  PumpEnds ends;
   net::Acceptor acceptor;
   std::list<std::weak_ptr<Connection>> connections;
   std::jthread thread;
 };
 
-Pump::Pump(std::uint16_t target, const LinkModel& model, std::uint32_t seed)
-    : impl_(std::make_unique<Impl>(target, model, seed)) {
+Pump::Pump(PumpEnds ends, const LinkModel& model, std::uint32_t seed)
+    : impl_(std::make_unique<Impl>(std::move(ends), model, seed)) {
   impl_->accept();
   impl_->thread = std::jthread([impl = impl_.get()] { impl->io.run(); });
 }

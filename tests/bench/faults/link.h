@@ -2,18 +2,16 @@
 // does: a program in user space, since not every kernel has netem.
 //
 // What it models: every message (what one read yields, at most 16 kB) is delayed by a draw of its
-// own per direction, and none overtakes another, as TCP has it.  Loss is what TCP makes of it, with
-// the recovery that Linux has (RFC 8985): each segment of 1448 bytes is lost with the given
-// probability; a lost one waits for a round trip, among the last three of its message for three
-// (tail loss probe), alone in its message or lost again for the retransmission timeout of 200 ms
-// and a round trip, doubled with each loss.  Whatever is behind it waits too.  What it does not
-// model: bandwidth, queues, lost acknowledgements and handshakes, the congestion window.
+// own per direction, and none overtakes another, as TCP has it.  What it does not model: bandwidth,
+// queues and lost packets; those are for lossy_path.h, whose sockets a pump can use.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
-#include <random>
+
+#include "common/net/asio.h"
 
 namespace chorus::bench {
 
@@ -21,16 +19,22 @@ namespace chorus::bench {
 struct LinkModel {
   double delay = 0.0;
   double jitter = 0.0;  ///< Added, uniform from 0 to this.
-  double loss = 0.0;    ///< Of a segment, 0 to 1.
 };
 
-/// How long a message of so many bytes is under way [s].
-[[nodiscard]] double time_under_way(const LinkModel& link, std::size_t bytes, std::mt19937& random);
+/// Where a pump listens and to what it connects.  Made on the pump's io_context.
+struct PumpEnds {
+  std::function<net::Acceptor(asio::io_context&)> listen;
+  std::function<net::Socket(asio::io_context&)> socket;
+  net::tcp::endpoint target;
+};
 
-/// Listens on a port of its own and hands every connection on to 127.0.0.1:`target`.
+/// Both on loopback: a port of its own, and 127.0.0.1:`target`.
+[[nodiscard]] PumpEnds on_loopback(std::uint16_t target);
+
+/// Hands every connection on.
 class Pump {
  public:
-  Pump(std::uint16_t target, const LinkModel& model, std::uint32_t seed = 1);
+  Pump(PumpEnds ends, const LinkModel& model, std::uint32_t seed = 1);
   ~Pump();  ///< Cuts all connections.
   Pump(const Pump&) = delete;
   Pump& operator=(const Pump&) = delete;

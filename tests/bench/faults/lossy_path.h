@@ -1,0 +1,44 @@
+// A path that delays and loses packets, under the TCP of this host's kernel: two network
+// namespaces with a TUN device each, and a thread that carries the packets between them.  What loss
+// does to a stream is then the kernel's own doing, not a model's.  Needs root and /dev/net/tun;
+// nothing of it is seen outside of this process.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "common/base/result.h"
+#include "common/net/asio.h"
+
+namespace chorus::bench {
+
+/// Of each packet, both directions alike.
+struct PacketModel {
+  double delay = 0.0;  ///< One way [s].
+  double loss = 0.0;   ///< 0 to 1
+};
+
+class LossyPath {
+ public:
+  /// Errors: Unsupported (no root, no TUN device), Internal.
+  [[nodiscard]] static Result<std::unique_ptr<LossyPath>> open(const PacketModel& model);
+  ~LossyPath();
+  LossyPath(const LossyPath&) = delete;
+  LossyPath& operator=(const LossyPath&) = delete;
+
+  /// A listening socket at the far end.
+  [[nodiscard]] Result<net::Acceptor> listen_far(asio::io_context& io) const;
+  /// A socket at the near end; what it connects to has far_address().
+  [[nodiscard]] Result<net::Socket> near_socket(asio::io_context& io) const;
+  [[nodiscard]] static asio::ip::address_v4 far_address();
+
+  /// Nothing is lost before this is set.
+  void lose(bool losing);
+
+ private:
+  LossyPath();
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace chorus::bench
