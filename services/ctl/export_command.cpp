@@ -13,6 +13,7 @@
 #include "common/exporters/export_formats.h"
 #include "fusion-server/client/fused_frames.h"
 #include "services/ctl/command.h"
+#include "services/ctl/number_range.h"
 #include "services/ctl/text_file.h"
 
 namespace chorus::ctl {
@@ -132,14 +133,14 @@ Run add_export(CLI::App& options) {
   options.add_option("--out", arguments->out, "File to write; - is standard output")->required();
   options.add_option("--person", arguments->person, "Only the person of this id");
   options.add_option("--rate", arguments->rate_hz, "Frames a second [Hz]; the source's by default")
-      ->check(CLI::Range(0.1, 1000.0));
+      ->check(number_range(0.1, 1000.0));
   options
       .add_option("--max-gap", arguments->max_gap_ms,
                   "Longest hole that is bridged [ms]; joints are missing in longer ones")
       ->check(CLI::Range(0, 60'000))
       ->capture_default_str();
   options.add_option("--seconds", arguments->seconds, "How long to listen to a server [s]")
-      ->check(CLI::Range(0.1, 86'400.0))
+      ->check(number_range(0.1, 86'400.0))
       ->capture_default_str();
   options.add_option("--unit", arguments->unit, "Of lengths in BVH")
       ->check(CLI::IsMember({"cm", "m"}))

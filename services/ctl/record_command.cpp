@@ -12,6 +12,7 @@
 #include "fusion-server/client/service_client.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
+#include "services/ctl/number_range.h"
 #include "services/ctl/server_option.h"
 
 namespace chorus::ctl {
@@ -188,7 +189,7 @@ Run add_record(CLI::App& options) {
       ->required();
   constexpr double kLongest = 7 * 24 * 3600.0;
   options.add_option("--seconds", arguments->seconds, "How long; without it until Ctrl-C")
-      ->check(CLI::Range(1.0, kLongest));
+      ->check(number_range(1.0, kLongest));
   options.add_flag("--raw", arguments->raw, "Only what the sensors say");
   options.add_flag("--fused", arguments->fused, "Only what the fusion server makes of it");
   options.add_flag("--json", arguments->json, "Summary as JSON");

@@ -12,6 +12,7 @@
 #include "fusion-server/rest/registration_resources.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
+#include "services/ctl/number_range.h"
 #include "services/ctl/registration_report.h"
 #include "services/ctl/server_option.h"
 
@@ -166,7 +167,7 @@ Run add_register(CLI::App& options) {
   const auto arguments = std::make_shared<RegisterArguments>();
   add_server_option(options, arguments->url, "The fusion server");
   options.add_option("--seconds", arguments->seconds, "Length of the walk")
-      ->check(CLI::Range(rest::kMinSession, rest::kMaxSession))
+      ->check(number_range(rest::kMinSession, rest::kMaxSession))
       ->capture_default_str();
   auto* fresh = options.add_flag("--fresh", arguments->fresh,
                                  "Forget the registration there is before starting");

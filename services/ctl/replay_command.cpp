@@ -15,6 +15,7 @@
 #include "fusion-server/client/recordings.h"
 #include "services/ctl/child_processes.h"
 #include "services/ctl/command.h"
+#include "services/ctl/number_range.h"
 #include "services/ctl/replay_round.h"
 #include "services/ctl/text_file.h"
 
@@ -148,7 +149,7 @@ Run add_replay(CLI::App& options) {
       ->check(CLI::Range(1, kLastPort))
       ->capture_default_str();
   options.add_option("--speed", arguments->speed, "2 is twice as fast")
-      ->check(CLI::Range(0.01, 100.0))
+      ->check(number_range(0.01, 100.0))
       ->capture_default_str();
   options.add_flag("--loop", arguments->loop, "Start over at the end");
   options.add_option(

@@ -1,0 +1,21 @@
+// A check of numbers on the command line.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace chorus::ctl {
+
+/// From least to most, both included; unlike CLI::Range it refuses "nan" too.
+inline CLI::Validator number_range(double least, double most) {
+  const CLI::Range range(least, most);
+  const auto check = [range, least, most](std::string& text) -> std::string {
+    double value = 0.0;
+    const bool number = CLI::detail::lexical_cast(text, value);
+    if (number && value >= least && value <= most) return {};
+    const std::string why = range(text);
+    return why.empty() ? "Value " + text + " is not a number" : why;
+  };
+  return {check, range.get_description()};
+}
+
+}  // namespace chorus::ctl

@@ -1,0 +1,234 @@
+// `chorus status` and `chorus register` against a server that says what it is told to.
+#include <cstdlib>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/unit/ctl/program_run.h"
+#include "tests/unit/ctl/scripted_server.h"
+
+namespace chorus::ctl {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+using Json = nlohmann::json;
+
+constexpr const char* kLive = R"({"sensors": {
+  "s1": {"state": "live", "ageMilliseconds": 12.34, "rateHz": 29.97, "bodies": 2, "share": 0.995,
+         "clockOffsetMilliseconds": -1.5, "url": "http://10.0.0.1:8081/"}}})";
+constexpr const char* kIdle =
+    R"({"verdict": "Good", "master": "s1", "session": {"state": "idle"}})";
+constexpr const char* kRuns =
+    R"({"verdict": "Good", "session": {"state": "collecting", "progress": "/sessions/7"}})";
+constexpr const char* kFrame = R"({"captured": "2026-11-22T10:00:00Z", "bodies": [
+  {"bodyId": 3, "joints": {"Head": {"x": 0.5, "y": 1.7, "z": -0.25}}}]})";
+
+ScriptedServer::Texts calm() {
+  return {{"/sensors/", {kLive}}, {"/registration", {kIdle}}, {"/frame", {kFrame}}};
+}
+
+Outcome status_of(const ScriptedServer& server, std::vector<std::string> more = {}) {
+  std::vector<std::string> words{"status", "--url", server.url()};
+  words.insert(words.end(), more.begin(), more.end());
+  return run_chorus(words);
+}
+
+TEST(Status, ShowsSensorsRegistrationAndBodies) {
+  const ScriptedServer server(calm());
+  const Outcome told = status_of(server);
+  EXPECT_EQ(told.code, kExitOk) << told.error;
+  for (const char* part : {"s1", "live", "12.3", "30.0", "-1.500", "0.99", "http://10.0.0.1:8081/",
+                           "registration: Good, master s1", "fused bodies: 1, captured 2026-11-22",
+                           "body 3: head at 0.500 1.700 -0.250"})
+    EXPECT_THAT(told.out, HasSubstr(part));
+  EXPECT_EQ(told.error, "");
+}
+
+TEST(Status, FailsWhenNobodyIsLiveAndSaysWhy) {
+  auto texts = calm();
+  texts["/sensors/"] = {
+      R"({"sensors": {"s1": {"state": "lost", "lastError": "refused\u001b[31m"}}})"};
+  const Outcome told = status_of(ScriptedServer(texts));
+  EXPECT_EQ(told.code, kExitFailed);
+  EXPECT_THAT(told.out, HasSubstr("s1: refused"));
+  EXPECT_THAT(told.out, Not(HasSubstr("\x1b"))) << "a sensor does not drive the terminal";
+  EXPECT_EQ(told.error, "no sensor is live\n");
+}
+
+TEST(Status, OneLiveSensorIsEnough) {
+  auto texts = calm();
+  texts["/sensors/"] = {R"({"sensors": {"a": {"state": "lost"}, "b": {"state": "live"}}})"};
+  EXPECT_EQ(status_of(ScriptedServer(texts)).code, kExitOk);
+}
+
+TEST(Status, AsksASilentSensorItselfWhatIsWrong) {
+  const ScriptedServer sensor(ScriptedServer::Texts{{"/healthz", {}}});
+  auto texts = calm();
+  texts["/sensors/"] = {Json{{"sensors",
+                              {{"s1",
+                                {{"state", "connecting"},
+                                 {"url", sensor.url()},
+                                 {"lastError", "the sensor service answers 503"}}}}}}
+                            .dump()};
+  const Outcome told = status_of(ScriptedServer(texts));
+  EXPECT_THAT(told.out, HasSubstr("the sensor service answers 503: nothing yet"));
+}
+
+TEST(Status, IsAStateBeforeTheFirstFrame) {
+  auto texts = calm();
+  texts["/frame"] = {};
+  const ScriptedServer server(texts);
+  const Outcome told = status_of(server);
+  EXPECT_EQ(told.code, kExitOk) << told.error;
+  EXPECT_THAT(told.out, HasSubstr("no fused frame yet"));
+  const Json json = Json::parse(status_of(server, {"--json"}).out);
+  EXPECT_TRUE(json.at("frame").is_null());
+  EXPECT_EQ(json.at("sensors").at("s1").at("share"), 0.995);
+  EXPECT_EQ(json.at("registration").at("master"), "s1");
+}
+
+TEST(Status, SurvivesAnyJson) {
+  for (const char* text :
+       {"null", "[]", "3", R"({"sensors": 3})", R"({"sensors": {"s1": null}})"}) {
+    auto texts = calm();
+    texts["/sensors/"] = {text};
+    texts["/frame"] = {text};
+    EXPECT_EQ(status_of(ScriptedServer(texts)).code, kExitFailed) << text;
+  }
+}
+
+TEST(Status, NamesTheServerThatIsNotThere) {
+  std::string gone;
+  gone = ScriptedServer(calm()).url();
+  const Outcome told = run_chorus({"status", "--url", gone});
+  EXPECT_EQ(told.code, kExitFailed);
+  EXPECT_THAT(told.error, HasSubstr(gone.substr(7, gone.size() - 8)));
+}
+
+TEST(Status, TakesTheServerFromTheSurroundings) {
+  const ScriptedServer server(calm());
+  ::setenv("CHORUS_URL", server.url().c_str(), 1);
+  const Outcome told = run_chorus({"status"});
+  ::unsetenv("CHORUS_URL");
+  EXPECT_EQ(told.code, kExitOk) << told.error;
+}
+
+std::string session(const std::string& state, const std::string& verdict, bool adopted,
+                    double elapsed = 1.0) {
+  return Json{{"state", state},
+              {"verdict", verdict},
+              {"adopted", adopted},
+              {"elapsedSeconds", elapsed},
+              {"targetSeconds", 2.0},
+              {"reasons", {"the walk lasted only 2 s"}},
+              {"awaits", {"walk in front of s2"}}}
+      .dump();
+}
+
+ScriptedServer::Texts walk(const std::string& last) {
+  return {{"/registration", {kRuns, kIdle}},
+          {"/sessions/7", {session("collecting", "None", false), last}}};
+}
+
+Outcome register_at(const ScriptedServer& server, std::vector<std::string> more = {}) {
+  std::vector<std::string> words{"register", "--url", server.url()};
+  words.insert(words.end(), more.begin(), more.end());
+  return run_chorus(words);
+}
+
+TEST(Register, FollowsItsSessionToTheVerdict) {
+  const ScriptedServer server(walk(session("done", "Good", true)));
+  const Outcome told = register_at(server, {"--seconds", "20"});
+  EXPECT_EQ(told.code, kExitOk) << told.error;
+  EXPECT_THAT(told.out, StartsWith("registration: Good, master s1"));
+  EXPECT_THAT(told.error, HasSubstr("  walk in front of s2\n"));
+  EXPECT_THAT(told.error, Not(HasSubstr("not good enough")));
+  ASSERT_EQ(server.written().size(), 1u);
+  EXPECT_EQ(Json::parse(server.written()[0].substr(5)).at("seconds"), 20.0);
+}
+
+TEST(Register, AnotherRegistrationInUseIsNoSuccess) {
+  for (const auto& [verdict, adopted] :
+       std::vector<std::pair<std::string, bool>>{{"Good", false}, {"Rejected", true}}) {
+    const Outcome told = register_at(ScriptedServer(walk(session("done", verdict, adopted))));
+    EXPECT_EQ(told.code, kExitFailed) << verdict;
+    EXPECT_THAT(told.error, HasSubstr("not good enough:\n  the walk lasted only 2 s\n"));
+  }
+}
+
+TEST(Register, ProvisionalIsInUseToo) {
+  EXPECT_EQ(register_at(ScriptedServer(walk(session("done", "Provisional", true)))).code, kExitOk);
+}
+
+TEST(Register, SaysWhenSomebodyElseCancels) {
+  const Outcome told = register_at(ScriptedServer(walk(session("cancelled", "None", false))));
+  EXPECT_EQ(told.code, kExitFailed);
+  EXPECT_THAT(told.error, HasSubstr("the session was cancelled"));
+}
+
+TEST(Register, JoinsTheSessionThatRuns) {
+  const ScriptedServer server(walk(session("done", "Good", true)),
+                              Error{ErrorCode::Conflict, "registration", "one runs already"});
+  const Outcome told = register_at(server);
+  EXPECT_EQ(told.code, kExitOk) << told.error;
+  EXPECT_THAT(told.error, HasSubstr("a session is running already"));
+}
+
+TEST(Register, PassesOnWhyItIsRefused) {
+  auto texts = walk(session("done", "Good", true));
+  texts["/registration"] = {kIdle};
+  const ScriptedServer server(
+      texts, Error{ErrorCode::Conflict, "registration", "no sensor is configured"});
+  const Outcome told = register_at(server);
+  EXPECT_EQ(told.code, kExitFailed);
+  EXPECT_THAT(told.error, HasSubstr("no sensor is configured"));
+}
+
+TEST(Register, AServerThatNamesNoSessionIsOlder) {
+  const Outcome told = register_at(
+      ScriptedServer(ScriptedServer::Texts{{"/registration", {R"({"verdict": "Good"})"}}}));
+  EXPECT_EQ(told.code, kExitFailed);
+  EXPECT_THAT(told.error, HasSubstr("Is it an older server?"));
+}
+
+TEST(Register, ForgetsFirstWhenItIsToldTo) {
+  const ScriptedServer server(walk(session("done", "Good", true)));
+  EXPECT_EQ(register_at(server, {"--fresh"}).code, kExitOk);
+  ASSERT_EQ(server.written().size(), 2u);
+  EXPECT_EQ(server.written()[0], "DELETE /registration");
+}
+
+TEST(Register, CancelsOnlyWhatRuns) {
+  const ScriptedServer running(ScriptedServer::Texts{{"/registration", {kRuns}}});
+  EXPECT_EQ(register_at(running, {"--cancel"}).code, kExitOk);
+  EXPECT_THAT(running.written(), ElementsAre("DELETE /sessions/7"));
+  const ScriptedServer idle(ScriptedServer::Texts{{"/registration", {kIdle}}});
+  const Outcome told = register_at(idle, {"--cancel"});
+  EXPECT_EQ(told.code, kExitFailed);
+  EXPECT_THAT(told.error, HasSubstr("no registration session runs"));
+  EXPECT_TRUE(idle.written().empty());
+}
+
+TEST(Register, ReportsAsJson) {
+  const Outcome told = register_at(ScriptedServer(walk(session("done", "Good", true))), {"--json"});
+  const Json json = Json::parse(told.out);
+  EXPECT_EQ(json.at("adopted"), true);
+  EXPECT_EQ(json.at("registration").at("master"), "s1");
+}
+
+TEST(Register, RefusesWalksThatAreNoWalks) {
+  for (const auto& words : std::vector<std::vector<std::string>>{{"--seconds", "0"},
+                                                                 {"--seconds", "1e9"},
+                                                                 {"--seconds", "nan"},
+                                                                 {"--fresh", "--cancel"}}) {
+    std::vector<std::string> whole{"register"};
+    whole.insert(whole.end(), words.begin(), words.end());
+    EXPECT_EQ(run_chorus(whole).code, kExitUsage) << words.back();
+  }
+}
+
+}  // namespace
+}  // namespace chorus::ctl
