@@ -4,6 +4,7 @@
 #include <map>
 
 #include "fusion-server/flow.h"
+#include "fusion-server/fusion/body_model.h"
 #include "fusion-server/fusion/noise_model.h"
 #include "fusion-server/fusion/pose_error.h"
 
@@ -19,6 +20,7 @@ enum class Method {
   BestSkeleton,     ///< One view alone; changes hands only after a while.  Remembers.
   OttoKalman,       ///< A Kalman filter per joint with Otto's weights in R.  Remembers.
   PointsAndRays,    ///< Robust least squares over points and rays of cameras.  Remembers.
+  BodyFilter,       ///< One body over time: bones, what views err by as a whole.  Remembers.
 };
 
 struct FusionConfig {
@@ -41,6 +43,7 @@ struct FusionConfig {
 
   /// PointsAndRays: a joint that rays determine less well than this is missing [m].
   double max_sigma = 0.15;
+  BodyModel body;  ///< BodyFilter.
 
   bool operator==(const FusionConfig&) const = default;
 };

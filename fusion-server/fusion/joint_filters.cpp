@@ -18,10 +18,9 @@ JointFilters filters(std::index_sequence<I...>) {
 
 }  // namespace
 
-double process_density(JointId joint) {
-  const bool trunk = std::ranges::find(kCoreJoints, joint) != kCoreJoints.end();
-  return trunk ? kTrunkDensity : kLimbDensity;
-}
+bool in_trunk(JointId joint) { return std::ranges::find(kCoreJoints, joint) != kCoreJoints.end(); }
+
+double process_density(JointId joint) { return in_trunk(joint) ? kTrunkDensity : kLimbDensity; }
 
 JointFilters joint_filters() { return filters(std::make_index_sequence<kJointCount>{}); }
 

@@ -11,6 +11,9 @@ namespace chorus::fusion {
 
 using JointFilters = std::array<PointFilter, kJointCount>;
 
+/// Is the joint on the body's centre axis?
+[[nodiscard]] bool in_trunk(JointId joint);
+
 /// Density of the white acceleration of a joint: 3 for the trunk, 40 for limbs [m^2 / s^3].
 [[nodiscard]] double process_density(JointId joint);
 

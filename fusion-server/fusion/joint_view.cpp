@@ -33,8 +33,10 @@ std::vector<JointView> joint_views_of(JointId joint, const Person& person,
                                       const std::vector<SensorId>& sensors,
                                       const ErrorModel& errors) {
   std::vector<JointView> views;
-  for (const SensorView& view : person.views) {
-    if (view.skeleton[joint].seen()) views.push_back(joint_view_of(view, joint, sensors, errors));
+  for (std::size_t i = 0; i < person.views.size(); ++i) {
+    if (!person.views[i].skeleton[joint].seen()) continue;
+    views.push_back(joint_view_of(person.views[i], joint, sensors, errors));
+    views.back().view = i;
   }
   return views;
 }
@@ -43,10 +45,12 @@ std::vector<JointView> points_and_rays_of(JointId joint, const Person& person,
                                           const std::vector<SensorId>& sensors,
                                           const ErrorModel& errors) {
   std::vector<JointView> views;
-  for (const SensorView& view : person.views) {
+  for (std::size_t i = 0; i < person.views.size(); ++i) {
+    const SensorView& view = person.views[i];
     const bool usable = view.skeleton[joint].seen() || view.eye.allFinite();
-    if (usable && view.skeleton[joint].given())
-      views.push_back(joint_view_of(view, joint, sensors, errors));
+    if (!usable || !view.skeleton[joint].given()) continue;
+    views.push_back(joint_view_of(view, joint, sensors, errors));
+    views.back().view = i;
   }
   return views;
 }

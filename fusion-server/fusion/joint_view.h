@@ -19,6 +19,7 @@ struct JointView {
   double pose_variance = 0.0;     ///< What it errs by beyond that, per axis [m^2] (pose_error.h).
   std::uint64_t contributor = 0;  ///< The sensor's bit in FusedBody::contributors.
   Eigen::Vector3d eye = Eigen::Vector3d::Zero();  ///< Where the sensor stands [m].
+  std::size_t view = 0;                           ///< Its index in Person::views.
 };
 
 struct FusedJoint {

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "fusion-server/fusion/best_skeleton.h"
+#include "fusion-server/fusion/body_filter.h"
 #include "fusion-server/fusion/joint_wise.h"
 #include "fusion-server/fusion/otto_kalman.h"
 #include "fusion-server/fusion/points_and_rays.h"
@@ -19,6 +20,7 @@ constexpr std::array kMethods{
     MethodRow{Method::BestSkeleton, "best-skeleton", best_skeleton},
     MethodRow{Method::OttoKalman, "otto-kalman", otto_kalman},
     MethodRow{Method::PointsAndRays, "points-and-rays", points_and_rays},
+    MethodRow{Method::BodyFilter, "body-filter", body_filter},
 };
 
 }  // namespace

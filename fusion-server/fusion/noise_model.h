@@ -6,12 +6,12 @@
 
 namespace chorus::fusion {
 
-/// Standard deviations [m].  Defaults: a Kinect-like depth sensor at 2.5 m, whose depth is the
-/// weaker axis; a camera whose landmarks are good to 26 mm at 3 m.
+/// Standard deviations [m].  Defaults: a Kinect-like depth sensor at 2.5 m, of which slow errors
+/// alike in all directions are the largest part; a camera whose landmarks are good to 26 mm at 3 m.
 struct NoiseModel {
-  double along = 0.030;
+  double along = 0.015;
   double across = 0.015;
-  double inferred_factor = 3.0;  ///< Inferred joints are this much worse.
+  double inferred_factor = 2.0;  ///< Inferred joints are this much worse.
   double ray = deg(0.5);         ///< Of a ray without a covariance of its own [rad].
 
   bool operator==(const NoiseModel&) const = default;

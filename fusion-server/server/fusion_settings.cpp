@@ -108,6 +108,23 @@ void read_pose_error(ConfigReader reader, fusion::PoseError& out) {
   reader.read("inferred_factor", out.inferred_factor, 1.0, 100.0);
 }
 
+void read_body(ConfigReader reader, fusion::BodyModel& out) {
+  reader.read("scale", out.scale, 0.0, 0.5);
+  reader.read_deg("turn_deg", out.turn, 0.0, 90.0);
+  reader.read_deg("turn_from_deg", out.turn_from, 0.0, 90.0);
+  reader.read_deg("turn_full_deg", out.turn_full, 0.0, 90.0);
+  reader.read("bone_m", out.bone, 0.0, 1.0);
+  reader.read_s("bone_memory_s", out.bone_memory, seconds(1), seconds(3600));
+  reader.read("bias_rate_hz", out.bias_rate, 0.0, 30.0);
+  reader.read_ms("bias_memory_ms", out.bias_memory, milliseconds(1), seconds(10));
+  reader.read("huber", out.huber, 0.0, 100.0);
+  reader.read("resting_m2_s3", out.resting, 0.0, 1000.0);
+  reader.read("moving_m2_s3", out.moving, 1e-3, 1e4);
+  reader.read("limb", out.limb, 0.1, 100.0);
+  reader.read("white", out.white, 1e-3, 1.0);
+  reader.read_ms("carry_ms", out.carry, milliseconds(0), seconds(1));
+}
+
 void read_fusion(ConfigReader reader, fusion::FusionConfig& out) {
   std::vector<std::string_view> names;
   for (const fusion::MethodRow& row : fusion::methods()) names.push_back(row.name);
@@ -122,6 +139,7 @@ void read_fusion(ConfigReader reader, fusion::FusionConfig& out) {
   reader.read_ms("kalman_coast_ms", out.kalman_coast, milliseconds(0), seconds(10));
   reader.read("max_sigma_m", out.max_sigma, 1e-3, 100.0);
   read_pose_error(reader.child("pose_error"), out.pose_error);
+  read_body(reader.child("body"), out.body);
   ConfigReader noise = reader.child("noise");
   read_noise(noise, out.noise);
 }

@@ -16,8 +16,8 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 const std::vector<SensorId> kSensors{sensor(1), sensor(2), sensor(3), sensor(4)};
 constexpr std::array kMethods{
-    Method::Otto,         Method::Mean,       Method::BestView,     Method::InverseVariance,
-    Method::BestSkeleton, Method::OttoKalman, Method::PointsAndRays};
+    Method::Otto,         Method::Mean,       Method::BestView,      Method::InverseVariance,
+    Method::BestSkeleton, Method::OttoKalman, Method::PointsAndRays, Method::BodyFilter};
 
 FusionConfig by(Method method) {
   FusionConfig config;
@@ -210,11 +210,9 @@ TEST(FuseProperty, TheOrderOfViewsDoesNotMatter) {
   }
 }
 
-TEST(FuseProperty, MovingTheWorldMovesTheResult) {
+void expect_same_when_moved(const Eigen::Isometry3d& moved_from_world,
+                            std::initializer_list<Method> methods) {
   std::mt19937 random(2);
-  Eigen::Isometry3d moved_from_world = Eigen::Isometry3d::Identity();
-  moved_from_world.linear() = exp_map({0.3, -1.1, 0.2}).toRotationMatrix();
-  moved_from_world.translation() = Eigen::Vector3d(4, -2, 7);
   for (int round = 0; round < 20; ++round) {
     const Person person = random_person(random, 3);
     Person moved = person;
@@ -222,7 +220,7 @@ TEST(FuseProperty, MovingTheWorldMovesTheResult) {
       view.eye = moved_from_world * view.eye;
       for (Joint& joint : view.skeleton.joints) joint.position = moved_from_world * joint.position;
     }
-    for (const Method method : kMethods) {
+    for (const Method method : methods) {
       const FusedBody before = fuse(person, kSensors, by(method));
       const FusedBody after = fuse(moved, kSensors, by(method));
       for (std::size_t i = 0; i < kJointCount; ++i) {
@@ -231,6 +229,18 @@ TEST(FuseProperty, MovingTheWorldMovesTheResult) {
       }
     }
   }
+}
+
+TEST(FuseProperty, MovingTheWorldMovesTheResult) {
+  Eigen::Isometry3d tilted = Eigen::Isometry3d::Identity();
+  tilted.linear() = exp_map({0.3, -1.1, 0.2}).toRotationMatrix();
+  tilted.translation() = Eigen::Vector3d(4, -2, 7);
+  expect_same_when_moved(tilted,
+                         {Method::Otto, Method::Mean, Method::BestView, Method::InverseVariance,
+                          Method::BestSkeleton, Method::OttoKalman, Method::PointsAndRays});
+  Eigen::Isometry3d upright(about_y(1.1));  // the body filter knows which way is up
+  upright.translation() = Eigen::Vector3d(4, -2, 7);
+  expect_same_when_moved(upright, {Method::BodyFilter});
 }
 
 TEST(MethodNames, GoBothWays) {

@@ -27,7 +27,8 @@ TEST(InverseVariance, SensorsAtRightAnglesReplaceEachOthersDepth) {
 }
 
 TEST(InverseVariance, OneViewIsItselfWithItsOwnVariance) {
-  const FusedJoint fused = inverse_variance(std::vector{from({0, 0, 5}, {0.1, 0.2, 0.3})}, kHuber);
+  const FusedJoint fused = inverse_variance(
+      std::vector{from({0, 0, 5}, {0.1, 0.2, 0.3}, {.along = 0.03, .across = 0.015})}, kHuber);
   EXPECT_TRUE(fused.joint.position.isApprox(Eigen::Vector3d(0.1, 0.2, 0.3)));
   EXPECT_NEAR(fused.variance, (0.03 * 0.03 + 2 * 0.015 * 0.015) / 3, 1e-12);
 }
@@ -43,8 +44,8 @@ TEST(InverseVariance, OneGrossOutlierAmongFourBarelyPulls) {
 TEST(InverseVariance, InferredCountsLess) {
   std::vector<JointView> views{from({0, 0, 5}, {0, 0, 0}),
                                from({0, 0, 5}, {0.01, 0, 0}, {}, JointState::Inferred)};
-  // Factor 3 in sigma is 9 in weight: 0.01 / (1 + 9).
-  EXPECT_NEAR(inverse_variance(views, kHuber).joint.position.x(), 0.001, 1e-5);
+  // Factor 2 in sigma is 4 in weight: 0.01 / (1 + 4).
+  EXPECT_NEAR(inverse_variance(views, kHuber).joint.position.x(), 0.002, 1e-5);
 }
 
 TEST(InverseVariance, APoseErrorIsStatedButMovesNothing) {

@@ -1,0 +1,110 @@
+#include "fusion-server/fusion/body_filter.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "fusion-server/fusion/bone_lengths.h"
+#include "fusion-server/fusion/joint_filters.h"
+#include "fusion-server/fusion/motion_filter.h"
+#include "fusion-server/fusion/sighted_body.h"
+
+namespace chorus::fusion {
+namespace {
+
+using MotionFilters = std::array<MotionFilter, kJointCount>;
+
+MotionFilter motion_filter(JointId joint, const BodyModel& model) {
+  const double lively = in_trunk(joint) ? 1.0 : model.limb;
+  return MotionFilter({lively * model.resting, lively * model.moving});
+}
+
+template <std::size_t... I>
+MotionFilters motion_filters(const BodyModel& model, std::index_sequence<I...>) {
+  return {motion_filter(static_cast<JointId>(I), model)...};
+}
+
+class BodyFilter final : public Estimator {
+ public:
+  explicit BodyFilter(const FusionConfig& config)
+      : config_(config),
+        errors_(line_of_sight_errors(config.noise, config.sensor_noise)),
+        filters_(motion_filters(config.body, std::make_index_sequence<kJointCount>{})) {}
+
+  FusedBody fuse(const Person& person, const Instant& instant) override {
+    const double passed = last_ ? std::max(0.0, seconds(instant.at - *last_)) : 0.0;
+    last_ = instant.at;
+    const PlacedBody expected = expected_at(instant.at);
+    SightedBody sighted(person, instant, *errors_, config_, biases_);
+    sighted.settle(lengths_.held(config_.body), expected);
+    lengths_.learn(sighted.placed(), passed, config_.body);
+    PlacedBody whole = sighted.placed();
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      if (!whole[j].placed) whole[j] = expected[j];
+    }
+    whole = hold_bones(whole, lengths_.held(config_.body));
+    if (config_.body.bias_rate > 0) sighted.learn(biases_, whole, passed);
+    return joint_by_joint(person.id, [&](JointId joint) {
+      const std::size_t j = index_of(joint);
+      if (!whole[j].placed) return FusedJoint{};
+      FusedJoint fused = sighted.shown(joint);
+      const bool determined = sighted.determined(j);
+      if (!determined) fused.joint.state = JointState::Inferred;
+      state(fused, filtered(j, instant.at, whole[j], determined));
+      return fused;
+    });
+  }
+
+  [[nodiscard]] std::unique_ptr<Estimator> clone() const override {
+    return std::make_unique<BodyFilter>(*this);
+  }
+
+ private:
+  /// Where joints should be that were seen not long ago.
+  [[nodiscard]] PlacedBody expected_at(Timestamp instant) const {
+    PlacedBody body;
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      const auto& updated = filters_[j].updated();
+      if (!updated || instant < *updated || instant - *updated > config_.body.carry) continue;
+      const auto motion = filters_[j].at(instant);
+      const double variance = motion->variance + slow_[j];
+      body[j] = {motion->position, variance * Eigen::Matrix3d::Identity(), true};
+    }
+    return body;
+  }
+
+  /// The joint after the filter, which only views teach.
+  PlacedJoint filtered(std::size_t j, Timestamp instant, const PlacedJoint& now, bool determined) {
+    if (!determined) return now;
+    slow_[j] = mean_variance(now.covariance);
+    const double white = config_.body.white * config_.body.white;
+    filters_[j].update(instant, now.position, white * slow_[j]);
+    if (!(config_.body.resting > 0)) return now;
+    const auto motion = filters_[j].at(instant);
+    return {motion->position, now.covariance + motion->variance * Eigen::Matrix3d::Identity(),
+            true};
+  }
+
+  void state(FusedJoint& fused, const PlacedJoint& place) const {
+    const double common = config_.common_sigma * config_.common_sigma;
+    fused.joint.position = place.position;
+    state_covariance(fused, place.covariance + common * Eigen::Matrix3d::Identity());
+  }
+
+  FusionConfig config_;
+  std::shared_ptr<const ErrorModel> errors_;
+  BoneLengths lengths_;
+  Biases biases_;
+  MotionFilters filters_;
+  std::array<double, kJointCount> slow_{};  ///< Variance of a joint when last seen [m^2].
+  std::optional<Timestamp> last_;
+};
+
+}  // namespace
+
+std::unique_ptr<Estimator> body_filter(const FusionConfig& config) {
+  return std::make_unique<BodyFilter>(config);
+}
+
+}  // namespace chorus::fusion

@@ -1,0 +1,59 @@
+#include "fusion-server/fusion/bone_lengths.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace chorus::fusion {
+namespace {
+
+constexpr double kAlike = 0.5;         // [s] for which errors are the same
+constexpr double kLeastPassed = 5e-3;  // [s] so much a first instant counts
+constexpr double kLongest = 0.1;       // [s] and an instant after a gap
+
+/// For each bone the one of the other side; its own for bones in the middle.
+std::array<std::size_t, kBones.size()> other_sides() {
+  std::array<std::size_t, kBones.size()> other{};
+  for (std::size_t b = 0; b < kBones.size(); ++b) {
+    const auto it = std::ranges::find(kBones, mirror(kBones[b].child), &Bone::child);
+    other[b] = static_cast<std::size_t>(it - kBones.begin());
+  }
+  return other;
+}
+
+double variance_of(const PlacedJoint& joint) {
+  constexpr double kAxes = 3.0;
+  return joint.covariance.trace() / kAxes;
+}
+
+}  // namespace
+
+void BoneLengths::learn(const PlacedBody& seen, double passed, const BodyModel& model) {
+  const double time = std::clamp(passed, kLeastPassed, kLongest);
+  const double fade = std::exp(-time / seconds(model.bone_memory));
+  for (std::size_t b = 0; b < kBones.size(); ++b) {
+    const PlacedJoint& parent = seen[index_of(kBones[b].parent)];
+    const PlacedJoint& child = seen[index_of(kBones[b].child)];
+    if (!parent.placed || !child.placed) continue;
+    const double weight = time / (variance_of(parent) + variance_of(child));
+    Learned& bone = bones_[b];
+    bone.weight = fade * bone.weight + weight;
+    const double length = (child.position - parent.position).norm();
+    bone.length += weight / bone.weight * (length - bone.length);
+  }
+}
+
+HeldBones BoneLengths::held(const BodyModel& model) const {
+  static const auto kOther = other_sides();
+  HeldBones held;
+  for (std::size_t b = 0; b < kBones.size(); ++b) {
+    const Learned& one = bones_[b];
+    const Learned& other = bones_[kOther[b]];
+    const double weight = one.weight + other.weight;
+    if (!(weight > 0) || !(model.bone > 0)) continue;
+    held[b].length = (one.weight * one.length + other.weight * other.length) / weight;
+    held[b].sigma = std::sqrt(model.bone * model.bone + kAlike / weight);
+  }
+  return held;
+}
+
+}  // namespace chorus::fusion

@@ -1,0 +1,114 @@
+#include "fusion-server/fusion/motion_filter.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace chorus::fusion {
+namespace {
+
+constexpr double kFirstSpeed = 1.0;   // [m/s] standard deviation of a velocity not yet seen
+constexpr double kRests = 0.5;        // [s] for which a point rests, or moves, on the average
+constexpr double kLeastShare = 1e-3;  // no model is ever out of the question
+constexpr double kReach = 3.5;        // standard deviations beyond which a measurement is cut off
+constexpr double kAxes = 3.0;
+constexpr double kSlowing = 0.4;  // [s] in which speed is lost that nobody sees
+
+}  // namespace
+
+MotionFilter::MotionFilter(const Densities& densities) {
+  models_[0].density = densities.resting;
+  models_[1].density = densities.moving;
+}
+
+void MotionFilter::begin(Timestamp instant, const Eigen::Vector3d& position, double variance) {
+  for (Model& model : models_) {
+    model.share = 0.5;
+    model.position = position;
+    model.velocity.setZero();
+    model.covariance << variance, 0, 0, kFirstSpeed * kFirstSpeed;
+  }
+  updated_ = instant;
+}
+
+void MotionFilter::mix(Models& models, double passed) {
+  const double change = 0.5 * (1.0 - std::exp(-2.0 * passed / kRests));
+  const Models before = models;
+  for (std::size_t to = 0; to < 2; ++to) {
+    const std::size_t from = 1 - to;
+    const double stays = (1.0 - change) * before[to].share;
+    const double comes = change * before[from].share;
+    const double came = comes / (stays + comes);
+    const Eigen::Vector3d apart = before[from].position - before[to].position;
+    const Eigen::Vector3d faster = before[from].velocity - before[to].velocity;
+    Model& model = models[to];
+    model.share = stays + comes;
+    model.position += came * apart;
+    model.velocity += came * faster;
+    Eigen::Matrix2d spread;
+    spread << apart.squaredNorm(), apart.dot(faster), apart.dot(faster), faster.squaredNorm();
+    model.covariance = (1.0 - came) * before[to].covariance + came * before[from].covariance +
+                       came * (1.0 - came) / kAxes * spread;
+  }
+}
+
+void MotionFilter::predict(Model& model, double dt) {
+  Eigen::Matrix2d step;
+  step << 1, dt, 0, 1;
+  Eigen::Matrix2d noise;
+  noise << dt * dt * dt / 3, dt * dt / 2, dt * dt / 2, dt;
+  model.position += dt * model.velocity;
+  model.covariance = step * model.covariance * step.transpose() + model.density * noise;
+}
+
+double MotionFilter::correct(Model& model, const Eigen::Vector3d& position, double variance,
+                             double reach) {
+  const double expected = model.covariance(0, 0) + variance;
+  Eigen::Vector3d off = position - model.position;
+  if (off.norm() > reach) off *= reach / off.norm();
+  const Eigen::Vector2d gain = model.covariance.col(0) / expected;
+  model.position += gain.x() * off;
+  model.velocity += gain.y() * off;
+  model.covariance = (model.covariance - gain * model.covariance.row(0)).eval();
+  return -0.5 * (kAxes * std::log(expected) + off.squaredNorm() / expected);
+}
+
+void MotionFilter::update(Timestamp instant, const Eigen::Vector3d& position, double variance) {
+  if (!updated_ || instant - *updated_ > kForgotten || instant < *updated_) {
+    return begin(instant, position, variance);
+  }
+  const double passed = seconds(instant - *updated_);
+  if (passed > 0) mix(models_, passed);
+  for (Model& model : models_) predict(model, passed);
+  const double reach = kReach * std::sqrt(models_[1].covariance(0, 0) + variance);
+  std::array<double, 2> likely{};
+  for (std::size_t i = 0; i < 2; ++i) likely[i] = correct(models_[i], position, variance, reach);
+  const double best = std::max(likely[0], likely[1]);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    models_[i].share = std::max(kLeastShare, models_[i].share * std::exp(likely[i] - best));
+    sum += models_[i].share;
+  }
+  for (Model& model : models_) model.share /= sum;
+  updated_ = instant;
+}
+
+std::optional<MotionFilter::Motion> MotionFilter::at(Timestamp instant) const {
+  if (!updated_) return std::nullopt;
+  const double passed = std::max(0.0, seconds(instant - *updated_));
+  const double way = kSlowing * (1.0 - std::exp(-passed / kSlowing));  // [s] at full speed
+  Motion motion;
+  for (const Model& model : models_) {
+    motion.position += model.share * (model.position + way * model.velocity);
+    motion.velocity += model.share * std::exp(-passed / kSlowing) * model.velocity;
+  }
+  for (const Model& model : models_) {
+    Model later = model;
+    predict(later, passed);
+    const Eigen::Vector3d place = model.position + way * model.velocity;
+    motion.variance +=
+        model.share * (later.covariance(0, 0) + (place - motion.position).squaredNorm() / kAxes);
+  }
+  return motion;
+}
+
+}  // namespace chorus::fusion

@@ -1,0 +1,61 @@
+// Where a point is that rests at times and moves at others: two constant-velocity filters, mixed.
+//
+// An interacting multiple model of two: a stiff one for rest, a nimble one for motion.  Their
+// shares follow from how well each foretold what came, so that rest is smooth and motion does not
+// lag (docs/papers/body.md (9)-(12)).  All noise is alike on all axes.  Metres, seconds.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "common/time/timestamp.h"
+
+namespace chorus::fusion {
+
+class MotionFilter {
+ public:
+  /// A point unseen for longer starts anew.
+  static constexpr Duration kForgotten = std::chrono::milliseconds(1000);
+
+  struct Densities {
+    double resting;  ///< Of the white acceleration [m^2 / s^3].
+    double moving;
+  };
+  struct Motion {
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+    double variance = 0.0;  ///< Of the position, per axis [m^2].
+  };
+
+  explicit MotionFilter(const Densities& densities);
+
+  /// A measurement at `instant`, later than those before, `variance` per axis [m^2].
+  void update(Timestamp instant, const Eigen::Vector3d& position, double variance);
+  /// Where it should be; none before the first update.  Speed is lost in the course of a second.
+  [[nodiscard]] std::optional<Motion> at(Timestamp instant) const;
+  [[nodiscard]] const std::optional<Timestamp>& updated() const { return updated_; }
+
+ private:
+  struct Model {
+    double density = 0.0;
+    double share = 0.5;
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+    Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+  };
+  using Models = std::array<Model, 2>;
+
+  void begin(Timestamp instant, const Eigen::Vector3d& position, double variance);
+  static void mix(Models& models, double passed);
+  static void predict(Model& model, double passed);
+  /// Returns how likely the measurement was, logarithm.
+  static double correct(Model& model, const Eigen::Vector3d& position, double variance,
+                        double reach);
+
+  std::optional<Timestamp> updated_;
+  Models models_;
+};
+
+}  // namespace chorus::fusion

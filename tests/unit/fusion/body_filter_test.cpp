@@ -1,0 +1,243 @@
+// One body over time: what it learns, what it carries, what it smooths.
+#include "fusion-server/fusion/body_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/body/bones.h"
+#include "common/geometry/rotation.h"
+#include "fusion-server/fusion/fuse.h"
+#include "tests/unit/fusion/views.h"
+
+namespace chorus::fusion {
+namespace {
+
+using std::chrono::milliseconds;
+using enum JointId;
+
+const std::vector<SensorId> kSensors{sensor(1), sensor(2), sensor(3), sensor(4)};
+constexpr Timestamp kStart = from_unix_ns(1'795'246'200'000'000'000);
+constexpr int kSteps = 90;
+
+/// A standing body, arms out, facing +z.
+Skeleton<WorldSpace> standing() {
+  Skeleton<WorldSpace> body;
+  const auto put = [&](JointId joint, double x, double y) {
+    body[joint].position = Eigen::Vector3d(x, y, 0.02 * y);
+    body[joint].state = JointState::Tracked;
+  };
+  put(SpineBase, 0, 0.95);
+  put(SpineMid, 0, 1.2);
+  put(SpineShoulder, 0, 1.4);
+  put(Neck, 0, 1.47);
+  put(Head, 0, 1.65);
+  for (const double side : {1.0, -1.0}) {
+    const auto of = [side](JointId left) { return side > 0 ? left : mirror(left); };
+    put(of(ShoulderLeft), 0.18 * side, 1.38);
+    put(of(ElbowLeft), 0.45 * side, 1.35);
+    put(of(WristLeft), 0.7 * side, 1.33);
+    put(of(HipLeft), 0.09 * side, 0.92);
+    put(of(KneeLeft), 0.1 * side, 0.5);
+    put(of(AnkleLeft), 0.1 * side, 0.09);
+  }
+  return body;
+}
+
+/// From eyes around the body, 3 m away; the first in front of it.
+SensorView view_of(int number, const Skeleton<WorldSpace>& body) {
+  SensorView view;
+  view.sensor = sensor(number);
+  view.weight = 0.5;
+  view.eye = about_y(deg(90) * (number - 1)) * Eigen::Vector3d(0, 1.6, 3);
+  view.skeleton = body;
+  return view;
+}
+
+Skeleton<WorldSpace> scaled(Skeleton<WorldSpace> body, double by) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const JointId id : kCoreJoints) middle += body[id].position / 5.0;
+  for (Joint& joint : body.joints) joint.position = middle + by * (joint.position - middle);
+  return body;
+}
+
+/// Limbs turned about the spine, as a sensor that sees the body from the side has them.
+Skeleton<WorldSpace> turned(Skeleton<WorldSpace> body, double by) {
+  for (Joint& joint : body.joints) {
+    if (std::abs(joint.position.x()) > 0) joint.position = about_y(by) * joint.position;
+  }
+  return body;
+}
+
+struct Room {
+  Room() { config.method = Method::BodyFilter; }
+
+  FusedBody at(int step, std::vector<SensorView> views) {
+    return memory.fuse({{PersonId{1}, std::move(views)}},
+                       {kStart + milliseconds(33) * step, kSensors}, config)[0];
+  }
+  /// Everybody sees the same.
+  FusedBody all_see(int step, const Skeleton<WorldSpace>& body) {
+    return at(step, {view_of(1, body), view_of(2, body), view_of(3, body), view_of(4, body)});
+  }
+  FusedBody settled(const Skeleton<WorldSpace>& body) {
+    for (int i = 0; i < kSteps; ++i) (void)all_see(i, body);
+    return all_see(kSteps, body);
+  }
+
+  FusionConfig config;
+  Memory memory;
+};
+
+double wrist_off(const FusedBody& body, const Skeleton<WorldSpace>& exact) {
+  return (body.skeleton[WristLeft].position - exact[WristLeft].position).norm();
+}
+
+TEST(BodyFilter, WhatAllViewsAgreeOnIsTheBody) {
+  Room room;
+  const auto exact = standing();
+  const FusedBody body = room.settled(exact);
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    if (!exact.joints[j].seen()) continue;
+    EXPECT_LT((body.skeleton.joints[j].position - exact.joints[j].position).norm(), 1e-4);
+    EXPECT_EQ(body.skeleton.joints[j].state, JointState::Tracked);
+    EXPECT_EQ(body.contributors[j], 0b1111U);
+  }
+  EXPECT_EQ(body.skeleton[HandLeft].state, JointState::NotTracked);
+}
+
+TEST(BodyFilter, AViewThatIsTooLargeAsAWholeIsShrunk) {
+  const auto exact = standing();
+  const auto error = [&](double scale) {
+    Room room;
+    room.config.body.scale = scale;
+    (void)room.settled(exact);
+    const auto large = scaled(exact, 1.08);
+    return wrist_off(room.at(kSteps + 1, {view_of(1, exact), view_of(2, large)}), exact);
+  };
+  EXPECT_LT(error(0.06), 0.5 * error(0.0));
+}
+
+TEST(BodyFilter, AViewFromTheSideMayHaveTheBodyTurned) {
+  const auto exact = standing();
+  const auto error = [&](double turn) {
+    Room room;
+    room.config.body.turn = turn;
+    room.config.body.bone = 0.0;
+    room.config.body.resting = 0.0;
+    const std::vector<SensorView> views{view_of(1, exact), view_of(2, turned(exact, deg(25))),
+                                        view_of(3, exact)};
+    return wrist_off(room.at(0, views), exact);
+  };
+  EXPECT_GT(error(0.0), 0.01);
+  EXPECT_LT(error(deg(20)), 0.5 * error(0.0));
+}
+
+TEST(BodyFilter, BonesHoldAJointAtTheLengthThatWasLearned) {
+  const auto exact = standing();
+  const auto length_after = [&](double bone) {
+    Room room;
+    room.config.body.bone = bone;
+    room.config.body.resting = 0.0;
+    (void)room.settled(exact);
+    auto stretched = exact;
+    stretched[WristLeft].position.x() += 0.1;
+    const FusedBody body = room.all_see(kSteps + 1, stretched);
+    return (body.skeleton[WristLeft].position - body.skeleton[ElbowLeft].position).norm();
+  };
+  const double length = (exact[WristLeft].position - exact[ElbowLeft].position).norm();
+  EXPECT_NEAR(length_after(0.003), length, 0.02);
+  EXPECT_NEAR(length_after(0.0), length + 0.1, 0.005);
+}
+
+TEST(BodyFilter, AJointThatNobodySeesIsCarriedForAWhileAndSaidToBe) {
+  Room room;
+  const auto exact = standing();
+  (void)room.settled(exact);
+  auto without = exact;
+  without[WristLeft] = {};
+  const double before = room.all_see(kSteps + 1, exact).variance[index_of(WristLeft)];
+  FusedBody body;
+  for (int i = 2; i < 20; ++i) body = room.all_see(kSteps + i, without);
+  EXPECT_EQ(body.skeleton[WristLeft].state, JointState::Inferred);
+  EXPECT_EQ(body.contributors[index_of(WristLeft)], 0U);
+  EXPECT_LT(wrist_off(body, exact), 0.01);
+  EXPECT_GT(body.variance[index_of(WristLeft)], before);
+  for (int i = 20; i < 40; ++i) body = room.all_see(kSteps + i, without);
+  EXPECT_EQ(body.skeleton[WristLeft].state, JointState::NotTracked);
+}
+
+TEST(BodyFilter, ACarriedBodyMovesOn) {
+  Room room;
+  auto exact = standing();
+  const auto move = [&] {
+    for (Joint& joint : exact.joints) joint.position.z() += 0.02;
+  };
+  for (int i = 0; i < kSteps; ++i, move()) (void)room.all_see(i, exact);
+  for (int i = 0; i < 3; ++i, move()) (void)room.at(kSteps + i, {});
+  EXPECT_LT(wrist_off(room.at(kSteps + 3, {}), exact), 0.02);
+}
+
+TEST(BodyFilter, RestIsSmoothAndMotionDoesNotLag) {
+  const auto exact = standing();
+  const auto step_of = [&](double resting) {
+    Room room;
+    room.config.body.resting = resting;
+    (void)room.settled(exact);
+    double steps = 0.0;
+    Eigen::Vector3d last = exact[WristLeft].position;
+    for (int i = 1; i <= 40; ++i) {
+      auto noisy = exact;
+      noisy[WristLeft].position.y() += i % 2 == 0 ? 0.004 : -0.004;
+      const Eigen::Vector3d now = room.all_see(kSteps + i, noisy).skeleton[WristLeft].position;
+      steps += (now - last).norm() / 40.0;
+      last = now;
+    }
+    return steps;
+  };
+  EXPECT_LT(step_of(FusionConfig{}.body.resting), 0.5 * step_of(0.0));
+  Room room;
+  (void)room.settled(exact);
+  auto moving = exact;
+  FusedBody body;
+  for (int i = 1; i <= 15; ++i) {
+    for (Joint& joint : moving.joints) joint.position.z() += 0.03;  // 0.9 m/s at once
+    body = room.all_see(kSteps + i, moving);
+  }
+  EXPECT_LT(wrist_off(body, moving), 0.012);
+}
+
+TEST(BodyFilter, OneViewThatJumpsMovesNobodyByAJump) {
+  Room room;
+  const auto exact = standing();
+  const FusedBody before = room.settled(exact);
+  auto gone = exact;
+  for (Joint& joint : gone.joints) joint.position.x() += 0.5;
+  const FusedBody body = room.at(
+      kSteps + 1, {view_of(1, exact), view_of(2, exact), view_of(3, exact), view_of(4, gone)});
+  EXPECT_LT((body.skeleton[Head].position - before.skeleton[Head].position).norm(), 0.015);
+}
+
+TEST(BodyFilter, ARayDrawsAJointAndAloneDoesSoOnlyForAWhile) {
+  Room room;
+  const Eigen::Vector3d neck(0, 1.4, 0.3);
+  const auto ray = [&](int number) {
+    SensorView view = view_of(number, {});
+    view.skeleton[Neck].position = (neck - view.eye).normalized();
+    view.skeleton[Neck].state = JointState::Tracked;
+    view.skeleton[Neck].measurement = Measurement::Ray;
+    return view;
+  };
+  EXPECT_FALSE(room.at(0, {ray(1)}).skeleton[Neck].seen());
+  for (int i = 1; i < 30; ++i) (void)room.at(i, {ray(1), ray(2)});
+  const FusedBody both = room.at(30, {ray(1), ray(2)});
+  EXPECT_LT((both.skeleton[Neck].position - neck).norm(), 1e-3);
+  EXPECT_EQ(both.contributors[index_of(Neck)], 0b11U);
+  EXPECT_TRUE(room.at(31, {ray(1)}).skeleton[Neck].seen());
+  FusedBody alone;
+  for (int i = 32; i < 70; ++i) alone = room.at(i, {ray(1)});
+  EXPECT_FALSE(alone.skeleton[Neck].seen());
+}
+
+}  // namespace
+}  // namespace chorus::fusion
