@@ -30,7 +30,7 @@ std::string_view host_part(std::string_view authority) {
   return authority.substr(0, colon);
 }
 
-/// An address or localhost: a name that DNS cannot point somewhere else.
+/// True for an address or localhost: DNS cannot point such a name somewhere else.
 bool is_fixed_name(std::string_view host) {
   if (equal_ignoring_case(host, "localhost") || host.starts_with('[')) return true;
   return !host.empty() && host.find_first_not_of("0123456789.") == std::string_view::npos;
@@ -66,8 +66,8 @@ bool is_reading(const RequestHead& head) {
   return head.method == Method::Get || head.method == Method::Head;
 }
 
-/// A browser sends Basic credentials with whatever any page makes it ask for, so they never write,
-/// by a WebSocket's GET either.
+/// Browsers attach Basic credentials to any request that any page makes, so Basic credentials never
+/// allow writing, not even by a WebSocket's GET.
 std::optional<std::string> secret_in(const RequestHead& head, Role needed) {
   if (const auto bearer = credentials(head, "bearer")) return std::string(*bearer);
   const bool reads = needed != Role::Control && is_reading(head);
@@ -75,8 +75,8 @@ std::optional<std::string> secret_in(const RequestHead& head, Role needed) {
   return basic ? password_in(*basic) : std::nullopt;
 }
 
-/// The role that the request has proved; nothing without one of our tokens.  Every token is
-/// compared, so that the time does not tell which.
+/// The role that the request has proved; none without one of our tokens.  Every token is compared,
+/// so that the time does not reveal which one matched.
 std::optional<Role> role_of(const RequestHead& head, Role needed, const Guard& guard) {
   const auto secret = secret_in(head, needed);
   if (!secret) return std::nullopt;
@@ -122,7 +122,7 @@ std::vector<std::string> host_names() {
 }
 
 bool from_own_page(const RequestHead& head) {
-  // Behind a proxy that ends TLS the page is https.
+  // A proxy in front of us may end TLS; the page is https then.
   for (const std::string_view scheme : {"http://", "https://"}) {
     if (is_present(head.origin) && head.origin.starts_with(scheme) &&
         equal_ignoring_case(head.origin.substr(scheme.size()), head.host))

@@ -1,4 +1,4 @@
-// Who may read and who may write: by which name, from which page, from where, with which token.
+// Who may read and who may write: checks the Host name, the origin, the peer and the token.
 #pragma once
 
 #include <cstdint>
@@ -15,17 +15,17 @@ namespace chorus::http {
 /// Both ends of the connection a request came over.
 struct Peer {
   bool loopback = false;
-  std::string local_address = {};  ///< Ours, as text without port.
+  std::string local_address = {};  ///< Our address on this connection, as text without the port.
   std::uint16_t local_port = 0;
-  /// One of ServerConfig::trusted_proxies: it forwards requests of others.
+  /// The peer is one of ServerConfig::trusted_proxies and forwards the requests of others.
   bool proxy = false;
-  std::string account = {};  ///< Whom limits count the connection for (net::account_of).
+  std::string account = {};  ///< The account that limits count it for (net::account_of).
 };
 
-/// What a token allows; each role includes those before it.
+/// What a token allows; each role includes the ones before it.
 enum class Role {
-  Read,     ///< Everything but pictures and recordings.
-  Images,   ///< These too (Router::shows_people).
+  Read,     ///< Everything except pictures and recordings.
+  Images,   ///< Pictures and recordings as well (Router::shows_people).
   Control,  ///< Writing methods.
 };
 
@@ -36,18 +36,18 @@ struct Token {
   bool operator==(const Token&) const = default;
 };
 
-/// What a server asks of those who come.
+/// What a server requires of its clients.
 struct Guard {
   std::vector<Token> tokens = {};
-  bool open = false;  ///< It listens to more than this host.
+  bool open = false;  ///< The server listens to more than this host.
 
-  /// Somebody has made tokens for reading, so that everybody needs one.
+  /// Some token is for reading, so every reader needs one.
   [[nodiscard]] bool knows_readers() const;
-  /// Reading needs a token, at least for others than this host.
+  /// Reading needs a token, at least for clients on other hosts.
   [[nodiscard]] bool guards_reading() const { return open || knows_readers(); }
 };
 
-/// Constant time whatever the bytes are: compares SHA-256 digests.
+/// Compares SHA-256 digests, so the time does not depend on the bytes.
 [[nodiscard]] bool same_secret(std::string_view a, std::string_view b);
 
 /// True when a Host field names this service: by an address, as localhost, or by one of `names`.
@@ -57,7 +57,7 @@ struct Guard {
 /// The name of this host, and the same with ".local".
 [[nodiscard]] std::vector<std::string> host_names();
 
-/// True for a request that a page of this very service makes.
+/// True for a request that comes from one of this service's own pages.
 [[nodiscard]] bool from_own_page(const RequestHead& head);
 
 /// True for a request from a person or program on this host: not one that a proxy forwarded, and
@@ -65,23 +65,23 @@ struct Guard {
 /// included).
 [[nodiscard]] bool is_trusted_local(const RequestHead& head, const Peer& peer);
 
-/// Nothing when the request is allowed what it needs.  Writing: with a token of role Control if any
-/// token is configured, else for trusted local requests.  Reading, on an open server: with a token,
-/// or for trusted local requests while no token for reading is configured; elsewhere with a token
-/// once there is one for reading.  Being local does not replace such tokens: a proxy on this host
-/// is local as well.  For GET and HEAD the token may also come as the password of Basic
-/// authentication, which browsers ask people for.
+/// No error when the request may do what it needs.  Writing needs a token of role Control if any
+/// token is configured; otherwise only trusted local requests may write.  Reading needs a token
+/// once one for reading is configured.  Until then, reading from an open server needs any token or
+/// a trusted local request, and reading from any other server needs nothing.  A local request does
+/// not do without a reading token, because a proxy on this host is local as well.  For GET and HEAD
+/// the token may also come as the password of Basic authentication, for which browsers prompt.
 [[nodiscard]] std::optional<Error> refuse_access(const RequestHead& head, const Peer& peer,
                                                  Role needed, const Guard& guard);
 
-/// True when the request names a token that is none of ours.
+/// True when the request carries a token that is none of ours.
 [[nodiscard]] bool has_wrong_token(const RequestHead& head, const Guard& guard);
 
 [[nodiscard]] std::string_view name_of(Role role) noexcept;
 /// "read", "images" or "control".
 [[nodiscard]] std::optional<Role> role_named(std::string_view name);
 
-/// True when `authority` (host[:port] of an absolute-form target) is this end of the connection.
+/// True when `authority` (host[:port] of an absolute-form target) names our end of the connection.
 [[nodiscard]] bool is_our_authority(std::string_view authority, const Peer& peer);
 
 }  // namespace chorus::http

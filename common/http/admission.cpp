@@ -12,7 +12,7 @@
 namespace chorus::http {
 namespace {
 
-// Connections beyond the limit: they are told so, and may read what is vital.
+// Connections accepted beyond the limit: each is told so, and may read what is vital.
 constexpr std::size_t kReserve = 32;
 constexpr std::size_t kReservePerAddress = 4;
 // Descriptors for everything else: polled sensors, tracker outputs, files, the log.
@@ -80,8 +80,8 @@ void ServerCore::welcome(net::Socket socket) {
   connection->start_in_reserve();
 }
 
-/// Closes an idle connection: one of the newcomer's own address, or of the address with the most
-/// connections; among those, the one that has been idle longest.
+/// Closes an idle connection: one of the newcomer's own address, or one of the address with the
+/// most connections; among those, the one that has been idle longest.
 bool ServerCore::close_an_idle_one(const Connection* newcomer, bool of_its_address) {
   std::shared_ptr<Connection> least;
   std::size_t most = 0;

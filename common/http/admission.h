@@ -1,4 +1,4 @@
-// Whom a proxy's request is counted for.
+// Which client a proxy's request is counted for.
 #pragma once
 
 #include <optional>

@@ -52,7 +52,7 @@ void append_number(std::string& out, std::int64_t value) {
   out.append(digits.data(), end);
 }
 
-/// The Date field changes once a second, and there are many answers in one.
+/// The Date field changes only once a second, so many answers share one text.
 const std::string& date_of(Timestamp t) {
   thread_local std::int64_t second = -1;
   thread_local std::string text;

@@ -1,4 +1,4 @@
-// One answer, ready to be written: its own few header lines, then shared bytes.
+// One answer, ready to be written: its few header lines first, then shared bytes.
 #pragma once
 
 #include <memory>
@@ -19,16 +19,16 @@ struct Answer {
   std::string_view body = {};
   std::shared_ptr<const void> owner = {};     ///< Keeps `own` and `body` alive.
   std::shared_ptr<const FileBody> file = {};  ///< What follows `body`.
-  std::optional<Timestamp> captured = {};     ///< Server-Timing tells the age at sending.
+  std::optional<Timestamp> captured = {};     ///< Server-Timing tells its age at sending.
   bool close = false;                         ///< Framing is lost: close after this answer.
 };
 
-/// What the first lines say beside the answer itself.
+/// What the first lines say in addition to the answer itself.
 struct AnswerStamp {
-  Timestamp received;  ///< The request was complete: t1 of the clock field.
+  Timestamp received;  ///< When the request was complete: t1 of the clock field.
   Timestamp sent;      ///< t2, and Date.
   bool close = false;
-  bool keep_alive_http10 = false;     ///< Tells HTTP/1.0, which closes by default.
+  bool keep_alive_http10 = false;     ///< Tell an HTTP/1.0 client so.
   std::string_view clock_field = {};  ///< See AnswerPolicy.
 };
 

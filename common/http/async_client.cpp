@@ -52,9 +52,9 @@ struct AsyncClient::Impl : std::enable_shared_from_this<AsyncClient::Impl> {
   net::Timer timer;
 
   Callback callback;          ///< Set while a request is under way.
-  std::uint64_t attempt = 0;  ///< Handlers of an older attempt are void.
+  std::uint64_t attempt = 0;  ///< Handlers of an older attempt do nothing.
   bool connected = false;
-  bool reused = false;  ///< The connection has answered before.
+  bool reused = false;  ///< The connection has answered before, so the server may have closed it.
   bool closed = false;
   bool repeatable = false;
   bool head_only = false;
@@ -162,12 +162,12 @@ void AsyncClient::Impl::on_answer() {
   response.body = std::move(parser->get().body());
   response.sent_ns = sent_ns;
   response.received_ns = to_unix_ns(SystemClock().now());
-  // Bytes after the answer belong to nothing we asked for.
+  // Bytes after the answer belong to no request of ours.
   if (!parser->keep_alive() || in.size() > 0) drop();
   finish(std::move(response));
 }
 
-/// A kept-alive connection closed by the server meanwhile is not a failure: ask again on a new one.
+/// If the server has closed a kept-alive connection meanwhile, asks again on a new one.
 void AsyncClient::Impl::retry_or_fail(net::error_code failed, std::string_view doing) {
   if (reused && repeatable) return connect();
   finish(fail(ErrorCode::Unavailable, authority,
@@ -179,7 +179,7 @@ void AsyncClient::Impl::arm(std::chrono::milliseconds time, std::string_view doi
   timer.async_wait(
       [self = shared_from_this(), mine = attempt, doing, time](net::error_code cancelled) {
         if (cancelled || self->attempt != mine || !self->callback) return;
-        // Expired and re-armed in the same instant: a later one is under way.
+        // The timer was re-armed after expiry but before this handler ran: the newer wait counts.
         if (self->timer.expiry() > std::chrono::steady_clock::now()) return;
         self->finish(
             fail(ErrorCode::Timeout, self->authority,
@@ -191,7 +191,7 @@ void AsyncClient::Impl::finish(Result<ClientResponse> result) {
   ++attempt;
   if (!result) drop();
   timer.cancel();
-  // The callback may send again, close, or destroy the client.
+  // The callback may send again, close or destroy the client.
   const Callback done = std::exchange(callback, nullptr);
   if (done) done(std::move(result));
 }

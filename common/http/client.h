@@ -30,17 +30,17 @@ struct Url {
 
 struct ClientRequest {
   std::string method = "GET";
-  std::string target = {};  ///< Empty: that of the Url in fetch(), else "/".
+  std::string target = {};  ///< Empty: the target of the Url in fetch(), else "/".
   std::vector<Header> headers = {};
   std::string body = {};
 };
 
 struct ClientResponse {
   int status = 0;
-  std::map<std::string, std::string, std::less<>> headers;  ///< Lower-case names.
+  std::map<std::string, std::string, std::less<>> headers;  ///< The names are in lower case.
   std::string body;
-  std::int64_t sent_ns = 0;      ///< Our UTC when the request left and the answer was complete:
-  std::int64_t received_ns = 0;  ///< t0 and t3 of the clock model.
+  std::int64_t sent_ns = 0;      ///< UTC by our clock when the request left
+  std::int64_t received_ns = 0;  ///< and when the answer was complete: t0, t3.
 };
 
 struct ClientLimits {
@@ -49,14 +49,14 @@ struct ClientLimits {
   std::chrono::milliseconds answer_timeout{10000};
 };
 
-/// One request on a connection of its own; blocks.
+/// Sends one request on its own connection; blocks.
 [[nodiscard]] Result<ClientResponse> fetch(const Url& url, const ClientRequest& request,
                                            const ClientLimits& limits = {});
 
-/// One kept-alive connection on somebody else's io_context: one request at a time, callbacks on its
-/// thread.  Reconnects on demand; a GET on a connection that was closed meanwhile is sent again on
-/// a new one.  Destroying it, or close(), cancels: the callback is then never called.  All calls,
-/// and the destructor, belong on the io_context's thread (or before it runs, or after).
+/// One kept-alive connection on the caller's io_context: one request at a time, callbacks on its
+/// thread.  Reconnects on demand; a GET on a connection that was closed meanwhile is repeated on a
+/// new one.  The destructor and close() cancel: the callback is then never called.  All calls and
+/// the destructor belong on the io_context's thread (or before it runs, or after).
 class AsyncClient {
  public:
   using Callback = std::function<void(Result<ClientResponse>)>;

@@ -9,13 +9,13 @@
 
 namespace chorus::http {
 
-/// A longer head of an answer ends the connection.
+/// An answer with a longer head ends the connection.
 inline constexpr std::uint32_t kMaxAnswerHeadBytes = 16384;
 
 /// "127.0.0.1:8080", "[::1]:8080".
 [[nodiscard]] std::string authority_of(const std::string& host, std::uint16_t port);
 
-/// False when a value would smuggle in a second header or request.
+/// False when a value would smuggle in another header field or request.
 [[nodiscard]] bool is_writable(const ClientRequest& request);
 
 [[nodiscard]] std::string request_text(const ClientRequest& request, const std::string& authority);

@@ -1,4 +1,4 @@
-// One connected client, whatever it speaks: what the server knows of it.
+// One connected client of any protocol: what the server knows about it.
 #pragma once
 
 #include <memory>
@@ -15,11 +15,11 @@ class Connection : public std::enable_shared_from_this<Connection> {
   explicit Connection(std::string peer_address) : peer_address_(std::move(peer_address)) {}
   virtual ~Connection() = default;
 
-  /// The document of the entry that this client waits for or streams has changed.
+  /// The document that this client waits for or streams has changed.
   virtual void wake() = 0;
   /// The deadline has passed.
   virtual void expire() = 0;
-  /// The server stops: finish what is under way, begin nothing new.
+  /// The server is stopping: finish what is under way, begin nothing new.
   virtual void stop() = 0;
   virtual void close() = 0;
 
@@ -27,7 +27,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   /// True between requests: it may be closed when others need the room.
   [[nodiscard]] virtual bool idle() const { return false; }
 
-  /// Whose connection this is, as limits count: see net::account_of.
+  /// The account that limits count this connection for: see net::account_of.
   [[nodiscard]] const std::string& peer_address() const { return peer_address_; }
   void charge_to(std::string account) { peer_address_ = std::move(account); }
 

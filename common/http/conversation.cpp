@@ -12,12 +12,12 @@ namespace chorus::http {
 namespace {
 
 constexpr std::chrono::seconds kLingerTime{2};
-constexpr std::size_t kLingerBytes = 1u << 20;  // What a refused client may still send.
+constexpr std::size_t kLingerBytes = 1u << 20;  // How much a refused client may still send.
 
 // The client holds the body back until it reads this.
 constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
 
-/// For whoever looks for a mistake (log.level "debug").  Neither query nor fields: they may hold
+/// For debugging (log.level "debug").  Logs neither the query nor the fields, because they may hold
 /// secrets.
 void note(const RequestHead& head, const Peer& peer, int status) {
   if (!log::is_wanted(log::Level::Debug)) return;
@@ -66,7 +66,7 @@ Orders Conversation::input_ended(bool cleanly, SteadyTime now) {
   return resume(now, [this, cleanly] {
     reading_ = false;
     end_of_input_ = true;
-    // Requests made before the end of input are still answered, but nobody waits any longer.
+    // Requests made before the end of input are still answered, but none of them waits any longer.
     if (!cleanly || state_ != State::Writing) hang_up();
   });
 }
@@ -136,7 +136,7 @@ void Conversation::on_input(std::size_t size) {
       buffer_.clear();
       return drained_ > kLingerBytes ? hang_up() : read();
     default:
-      return;  // A request sent ahead; it stays in the buffer.
+      return;  // The client sent a request ahead; it stays in the buffer.
   }
 }
 
@@ -190,7 +190,7 @@ std::string Conversation::handshake() const {
   return handshake_of(head_, unread().substr(request_size_));
 }
 
-/// Whether there is room for this request's sender; beyond the limits only for what is vital.
+/// True when there is room for this request's sender; beyond the limits, only for a vital path.
 bool Conversation::may_ask() {
   if (peer_.proxy) {
     if (const auto account = forwarded_account(head_)) {
@@ -211,7 +211,7 @@ void Conversation::begin_body() {
 }
 
 void Conversation::advance_body() {
-  // The head stays where it is, for the action to read; the body is taken out behind it.
+  // The head stays in the buffer, for the action to read; the body is taken out from after it.
   const auto wanted = static_cast<std::size_t>(head_.content_length) - body_.size();
   buffer_.take_body(request_size_, wanted, body_);
   if (body_.size() < head_.content_length) {
@@ -304,7 +304,7 @@ void Conversation::next_request() {
   advance();
 }
 
-/// Tells the client that nothing more comes and reads on until the client has closed: closing with
+/// Tells the client that nothing more follows and reads until the client has closed: closing with
 /// unread input would reset the connection and destroy the answer on its way.
 void Conversation::linger() {
   if (end_of_input_) return hang_up();

@@ -36,26 +36,26 @@ class Conversation {
   Conversation(ConversationContext context, Peer peer, Charge charge);
 
   [[nodiscard]] Orders begin(SteadyTime now);
-  /// There are too many connections: one request is answered, if it is for something vital.
+  /// Called when there are too many connections: answers one request, if it is for something vital.
   [[nodiscard]] Orders begin_in_reserve(SteadyTime now);
   [[nodiscard]] Orders received(std::size_t size, SteadyTime now);
-  /// `cleanly`: the client has closed its side; else the connection is broken.
+  /// `cleanly`: the client has closed its side; otherwise the connection is broken.
   [[nodiscard]] Orders input_ended(bool cleanly, SteadyTime now);
   [[nodiscard]] Orders sent(std::size_t size, SteadyTime now);
   [[nodiscard]] Orders send_failed(std::size_t size, SteadyTime now);
   [[nodiscard]] Orders settled(SteadyTime now);
-  /// A new version of the entry's document has been published; the wait is not registered any more.
+  /// A new version of the entry's document has been published; the wait is no longer registered.
   [[nodiscard]] Orders woken(SteadyTime now);
   /// The wait has just been registered: checks whether a version was published before that.
   [[nodiscard]] Orders look(SteadyTime now);
   [[nodiscard]] Orders expired(SteadyTime now);
-  /// The server stops: finishes what is under way and begins nothing new.
+  /// The server is stopping: finishes what is under way and begins nothing new.
   [[nodiscard]] Orders stop(SteadyTime now);
   [[nodiscard]] Orders close(SteadyTime now);
 
   [[nodiscard]] std::span<char> room() { return buffer_.room(); }
   [[nodiscard]] const std::array<std::string_view, 4>& output() const { return output_; }
-  /// Of the request that asked for an upgrade: see handshake_of.
+  /// For Beast, from the request that asked for an upgrade: see handshake_of.
   [[nodiscard]] std::string handshake() const;
   /// Its entry says which document to wait for, or which WebSocket to upgrade to.
   [[nodiscard]] const Reaction& reaction() const { return reaction_; }
@@ -122,7 +122,7 @@ class Conversation {
   Answer answer_;
   std::array<std::string_view, 4> output_;
   std::uint64_t sent_of_file_ = 0;
-  std::string piece_;  ///< Of the answer's file.
+  std::string piece_;  ///< The piece of the answer's file that is being sent.
   Timestamp received_;
   std::string first_lines_;
   std::string body_;

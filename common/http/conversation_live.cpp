@@ -38,7 +38,7 @@ void Conversation::on_woken() {
   orders_.wait = state_ == State::Waiting || reaction_.kind == Reaction::Kind::Stream;
 }
 
-/// A publish wakes only those who wait, so one that came just before has to be looked for.
+/// A publish wakes only registered waits, so look for one that came just before.
 void Conversation::on_look() {
   if (state_ == State::Streaming) return push_event();
   if (state_ != State::Waiting) return;
@@ -72,8 +72,8 @@ void Conversation::begin_stream() {
 
 void Conversation::push_event() {
   if (event_under_way_) {
-    // The last event is still being written at the next publish: only the newest waits, the others
-    // are skipped.
+    // The last event is still being written when the next version is published: only the newest
+    // version waits, those in between are skipped.
     if (now_ >= deadline_) return hang_up();
     if (event_pending_) count(context_.counters.events_skipped);
     event_pending_ = true;

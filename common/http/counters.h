@@ -6,7 +6,7 @@
 
 namespace chorus::http {
 
-/// ServerCounters that other threads may read while the server's thread counts.
+/// The ServerCounters while the server's thread counts; other threads may read them.
 struct AtomicCounters {
   using Count = std::atomic<std::uint64_t>;
   Count requests = 0, refused = 0, not_modified = 0, connections_total = 0, connections_open = 0,
@@ -15,12 +15,12 @@ struct AtomicCounters {
         connections_limit = 0;
 };
 
-/// One writer: a plain load and store is cheaper than a locked add.
+/// There is only one writer, and a plain load and store is cheaper than a locked add.
 inline void count(AtomicCounters::Count& counter, std::uint64_t by = 1) {
   counter.store(counter.load(std::memory_order_relaxed) + by, std::memory_order_relaxed);
 }
 
-/// One less of what is open or under way.
+/// Counts down the things that are open or under way.
 inline void uncount(AtomicCounters::Count& counter) {
   count(counter, static_cast<std::uint64_t>(-1));
 }

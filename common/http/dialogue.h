@@ -1,4 +1,4 @@
-// A client that sends messages and gets answers, whatever carries them: a WebSocket, or lines on a
+// A client that sends messages and gets answers over any carrier: a WebSocket, or lines on a
 // socket.  Everything runs on the carrier's thread.
 #pragma once
 
@@ -13,19 +13,19 @@
 
 namespace chorus::http {
 
-/// What to send to the client, in order, and whether the dialogue ends then.
+/// What to send to the client, in order, and whether the dialogue ends after that.
 struct Reply {
   std::vector<std::string> messages = {};
   bool over = false;
 };
 
-/// The server says nothing except in these calls.
+/// The server speaks only through the replies of these calls.
 class Dialogue {
  public:
   virtual ~Dialogue() = default;  ///< The client has left, or is disconnected.
-  /// One complete message.
+  /// Called with one complete message.
   [[nodiscard]] virtual Reply hear(std::string_view message) = 0;
-  /// Called four times a second: what the server has to say unasked.
+  /// Called four times a second; returns what the server has to say unasked.
   [[nodiscard]] virtual Reply look() = 0;
 };
 
@@ -39,7 +39,7 @@ struct DialogueRoute {
   std::size_t max_message_bytes = 64 * 1024;  ///< A client that sends a longer one is disconnected.
 };
 
-/// A client that does not read is disconnected when this much waits for it.
+/// A client that does not read is disconnected when this many bytes wait for it.
 inline constexpr std::size_t kMaxUnread = 64 * 1024;
 
 }  // namespace chorus::http

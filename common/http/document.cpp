@@ -14,7 +14,7 @@ namespace {
 
 struct TypeRow {
   std::string_view media_type;
-  std::string_view tag;         ///< Ends the ETag.
+  std::string_view tag;         ///< The last part of the ETag.
   std::string_view parameters;  ///< Sent after the type.
 };
 
@@ -32,7 +32,7 @@ constexpr std::array kTypes{
 constexpr std::string_view kJson = "application/json";
 constexpr std::array<std::string_view, 2> kEventTypes{kJson, "text/turtle"};
 
-/// A line break in JSON is only white space; in an event it would end the field.
+/// A line break in JSON is only white space, but in an event it would end the field.
 void append_as_one_line(std::string& out, std::string_view text) {
   out += "data: ";
   for (const char c : text) out += c == '\n' || c == '\r' ? ' ' : c;
@@ -82,7 +82,7 @@ void add_line(std::string& out, std::string_view name, std::string_view value) {
 }
 
 /// Runs something once, on whichever thread comes first; after an exception it may be tried again.
-/// Not std::call_once: the thread sanitizer hangs when that throws.
+/// Not std::call_once, because the thread sanitizer hangs when that throws.
 class Once {
  public:
   template <class Action>
@@ -104,8 +104,8 @@ class Once {
 struct Document::Impl {
   std::vector<Variant> variants;
   DocumentOptions options;
-  std::vector<std::string_view> offers;  ///< Bare media types, by variant.
-  std::vector<Rendered> rendered;        ///< By variant, then the same in gzip.
+  std::vector<std::string_view> offers;  ///< Media types without parameters, by variant.
+  std::vector<Rendered> rendered;        ///< By variant; after them the same in gzip.
   std::unique_ptr<Once[]> once;
   struct Event {
     Once once;
@@ -138,7 +138,7 @@ struct Document::Impl {
   }
 
   struct Content {
-    const std::string& lines;  ///< That a 304 has as well.
+    const std::string& lines;  ///< The header lines that a 304 has as well.
     const std::string& body;
     std::uint64_t size = 0;
   };
@@ -154,7 +154,7 @@ struct Document::Impl {
     out.not_modified = content.lines + "\r\n";
   }
 
-  /// Another representation, so another tag: "42-json" and "42-json-gz".
+  /// In gzip it is another representation, so its tag differs: "42-json" and "42-json-gz".
   void compress(std::size_t index) {
     const Rendered& plain = rendered[index];
     Rendered& out = rendered[variants.size() + index];
@@ -215,7 +215,7 @@ Document::~Document() = default;
 
 Result<const Rendered*> Document::choose(std::string_view accept, std::string_view profile,
                                          Coding coding) const {
-  // The usual request: no preference, no profile.
+  // The usual request has no preference and no profile.
   const auto& variants = impl_->variants;
   if (accept.empty() && profile.empty() && !variants.empty() && variants[0].profile.empty())
     return impl_->coded_at(0, coding);

@@ -1,4 +1,4 @@
-// One version of one resource: its representations, their validators, and the bytes that answer.
+// One version of one resource: its representations, their validators, and the bytes that are sent.
 //
 // Immutable once built and shared between threads.  A representation is rendered at most once, when
 // the first client asks for it; after that every answer is one write of the same bytes.
@@ -24,29 +24,29 @@ using Header = std::pair<std::string, std::string>;
 
 /// One representation of the resource; their order in Document is the server's preference.
 struct Variant {
-  std::string media_type;               ///< "text/turtle"; may carry parameters to send along.
+  std::string media_type;               ///< "text/turtle"; sent with parameters, if it has any.
   std::function<std::string()> render;  ///< Pure and thread-safe; called at most once.
   std::string profile = {};             ///< Chosen only by ?profile=NAME; empty is the default.
-  std::string_view lines = {};          ///< Its own header lines, each with CR LF; constant.
+  std::string_view lines = {};          ///< The variant's header lines, each with CR LF; constant.
 };
 
 struct DocumentOptions {
   std::string version;  ///< The ETag is "<version>-<variant>", strong.
   std::string cache_control = "no-cache";
-  std::string content_location = {};  ///< Relative IRI of the immutable version, "frames/42".
-  std::vector<Header> headers = {};   ///< Further headers, Link among them.
-  std::shared_ptr<const FileBody> file = {};  ///< The body, instead of what the variant renders.
-  std::optional<Timestamp> captured = {};     ///< Adds Server-Timing: age of what was captured.
+  std::string content_location = {};  ///< Relative IRI of the immutable version: "frames/42".
+  std::vector<Header> headers = {};   ///< Further headers, such as Link.
+  std::shared_ptr<const FileBody> file = {};  ///< The body; replaces what the variant renders.
+  std::optional<Timestamp> captured = {};     ///< Adds Server-Timing with the age of the capture.
 };
 
-/// The bytes of one representation.  The server writes a status line and the headers of the single
-/// request before them; everything else is shared by all answers.
+/// The bytes of one representation.  The server writes the status line and the headers of the
+/// single answer before them; all answers share the rest.
 struct Rendered {
   std::string media_type;
   std::string etag;  ///< Quoted.
   /// Header lines of the representation, the blank line, the body.
   std::shared_ptr<const std::string> wire;
-  std::size_t head_size = 0;      ///< Of wire: where the body begins.
+  std::size_t head_size = 0;      ///< Where the body begins in `wire`.
   std::string not_modified = {};  ///< Header lines of a 304, with the blank line.
 
   [[nodiscard]] std::string_view head() const {
@@ -62,20 +62,20 @@ class Document {
   Document(const Document&) = delete;
   Document& operator=(const Document&) = delete;
 
-  /// RFC 9110 12.5.1 over this document's variants; absent or empty Accept takes the first variant
-  /// of the profile.  NotAcceptable lists what there is; an unknown profile is NotFound.
-  /// With Coding::Gzip it is compressed where that is worth it, once for all who ask.
+  /// Negotiates by RFC 9110 12.5.1 over this document's variants; an absent or empty Accept takes
+  /// the first variant of the profile.  NotAcceptable lists the available types; an unknown profile
+  /// is NotFound.  Coding::Gzip compresses where that is worth it, once for all clients.
   [[nodiscard]] Result<const Rendered*> choose(std::string_view accept,
                                                std::string_view profile = {},
                                                Coding coding = Coding::Identity) const;
 
   /// The default representation in JSON or Turtle as one server-sent event (id = version), with
-  /// Coding::Gzip as a gzip_piece; null when there is none in that type.  Written at most once
-  /// each.
+  /// Coding::Gzip as a gzip_piece; null when it has no such type.  Each is written at most
+  /// once.
   [[nodiscard]] std::shared_ptr<const std::string> event(std::string_view media_type,
                                                          Coding coding = Coding::Identity) const;
 
-  /// Media types of a profile, best first, without parameters.
+  /// The media types of a profile, best first, without parameters.
   [[nodiscard]] std::vector<std::string_view> media_types(std::string_view profile = {}) const;
   [[nodiscard]] const DocumentOptions& options() const noexcept;
 

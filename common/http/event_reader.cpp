@@ -7,14 +7,14 @@ namespace chorus::http {
 
 namespace {
 
-/// Finds the ends of lines one after the other; looks at each byte once for each of the two.
-/// (find_first_of would call memchr for every byte.)
+/// Finds the ends of lines in order; looks at each byte once for '\r' and once for '
+/// '. (find_first_of would call memchr for every byte.)
 class LineEnds {
  public:
   explicit LineEnds(std::string_view bytes)
       : bytes_(bytes), feed_(next('\n', 0)), return_(next('\r', 0)) {}
 
-  /// The first '\r' or '\n' from here on; the size when there is none.
+  /// The position of the first '\r' or '\n' from here on; the size when there is none.
   [[nodiscard]] std::size_t after(std::size_t here) {
     if (feed_ < here) feed_ = next('\n', here);
     if (return_ < here) return_ = next('\r', here);

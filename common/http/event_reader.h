@@ -11,7 +11,7 @@
 namespace chorus::http {
 
 struct ServerEvent {
-  std::string id;    ///< The last one named, by this event or an earlier one.
+  std::string id;    ///< The last id named, by this event or an earlier one.
   std::string data;  ///< Lines joined with line feeds; events without data are left out.
 
   bool operator==(const ServerEvent&) const = default;
@@ -21,8 +21,8 @@ class EventReader {
  public:
   explicit EventReader(std::size_t max_event_bytes) : most_(max_event_bytes) {}
 
-  /// The events that these bytes complete.  TooLarge when an event or a line grows beyond the
-  /// bound: the stream is not to be read any further.
+  /// The events that these bytes complete.  TooLarge when an event or a line exceeds the bound;
+  /// nothing more may be read from the stream then.
   [[nodiscard]] Result<std::vector<ServerEvent>> take(std::string_view bytes);
 
  private:

@@ -49,7 +49,7 @@ struct AsyncEventStream::Impl : std::enable_shared_from_this<AsyncEventStream::I
   void end(Error error);
   void drop();
   [[nodiscard]] bool has_head() const { return parser && parser->is_header_done(); }
-  /// False for handlers of a stream that is over.
+  /// False for a handler that belongs to an earlier stream.
   [[nodiscard]] bool is(std::uint64_t mine) const { return attempt == mine; }
 
   const std::string host;
@@ -60,7 +60,7 @@ struct AsyncEventStream::Impl : std::enable_shared_from_this<AsyncEventStream::I
   net::Socket socket;
   net::Timer timer;
   net::Timer rest;
-  /// Shared: a handler may close() the stream while it runs.
+  /// Shared, because a handler may close() the stream while it is running.
   std::shared_ptr<const Handlers> handlers;
   std::uint64_t attempt = 0;
   std::string out;
@@ -104,7 +104,7 @@ void AsyncEventStream::Impl::read_head() {
   parser.emplace();
   parser->header_limit(kMaxAnswerHeadBytes);
   parser->body_limit(
-      std::numeric_limits<std::uint64_t>::max());  // a stream ends when somebody hangs up
+      std::numeric_limits<std::uint64_t>::max());  // a stream lasts until one side hangs up
   in.reserve(kMaxAnswerHeadBytes);
   beast::http::async_read_header(
       socket, in, *parser,
@@ -168,7 +168,7 @@ void AsyncEventStream::Impl::arm(std::chrono::milliseconds time, std::string_vie
   timer.expires_after(time);
   timer.async_wait(
       [self = shared_from_this(), mine = attempt, doing, time](net::error_code cancelled) {
-        // Expired and re-armed or cancelled in the same instant: a later one is under way, or none.
+        // Re-armed or cancelled after expiry but before this handler ran: a newer wait, or none.
         if (cancelled || !self->is(mine) || self->has_head()) return;
         if (self->timer.expiry() > std::chrono::steady_clock::now()) return;
         self->end({ErrorCode::Timeout, self->authority,
@@ -178,7 +178,7 @@ void AsyncEventStream::Impl::arm(std::chrono::milliseconds time, std::string_vie
 
 void AsyncEventStream::Impl::end(Error error) {
   drop();
-  // The handler may open again, close, or destroy this.
+  // The handler may call open() again, close() or destroy this client.
   if (const auto over = std::exchange(handlers, nullptr)) over->on_end(std::move(error));
 }
 

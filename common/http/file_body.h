@@ -10,10 +10,10 @@
 
 namespace chorus::http {
 
-/// Stays open while somebody reads it.  A file that grows is sent with the length it had at first.
+/// Stays open while it is being read.  A file that grows is sent with the length it had at first.
 class FileBody {
  public:
-  /// NotFound for anything but a regular file.
+  /// NotFound for anything other than a regular file.
   [[nodiscard]] static Result<std::shared_ptr<const FileBody>> open(
       const std::filesystem::path& path);
   ~FileBody();
@@ -21,7 +21,7 @@ class FileBody {
   FileBody& operator=(const FileBody&) = delete;
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  /// Up to 256 KiB from `offset` on; false when the file has become shorter.
+  /// Reads up to 256 KiB from `offset`; false when the file has become shorter.
   [[nodiscard]] bool read(std::uint64_t offset, std::string& piece) const;
 
  private:

@@ -1,4 +1,4 @@
-// Compression for those who ask for it (RFC 9110 12.5.3, RFC 1952).
+// Compression for clients that ask for it (RFC 9110 12.5.3, RFC 1952).
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@ enum class Coding { Identity, Gzip };
 /// Gzip where an Accept-Encoding field allows it by name or by "*", and not with q=0.
 [[nodiscard]] Coding coding_for(std::string_view accept_encoding);
 
-/// True for text that is large enough to be worth it and small enough not to hold up others.
+/// True for text that is large enough to be worth it and small enough not to delay other clients.
 [[nodiscard]] bool worth_compressing(std::string_view media_type, std::size_t size);
 
-/// The whole of `bytes` as one gzip file, fast rather than small.
+/// All of `bytes` as one gzip file; prefers speed to size.
 [[nodiscard]] std::string gzipped(std::string_view bytes);
 
-/// For streams: what a gzip file begins with ...
+/// For streams: the bytes that a gzip file begins with ...
 [[nodiscard]] std::string_view gzip_begin();
 /// ... and pieces that may follow in any order, because none refers to another: one piece can be
 /// shared by all streams.  A reader can decode each piece as soon as it arrives.

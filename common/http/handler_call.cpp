@@ -20,7 +20,7 @@ Answer complaint(Problem problem, const RequestHead& head, std::string_view rout
   problem.instance = head.path;
   Answer answer = problem_answer(problem, head.method == Method::Head);
   answer.route = route;
-  answer.close = head.content_length > 0;  // Its body has not been read.
+  answer.close = head.content_length > 0;  // The request's body has not been read.
   return answer;
 }
 

@@ -14,11 +14,11 @@
 
 namespace chorus::http {
 
-/// `path` is decoded.  Malformed when the query is.
+/// `path` is decoded.  Malformed when the query is malformed.
 [[nodiscard]] Result<Request> request_of(const RequestHead& head, const Peer& peer,
                                          std::string_view path);
 
-/// The problem as the answer to this request.
+/// An answer to this request that carries the problem.
 [[nodiscard]] Answer complaint(Problem problem, const RequestHead& head, std::string_view route);
 
 /// Runs a handler; its exceptions end here.

@@ -1,4 +1,4 @@
-// Text from outside in a page for browsers.
+// Makes text from outside safe in a page for browsers.
 #pragma once
 
 #include <string>

@@ -96,7 +96,7 @@ void HttpConnection::settle() {
   });
 }
 
-/// The socket, and what has been read from it, go to a connection that speaks the other protocol.
+/// Hands the socket, and what was read from it, to a connection that speaks the other protocol.
 void HttpConnection::upgrade() {
   const Reaction& chosen = conversation_.reaction();
   WebSocketOpening opening{std::move(socket_), conversation_.handshake(), peer_address(),
@@ -105,7 +105,7 @@ void HttpConnection::upgrade() {
 }
 
 void HttpConnection::hang_up() {
-  const auto keep = shared_from_this();  // forget() drops what may be the last reference.
+  const auto keep = shared_from_this();  // forget() may drop the last reference.
   net::error_code ignored;
   socket_.close(ignored);
   core_.forget(this);

@@ -1,8 +1,8 @@
-// One client that speaks HTTP: the socket of a conversation.
+// One client that speaks HTTP: the socket for its conversation.
 //
-// Everything runs on the server's only thread.  At most one read and one write are under way.
-// Deadlines are swept by the server (a timer per request costs 2 us), so they are exact to a
-// quarter of a second.
+// Everything runs on the server's only thread.  At most one read and one write are under way.  The
+// server sweeps the deadlines four times a second, because a timer for each request costs 2 us; so
+// they are exact to a quarter of a second.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,7 @@ class HttpConnection final : public Connection {
   HttpConnection(ServerCore& core, net::Socket socket, const net::tcp::endpoint& remote);
 
   void start();
-  /// There are too many connections: answers one request, if it is for something vital, and closes.
+  /// Used when there are too many connections: answers one request, if it is vital, and closes.
   void start_in_reserve();
   void wake() override;
   void expire() override;

@@ -1,4 +1,4 @@
-// A resource that changes: the current Document, and everybody who waits for the next.
+// A resource that changes: the current Document, and all who wait for the next one.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@ class LiveDocument {
   [[nodiscard]] DocumentPtr current() const;
   void publish(DocumentPtr next);
 
-  /// Called after each publish, on the publisher's thread; must only post.
+  /// `on_change` is called after each publish, on the publisher's thread; it must only post.
   void subscribe(std::function<void()> on_change);
 
  private:

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kFullQuality = 1000;  // q=1.000 in thousandths
 
-/// "0", "0.5", "1.000" in thousandths (RFC 9110 12.4.2); nothing for anything else.
+/// Reads "0", "0.5", "1.000" as thousandths (RFC 9110 12.4.2); none for anything else.
 std::optional<int> parse_quality(std::string_view text) {
   constexpr std::size_t kLongest = 5;
   if (text.empty() || text.size() > kLongest || (text[0] != '0' && text[0] != '1')) return {};

@@ -1,19 +1,19 @@
-// What a conversation has its shell do.
+// What a conversation tells its Asio shell to do.
 #pragma once
 
 namespace chorus::http {
 
-/// Carried out in this order.
+/// The shell carries them out in this order.
 struct Orders {
   bool small_queue = false;   ///< Keep the kernel's queue small from now on.
-  bool stop_waiting = false;  ///< For the entry's next version.
+  bool stop_waiting = false;  ///< Stop waiting for the entry's next version.
   bool upgrade = false;       ///< Hand the socket and unread() to the reaction's WebSocket.
   bool close = false;
-  bool half_close = false;  ///< No more is sent; close() when that fails.
+  bool half_close = false;  ///< Shut down sending; close() if that fails.
   bool read = false;        ///< Read some bytes into room(), then received() or input_ended().
   bool write = false;       ///< Write all of output(), then sent() or send_failed().
   bool settle = false;      ///< Call settled() as soon as the kernel's queue is small.
-  bool wait = false;        ///< Wait for the entry's next version, and look() once that is done.
+  bool wait = false;        ///< Wait for the entry's next version, and call look() once registered.
 };
 
 }  // namespace chorus::http

@@ -7,7 +7,7 @@
 namespace chorus::http {
 namespace {
 
-/// Holds what an Answer points to.
+/// Holds the text that an Answer points to.
 struct Text {
   std::string head;
   std::string body;

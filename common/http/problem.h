@@ -13,17 +13,17 @@ namespace chorus::http {
 struct Problem {
   int status = 500;
   std::string_view code = {};      ///< name_of(ErrorCode), for programs.
-  std::string_view instance = {};  ///< The path that was asked for.
+  std::string_view instance = {};  ///< The requested path.
   std::string_view context = {};   ///< What the error is about: a path, a key, a field.
-  std::string_view detail = {};    ///< What to change, for people.
-  std::vector<std::string_view> available = {};  ///< 406: the media types there are.
+  std::string_view detail = {};    ///< What to change, for people to read.
+  std::vector<std::string_view> available = {};  ///< For 406: the available media types.
 };
 
 /// Its views point into `error`.
 [[nodiscard]] Problem problem_of(const Error& error);
 Problem problem_of(Error&&) = delete;
 
-/// {"type":"about:blank","title":...,"status":...,"detail":...}; bytes that are no UTF-8 are
+/// {"type":"about:blank","title":...,"status":...,"detail":...}; bytes that are not UTF-8 are
 /// replaced.
 [[nodiscard]] std::string problem_json(const Problem& problem);
 

@@ -1,4 +1,4 @@
-// What a client has sent and nobody has dealt with yet: one head at most, and what follows it.
+// The received bytes that are not yet dealt with: one head at most, and what follows it.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace chorus::http {
 
-/// Of fixed size; what does not fit stays in the kernel.  Bytes stay where they are until
+/// Has a fixed size; what does not fit stays in the kernel.  Bytes stay where they are until
 /// compact(), so views of a head remain valid while its body is read.
 class RequestBuffer {
  public:
@@ -25,13 +25,13 @@ class RequestBuffer {
   [[nodiscard]] bool full() const { return end_ == capacity_; }
   [[nodiscard]] std::size_t capacity() const { return capacity_; }
 
-  /// Looks for the end of a head, each byte once.
+  /// Looks for the end of a head; checks each byte once.
   [[nodiscard]] HeadEnd find_head();
-  /// Moves up to `most` bytes from behind the first `head_size` to the end of `body`.
+  /// Moves up to `most` bytes from after the first `head_size` bytes to the end of `body`.
   void take_body(std::size_t head_size, std::size_t most, std::string& body);
   /// The first `size` bytes are dealt with.
   void drop(std::size_t size);
-  /// Makes room by moving what is unread to the front; not while bytes are being read into room().
+  /// Makes room by moving unread bytes to the front; not while bytes are being read into room().
   void compact();
   /// Forgets everything.
   void clear() { begin_ = end_ = checked_ = 0; }
@@ -41,7 +41,7 @@ class RequestBuffer {
   std::size_t capacity_;
   std::size_t begin_ = 0;
   std::size_t end_ = 0;
-  std::size_t checked_ = 0;  ///< This many bytes of unread() contain no end of a head.
+  std::size_t checked_ = 0;  ///< The first bytes of unread(), known to contain no end of a head.
 };
 
 }  // namespace chorus::http

@@ -46,7 +46,7 @@ bool all_in(std::string_view text, const CharSet& set) {
 struct KnownField {
   std::string_view name;
   std::string_view RequestHead::*member;
-  bool list;  ///< May be repeated; the values are one list (RFC 9110 5.3).
+  bool list;  ///< It may be repeated; the values form one list (RFC 9110 5.3).
 };
 
 constexpr std::array kKnown{
@@ -218,7 +218,7 @@ std::optional<Refusal> read_connection(RequestHead& head) {
   return {};
 }
 
-/// Cuts one line off; find_head_end has seen that each ends in CR LF.
+/// Cuts one line off; find_head_end has checked that each line ends in CR LF.
 std::string_view next_line(std::string_view& bytes) {
   const std::size_t end = std::min(bytes.find('\n'), bytes.size() - 1);
   const std::string_view line = bytes.substr(0, end - (end > 0 ? 1 : 0));

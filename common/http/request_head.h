@@ -1,7 +1,7 @@
-// Reads the head of a request, strictly: bytes in, fields or a refusal out; no sockets.
+// Reads the head of a request strictly: bytes in, fields or a refusal out; no sockets.
 //
-// Whatever two readers of HTTP could understand differently is refused, because request smuggling
-// is made of that: bare line feeds, folded lines, spaces before a colon, repeated Host or
+// Refuses whatever two readers of HTTP could understand differently, because request smuggling
+// relies on that: bare line feeds, folded lines, spaces before a colon, repeated Host or
 // Content-Length, Transfer-Encoding (411 when a length is missing), bodies on GET.  What is
 // accepted here, Boost.Beast accepts with the same meaning; tests/fuzz/http_request compares the
 // two.
@@ -29,10 +29,10 @@ enum class HeadProgress { Incomplete, Complete, Broken };
 
 struct HeadEnd {
   HeadProgress progress = HeadProgress::Incomplete;
-  std::size_t size = 0;  ///< Complete: of the head with its blank line.
+  std::size_t size = 0;  ///< If complete: the size of the head with its blank line.
 };
 
-/// Looks for the blank line; bytes before `checked` have been looked at by an earlier call.  Broken
+/// Looks for the blank line; an earlier call has already checked the bytes before `checked`. Broken
 /// as soon as a line feed stands without its carriage return.
 [[nodiscard]] HeadEnd find_head_end(std::string_view bytes, std::size_t checked) noexcept;
 
@@ -46,18 +46,18 @@ struct RequestHead {
   Method method = Method::Get;
   std::string_view path;       ///< As sent, percent-encoded, without the query.
   std::string_view query;      ///< Without '?'.
-  std::string_view authority;  ///< Of a target in absolute form; empty otherwise.
+  std::string_view authority;  ///< From a target in absolute form; empty otherwise.
   bool asterisk = false;       ///< OPTIONS *
   int minor_version = 1;       ///< HTTP/1.x
   bool keep_alive = true;
   bool expects_continue = false;
   std::uint64_t content_length = 0;
 
-  // Fields we act on; data() is null when absent.  Lists are joined with ", ".
+  // Fields that we act on; data() is null when absent.  Lists are joined with ", ".
   std::string_view host, accept, accept_encoding, if_none_match, prefer, authorization, origin,
       last_event_id, forwarded, connection, upgrade, length_text, transfer_encoding, expect;
 
-  std::vector<Field> fields;       ///< All, in order.
+  std::vector<Field> fields;       ///< All fields, in order.
   std::deque<std::string> joined;  ///< Storage of joined lists.
 };
 
@@ -65,8 +65,8 @@ struct RequestHead {
   return field.data() != nullptr;
 }
 
-/// Fills `head` from one complete head; nothing when it is fine.  `head` is reused without
-/// allocating.
+/// Fills `head` from one complete head; returns no refusal when it is fine.  `head` is reused
+/// without allocating.
 [[nodiscard]] std::optional<Refusal> read_head(std::string_view bytes, RequestHead& head);
 
 }  // namespace chorus::http

@@ -20,8 +20,8 @@ constexpr std::string_view kWaitApplied = "Preference-Applied: wait\r\n";
 
 bool is_head(const RequestHead& head) { return head.method == Method::Head; }
 
-/// Event stream or document: the better quality wins, and the stream counts only if a range names
-/// it.
+/// Chooses between event stream and document: the better quality wins, and the stream counts only
+/// if a range names it.
 bool wants_events(const RequestHead& head, const Document& document) {
   const int events = explicit_quality_of(kEventStream, head.accept).value_or(0);
   if (events == 0) return false;
@@ -31,7 +31,7 @@ bool wants_events(const RequestHead& head, const Document& document) {
   return true;
 }
 
-/// The type of the events: JSON, unless the Accept prefers Turtle.
+/// The media type of the events: JSON, unless Accept prefers Turtle.
 std::string_view event_type_of(std::string_view accept) {
   constexpr std::string_view kJson = "application/json";
   constexpr std::string_view kTurtle = "text/turtle";
@@ -39,7 +39,7 @@ std::string_view event_type_of(std::string_view accept) {
   return turtle > explicit_quality_of(kJson, accept).value_or(0) ? kTurtle : kJson;
 }
 
-constexpr std::string_view kStreamBegin = "retry: 1000\n\n";  // Browsers come back after 1 s.
+constexpr std::string_view kStreamBegin = "retry: 1000\n\n";  // Browsers reconnect after 1 s.
 
 std::string_view coded_stream_begin() {
   static const std::string begin = std::string(gzip_begin()) + gzip_piece(kStreamBegin);
@@ -54,28 +54,28 @@ Result<std::string> profile_of(const RequestHead& head) {
   return profile == query->end() ? std::string() : profile->second;
 }
 
-/// True for GET /frame?at=TIME where the route has a getter for "at".
+/// True for a query like GET /frame?at=TIME, if the route has a getter for that key.
 bool asks_by_query(const RequestHead& head, const Router::Entry& entry) {
   if (!entry.by_query || head.query.empty()) return false;
   const auto query = decode_query(head.query);
   return query && query->contains(entry.query_key);
 }
 
-/// A name ending in ".json" replaces an Accept header for those who cannot send one; not if the
+/// A name ending in ".json" replaces the Accept header for clients that cannot send one, unless the
 /// resource itself has such a name.
 std::string_view accept_of(const RequestHead& head, const Router& router) {
   const bool added = head.path.ends_with(kJsonSuffix) && !router.match(head.path);
   return added ? "application/json, */*;q=0.5" : head.accept;
 }
 
-/// What a path names, or would name without ".json".
+/// The route that a path names, or would name without ".json".
 Result<Router::Match> named(const Router& router, std::string_view path) {
   auto match = router.match(path);
   if (match || !path.ends_with(kJsonSuffix)) return match;
   return router.match(path.substr(0, path.size() - kJsonSuffix.size()));
 }
 
-/// A redirection to the same path with or without the slash at its end, if that one is known.
+/// A redirection to the same path with or without a slash at the end, if that one is known.
 std::optional<Answer> redirected(const RequestHead& head, std::string_view path,
                                  const Router& router) {
   if (head.method != Method::Get && head.method != Method::Head) return std::nullopt;
@@ -83,7 +83,7 @@ std::optional<Answer> redirected(const RequestHead& head, std::string_view path,
   const std::string other =
       slash ? std::string(path.substr(0, path.size() - 1)) : std::string(path) + "/";
   if (path.size() < 2 || !router.match(other)) return std::nullopt;
-  // Relative, so that it is right behind any proxy; not decoded, so that nothing is decoded twice.
+  // Relative, so it is correct behind any proxy; left percent-encoded, so nothing is decoded twice.
   std::string_view last = head.path;
   if (slash) last.remove_suffix(1);
   last.remove_prefix(std::min(last.size(), last.rfind('/') + 1));
@@ -182,7 +182,7 @@ Reaction Responder::read(const RequestHead& head, const Router::Match& match, co
   const Router::Entry& entry = *match.entry;
   const std::string_view route = route_lines(entry);
   if (!entry.readable())
-    return write(head, match, peer);  // GET is just another method that the entry does not have.
+    return write(head, match, peer);  // For this entry GET is just another method that it lacks.
   const auto document = guarded<DocumentPtr>(head, [&]() -> Result<DocumentPtr> {
     if (entry.files) return entry.files->document(match.rest);
     const auto request = request_of(head, peer, path);

@@ -1,4 +1,4 @@
-// What a request gets, decided without a socket: an answer, or what the connection has to do first.
+// Decides without a socket what a request gets: an answer, or what the connection has to do first.
 #pragma once
 
 #include <chrono>
@@ -23,9 +23,9 @@ namespace chorus::http {
 struct Reaction {
   enum class Kind {
     Answer,    ///< Send `answer`.
-    ReadBody,  ///< Read content_length bytes, then ask act().
-    Wait,      ///< Ask waited() after each publish of `entry`, and given_up() after `wait`.
-    Stream,    ///< Send `answer`, then events of `entry` until the client leaves.
+    ReadBody,  ///< Read content_length bytes, then call act().
+    Wait,      ///< Call waited() after each publish of `entry`, and given_up() after `wait`.
+    Stream,    ///< Send `answer`, then the events of `entry` until the client leaves.
     Upgrade,   ///< Hand the socket to a WebSocket connection of `entry`, or of `dialogue`.
   };
   Kind kind = Kind::Answer;
@@ -34,9 +34,9 @@ struct Reaction {
   const Action* action = nullptr;
   PathParams params = {};
   std::chrono::seconds wait{0};
-  std::string_view event_type = {};  ///< Stream: what the events carry.
+  std::string_view event_type = {};  ///< For Stream: the media type inside the events.
   std::shared_ptr<Dialogue> dialogue = {};
-  std::string protocol = {};  ///< Upgrade: the subprotocol that was chosen; empty: none.
+  std::string protocol = {};  ///< For Upgrade: the chosen subprotocol; empty: none.
 
   [[nodiscard]] static Reaction of(Answer ready) {
     Reaction reaction;
@@ -59,10 +59,10 @@ class Responder {
   /// The 304 that ends a long poll when nothing has changed.
   [[nodiscard]] Answer given_up(const Router::Entry& entry, const RequestHead& head) const;
 
-  /// A problem document for a request that never became one.
+  /// A problem document for bytes that are not a valid request.
   [[nodiscard]] Answer refuse(const Refusal& refusal) const;
 
-  /// True for a request for a vital path, which is answered even when there is no room.
+  /// True for a request for a vital path, which is answered even beyond the limit of connections.
   [[nodiscard]] bool is_vital(const RequestHead& head) const;
 
   [[nodiscard]] const Router& router() const { return *router_; }
@@ -92,12 +92,12 @@ class Responder {
   Guard guard_;
   std::string allowed_origin_;
   std::string challenge_;           ///< Header line of a 401.
-  std::string reading_challenge_;   ///< The same of a GET: another way to log in.
+  std::string reading_challenge_;   ///< The same for a GET: another way to log in.
   std::vector<std::string> hosts_;  ///< The names of this service.
   ServerLimits limits_;
   std::shared_ptr<const Router> router_;
-  std::string any_route_;                 ///< Header lines of answers without a route.
-  std::vector<std::string> route_lines_;  ///< By entry.
+  std::string any_route_;                 ///< Header lines for answers without a route.
+  std::vector<std::string> route_lines_;  ///< Header lines for the answers of each entry.
   std::unique_ptr<RateReport> faults_;
   std::unique_ptr<RateReport> wrong_tokens_;
   std::unique_ptr<TokenTries> tries_;

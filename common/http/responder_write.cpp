@@ -1,4 +1,4 @@
-// Writing methods: who may, how much, and the answer to what the action did.
+// Writing methods: who may write, how much, and how the action's result is answered.
 #include "common/http/handler_call.h"
 #include "common/http/responder.h"
 #include "common/http/status.h"
@@ -8,7 +8,7 @@
 namespace chorus::http {
 namespace {
 
-/// The answer: the resource that an action returned, or none.
+/// The answer with the resource that an action returned, or without any.
 Result<Answer> answer_of(const ActionResult& done, std::string_view accept) {
   Answer answer;
   answer.status = done.status;
@@ -43,7 +43,7 @@ struct Asking {
 
 }  // namespace
 
-/// The answer that refuses this request; nothing when it is allowed what it needs.
+/// The answer that refuses this request; none when it may do what it needs.
 std::optional<Answer> Responder::turn_down(const RequestHead& head, const Peer& peer, Role needed,
                                            std::string_view route) const {
   const auto now = std::chrono::steady_clock::now();
@@ -65,7 +65,7 @@ std::optional<Answer> Responder::turn_down(const RequestHead& head, const Peer& 
   return fault(*refused, head, route);
 }
 
-/// Whatever is asked for, whether it is there or not: who may not read learns neither.
+/// Checked whether or not the path exists: a client that may not read learns neither.
 std::optional<Answer> Responder::turn_away(const RequestHead& head, const Peer& peer,
                                            const Router::Entry* entry) const {
   const bool for_everybody = entry != nullptr && entry->for_everybody;
@@ -102,7 +102,7 @@ Reaction Responder::write(const RequestHead& head, Router::Match match, const Pe
   return reaction;
 }
 
-/// A WebSocket whose client speaks.
+/// Opens a WebSocket whose client speaks.
 Reaction Responder::converse(const RequestHead& head, const Router::Entry& entry,
                              const Peer& peer) const {
   const std::string_view route = route_lines(entry);
@@ -135,7 +135,7 @@ Answer Responder::act(const Reaction& reaction, const RequestHead& head, const P
   });
   if (!done) {
     Answer answer = fault(done.error(), head, route);
-    answer.close = false;  // The body has been read.
+    answer.close = false;  // The request's body has been read.
     return answer;
   }
   auto answer = answer_of(*done, head.accept);

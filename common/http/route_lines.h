@@ -8,7 +8,7 @@
 
 namespace chorus::http {
 
-/// Of answers without a route.
+/// For answers without a route.
 [[nodiscard]] std::string common_lines(const ServerConfig& config);
 
 [[nodiscard]] std::string lines_of(const ServerConfig& config, const Router::Entry& entry);

@@ -13,18 +13,18 @@
 
 namespace chorus::http {
 
-/// Everything one pattern answers.
+/// Everything that one pattern answers.
 struct Router::Entry {
   std::string pattern;
   std::vector<std::string> segments;  ///< Between the slashes; "{name}" kept with its braces.
-  std::size_t index = 0;              ///< Of this entry in the router.
+  std::size_t index = 0;              ///< The index of this entry in the router.
 
   Getter getter;
   std::shared_ptr<LiveDocument> live;
-  std::string query_key;  ///< With `live`: requests that have this key in their query ...
+  std::string query_key;  ///< With `live`: requests with this key in their query ...
   Getter by_query;        ///< ... are answered here.
   std::map<Method, Action> actions;
-  std::optional<DialogueRoute> dialogue;  ///< Of WebSockets.
+  std::optional<DialogueRoute> dialogue;  ///< Answers WebSockets.
   bool vital = false;                     ///< See Router::vital.
   bool for_everybody = false;             ///< See Router::for_everybody.
   bool shows_people = false;              ///< See Router::shows_people.
@@ -36,7 +36,7 @@ struct Router::Entry {
 struct Router::Match {
   const Entry* entry = nullptr;
   PathParams params = {};
-  std::string_view rest = {};  ///< What follows the prefix of files(); points into the path.
+  std::string_view rest = {};  ///< What follows the prefix of files(); it points into the path.
 };
 
 /// "GET, HEAD, OPTIONS, POST": what an entry answers, for the Allow header.

@@ -35,7 +35,7 @@ using PathParams = std::map<std::string, std::string, std::less<>>;
 /// quick. Errors become RFC 9457 problem documents.
 using Getter = std::function<Result<DocumentPtr>(const Request&, const PathParams&)>;
 
-/// What a writing method did: status 200, 201 (with Location), 202 or 204, and the resource.
+/// The result of a writing method: status 200, 201 (with Location), 202 or 204, and the resource.
 struct ActionResult {
   int status = 200;
   DocumentPtr document = {};  ///< May be null with 204.
@@ -53,25 +53,25 @@ class Router {
   Router& operator=(Router&&) noexcept;
 
   void get(std::string pattern, Getter getter);
-  /// GET/HEAD of a live document, with Prefer: wait long polling and Accept: text/event-stream.
+  /// GET/HEAD of a live document, with long polling by Prefer: wait and with event streams.
   void live(std::string pattern, std::shared_ptr<LiveDocument> document);
-  /// GET/HEAD with ?key=... of a path given to live(): answered by the getter instead.
+  /// GET/HEAD with ?key=... on a path given to live(): the getter answers instead.
   void by_query(const std::string& pattern, std::string key, Getter getter);
-  /// A writing method; who may use it: refuse_access() in access.h.
+  /// A writing method; refuse_access() in access.h says which requests may use it.
   void action(Method method, std::string pattern, Action action);
-  /// WebSockets whose clients speak.  That is writing: Role::Control.
+  /// WebSockets whose clients speak.  That counts as writing: Role::Control.
   void dialogue(const std::string& pattern, DialogueRoute route);
-  /// GET/HEAD of the files below `folder`, never outside it; types by extension.  Prefix ends in
-  /// '/'.
-  /// `lines`: header lines of each of them, with CR LF; constant.
+  /// GET/HEAD of the files in `folder` and below, never outside it; types by extension.  The prefix
+  /// ends in '/'.
+  /// `lines`: header lines for each of these files, with CR LF; constant.
   void files(std::string prefix, std::string folder, std::string_view lines = {});
 
-  /// Answered without a token, whatever else needs one.
+  /// Is answered without a token, even if all else needs one.
   void for_everybody(const std::string& pattern);
-  /// For monitors: still answered when the limit of connections is reached.
+  /// For monitors: is still answered when the limit of connections is reached.
   void vital(const std::string& pattern);
-  /// Pictures and recordings: a web page of another origin reads them only if that very origin is
-  /// allowed; "*" is not enough.
+  /// For pictures and recordings: a web page of another origin reads them only if exactly that
+  /// origin is allowed; "*" is not enough.
   void shows_people(const std::string& pattern);
 
   struct Match;

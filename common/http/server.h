@@ -17,19 +17,19 @@
 namespace chorus::http {
 
 struct ServerLimits {
-  /// Fewer when the system gives fewer descriptors.  Some more are accepted, to be told so and to
-  /// read what is vital (Router::vital).
+  /// Fewer when the system allows fewer descriptors.  A few more are accepted, only to be told so
+  /// and to read what is vital (Router::vital).
   std::size_t max_connections = 2000;
   std::size_t max_per_address = 64;  ///< Does not apply to loopback and trusted proxies.
   std::size_t max_long_polls = 1500;
-  std::size_t max_downloads = 16;  ///< Files under way at once; each costs 256 KiB.
+  std::size_t max_downloads = 16;  ///< Files being sent at once; each costs 256 KiB.
   std::size_t max_header_bytes = 8192;
   std::size_t max_body_bytes = 65536;  ///< Only for routes with an action; GET takes no body.
   std::chrono::seconds idle_timeout{60};
   std::chrono::seconds header_timeout{5};
   std::chrono::seconds body_timeout{10};
   std::chrono::seconds write_timeout{10};
-  std::chrono::seconds max_wait{30};  ///< Cap on Prefer: wait=N.
+  std::chrono::seconds max_wait{30};  ///< Upper limit for Prefer: wait=N.
 
   bool operator==(const ServerLimits&) const = default;
 };
@@ -37,34 +37,34 @@ struct ServerLimits {
 struct ServerConfig {
   std::string address = "127.0.0.1";
   std::uint16_t port = 0;  ///< 0: any free port; ask port() after start.
-  /// A token of role Control; empty: none.  Without any, only direct requests from loopback may
-  /// write.
+  /// A token of role Control; empty: none.  Without any token, only direct requests from loopback
+  /// may write.
   std::string bearer_token = {};
-  /// Origin whose web pages may read, besides our own pages; "*": all.  Empty: none.
+  /// The origin whose web pages may read, in addition to our own; "*": all origins.  Empty: none.
   std::string allowed_origin = {};
-  /// Names of this service, beside addresses, localhost and the name of this host.
+  /// Names of this service, in addition to addresses, localhost and the name of this host.
   std::vector<std::string> hosts = {};
-  /// Numeric addresses whose X-Forwarded-For is believed, for limits; never treated as this host.
+  /// Numeric addresses whose X-Forwarded-For is believed for limits; never treated as this host.
   std::vector<std::string> trusted_proxies = {};
-  std::vector<Token> tokens = {};           ///< Besides the above.  See Guard for what needs one.
-  std::shared_ptr<const Clock> clock = {};  ///< Stamps answers; null: the host's.
+  std::vector<Token> tokens = {};           ///< In addition to bearer_token.  See Guard.
+  std::shared_ptr<const Clock> clock = {};  ///< Time-stamps the answers; null: the host's clock.
   AnswerPolicy policy = {};
   ServerLimits limits = {};
 
   bool operator==(const ServerConfig&) const = default;
 };
 
-/// Every token of a configuration.
+/// Every token of a configuration, bearer_token included.
 [[nodiscard]] std::vector<Token> all_tokens(const std::string& bearer_token,
                                             std::vector<Token> tokens);
 
-/// True for an address of this host alone ("127.0.0.1", "::1").
+/// True for an address that only this host can reach ("127.0.0.1", "::1").
 [[nodiscard]] bool is_loopback(const std::string& address);
 
-/// Values for /metrics; those without _open, _waiting or _limit only grow.
+/// Values for /metrics; they only grow, except those with _open, _waiting or _limit.
 struct ServerCounters {
   std::uint64_t requests = 0;
-  std::uint64_t refused = 0;  ///< Malformed or over a limit.
+  std::uint64_t refused = 0;  ///< Malformed requests, or requests over a limit.
   std::uint64_t not_modified = 0;
   std::uint64_t connections_total = 0;
   std::uint64_t connections_open = 0;
@@ -74,30 +74,30 @@ struct ServerCounters {
   std::uint64_t events_skipped = 0;  ///< Events that a slow reader of a stream did not get.
   std::uint64_t bytes_sent = 0;
   std::uint64_t downloads_open = 0;
-  std::uint64_t unauthorized = 0;     ///< Requests with a wrong token, or without a necessary one.
+  std::uint64_t unauthorized = 0;     ///< Requests with a wrong token, or without one they need.
   std::uint64_t closed_for_room = 0;  ///< Idle connections closed to make room for others.
-  std::uint64_t connections_limit = 0;  ///< The most connections at once, given the descriptors.
+  std::uint64_t connections_limit = 0;  ///< Most connections at once, given the descriptors.
 };
 
 /// Owns one thread that runs all sockets.
 class Server {
  public:
   Server(ServerConfig config, std::shared_ptr<const Router> router);
-  ~Server();  ///< stop()s.
+  ~Server();  ///< Calls stop().
 
   /// Binds and starts to serve; Io names address, port and reason ("address in use: ...").
   [[nodiscard]] Result<void> start();
   [[nodiscard]] std::uint16_t port() const;
   [[nodiscard]] ServerCounters counters() const;
 
-  /// Sets other tokens, from the next request on; from any thread, before or while serving.
+  /// Replaces the tokens from the next request on; from any thread, before or while serving.
   void set_tokens(std::vector<Token> tokens);
 
-  /// False when the server's thread has not come to do what the last call asked of it: it stands
-  /// still, if the calls are seconds apart.  From one thread.
+  /// Posts a task to the server's thread; false when the task of the last call has not been done:
+  /// if the calls are seconds apart, the thread hangs.  Call it from one thread only.
   [[nodiscard]] bool alive();
 
-  /// Stops accepting, answers waiting long polls with 503, lets writes finish (2 s), joins.
+  /// Stops accepting, answers waiting long polls with 503, lets writes finish (2 s) and joins.
   void stop();
 
  private:

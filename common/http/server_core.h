@@ -1,4 +1,4 @@
-// What a server's connections share.  Lives on the server's thread, except where it says otherwise.
+// What a server's connections share.  Used on the server's thread, except where noted.
 #pragma once
 
 #include <atomic>
@@ -22,44 +22,44 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   ServerCore(ServerConfig server_config, std::shared_ptr<const Router> routes);
 
   [[nodiscard]] Result<void> listen();
-  /// Starts whatever must always be running and is not.
+  /// Starts whatever must always be running and is not running.
   void ensure();
   void welcome(net::Socket socket);
-  /// Counts the connection for another address from now on, one that a trusted proxy names; false
-  /// when that address has too many connections already.
+  /// Counts the connection for another address from now on, which a trusted proxy names; false when
+  /// that address already has too many connections.
   [[nodiscard]] bool charge(Connection& connection, const std::string& account);
   [[nodiscard]] bool is_proxy(const asio::ip::address& address) const;
   void sweep();
   void subscribe();
-  /// From any thread: wakes soon whoever waits for the entry.  Several calls before that count as
-  /// one; when nobody waits, this thread is not woken at all.
+  /// From any thread: soon wakes all connections that wait for the entry.  Several calls before
+  /// that count as one; when none waits, the server's thread is not woken at all.
   void post_wake(std::size_t entry);
   void wake(std::size_t entry);
-  /// Look at the document again afterwards: a publish just before this call has woken nobody.
+  /// Afterwards look at the document again: a publish just before this call did not wake it.
   void wait_for(std::size_t entry, std::shared_ptr<Connection> connection);
   void stop_waiting(std::size_t entry, const Connection* connection);
   void forget(const Connection* connection);
-  /// The same client, still counted once, under another connection.
+  /// Puts another connection in the place of one; it is the same client, still counted once.
   void replace(const Connection* connection, std::shared_ptr<Connection> by);
   void begin_stop();
 
-  asio::io_context io{1};  // First member: destroyed last, after everything that uses it.
+  asio::io_context io{1};  // First member, so destroyed last, after everything that uses it.
   ServerConfig config;
   Responder responder;
   AtomicCounters counters;
   net::AcceptLoop accepting;
   net::Every sweeping;
 
-  SteadyTime now;  ///< Coarse: of the last sweep.
+  SteadyTime now;  ///< Coarse: the time of the last sweep.
   bool stopping = false;
   SteadyTime stop_deadline{};
   std::unordered_map<const Connection*, std::shared_ptr<Connection>> connections;
-  std::map<std::string, std::size_t> per_peer;  ///< Connections by account_of the client.
-  /// limits.max_connections, or fewer if descriptors are few.
+  std::map<std::string, std::size_t> per_peer;  ///< Number of connections by account_of the client.
+  /// limits.max_connections, or fewer if there are few descriptors.
   std::size_t most_connections = 0;
   std::vector<std::vector<std::shared_ptr<Connection>>> waiting;  ///< By entry.
   std::unique_ptr<std::atomic<bool>[]> wake_posted;               ///< By entry.
-  std::unique_ptr<std::atomic<std::size_t>[]> waiters;            ///< By entry: size of waiting.
+  std::unique_ptr<std::atomic<std::size_t>[]> waiters;            ///< By entry: size of `waiting`.
 
  private:
   void fit_descriptors();

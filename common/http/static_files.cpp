@@ -46,7 +46,7 @@ struct FileState {
   bool operator==(const FileState&) const = default;
 };
 
-/// Nothing for anything but a regular file; a FIFO would block the reader forever.
+/// None for anything other than a regular file; a FIFO would block the reader forever.
 Result<FileState> state_of(const fs::path& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode))
@@ -99,7 +99,7 @@ struct StaticFiles::Impl {
     std::error_code failed;
     const fs::path root = fs::canonical(folder, failed);
     const fs::path file = failed ? fs::path() : fs::canonical(root / name, failed);
-    // A leading '/' would make root / name absolute; is_inside catches that as well.
+    // A leading '/' would make root / name absolute; is_inside refuses that as well.
     if (failed || !is_inside(file, root))
       return fail(ErrorCode::NotFound, std::string(path), "there is no such file");
     return file;

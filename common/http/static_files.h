@@ -1,4 +1,4 @@
-// A folder of files as resources: never anything outside it, types by extension, bounded size.
+// A folder of files as resources: nothing outside it, types by extension, limited size.
 #pragma once
 
 #include <cstddef>
@@ -17,13 +17,13 @@ namespace chorus::http {
 /// Reads files on request and keeps the documents until mtime or size change.  Thread-safe.
 class StaticFiles {
  public:
-  /// `lines`: header lines of every file's answer, each with CR LF; constant.
+  /// `lines`: header lines for the answer of every file, each with CR LF; constant.
   explicit StaticFiles(std::string folder, std::string_view lines = {},
                        std::size_t max_file_bytes = 16u << 20);
   ~StaticFiles();
 
-  /// `path` is decoded and relative; "" and "sub/" mean index.html.  NotFound for anything that is
-  /// not a regular file inside the folder, symbolic links resolved; Forbidden above the size limit.
+  /// `path` is decoded and relative; "" and "sub/" mean index.html.  NotFound unless it is a
+  /// regular file inside the folder, symbolic links resolved; Forbidden above the size limit.
   [[nodiscard]] Result<DocumentPtr> document(std::string_view path);
 
  private:

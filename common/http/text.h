@@ -1,4 +1,4 @@
-// Small readers of header text: ASCII only, no locale, no allocation.
+// Small functions that read header text: ASCII only, no locale, no allocation.
 #pragma once
 
 #include <string>
@@ -24,7 +24,7 @@ namespace chorus::http {
   return lower;
 }
 
-/// Without spaces and tabs at both ends.
+/// `text` without the spaces and tabs at both ends.
 [[nodiscard]] constexpr std::string_view trimmed(std::string_view text) noexcept {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
   while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);

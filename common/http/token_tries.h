@@ -1,4 +1,4 @@
-// Slows down whoever guesses at a bearer token.
+// Slows down a client that guesses bearer tokens.
 #pragma once
 
 #include <chrono>
@@ -8,9 +8,9 @@
 
 namespace chorus::http {
 
-/// Ten wrong tokens from one address are checked as fast as they come, then one a second.  During
-/// that second even the right one is not checked, or its answer would reveal it.  Addresses beyond
-/// the first few thousand share one account.
+/// Ten wrong tokens from one address are checked at once, after that one a second.  Until that
+/// second is over not even the right one is checked, because the answer would reveal it.  Addresses
+/// beyond the first few thousand share one account.
 class TokenTries {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -21,7 +21,7 @@ class TokenTries {
  private:
   [[nodiscard]] const std::string& account(const std::string& address) const;
 
-  std::map<std::string, Time> forgiven_;  ///< When an address has a clean record again.
+  std::map<std::string, Time> forgiven_;  ///< When the record of an address is clean again.
 };
 
 }  // namespace chorus::http

@@ -12,7 +12,7 @@ std::optional<int> hex_digit(char c) {
   return std::nullopt;
 }
 
-/// The byte of the escape at text[at]; nothing when it is no escape or a control character.
+/// The byte of the escape at text[at]; none when it is not an escape or is a control character.
 std::optional<char> escaped_byte(std::string_view text, std::size_t at) {
   if (at + 2 >= text.size()) return std::nullopt;
   const auto high = hex_digit(text[at + 1]);

@@ -11,13 +11,13 @@ namespace chorus::http {
 
 using Query = std::map<std::string, std::string, std::less<>>;
 
-/// Decodes a path.  Refuses broken escapes, escaped control characters, '/' and '\', and "." or
-/// ".." segments, so that a decoded path means the same to everyone.  The result points into `raw`
-/// or, if something was decoded, into `storage`.
+/// Decodes a path.  Refuses broken escapes, escaped control characters, escaped '/' and '\', and
+/// "." or ".." segments, so that a decoded path is unambiguous.  The result points into `raw` or,
+/// if something was decoded, into `storage`.
 [[nodiscard]] Result<std::string_view> decode_path(std::string_view raw, std::string& storage);
 
-/// "a=1&b=%20" without '?'; a repeated key keeps the last value, a key without '=' has an empty
-/// one.  '+' is itself, not a space: time zones are written "+01:00".
+/// Reads "a=1&b=%20" without '?'; of a repeated key the last value counts, and a key without '='
+/// has an empty value.  '+' stands for itself, not for a space: time zones are written "+01:00".
 [[nodiscard]] Result<Query> decode_query(std::string_view raw);
 
 }  // namespace chorus::http

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kMaxSaid = 4096;  ///< Bytes of one message from a client.
 /// Beast ends a broken or closed conversation by waiting for the client to hang up; we check this
-/// often whether one is over, and hang up ourselves.
+/// often for one that is over, and hang up ourselves.
 constexpr std::chrono::milliseconds kLook{250};
 constexpr std::string_view kMediaType = "application/json";
 
@@ -45,9 +45,9 @@ class WebSocketConnection final : public Connection {
   WebSocketStream stream_;
   const Router::Entry* entry_;
   State state_ = State::Opening;
-  DocumentPtr shown_;  ///< Last version sent, or being sent.
+  DocumentPtr shown_;  ///< The last version sent, or being sent.
   bool writing_ = false;
-  std::size_t sent_ = 0;  ///< Bytes of the version that is being sent.
+  std::size_t sent_ = 0;  ///< Bytes of that version.
   bool pending_ = false;
 };
 
@@ -93,7 +93,7 @@ void WebSocketConnection::push() {
   if (next == nullptr || next == shown_) return;
   const auto chosen = next->choose(kMediaType);
   if (!chosen)
-    return;  // There is no such form and never will be: the socket stays open and silent.
+    return;  // This document has no JSON and never will: the socket stays open and silent.
   shown_ = std::move(next);
   writing_ = true;
   deadline_ = core_.now + core_.config.limits.write_timeout;
@@ -124,7 +124,7 @@ void WebSocketConnection::pushed() {
 
 void WebSocketConnection::stop() {
   if (state_ != State::Open || !stream_.say_goodbye(Goodbye::GoingAway)) return close();
-  state_ = State::Closing;  // until the client leaves; the read tells
+  state_ = State::Closing;  // until the client leaves, which ends the read
   uncount(core_.counters.websockets_open);
   core_.stop_waiting(entry_->index, this);
 }
@@ -132,7 +132,7 @@ void WebSocketConnection::stop() {
 void WebSocketConnection::close() {
   if (state_ == State::Closed) return;
   const State before = std::exchange(state_, State::Closed);
-  const auto keep = shared_from_this();  // forget() drops what may be the last reference.
+  const auto keep = shared_from_this();  // forget() may drop the last reference.
   if (before == State::Open) uncount(core_.counters.websockets_open);
   core_.stop_waiting(entry_->index, this);
   stream_.close();
@@ -145,7 +145,7 @@ void open_websocket(ServerCore& core, WebSocketOpening opening, const Connection
   if (opening.dialogue) return talk_by_websocket(core, std::move(opening), asker);
   std::string received = std::move(opening.received);
   auto connection = std::make_shared<WebSocketConnection>(core, std::move(opening));
-  core.replace(asker, connection);  // first: it may be over before open() returns
+  core.replace(asker, connection);  // first, because it may end before open() returns
   connection->open(std::move(received));
 }
 

@@ -1,4 +1,4 @@
-// WebSocket readers of live documents (RFC 6455): every version in JSON as one text message.
+// WebSockets that send live documents (RFC 6455): each version in JSON as one text message.
 //
 // Messages from a client are read and ignored, up to a small size; ping and close are answered.  A
 // client that reads slowly skips versions and gets the newest, as with events.
@@ -24,11 +24,11 @@ struct WebSocketOpening {
   std::string protocol = {};                ///< See Reaction.
 };
 
-/// Answers the handshake and streams, or converses, until the client leaves; `core` keeps it in the
-/// place of the connection that asked for it.
+/// Answers the handshake and streams, or converses, until the client leaves; in `core` the new
+/// connection replaces `asker`.
 void open_websocket(ServerCore& core, WebSocketOpening opening, const Connection* asker);
 
-/// A WebSocket whose client speaks: the carrier of `opening.dialogue`.
+/// A WebSocket whose client speaks: it carries `opening.dialogue`.
 void talk_by_websocket(ServerCore& core, WebSocketOpening opening, const Connection* asker);
 
 }  // namespace chorus::http

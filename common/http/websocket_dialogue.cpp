@@ -10,7 +10,7 @@ namespace chorus::http {
 namespace {
 
 constexpr std::chrono::milliseconds kLook{250};
-constexpr std::chrono::seconds kGoodbye{2};  // how long the client's own close may take
+constexpr std::chrono::seconds kGoodbye{2};  // how long the client may take for its own close
 
 class DialogueConnection final : public Connection {
  public:
@@ -47,7 +47,7 @@ class DialogueConnection final : public Connection {
   State state_ = State::Opening;
   std::deque<std::string> unsent_;  ///< The first is being sent.
   std::size_t unsent_bytes_ = 0;
-  bool over_ = false;  ///< Ends when everything unsent has been sent.
+  bool over_ = false;  ///< Ends when everything in unsent_ has been sent.
   SteadyTime sending_until_{};
 };
 
@@ -81,7 +81,7 @@ void DialogueConnection::on_heard(net::error_code failed) {
   if (state_ != State::Closed) listen();
 }
 
-/// What the dialogue throws ends this dialogue only.
+/// An exception from the dialogue ends this dialogue only.
 template <class Speaking>
 void DialogueConnection::react(const Speaking& speaking) {
   Reply reply;
@@ -124,7 +124,7 @@ void DialogueConnection::expire() {
   if (!over_) react([this] { return dialogue_->look(); });
 }
 
-/// Ends it politely, once; a client that does not reply is cut off.
+/// Ends the dialogue properly, once; a client that does not reply is cut off.
 void DialogueConnection::say_goodbye(Goodbye code) {
   if (state_ != State::Open || !unsent_.empty() || !stream_.say_goodbye(code)) return close();
   state_ = State::Closing;
@@ -136,7 +136,7 @@ void DialogueConnection::say_goodbye(Goodbye code) {
 void DialogueConnection::close() {
   if (state_ == State::Closed) return;
   const State before = std::exchange(state_, State::Closed);
-  const auto keep = shared_from_this();  // forget() drops what may be the last reference.
+  const auto keep = shared_from_this();  // forget() may drop the last reference.
   if (before == State::Open) uncount(core_.counters.websockets_open);
   dialogue_.reset();
   stream_.close();

@@ -38,7 +38,7 @@ WebSocketStream::WebSocketStream(net::Socket socket, const WebSocketOptions& opt
   stream.set_option(patience);
   stream.read_message_max(options.max_message);
   stream.text(true);
-  stream.auto_fragment(false);  // pieces of 4 KiB cost three times the CPU of one message
+  stream.auto_fragment(false);  // in pieces of 4 KiB a message costs three times the CPU time
   if (options.protocol.empty()) return;
   stream.set_option(websocket::stream_base::decorator(
       [protocol = options.protocol](websocket::response_type& response) {
@@ -78,13 +78,13 @@ void WebSocketStream::write(std::string_view text, Done done) {
   beast_->stream.async_write(
       asio::buffer(text.data(), text.size()),
       [writing = &beast_->writing, done = std::move(done)](net::error_code failed, std::size_t) {
-        *writing = false;  // `done` keeps the stream
+        *writing = false;  // `done` keeps the stream alive
         done(failed);
       });
 }
 
-/// By hand: Beast's close waits for its read, and a read that meets a broken frame at that moment
-/// waits for the close (1.74: close.hpp, read.hpp), whatever becomes of the socket.
+/// Written by hand: Beast's close waits for its read, and a read that meets a broken frame at that
+/// moment waits for the close (1.74: close.hpp, read.hpp), whatever happens to the socket.
 bool WebSocketStream::say_goodbye(Goodbye code) {
   if (beast_->writing || !is_open()) return false;
   const auto number = static_cast<std::uint16_t>(code);

@@ -1,7 +1,7 @@
-// One WebSocket (RFC 6455) of the server: Boost.Beast's stream, compiled once, its traps closed.
+// One WebSocket (RFC 6455) of the server: Boost.Beast's stream with workarounds, compiled once.
 //
-// Everything runs on the server's thread.  What is handed over keeps its owner alive until it is
-// called, once each.
+// Everything runs on the server's thread.  Each callback is called once and keeps what it owns
+// alive until then.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ namespace chorus::http {
 struct WebSocketOptions {
   const ServerLimits& limits;
   std::size_t max_message = 0;  ///< Bytes of one message from the client.
-  std::string protocol = {};    ///< Answered in Sec-WebSocket-Protocol; empty: none.
+  std::string protocol = {};    ///< Sent in Sec-WebSocket-Protocol; empty: none.
 };
 
 enum class Goodbye : std::uint16_t {
@@ -40,18 +40,18 @@ class WebSocketStream {
 
   /// `received`: see handshake_of (websocket_handshake.h).  May call `done` before it returns.
   void accept(std::string received, Done done);
-  /// Called for a client that sends more pings than anybody needs.
+  /// `hang_up` is called for a client that sends more pings than anyone needs.
   void on_flood(std::function<void()> hang_up);
 
   void read(Done done);
-  /// What was read last.
+  /// The message read last.
   [[nodiscard]] std::string_view message() const;
   [[nodiscard]] bool is_text() const;
 
-  /// One text message; `text` must outlive it.
+  /// Sends one text message; `text` must stay valid until `done`.
   void write(std::string_view text, Done done);
-  /// Sends a close frame and says nothing after it.  While a write is under way, or when the frame
-  /// does not fit, it does nothing and returns false: then close the socket.
+  /// Sends a close frame; nothing may be written after it.  While a write is under way, or when the
+  /// frame does not fit, it does nothing and returns false: close the socket then.
   [[nodiscard]] bool say_goodbye(Goodbye code);
 
   [[nodiscard]] bool is_open() const;

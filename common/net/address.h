@@ -1,4 +1,4 @@
-// Addresses as limits and logs use them.
+// Addresses in the form that limits and logs use.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace chorus::net {
 
-/// An IPv4 address that is mapped into IPv6 as plain IPv4; any other address unchanged.
+/// Turns an IPv4 address that is mapped into IPv6 into plain IPv4; other addresses stay unchanged.
 [[nodiscard]] asio::ip::address unmapped(const asio::ip::address& address);
 
 /// The account that a connection is counted for: an IPv4 address, or the first 64 bits of an IPv6

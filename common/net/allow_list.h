@@ -1,4 +1,4 @@
-// Which addresses a server of a protocol without passwords answers.
+// The addresses that a server of a protocol without passwords answers.
 #pragma once
 
 #include <array>
@@ -12,21 +12,21 @@
 
 namespace chorus::net {
 
-/// This host itself, and the addresses and networks that are listed.
+/// This host itself, and the listed addresses and networks.
 class AllowList {
  public:
-  /// "10.0.0.20", "10.0.0.0/24", "fd00::/8"; InvalidArgument names the entry that is none of these.
+  /// Reads "10.0.0.20", "10.0.0.0/24", "fd00::/8"; InvalidArgument names any other entry.
   [[nodiscard]] static Result<AllowList> parse(const std::vector<std::string>& entries);
 
   [[nodiscard]] bool allows(const asio::ip::address& address) const;
 
-  /// Why a client of this address is turned away, with the key to change; empty when it is allowed.
+  /// Why a client with this address is refused, and the key to change; empty when it is allowed.
   [[nodiscard]] std::string objection(const asio::ip::address& address, std::string_view key) const;
 
   bool operator==(const AllowList&) const = default;
 
  private:
-  /// All addresses that share its first bits; IPv4 as mapped into IPv6.
+  /// All addresses with the same first bits; IPv4 is mapped into IPv6.
   struct Network {
     std::array<std::uint8_t, 16> bytes{};
     unsigned bits = 0;

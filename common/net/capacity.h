@@ -9,9 +9,9 @@ namespace chorus::net {
 
 struct Capacity {
   std::size_t all = 0;
-  std::size_t of_address = 0;       ///< So that one host cannot take all places.
-  std::string_view all_key;         ///< Configures `all`: "outputs.vrpn.max_clients".
-  std::string_view of_address_key;  ///< Configures `of_address`.
+  std::size_t of_address = 0;       ///< For one address, so that no host can take all places.
+  std::string_view all_key;         ///< The key that sets `all`: "outputs.vrpn.max_clients".
+  std::string_view of_address_key;  ///< The key that sets `of_address`.
 };
 
 /// How many clients a server has when another one arrives.
@@ -20,7 +20,7 @@ struct ClientCount {
   std::size_t of_address = 0;  ///< From the newcomer's address.
 };
 
-/// Why a client from `address` is turned away, with the key to change; empty when there is room.
+/// Why a client from `address` is refused, and the key to change; empty when there is room.
 [[nodiscard]] std::string objection(const Capacity& capacity, const ClientCount& count,
                                     std::string_view address);
 

@@ -15,7 +15,7 @@ void run_events(asio::io_context& io, std::string_view failure,
       return;
     } catch (const std::exception& thrown) {
       log::error(failure, {{"what", thrown.what()}});
-      io.restart();  // io_context is stopped if the handler that threw was its last work.
+      io.restart();  // io_context has stopped if the handler that threw was its last work.
     }
   }
 }

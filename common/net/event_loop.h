@@ -8,8 +8,8 @@
 
 namespace chorus::net {
 
-/// Returns when there is no more work.  Handlers catch the exceptions they expect; any other (out
-/// of memory) is logged as the event `failure` and ends what that handler was doing, not the
+/// Returns when there is no more work.  Handlers catch the exceptions they expect; any other (such
+/// as out of memory) is logged as the event `failure` and ends what that handler was doing, not the
 /// program. `prepare` is called before the first handler and again after such an exception: it
 /// starts what must always be running.
 void run_events(asio::io_context& io, std::string_view failure,

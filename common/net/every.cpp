@@ -12,9 +12,9 @@ void Every::ensure() {
   timer_.expires_after(interval_);
   timer_.async_wait([this](error_code cancelled) {
     under_way_ = false;
-    // Cancelling does not recall a handler that is due already.
+    // Cancelling does not stop a handler that is already due.
     if (cancelled || stopped_) return;
-    ensure();  // First: one failure must not end it.
+    ensure();  // First, so that an exception does not end the series.
     work_();
   });
   under_way_ = true;

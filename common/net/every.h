@@ -13,7 +13,7 @@ class Every {
  public:
   Every(asio::io_context& io, std::chrono::milliseconds interval, std::function<void()> work);
 
-  /// Starts it unless it is running, so run_events may call this repeatedly.
+  /// Starts it unless it is running already, so run_events may call this repeatedly.
   void ensure();
   void stop();
 

@@ -6,7 +6,7 @@
 namespace chorus::net {
 namespace {
 
-constexpr std::chrono::milliseconds kPause{100};  // Until the next try, without descriptors.
+constexpr std::chrono::milliseconds kPause{100};  // Until the next try, if out of descriptors.
 
 std::string text_of(const ListenAt& where) {
   return where.address + ":" + std::to_string(where.port);
@@ -82,7 +82,7 @@ void AcceptLoop::stop() {
 void AcceptLoop::accept() {
   acceptor_.async_accept([this](error_code failed, Socket socket) {
     under_way_ = false;
-    // Cancelling does not recall a handler that is due already.
+    // Cancelling does not stop a handler that is already due.
     if (!stopped_) on_accepted(failed, std::move(socket));
   });
   under_way_ = true;
@@ -93,7 +93,7 @@ void AcceptLoop::on_accepted(error_code failed, Socket socket) {
     trouble_.hit(failed.message());
     return pause();
   }
-  accept();  // First: a connection that cannot be welcomed must not stop the others.
+  accept();  // First, because a connection that cannot be welcomed must not stop the others.
   welcome_(std::move(socket));
 }
 

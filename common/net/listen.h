@@ -12,36 +12,36 @@
 namespace chorus::net {
 
 struct ListenAt {
-  std::string address;  ///< Numeric.
+  std::string address;  ///< A numeric address.
   std::uint16_t port = 0;
-  std::string_view port_key;  ///< What to change when the port is taken: "http.port".
+  std::string_view port_key;  ///< The key to change when the port is taken: "http.port".
 };
 
 /// InvalidArgument when the address is not numeric.
 [[nodiscard]] Result<asio::ip::address> numeric_address(const ListenAt& where);
 
-/// Io, with address and port, and the key to change when that would help.  `transport` is TCP or
-/// UDP.
+/// An Io error with address and port, and with the key to change when that would help.  `transport`
+/// is TCP or UDP.
 [[nodiscard]] tl::unexpected<Error> cannot_listen(const ListenAt& where, std::string_view transport,
                                                   error_code failed);
 
-/// Opens, binds and listens; closes what the acceptor had open before.
+/// Opens, binds and listens; first closes what the acceptor had open.
 [[nodiscard]] Result<void> listen_on(Acceptor& acceptor, const ListenAt& where);
 
 /// Accepts connections until it is stopped.  When the system has no descriptors left, it reports
-/// that and tries again after a pause; an exception from `welcome` costs only that connection.
-/// Lives on the io_context's thread.
+/// that and tries again after a pause; an exception from `welcome` costs only that connection. Runs
+/// on the io_context's thread.
 class AcceptLoop {
  public:
   using Welcome = std::function<void(Socket)>;
 
-  /// `trouble`: the event that failures are logged as, such as "VRPN accept failed".
+  /// `trouble`: the name of the event that logs failures, such as "VRPN accept failed".
   AcceptLoop(asio::io_context& io, std::string trouble, Welcome welcome);
 
   [[nodiscard]] Result<void> listen(const ListenAt& where) { return listen_on(acceptor_, where); }
   [[nodiscard]] std::uint16_t port() const;
 
-  /// Starts it unless it is running, so run_events may call this repeatedly.
+  /// Starts it unless it is running already, so run_events may call this repeatedly.
   void ensure();
   void stop();
 

@@ -1,4 +1,4 @@
-// How much of something may be done: `burst` at once, `per_second` in the long run.  Pure.
+// Limits a rate: `burst` at once, `per_second` in the long run.  Pure.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ struct Allowance {
   double burst = 0.0;
 };
 
-/// Full at first.
+/// It is full at first.
 class TokenBucket {
  public:
   explicit TokenBucket(Allowance allowance) : allowance_(allowance), tokens_(allowance.burst) {}
@@ -21,7 +21,7 @@ class TokenBucket {
   [[nodiscard]] bool has(double wanted, SteadyTime now) const { return wanted <= tokens_at(now); }
   [[nodiscard]] bool full(SteadyTime now) const { return has(allowance_.burst, now); }
 
-  /// All of them or none.
+  /// Takes all of them or none.
   [[nodiscard]] bool take(double wanted, SteadyTime now) {
     if (!has(wanted, now)) return false;
     tokens_ = tokens_at(now) - wanted;
