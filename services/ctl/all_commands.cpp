@@ -4,7 +4,7 @@ namespace chorus::ctl {
 
 std::vector<Command> all_commands() {
   std::vector<Command> all(recording_commands().begin(), recording_commands().end());
-  all.insert(all.begin() + 1, host_commands().begin(), host_commands().end());  // behind import
+  all.insert(all.begin() + 1, host_commands().begin(), host_commands().end());  // after `import`
   return all;
 }
 

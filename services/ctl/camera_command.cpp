@@ -1,4 +1,4 @@
-// chorus camera list: the webcams of this host.
+// chorus camera list: lists the webcams of this host.
 #include <iostream>
 #include <memory>
 

@@ -16,9 +16,9 @@
 namespace chorus::ctl {
 namespace {
 
-constexpr int kExecFailed = 127;  // as shells say
+constexpr int kExecFailed = 127;  // the shells' exit code for this
 
-/// The signals that end the wait, blocked while we are in run_children.
+/// The signals that end the wait; they stay blocked during run_children.
 class HeldSignals {
  public:
   HeldSignals() {
@@ -45,7 +45,7 @@ class HeldSignals {
 /// Runs in the child; only async-signal-safe calls.
 [[noreturn]] void become(char* const* arguments, const sigset_t& mask, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (getppid() != parent) _exit(kExecFailed);  // it died before we asked for the signal
+  if (getppid() != parent) _exit(kExecFailed);  // the parent died before we asked for the signal
   sigprocmask(SIG_SETMASK, &mask, nullptr);
   execvp(arguments[0], arguments);
   _exit(kExecFailed);
@@ -54,7 +54,7 @@ class HeldSignals {
 Result<pid_t> start(const Child& child, const sigset_t& mask) {
   std::vector<char*> arguments;
   for (const std::string& argument : child.command)
-    arguments.push_back(const_cast<char*>(argument.c_str()));  // execvp's old signature
+    arguments.push_back(const_cast<char*>(argument.c_str()));  // execvp takes no const
   arguments.push_back(nullptr);
   const pid_t parent = getpid();
   const pid_t pid = fork();
@@ -84,7 +84,7 @@ Result<void> verdict_on(const std::string& label, int status) {
   return fail(ErrorCode::Unavailable, label, how + "; its own message is above.");
 }
 
-/// Waits until a child ends or we are told to stop.
+/// Waits until a child ends or a signal tells us to stop.
 Result<void> wait_for_end(Running& running, const HeldSignals& signals) {
   while (!running.empty()) {
     if (signals.wait() != SIGCHLD) return {};

@@ -1,4 +1,4 @@
-// One subcommand of `chorus`: what it is called, what its help teaches, what it does.
+// One subcommand of `chorus`: its name, its help, and what it does.
 #pragma once
 
 #include <array>
@@ -19,18 +19,18 @@ inline constexpr int kExitOk = 0;
 inline constexpr int kExitFailed = 1;  ///< The command was valid but failed.
 inline constexpr int kExitUsage = 2;   ///< The command line itself is wrong.
 
-/// The exit code, or the error that is printed and becomes kExitFailed.
+/// Returns the exit code, or an error, which is printed and becomes kExitFailed.
 using Run = std::function<Result<int>()>;
 
 struct Command {
   std::string_view name;
   std::string_view summary;       ///< One line.
   std::string_view examples;      ///< Shown under --help.
-  Run (*add)(CLI::App& options);  ///< Declares the options; what it returns runs after parsing.
+  Run (*add)(CLI::App& options);  ///< Declares the options; returns what to run after parsing.
 };
 
-/// In the order of --help.  Apart, so that a program can do without the libraries that the second
-/// need.
+/// In the order of --help.  Two lists, so that a program can do without the libraries that the
+/// second one needs.
 [[nodiscard]] std::span<const Command> host_commands();
 [[nodiscard]] std::span<const Command> recording_commands();
 inline constexpr std::array<std::string_view, 4> kRecordingCommandNames{"import", "replay", "fuse",

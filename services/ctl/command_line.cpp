@@ -22,7 +22,7 @@ struct Added {
   Run run;
 };
 
-/// CLI11 would only say that an argument was not expected.
+/// Names the unknown command; CLI11 would only say that an argument was not expected.
 bool complain_of_unknown_command(std::span<const Command> commands, int argc,
                                  const char* const* argv) {
   if (argc < 2 || argv[1][0] == '-') return false;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kBarWidth = 30;  // characters
 
-/// C0, DEL, and C1 as UTF-8 writes it: 0xC2 and then 0x80 to 0x9F.
+/// Bytes of a control character at `i`, else 0: C0, DEL, or C1 in UTF-8 (0xC2, then 0x80 to 0x9F).
 std::size_t control_at(std::string_view text, std::size_t i) {
   const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
   if (byte(i) < 0x20 || byte(i) == 0x7F) return 1;
@@ -77,7 +77,7 @@ void Progress::show(double fraction, std::string_view said) {
   const int percent = static_cast<int>(std::floor(part * 100.0));
   if (terminal_) {
     const int full = static_cast<int>(part * kBarWidth);
-    // "\x1b[K" clears what a longer line before this one left behind.
+    // "\x1b[K" clears what a longer previous line left behind.
     out_ << fmt::format("\r{} [{:#<{}}{:.<{}}] {:3}% {}\x1b[K", label_, "", full, "",
                         kBarWidth - full, percent, remark)
          << std::flush;

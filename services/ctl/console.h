@@ -10,17 +10,17 @@
 
 namespace chorus::ctl {
 
-/// One line without control and escape characters, whoever wrote it: they become "?".
+/// One line with every control and escape character replaced by "?", whatever its source.
 [[nodiscard]] std::string printable(std::string_view text);
 
-/// The strings of an array member, each printable; empty when there is no such array.
+/// The strings of an array member, each made printable(); empty when there is no such array.
 [[nodiscard]] std::vector<std::string> lines_at(const nlohmann::json& object, const char* key);
 
-/// Indented, with a newline; everything that is not ASCII escaped.
+/// Indented, with a newline; all characters other than ASCII are escaped.
 [[nodiscard]] std::string json_text(const nlohmann::json& value);
 
-/// Columns aligned to their widest cell, two blanks between; the first row is the heading.
-/// Cells are printed as printable().
+/// Columns as wide as their widest cell, separated by two blanks; the first row is the heading.
+/// Every cell is made printable().
 [[nodiscard]] std::string table(std::vector<std::vector<std::string>> rows);
 
 /// "1.23", or "-" when the number is not finite.
@@ -28,12 +28,12 @@ namespace chorus::ctl {
 
 class Progress {
  public:
-  /// On a terminal one line is redrawn; elsewhere a line is printed for each new tenth or remark.
+  /// A terminal has one line that is redrawn; elsewhere each new tenth or remark prints a line.
   Progress(std::ostream& out, bool terminal, std::string label)
       : out_(out), terminal_(terminal), label_(std::move(label)) {}
 
   void show(double fraction, std::string_view remark);
-  /// Ends the bar's line, so that what follows starts on its own.
+  /// Ends the bar's line, so that later output starts on a line of its own.
   void finish();
 
  private:
@@ -45,7 +45,7 @@ class Progress {
   bool drawn_ = false;
 };
 
-/// Standard error is a terminal.
+/// True when standard error is a terminal.
 [[nodiscard]] bool on_terminal();
 
 }  // namespace chorus::ctl

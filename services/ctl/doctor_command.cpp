@@ -1,4 +1,4 @@
-// chorus doctor: whether this host can do its part, and what to do where it cannot.
+// chorus doctor: checks whether this host can do its part, and says what to do if it cannot.
 #include <algorithm>
 #include <filesystem>
 #include <iostream>

@@ -1,4 +1,4 @@
-// chorus export SOURCE --format FORMAT --out FILE: fused frames as files of other programs.
+// chorus export SOURCE --format FORMAT --out FILE: writes fused frames as files for other programs.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -31,7 +31,7 @@ struct ExportArguments {
   bool json = false;
 };
 
-/// "walk.bvh" and "-p2" -> "walk-p2.bvh"; standard output stays standard output.
+/// "walk.bvh" and "-p2" -> "walk-p2.bvh"; standard output ("-") remains standard output.
 std::string with_suffix(const std::string& file, const std::string& suffix) {
   if (suffix.empty() || file == "-") return file;
   const std::filesystem::path path(file);
@@ -64,7 +64,7 @@ Result<std::vector<std::string>> write_files(const exporters::Exported& exported
 struct Done {
   const exporters::Take& take;
   const exporters::Exported& exported;
-  const std::vector<std::string>& notes;  ///< Of the source.
+  const std::vector<std::string>& notes;  ///< Notes of the source.
   const std::vector<std::string>& written;
 };
 

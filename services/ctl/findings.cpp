@@ -20,8 +20,8 @@ namespace chorus::ctl {
 namespace {
 
 constexpr http::ClientLimits kBrief{1 << 20, std::chrono::seconds(2), std::chrono::seconds(2)};
-constexpr double kMostClockDifference = 20.0;  // Half a frame at 30 Hz is 17 [ms].
-constexpr double kLeastFree = 1024.0;          // [MB]: half an hour of six sensors
+constexpr double kMostClockDifference = 20.0;  // [ms]; half a frame at 30 Hz is 17 ms.
+constexpr double kLeastFree = 1024.0;          // [MB]: half an hour of six sensors.
 constexpr double kBytesPerMb = 1e6;
 constexpr double kNsPerMs = 1e6;
 
@@ -36,7 +36,7 @@ Result<http::ClientResponse> ask(const std::string& base, const std::string& pat
   return http::fetch(*url, request, kBrief);
 }
 
-/// What a problem document says; else the bare status.
+/// The words of a problem document; without one, the bare status.
 std::string words_of(const http::ClientResponse& answer) {
   const auto document = nlohmann::json::parse(answer.body, nullptr, false);
   return client::text_at(document, "detail", "status " + std::to_string(answer.status));
@@ -46,7 +46,7 @@ std::string text_in(const nlohmann::json& object, const char* key) {
   return client::text_at(object, key, "");
 }
 
-/// The first folder above that is there.
+/// The folder, or the nearest parent folder that exists.
 std::string existing(std::filesystem::path folder) {
   std::error_code ignored;
   while (folder.has_relative_path() && !std::filesystem::exists(folder, ignored))
@@ -66,7 +66,7 @@ Finding folder_finding(const std::string& what, const std::string& folder) {
           "delete old recordings, or name a folder on another disk"};
 }
 
-/// chorus_build{version="0.1.0"} 1
+/// The version in a line such as: chorus_build{version="0.1.0"} 1
 std::string version_in(const std::string& metrics) {
   constexpr std::string_view kBefore = "chorus_build{version=\"";
   const std::size_t at = metrics.find(kBefore);
@@ -75,9 +75,9 @@ std::string version_in(const std::string& metrics) {
   return rest.substr(0, rest.find('"'));
 }
 
-/// Their clock minus ours [ms], and how much of that may be the way there and back.
+/// The sensor host's clock minus ours [ms], and its uncertainty: half of the round-trip time.
 struct ClockDifference {
-  double ms = 0.0;  ///< NaN when they do not say.
+  double ms = 0.0;  ///< NaN when the host does not tell.
   double uncertainty = 0.0;
 };
 

@@ -1,4 +1,4 @@
-// What `chorus doctor` finds on this host: one line for each, with what to do when it is not well.
+// What `chorus doctor` finds on this host: one line each, with advice when something is wrong.
 #pragma once
 
 #include <cstdint>
@@ -15,36 +15,36 @@ namespace chorus::ctl {
 struct Finding {
   bool good = true;
   std::string subject;      ///< "clock", "port", "sensor s1"
-  std::string words;        ///< What is the case.
-  std::string advice = {};  ///< What to do; empty when it is good.
+  std::string words;        ///< What was found.
+  std::string advice = {};  ///< What to do; empty when all is well.
 };
 using Findings = std::vector<Finding>;
 
-/// A service of this host, as its configuration has it.
+/// A service of this host, as its configuration describes it.
 struct ExaminedService {
   std::string kind;  ///< "sensor" or "fusion"
   std::string file;
   nlohmann::json config;  ///< An object.
 
   [[nodiscard]] std::uint16_t port() const;
-  /// Where to ask it from this host: "http://127.0.0.1:8081/".
+  /// The address to reach it from this host: "http://127.0.0.1:8081/".
   [[nodiscard]] std::string url() const;
-  /// A token that may read; empty: it has none.
+  /// A token that may read; empty when there is none.
   [[nodiscard]] std::string read_token() const;
 };
 
-/// Io or Malformed, with the file.
+/// Io or Malformed; the error names the file.
 [[nodiscard]] Result<ExaminedService> examined_service(const std::string& kind,
                                                        const std::string& file);
 
 [[nodiscard]] Finding clock_finding(const NtpStatus& clock);
-/// Whether the service is there and has everything it needs, by its own words.
+/// Asks the service whether it is running and has everything it needs.
 [[nodiscard]] Finding health_finding(const ExaminedService& service);
-/// Whether a token of its configuration is taken.
+/// Whether the service accepts a token of its own configuration.
 [[nodiscard]] Finding token_finding(const ExaminedService& service);
-/// Its folders: there, and with room.
+/// Whether its folders exist and have room.
 [[nodiscard]] Findings disk_findings(const ExaminedService& service);
-/// One for each sensor of a fusion server: reached, let in, of our version, clocks within 20 ms.
+/// One per sensor of a fusion server: reachable, token accepted, same version, clock within 20 ms.
 [[nodiscard]] Findings sensor_findings(const ExaminedService& service);
 
 }  // namespace chorus::ctl

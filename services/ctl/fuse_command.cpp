@@ -1,4 +1,4 @@
-// chorus fuse REC --out FILE: recordings through the pipeline, without clocks or sockets.
+// chorus fuse REC --out FILE: runs recordings through the pipeline, without clocks or sockets.
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -32,7 +32,7 @@ struct FuseArguments {
   bool json = false;
 };
 
-/// As asked for: from the walk, from a file, or as recorded; none: from the walk after all.
+/// The extrinsics from a file or as recorded; none when they are to be solved from the walk.
 Result<std::optional<Registration>> given_extrinsics(const FuseArguments& arguments,
                                                      const RecordedCell& cell) {
   if (arguments.from_walk) return std::nullopt;
@@ -51,7 +51,7 @@ Result<Registration> extrinsics(const FuseArguments& arguments, RecordedCell& ce
   return pipeline::register_recordings(cell.input(), config);
 }
 
-/// Files that writing must not destroy: everything that is read.
+/// Refuses to write to any file that is read, which would destroy it.
 Result<void> check_outputs(const FuseArguments& arguments,
                            std::vector<std::filesystem::path> read) {
   read.emplace_back(arguments.registration);
@@ -125,7 +125,7 @@ Result<int> run_fuse(const FuseArguments& arguments) {
     if (!saved) return pass(saved);
   }
   print_summary(summary_of(*fused), arguments);
-  // Nobody wants a file of empty frames; the report says why there is none.
+  // A file of empty frames is useless; the report says why there are no bodies.
   return fused->with_bodies > 0 ? kExitOk : kExitFailed;
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file beside the target, removed unless it takes the target's place.
+/// A temporary file next to the target; removed unless it replaces the target.
 class Partial {
  public:
   explicit Partial(std::string file) : file_(std::move(file)), path_(file_ + ".partial") {
@@ -36,7 +36,7 @@ class Partial {
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] const std::string& file() const { return file_; }
   [[nodiscard]] Result<void> take_place() const {
-    if (auto ok = may_write(file_, {}); !ok) return ok;  // made by somebody else meanwhile
+    if (auto ok = may_write(file_, {}); !ok) return ok;  // another process may have made the file
     std::error_code error;
     fs::rename(path_, file_, error);
     if (error) return fail(ErrorCode::Io, file_, error.message());
@@ -49,7 +49,7 @@ class Partial {
   std::string path_;
 };
 
-/// A recording of the fused frames alone.
+/// A recording that holds only the fused frames.
 class FusedRecording final : public FusedFile {
  public:
   FusedRecording(const std::string& file, Registration registration)
@@ -95,7 +95,7 @@ class FusedLines final : public FusedFile {
     const fs::path folder = fs::path(file_).parent_path();
     if (!folder.empty() && !fs::is_directory(folder, ignored))
       return fail(ErrorCode::Io, file_, "cannot be written; is its folder there?");
-    // A pipe or a device is written to directly.
+    // A pipe or a device is written directly.
     const bool plain = !fs::exists(file_, ignored) || fs::is_regular_file(file_, ignored);
     if (plain) partial_.emplace(file_);
     out_.open(plain ? partial_->path() : file_, std::ios::binary | std::ios::trunc);

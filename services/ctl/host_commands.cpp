@@ -1,5 +1,5 @@
-// The commands that a host of the workshop needs: they talk to services and want no library for
-// point clouds or images.
+// The commands for every host of the workshop: they talk to services and need no library for point
+// clouds or images.
 #include <array>
 
 #include "services/ctl/command.h"

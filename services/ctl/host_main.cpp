@@ -1,6 +1,6 @@
-// chorus as every host has it: small, without what works on recordings.  Where the whole program is
-// installed (the package chorus-tools: ../libexec/chorus/chorus beside our folder), it is run
-// instead.
+// chorus as installed on every host: small, without the commands for recordings.  Where the whole
+// program is installed too (package chorus-tools: ../libexec/chorus/chorus next to our folder),
+// that program is run instead.
 #include <algorithm>
 #include <cstdio>
 #include <string>

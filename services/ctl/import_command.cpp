@@ -35,7 +35,7 @@ struct ImportArguments {
   bool json = false;
 };
 
-/// A CLI11 check that says why the text is refused.
+/// A CLI11 check that says why a text is refused.
 template <class Parse>
 std::function<std::string(const std::string&)> readable_by(Parse parse) {
   return [parse](const std::string& text) {
@@ -51,7 +51,7 @@ std::string check_format(const std::string& name) {
   return fmt::format("there is no format \"{}\"; known are{}", name, known);
 }
 
-/// Published extrinsics as a registration that stands: the first sensor is the master of each.
+/// Published extrinsics as a registration that is valid: the first sensor is the master.
 Registration registration_of(const importers::ImportedSet& set) {
   Registration registration;
   registration.version = 1;
@@ -76,7 +76,7 @@ resource::BodyResource truth_body(const importers::TruthFrame& truth, Timestamp 
   return body;
 }
 
-/// At the capture times of the first recording.
+/// Writes the true poses at the capture times of the first recording.
 Result<void> write_truth(const fs::path& file, const importers::ImportedSet& set) {
   const auto& frames = set.recordings.front().frames;
   std::string text;
@@ -102,7 +102,7 @@ bool made_by_a_recorder(const fs::path& file) {
   return found != metadata.end() && found->second.contains("recording");
 }
 
-/// An import can be repeated, so a later one may replace it; a recording cannot.
+/// Refuses to overwrite a recording; an import may be replaced, because it can be repeated.
 Result<void> spare_recordings(const fs::path& folder, const importers::ImportedSet& set) {
   for (const auto& recording : set.recordings) {
     const fs::path file = folder / (recording.sensor.str() + ".mcap");
@@ -138,7 +138,7 @@ Result<std::vector<fs::path>> write_set(const fs::path& folder, const importers:
   return written;
 }
 
-/// Recordings in the folder that are not of this import would be fused along with it.
+/// Warns of other recordings in the folder, because they would be fused along with this import.
 void warn_of_strangers(const fs::path& folder, const std::vector<fs::path>& written) {
   const std::set<fs::path> ours(written.begin(), written.end());
   std::error_code ignored;
@@ -149,7 +149,7 @@ void warn_of_strangers(const fs::path& folder, const std::vector<fs::path>& writ
   }
 }
 
-/// Damaged ends, and inputs that hold nothing: everything else was imported all the same.
+/// Tells of damaged ends and of inputs without content; everything else has been imported.
 void tell_what_is_missing(const importers::ImportedSet& set) {
   for (const auto& recording : set.recordings) {
     const auto damage = recording.notes.find("damage.1");

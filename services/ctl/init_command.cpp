@@ -1,4 +1,4 @@
-// chorus init: the configuration of a service, from options or by asking.
+// chorus init: writes the configuration of a service, from options or from answers to questions.
 #include <fcntl.h>
 #include <grp.h>
 #include <sys/stat.h>
@@ -39,7 +39,7 @@ struct InitArguments {
   std::vector<std::string> outputs;
 };
 
-/// The name of this host as an id: what ids do not allow becomes "-".
+/// The name of this host as an id; characters that an id does not allow become "-".
 std::string host_id() {
   std::array<char, 65> name{};
   if (::gethostname(name.data(), name.size() - 1) != 0) return "s1";
@@ -51,7 +51,7 @@ std::string host_id() {
   return SensorId::parse(id) ? id : "s1";
 }
 
-/// One question on the terminal; an empty line keeps what is there.
+/// Asks one question on the terminal; an empty line keeps the present value.
 void ask(const std::string& question, std::string& value) {
   std::cerr << question << " [" << value << "]: " << std::flush;
   std::string line;
@@ -93,7 +93,7 @@ ServiceWishes service_wishes(const InitArguments& arguments, std::uint16_t port)
   return wishes;
 }
 
-/// New, for the service's group alone; never what is there already.
+/// Writes a new file, readable by the owner and the service's group; never overwrites one.
 Result<void> write_new(const std::string& file, const std::string& text) {
   if (file == "-") {
     std::cout << text;
@@ -156,7 +156,7 @@ Result<ServiceWishes> write_sensor(InitArguments& arguments) {
   return wishes.service;
 }
 
-/// Lines "ID=URL,TOKEN", so that no token is seen in the list of processes.
+/// Reads lines "ID=URL,TOKEN" from a file, so that no token shows up in the list of processes.
 Result<void> read_sensors(const std::string& file, std::vector<std::string>& out) {
   std::ifstream named;
   if (file != "-") named.open(file);

@@ -1,4 +1,4 @@
-// The options that configure offline fusion: the fusion server's own config file, and overrides.
+// The options for offline fusion: the fusion server's configuration file, and overrides.
 #pragma once
 
 #include <string>

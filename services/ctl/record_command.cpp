@@ -33,10 +33,10 @@ struct RecordArguments {
   bool json = false;
 };
 
-/// How it ended.
+/// How the recording ended.
 enum class End { Asked, TimeIsUp, Gone };
 
-/// Checks a few times a second whether it is over; runs the polling meanwhile.
+/// Checks a few times a second whether the recording is over, while the sensors are polled.
 class Watch {
  public:
   Watch(asio::io_context& io, const client::LiveRecording& live, const RecordArguments& arguments)
@@ -134,7 +134,7 @@ void print_summary(const nlohmann::json& summary, bool json) {
     std::cerr << fmt::format("{}: the last error: {}\n", path, trouble.get<std::string>());
 }
 
-/// A stream announced by the service that never had a frame.
+/// The streams that the service announced but that never had a frame.
 std::vector<std::string> silent_streams(const client::LiveRecording& live) {
   std::vector<std::string> silent;
   for (const auto& [topic, count] : live.counts()) {

@@ -8,7 +8,7 @@
 namespace chorus::ctl {
 namespace {
 
-/// The sensors' frames of a cell; everything else in it is skipped.
+/// The next sensor frame of a cell; everything else in it is skipped.  None at the end.
 Result<std::optional<SensorFrame>> next_frame(record::CellStream& stream) {
   for (auto item = stream.next(); true; item = stream.next()) {
     if (!item) return pass(item);

@@ -1,4 +1,4 @@
-// Recordings as the input of offline fusion: read as often as needed, never held whole.
+// Recordings as the input of offline fusion: read as often as needed, never entirely in memory.
 #pragma once
 
 #include <filesystem>
@@ -15,17 +15,17 @@ namespace chorus::ctl {
 
 class RecordedCell {
  public:
-  /// Looks at the files without reading them through; errors name the file.
+  /// Looks at the files without reading all of them; errors name the file.
   [[nodiscard]] static Result<RecordedCell> open(const std::vector<std::filesystem::path>& files);
 
   /// The last registration that was recorded.
   [[nodiscard]] Result<std::optional<Registration>> registration() const;
 
-  /// Starts from the beginning.
+  /// Reads from the beginning.
   [[nodiscard]] pipeline::OfflineInput input();
 
-  /// What had to be left out when the newest input was read to its end, one line each; and how many
-  /// sensors it had.
+  /// What was left out when the newest input was read to its end, one line each, and the number of
+  /// its sensors.
   struct Told {
     std::vector<std::string> notes;
     std::size_t sensors = 0;

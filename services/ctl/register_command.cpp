@@ -1,5 +1,5 @@
-// chorus register: starts a registration session, or joins the one that runs, and stays until its
-// verdict.
+// chorus register: starts a registration session, or joins the running one, and follows it until
+// its verdict.
 #include <chrono>
 #include <iostream>
 #include <memory>
@@ -24,8 +24,8 @@ using client::ServiceClient;
 using client::text_at;
 
 constexpr std::chrono::milliseconds kAskEvery{250};
-/// The server counts only time in which somebody is seen; after this long without anybody, nobody
-/// will come.
+/// The server counts only the time in which somebody is seen; if nobody is seen for this long,
+/// nobody will come.
 constexpr std::chrono::seconds kPatience{60};
 
 struct RegisterArguments {
@@ -36,8 +36,8 @@ struct RegisterArguments {
   bool json = false;
 };
 
-/// Where the newest session of this /registration document is followed; NotFound when it names
-/// none.
+/// The path that shows the progress of the newest session in this /registration document; NotFound
+/// when it names none.
 Result<std::string> session_of(const nlohmann::json& registration, const std::string& url) {
   std::string path = text_at(part_at(registration, "session"), "progress", "");
   if (path.starts_with('/')) return path;
@@ -48,20 +48,20 @@ bool idle(const nlohmann::json& registration) {
   return text_at(part_at(registration, "session"), "state", "idle") == "idle";
 }
 
-/// Starts a session; one that somebody else has started is joined.
+/// Starts a session, or joins one that is already running.
 Result<std::string> start(const ServiceClient& server, const RegisterArguments& arguments) {
   const auto started = server.post("/registration", {{"seconds", arguments.seconds}});
   if (started) return session_of(*started, arguments.url);
   if (started.error().code != ErrorCode::Conflict) return pass(started);
   const auto registration = server.get("/registration");
   if (!registration) return pass(registration);
-  if (idle(*registration)) return pass(started);  // refused for another reason, or over meanwhile
+  if (idle(*registration)) return pass(started);  // refused for another reason, or over by now
   std::cerr << "a session is running already; this is its progress "
                "(chorus register --cancel ends it)\n";
   return session_of(*registration, arguments.url);
 }
 
-/// What is missing, told when it changes; the bar shows how long is still to walk.
+/// Prints what is missing whenever that changes; the bar shows how long there is still to walk.
 class Advice {
  public:
   void tell(const nlohmann::json& session, Progress& progress) {
@@ -79,7 +79,7 @@ class Advice {
   std::string told_;
 };
 
-/// Follows one session to its end; every answer moves the bar.
+/// Follows one session to its end; every answer updates the bar.
 Result<nlohmann::json> follow(const ServiceClient& server, const std::string& path,
                               const std::string& url) {
   Progress progress(std::cerr, on_terminal(), "walk through the room");
@@ -110,7 +110,7 @@ Result<nlohmann::json> follow(const ServiceClient& server, const std::string& pa
               "it, chorus register --cancel ends it)");
 }
 
-/// The session's own verdict: what was in use before does not count.
+/// Reports the session's own verdict; a registration that was in use before does not count.
 int report(const nlohmann::json& session, const nlohmann::json& registration, bool json) {
   const std::string verdict = text_at(session, "verdict");
   const auto adopted = session.find("adopted");

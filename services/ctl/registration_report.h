@@ -1,4 +1,4 @@
-// A registration printed for people: the verdict, the reasons, where each sensor stands.
+// A registration printed for people: the verdict, the reasons, and where each sensor stands.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace chorus::ctl {
 
-/// From the JSON of /registration; members that are absent show as "-".
+/// Made from the JSON of /registration; absent members show as "-".
 [[nodiscard]] std::string registration_report(const nlohmann::json& registration);
 
 }  // namespace chorus::ctl

@@ -1,8 +1,8 @@
-// chorus replay: one chorus-sensor process per recorded sensor, so that the same programs run as
-// with hardware.
+// chorus replay: starts one chorus-sensor process for each recorded sensor, so that the same
+// programs run as with hardware.
 //
-// All of them count from the same instant, a second from now, so that the recordings of one set
-// stay in step.
+// All of them count from the same instant, which is about a second ahead, so that the recordings of
+// one set stay in step.
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -22,7 +22,7 @@
 namespace chorus::ctl {
 namespace {
 
-constexpr Duration kHeadStart = std::chrono::seconds(1);  // for every process to come up
+constexpr Duration kHeadStart = std::chrono::seconds(1);  // until every process is ready
 constexpr int kLastPort = 65535;
 
 struct ReplayArguments {
@@ -36,7 +36,7 @@ struct ReplayArguments {
 /// What one process plays.
 struct Part {
   SensorId sensor;
-  std::filesystem::path from;  ///< A file, or the folder of a recording with several.
+  std::filesystem::path from;  ///< A file, or the folder of a recording in several files.
 };
 
 Result<std::vector<Part>> parts_of(const std::vector<record::SensorStay>& stays) {
@@ -74,7 +74,7 @@ void share(const Round& round, Child& child) {
   }
 }
 
-/// What there is to play; a broken recording, or two of one sensor, must not start half a cell.
+/// The streams to play; with a broken recording, or two of one sensor, nothing may be started.
 Result<std::vector<record::SensorStay>> stays_of(const std::vector<record::CellLine>& lines) {
   for (const auto& line : lines) {
     for (const std::string& damage : line.damage) std::cerr << "note: " << damage << '\n';
@@ -86,7 +86,7 @@ Result<std::vector<record::SensorStay>> stays_of(const std::vector<record::CellL
   return stays;
 }
 
-/// The sensors' places are part of a recording, so that nobody has to find them again.
+/// A recording includes the sensors' places, so nobody has to register them again.
 Result<void> hand_on_registration(const std::vector<record::CellLine>& lines,
                                   const std::string& file) {
   const auto recorded = record::last_registration(lines);

@@ -11,9 +11,9 @@ namespace {
 
 using Stays = std::vector<record::SensorStay>;
 
-constexpr Duration kBetweenRounds = std::chrono::milliseconds(33);  // one frame, as between others
+constexpr Duration kBetweenRounds = std::chrono::milliseconds(33);  // one frame, as within a round
 
-/// Of all streams together.
+/// The spans of all streams together.
 struct Spans {
   Timestamp first_begin = Timestamp::max();
   Timestamp last_begin = Timestamp::min();
@@ -37,7 +37,7 @@ std::string noted(const record::SensorStay& stay, const char* key) {
   return note == stay.about.notes.end() ? std::string{} : note->second;
 }
 
-/// All were imported together: their notes say the same.
+/// True when all were imported together: then their notes agree.
 bool one_import(const Stays& stays) {
   return std::ranges::all_of(stays, [&](const auto& stay) {
     return std::ranges::all_of(
@@ -47,7 +47,7 @@ bool one_import(const Stays& stays) {
   });
 }
 
-/// What we recorded is in UTC; an imported recording says whether it is.
+/// Our own recordings are in UTC; an imported one says whether it is.
 bool knows_utc(const record::SensorStay& stay) {
   const std::string time = noted(stay, "time");
   return time.empty() || time.starts_with("UTC");

@@ -1,4 +1,4 @@
-// Keeps the streams of a recording in step while each is played by a process of its own.
+// Keeps the streams of a recording in step while a separate process plays each of them.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace chorus::ctl {
 
-/// When a set begins and how long one round of it lasts.
+/// When the set begins and how long one round of it lasts.
 struct Round {
   Timestamp origin;
   Duration period{0};
@@ -19,9 +19,9 @@ struct Round {
 
 struct RoundPlan {
   /// None for a single stream, for files of one import (their notes name their set), and for
-  /// recordings whose times do not tell how they belong together.
+  /// recordings whose times do not show how they relate.
   std::optional<Round> round;
-  std::string note;  ///< Why recordings are not in step, for people.
+  std::string note;  ///< Why the recordings are not in step, for people to read.
 };
 
 [[nodiscard]] RoundPlan plan_round(const std::vector<record::SensorStay>& stays);

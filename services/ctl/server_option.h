@@ -1,4 +1,4 @@
-// How every command names the service it talks to: --url, else CHORUS_URL, else this machine.
+// How each command finds the service it talks to: --url, else CHORUS_URL, else this host.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@ class App;
 
 namespace chorus::ctl {
 
-/// `names`: of the option; "url,--url" also takes it as an argument without a name.
+/// `names`: of the option; "url,--url" also accepts it as a positional argument.
 void add_server_option(CLI::App& app, std::string& url, const std::string& what,
                        const std::string& names = "--url");
 

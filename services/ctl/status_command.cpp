@@ -1,4 +1,4 @@
-// chorus status: sensors, registration and fused bodies of a fusion server, once.
+// chorus status: shows the sensors, registration and fused bodies of a fusion server, once.
 #include <algorithm>
 #include <chrono>
 #include <iostream>
@@ -42,7 +42,7 @@ std::string sensors_report(const nlohmann::json& sensors) {
   return text;
 }
 
-/// What a sensor's service itself says is wrong with its device; empty when it says nothing.
+/// What the sensor's own service reports as wrong with its device; empty when nothing is.
 std::string own_words(const std::string& sensor_url) {
   constexpr http::ClientLimits kBrief{1 << 16, std::chrono::seconds(1), std::chrono::seconds(1)};
   const auto url = http::parse_url(sensor_url);
@@ -54,7 +54,7 @@ std::string own_words(const std::string& sensor_url) {
   return client::text_at(nlohmann::json::parse(answer->body, nullptr, false), "detail", "");
 }
 
-/// Where a sensor answers the server and has no frames, its own reason is added to that.
+/// For each sensor that answers the server but has no frames, adds the sensor's own reason.
 void ask_the_silent(nlohmann::json& sensors) {
   for (auto& sensor : sensors) {
     const std::string error = client::text_at(sensor, "lastError", "");
@@ -91,7 +91,7 @@ Result<int> run_status(const StatusArguments& arguments) {
   if (!sensors) return pass(sensors);
   const auto registration = server->get("/registration");
   if (!registration) return pass(registration);
-  // Before the first fused frame the server has none to give (503): that is a state, not a failure.
+  // Before the first fused frame the server answers 503: that is a state, not a failure.
   const auto frame = server->get("/frame");
   const nlohmann::json shown_frame = frame ? *frame : nlohmann::json();
   nlohmann::json polled = client::part_at(*sensors, "sensors");

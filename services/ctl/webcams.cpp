@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint32_t kMost = 64;  // of formats, sizes and rates each
+constexpr std::uint32_t kMost = 64;  // at most this many formats, sizes and rates each
 
 class Device {
  public:
@@ -59,7 +59,7 @@ std::string letters(std::uint32_t code) {
   return text;
 }
 
-/// The highest rate of this size; 0 when the driver does not tell.
+/// The highest rate for this size; 0 when the driver does not report it.
 double rate_of(const Device& device, std::uint32_t format, std::uint32_t width,
                std::uint32_t height) {
   double best = 0.0;
@@ -94,7 +94,7 @@ void add_modes(const Device& device, std::uint32_t format, std::vector<WebcamMod
   }
 }
 
-/// Nothing when it is no camera: an encoder, or the second device of a webcam, for its metadata.
+/// None when it is not a camera: an encoder, or a webcam's second device, which carries metadata.
 std::optional<Webcam> webcam_at(const std::string& path) {
   const Device device(path);
   if (!device.opened()) {

@@ -11,7 +11,7 @@ struct WebcamMode {
   std::string format;  ///< "MJPG", "YUYV"
   int width = 0;       ///< [px]
   int height = 0;
-  double rate_hz = 0.0;  ///< The highest; 0: not told.
+  double rate_hz = 0.0;  ///< The highest; 0: not reported.
 
   bool operator==(const WebcamMode&) const = default;
 };
@@ -19,16 +19,16 @@ struct WebcamMode {
 struct Webcam {
   std::string path;  ///< "/dev/video0"
   std::string name;  ///< "HD Pro Webcam C920"
-  std::string bus;   ///< Where it is plugged in, to tell two of one kind apart.
+  std::string bus;   ///< Where it is plugged in; tells two cameras of one model apart.
   std::vector<WebcamMode> modes = {};
   std::string problem = {};  ///< Why it cannot be used; empty when it can.
 };
 
-/// All video devices below `folder` that take pictures, by number; one that cannot be opened comes
-/// with its problem.
+/// All video devices in `folder` that capture pictures, by number; a device that cannot be opened
+/// is listed with its problem.
 [[nodiscard]] std::vector<Webcam> webcams(const std::filesystem::path& folder);
 
-/// For people: a table, or what to do when there are none.
+/// Text for people: a table, or what to do when there are no cameras.
 [[nodiscard]] std::string webcam_report(const std::vector<Webcam>& cameras);
 
 }  // namespace chorus::ctl

@@ -17,7 +17,7 @@
 namespace chorus::ctl {
 namespace {
 
-/// How an output meets its clients.
+/// How an output reaches its clients.
 enum class Manner { Serves, Sends, Shares };
 struct KnownOutput {
   std::string_view name;

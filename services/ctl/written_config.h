@@ -1,5 +1,5 @@
-// The configurations that `chorus init` writes: what was decided, each with its comment, and where
-// all other keys are explained.
+// The configurations that `chorus init` writes: each decision with its comment, and a pointer to
+// the explanation of all other keys.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@
 
 namespace chorus::ctl {
 
-/// What both services have.
+/// The options of both services.
 struct ServiceWishes {
-  std::string address = "0.0.0.0";  ///< Where it listens.
+  std::string address = "0.0.0.0";  ///< The address it listens on.
   std::uint16_t port = 0;
   std::string token;       ///< Role control; empty: none.
-  std::string read_token;  ///< Role read, for those who only look; empty: none.
+  std::string read_token;  ///< Role read, for clients that only read; empty: none.
 };
 
 struct SensorWishes {
@@ -24,7 +24,7 @@ struct SensorWishes {
   std::string id;
   std::string device = "bridge";  ///< bridge, camera, replay or simulated
   std::string camera = "/dev/video0";
-  std::string recording;  ///< Of a replay.
+  std::string recording;  ///< For a replay: the recording.
   bool images = false;
 };
 
@@ -34,7 +34,7 @@ struct PolledWish {
   std::string token;  ///< Empty: the sensor needs none.
 };
 
-/// Others that the tracker speaks to: "vrpn" with the addresses that may connect, "dtrack" with its
+/// An output and its clients: "vrpn" with the addresses that may connect, "dtrack" with its
 /// targets.
 struct OutputWish {
   std::string name;
@@ -47,16 +47,16 @@ struct FusionWishes {
   std::vector<OutputWish> outputs;
 };
 
-/// "s1=http://10.0.0.11:8081/" or "s1=http://10.0.0.11:8081/,TOKEN"
+/// Reads "s1=http://10.0.0.11:8081/" or "s1=http://10.0.0.11:8081/,TOKEN"
 [[nodiscard]] Result<PolledWish> polled_wish(std::string_view text);
 
-/// "vrpn=10.0.0.20,10.0.0.21", "dtrack=10.0.0.20:5000", "trackd"
+/// Reads "vrpn=10.0.0.20,10.0.0.21", "dtrack=10.0.0.20:5000" or "trackd"
 [[nodiscard]] Result<OutputWish> output_wish(std::string_view text);
 
 [[nodiscard]] std::string sensor_config(const SensorWishes& wishes);
 [[nodiscard]] std::string fusion_config(const FusionWishes& wishes);
 
-/// 32 hexadecimal digits that nobody can guess.
+/// 32 random hexadecimal digits that nobody can guess.
 [[nodiscard]] std::string new_token();
 
 }  // namespace chorus::ctl
