@@ -8,11 +8,11 @@
 namespace chorus::align {
 namespace {
 
-/// Later than ever before, but still expected.
+/// Added to the longest delay seen so far: a frame this late is still expected.
 constexpr Duration kGrace = std::chrono::milliseconds(15);
-constexpr int kPeriods = 2;  // of a slow sensor, that are interpolated across
+constexpr int kPeriods = 2;  // of a slow sensor: brackets this wide are still interpolated
 
-/// The frames around an instant; `before` and `after` are the same frame when it is hit exactly.
+/// The frames around an instant; `before` and `after` are the same frame when it was captured then.
 struct Bracket {
   Basis basis = Basis::Lost;
   const SensorFrame* before = nullptr;
@@ -22,7 +22,7 @@ struct Bracket {
 Bracket bracket(Timestamp instant, Timestamp now, const History& history,
                 const AlignConfig& config) {
   const auto& frames = history.frames();
-  const bool over = frames.empty() || frames.back().captured < instant;  // asked most often
+  const bool over = frames.empty() || frames.back().captured < instant;  // the commonest case
   const auto next =
       over ? frames.end()
            : std::lower_bound(frames.begin(), frames.end(), instant,
@@ -35,7 +35,7 @@ Bracket bracket(Timestamp instant, Timestamp now, const History& history,
   if (next != frames.begin()) found.before = &*std::prev(next);
   if (next != frames.end()) found.after = &*next;
   if (!found.after) {
-    // A silent sensor is given up early: no later frame could close a bracket this wide.
+    // Give up a silent sensor early: no later frame could close a bracket this wide.
     const bool hopeless = found.before && instant - found.before->captured > widest;
     const Duration wait =
         std::min(config.patience, longest_wait(history).value_or(config.patience));

@@ -7,13 +7,13 @@
 namespace chorus::align {
 namespace {
 
-constexpr std::size_t kHabit = 30;     ///< Frames that make a habit: one second.
-constexpr std::size_t kMinHabit = 10;  ///< Fewer say nothing,
-constexpr std::size_t kMinSlow = 4;    ///< but of a slow sensor these, if they took this long.
+constexpr std::size_t kHabit = 30;     ///< Newest frames that make up a habit: one second.
+constexpr std::size_t kMinHabit = 10;  ///< With fewer there is no habit,
+constexpr std::size_t kMinSlow = 4;    ///< unless the sensor is slow: then this many.
 constexpr Duration kSlow = std::chrono::seconds(1);
 
-/// Two bodies of a frame with one id cannot be told apart later: the first keeps it, the others are
-/// left out.
+/// Bodies of one frame with the same id cannot be told apart later: the first is kept, the others
+/// are removed.
 void keep_first_of_each_id(std::vector<BodyFrame>& bodies) {
   for (std::size_t i = 1; i < bodies.size();) {
     const auto seen_before = [&](const BodyFrame& b) { return b.id == bodies[i].id; };
@@ -26,14 +26,14 @@ void keep_first_of_each_id(std::vector<BodyFrame>& bodies) {
   }
 }
 
-/// `tenths` of the sorted values are smaller.
+/// The quantile of the values at `tenths` / 10.
 Duration tenths_of(std::vector<Duration>& values, std::size_t tenths) {
   const auto place = values.begin() + static_cast<std::ptrdiff_t>(tenths * values.size() / 10);
   std::nth_element(values.begin(), place, values.end());
   return *place;
 }
 
-/// How many of the newest frames tell a habit; zero: there are too few.
+/// How many of the newest frames a habit is computed from; zero: there are too few.
 std::size_t recent(const std::deque<SensorFrame>& frames) {
   if (frames.size() >= kMinHabit) return std::min(frames.size(), kHabit);
   const bool slow =
@@ -46,7 +46,7 @@ std::optional<Habit> habit_of(const std::deque<SensorFrame>& frames) {
   if (count == 0) return std::nullopt;
   std::vector<Duration> waits;
   std::vector<Duration> delays;
-  Timestamp first_received = Timestamp::max();  // of this frame and those captured later
+  Timestamp first_received = Timestamp::max();  // earliest, of this frame and later ones
   for (std::size_t i = 1; i <= count; ++i) {
     const SensorFrame& frame = frames[frames.size() - i];
     if (frame.received == Timestamp{}) return std::nullopt;

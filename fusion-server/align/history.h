@@ -1,6 +1,6 @@
-// One sensor's recent frames, in capture order, each exactly once (Otto 5.2.4).
+// One sensor's recent frames, in capture order, without duplicates (Otto 5.2.4).
 //
-// A late frame (fetched after a stream left it out) is put in its place among the others.
+// A late frame (fetched after a stream left it out) is inserted at its place.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,8 @@ namespace chorus::align {
 
 enum class PushVerdict {
   Added,
-  Duplicate,  ///< A frame of this capture time is already there (polling faster than the sensor).
-  Late,       ///< Earlier in the sensor's sequence than the newest; put in its place.
+  Duplicate,  ///< A frame of this capture time is already there (polled faster than captured).
+  Late,       ///< Earlier in the sensor's sequence than the newest; inserted at its place.
   Backwards,  ///< Later in the sequence, but captured before the newest one; refused.
   Future,     ///< Captured implausibly far after it was received; refused.
   Restarted,  ///< A long step back: the sensor's clock was set or the device restarted; history
@@ -25,20 +25,20 @@ enum class PushVerdict {
 struct HistoryLimits {
   std::size_t max_frames = 256;
   Duration max_age = std::chrono::seconds(5);
-  /// captured - received beyond which a frame is refused; a frame without `received` is not judged.
+  /// A frame is refused if captured - received exceeds this; one without `received` is accepted.
   Duration max_future = std::chrono::seconds(2);
   /// A step back longer than this is a restart.
   Duration restart_step = std::chrono::milliseconds(1500);
 };
 
-/// How a sensor's frames have arrived lately.
+/// How a sensor's recent frames have arrived.
 struct Habit {
-  /// After an instant, until a frame captured at it or later was there: for instants just behind a
-  /// capture, which wait longest.  Frames that came after later ones tell nothing.
+  /// Time from an instant until a frame captured at it or later arrived, for instants just after a
+  /// capture, which wait longest.  Frames that arrived after later ones do not count.
   Duration longest_wait{0};
-  Duration usual_wait{0};   ///< Median.
-  Duration least_delay{0};  ///< From capture to receipt.
-  Duration late_delay{0};   ///< Of ten frames one comes later.
+  Duration usual_wait{0};   ///< Median of the same.
+  Duration least_delay{0};  ///< From capture to receipt, the shortest.
+  Duration late_delay{0};   ///< From capture to receipt, 90th percentile.
 
   [[nodiscard]] Duration spread() const { return late_delay - least_delay; }
 };
@@ -52,11 +52,11 @@ class History {
 
   [[nodiscard]] const std::deque<SensorFrame>& frames() const noexcept { return frames_; }
   [[nodiscard]] std::optional<Timestamp> newest() const;
-  /// None before enough frames with a time of receipt.  Late frames do not count.
+  /// Nothing until enough frames with a time of receipt have come.  Late frames do not count.
   [[nodiscard]] const std::optional<Habit>& habit() const noexcept { return habit_; }
-  /// From capture to capture, by the median of the recent ones; none before enough of them.
+  /// Median time from capture to capture of the recent frames; nothing until there are enough.
   [[nodiscard]] const std::optional<Duration>& period() const noexcept { return period_; }
-  /// It sees directions only: all bodies of the newest frame that shows any are rays alone.
+  /// The sensor sees directions only: the newest frame with bodies has none but ray bodies.
   [[nodiscard]] bool rays_only() const noexcept { return rays_only_; }
 
  private:

@@ -5,15 +5,15 @@
 namespace chorus::align {
 namespace {
 
-constexpr int kWorse = 2;  // times the spread of the middle sensor
-/// A bodies' worth of rays: one camera without depth makes none.
+constexpr int kWorse = 2;  // a spread this many times the median sensor's is unsteady
+/// How many cameras are needed for a body: one camera without depth makes none.
 constexpr std::size_t kCameras = 2;
 
-/// Three halves of what the middle sensor needs: none is exactly like another.
+/// 1.5 times what the median sensor needs, because sensors differ.
 Duration with_slack(Duration wait) { return wait * 3 / 2; }
 
-/// The one that is waited for whatever the slower ones do: the middle, of two the quicker one.
-/// Where nobody has depth it is at least the second, because there is no body without it.
+/// The sensor that is waited for however slow others are: the median, of two the quicker one.  If
+/// none has depth, at least the second, because one camera alone makes no body.
 std::size_t middle(std::size_t count, bool rays) {
   const std::size_t least = rays ? std::min(count, kCameras) - 1 : 0;
   return std::max((count - 1) / 2, least);
@@ -55,7 +55,7 @@ AlignConfig Patience::of(const History& history) const {
   own.patience = patience_;
   const auto& habit = history.habit();
   if (!habit || all_needed_) return own;
-  // A slow sensor's pictures wait for each other; half a period more or less is its nature.
+  // A slow sensor's pictures queue; its delay naturally varies by about half a period.
   const Duration steady = std::max(steady_, history.period().value_or(Duration{0}) / 2);
   if (habit->spread() > steady) own.patience = std::min(own.patience, common_);
   return own;

@@ -1,5 +1,5 @@
-// How long an instant waits for each sensor: long enough where they are slow, and never so that one
-// bad link delays everybody.
+// How long an instant waits for each sensor: long where most sensors are slow, but never so long
+// that one bad link delays everybody.
 #pragma once
 
 #include <map>
@@ -14,9 +14,9 @@ class Patience {
   /// From the habits of all sensors that take part.
   Patience(const std::map<SensorId, const History*>& histories, const AlignConfig& config);
 
-  /// `config` with the patience for this sensor: all of it, or what the others usually need if it
-  /// is unsteady compared with the others (on a busy machine the delays of all of them vary, and
-  /// none is to blame).
+  /// `config` with the patience for this sensor: the full patience, or what the others usually need
+  /// if this one is unsteady compared with them (on a busy machine the delays of all vary, and none
+  /// is to blame).
   [[nodiscard]] AlignConfig of(const History& history) const;
 
   /// How much longer than `config.patience` an instant may wait, because most of the sensors are
@@ -25,10 +25,10 @@ class Patience {
 
  private:
   AlignConfig config_;
-  Duration patience_;        ///< With steady sensors.
-  Duration common_;          ///< The middle of what the sensors usually need.
-  Duration steady_;          ///< The widest spread that is not unsteady.
-  bool all_needed_ = false;  ///< There is no body without each of them.
+  Duration patience_;        ///< For steady sensors.
+  Duration common_;          ///< The median of what the sensors usually need.
+  Duration steady_;          ///< A sensor with a wider spread is unsteady.
+  bool all_needed_ = false;  ///< Without all of them there is no body.
 };
 
 }  // namespace chorus::align

@@ -6,7 +6,7 @@
 namespace chorus::associate {
 namespace {
 
-constexpr double kTooNear = 0.8;  // [m] nobody is tracked nearer than this
+constexpr double kTooNear = 0.8;  // [m] nobody is tracked at a smaller distance
 constexpr double kGirth = 0.4;    // [m] a person this close to a line of sight blocks it
 
 using Plan = Eigen::Vector2d;
@@ -43,7 +43,7 @@ void Admission::judge(Track& track) const {
   track.admitted = track.alone >= config_.alone;
 }
 
-/// Whether the observer would surely see a person at `place`.
+/// Whether the observer would certainly see a person standing at `place`.
 bool Admission::looks_at(const Observer& observer, const Eigen::Vector3d& place) const {
   const Eigen::Vector3d seen = observer.world_from_sensor.inverse() * place;
   const double distance = seen.norm();
@@ -51,7 +51,7 @@ bool Admission::looks_at(const Observer& observer, const Eigen::Vector3d& place)
          seen.z() >= distance * std::cos(config_.look_angle);
 }
 
-/// Whether somebody whom the observer sees blocks its line of sight to `place`.
+/// Whether a person seen by the observer blocks its line of sight to `place`.
 bool Admission::hidden_from(const Observer& observer, const Eigen::Vector3d& place) const {
   const Plan eye = on_floor(observer.world_from_sensor.translation());
   const Plan way = on_floor(place) - eye;
@@ -64,7 +64,7 @@ bool Admission::hidden_from(const Observer& observer, const Eigen::Vector3d& pla
   });
 }
 
-/// The observer looks where the track is, and sees nobody there whom it could be.
+/// The observer looks at the track's place but sees no body there that could belong to it.
 bool Admission::misses(const Observer& observer, const Track& track) const {
   if (!looks_at(observer, track.core)) return false;
   const bool sees_somebody =
@@ -75,7 +75,7 @@ bool Admission::misses(const Observer& observer, const Track& track) const {
   return !sees_somebody && !hidden_from(observer, track.core);
 }
 
-/// Several others see somebody where the sensor looks, and it does not.
+/// Several other sensors see a body in this sensor's view that this sensor does not see.
 bool Admission::misplaces(const SensorId& sensor) const {
   const auto own = std::ranges::find(observers_, sensor, &Observer::sensor);
   if (own == observers_.end()) return false;
@@ -92,7 +92,7 @@ const std::vector<Assigned>& Admission::bodies_of(const SensorId& sensor) const 
   return bodies == bodies_.end() ? kNone : bodies->second;
 }
 
-/// How many new bodies the sensor sees that nobody else does.
+/// How many new bodies only this sensor sees.
 std::int64_t Admission::alone_in(const SensorId& sensor) const {
   return std::ranges::count_if(bodies_of(sensor), [&](const Assigned& body) {
     return !body.settled && tracks_.at(body.track).size() == 1;

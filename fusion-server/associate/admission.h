@@ -1,8 +1,8 @@
-// Whether a new track may be published: a body that one sensor alone sees, at a place where others
-// look and see nobody, has to wait.
+// Whether a new track may be published: a body that only one sensor sees, at a place where other
+// sensors look and see nobody, has to wait.
 //
-// Furniture, mirrors and a sensor that stands elsewhere than it is registered make such bodies.
-// What a sensor looks at is a cone about its optical axis; who stands before the place hides it.
+// Such bodies come from furniture, mirrors, and sensors that stand elsewhere than registered.  A
+// sensor looks at a cone about its optical axis; a person in front of a place hides it.
 #pragma once
 
 #include <map>
@@ -12,24 +12,24 @@
 
 namespace chorus::associate {
 
-/// A body of the instant and the track that it went to.
+/// A body at the instant and the track it was assigned to.
 struct Assigned {
   SensorId sensor;
   Eigen::Vector3d core = Eigen::Vector3d::Zero();  ///< World [m].
   PersonId track;
-  bool settled = false;  ///< The track is published already.
+  bool settled = false;  ///< The track is already published.
 };
 
 class Admission {
  public:
-  /// `elapsed`: since the instant before.
+  /// `elapsed`: time since the previous instant.
   Admission(const std::vector<Observer>& observers, const std::vector<Assigned>& bodies,
             Duration elapsed, const AssociationConfig& config);
 
   /// Sets `admitted` when a second sensor sees the track; or when it is confirmed and no sensor
-  /// that looks there has missed it; or when it has been alone for config.alone.  That time runs n
-  /// times as slowly while its sensor has n such bodies, and stands still while its sensor misses
-  /// somebody whom others see where it looks: then the body is taken to be that person, misplaced.
+  /// that looks there has missed it; or when one sensor alone has seen it for config.alone.  That
+  /// time runs n times slower while its sensor has n such bodies, and stops while its sensor misses
+  /// a person whom others see in its view: the body is then taken for that person, misplaced.
   void judge(Track& track) const;
 
  private:
@@ -42,7 +42,7 @@ class Admission {
 
   const std::vector<Observer>& observers_;
   std::map<SensorId, std::vector<Assigned>> bodies_;
-  std::map<PersonId, std::vector<Assigned>> tracks_;  ///< The same bodies, by track.
+  std::map<PersonId, std::vector<Assigned>> tracks_;  ///< The same bodies, grouped by track.
   Duration elapsed_;
   const AssociationConfig& config_;
 };

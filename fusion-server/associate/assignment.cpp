@@ -6,10 +6,10 @@
 namespace chorus::associate {
 namespace {
 
-constexpr std::size_t kFree = 0;  // rows and columns are counted from one inside the method
+constexpr std::size_t kFree = 0;  // rows and columns are counted from one; 0: unassigned
 
-/// Shortest augmenting paths with potentials.  The shorter side supplies the rows, so that each of
-/// them gets a column; a forbidden pair costs more than all allowed pairs together.
+/// Shortest augmenting paths with potentials.  The shorter side becomes the rows, so that every row
+/// gets a column; a forbidden pair costs more than all allowed pairs together.
 class Hungarian {
  public:
   explicit Hungarian(const CostTable& table)
@@ -24,7 +24,7 @@ class Hungarian {
     for (std::size_t row = 1; row <= rows_; ++row) add(row);
   }
 
-  /// Calls `take(row, column)` for each pair, with the indices of the table.
+  /// Calls `take(row, column)` for each pair, with indices into the table.
   template <class Take>
   void visit(const Take& take) const {
     for (std::size_t column = 1; column <= columns_; ++column) {
@@ -54,7 +54,7 @@ class Hungarian {
     }
   }
 
-  /// Visits `column`, relaxes the others, and returns the nearest one not yet visited.
+  /// Visits `column`, updates the distances of the others, returns the nearest unvisited one.
   std::size_t step(std::size_t column) {
     visited_[column] = true;
     const std::size_t row = row_of_[column];

@@ -1,5 +1,5 @@
-// One-to-one assignment of rows to columns at least total cost (Hungarian method, O(r^2 c) with r
-// the shorter side).
+// One-to-one assignment of rows to columns at the lowest total cost (Hungarian method, O(r^2 c)
+// where r is the shorter side).
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ struct CostTable {
   }
 };
 
-/// For each row its column, or none.  As many allowed pairs as possible, then the cheapest.
+/// The column of each row, or none.  As many allowed pairs as possible; among these the cheapest.
 [[nodiscard]] std::vector<std::optional<std::size_t>> assign(const CostTable& table);
 
 }  // namespace chorus::associate

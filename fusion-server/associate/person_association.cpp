@@ -16,15 +16,15 @@
 namespace chorus::associate {
 namespace {
 
-constexpr std::size_t kMaxTracks = 256;  // Four times what a frame holds.
-constexpr double kVelocityBlend = 0.2;   // share of the newest difference; smooths 30 Hz to ~0.15 s
-constexpr double kFastest = 4.0;  // [m/s] a sprint; keeps one wild view from throwing the track
+constexpr std::size_t kMaxTracks = 256;  // four times what a frame holds
+constexpr double kVelocityBlend = 0.2;   // exponential smoothing of the velocity; ~0.15 s at 30 Hz
+constexpr double kFastest = 4.0;         // [m/s] a sprint; limits the harm of one wrong view
 
 double horizontal_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::hypot(a.x() - b.x(), a.z() - b.z());
 }
 
-/// In sensor and body order, so that the result does not depend on how the views arrived.
+/// Ordered by sensor and body, so that the result does not depend on the order of arrival.
 std::vector<PlacedView> placed_views(std::vector<SensorView> views) {
   std::vector<PlacedView> sights;
   for (SensorView& view : views) {
@@ -57,7 +57,7 @@ std::vector<Candidate> predict(const Tracks& tracks, Timestamp instant,
   return candidates;
 }
 
-/// How far a body is from a track [m]; not a number when that cannot be told.
+/// Distance of a body from a track [m]; NaN when it cannot be told.
 double cost_of(const PlacedView& body, const Candidate& candidate) {
   if (!body.rays) return horizontal_distance(body.core, candidate.predicted);
   const Eigen::Vector3d shift = candidate.predicted - candidate.track.core;
@@ -102,7 +102,7 @@ bool has_sensor(const std::vector<PlacedView>& sights, const SensorId& sensor) {
                      [&](const PlacedView& s) { return s.view.sensor == sensor; });
 }
 
-/// Complete linkage: the farthest member; none when the sensor is in the cluster already.
+/// Complete linkage: distance to the farthest member; none when the sensor already has a member.
 std::optional<double> linkage(const std::vector<PlacedView>& cluster, const PlacedView& sight) {
   if (has_sensor(cluster, sight.view.sensor)) return std::nullopt;
   double farthest = 0.0;
@@ -137,7 +137,7 @@ bool share_a_sensor(const Candidate& a, const Candidate& b) {
                      [&](const PlacedView& s) { return has_sensor(b.sights, s.view.sensor); });
 }
 
-/// Of the views that have a place, else of where their rays meet; nothing for a lone ray view.
+/// Mean of the views that have a place, else where the rays meet; nothing for a single ray body.
 std::optional<Eigen::Vector3d> centre_of(const Candidate& candidate) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double count = 0.0;
@@ -150,7 +150,7 @@ std::optional<Eigen::Vector3d> centre_of(const Candidate& candidate) {
   return Eigen::Vector3d(sum / count);
 }
 
-/// A track that only one camera sees stays where it is expected, as long as tracks survive unseen.
+/// A track seen by only one camera stays at its predicted place, for as long as unseen tracks last.
 void update(Candidate& candidate, Timestamp instant) {
   if (candidate.sights.empty()) return;
   Track& track = candidate.track;
@@ -185,20 +185,20 @@ bool is_settled(const Track& track, const AssociationConfig& config) {
   return track.admitted && track.hits >= config.confirm_frames;
 }
 
-/// Seen on one spot at this instant, but by different sensors.
+/// Both are seen at the same spot at this instant, but by different sensors.
 bool on_one_spot(const Candidate& a, const Candidate& b, double limit) {
   return !a.sights.empty() && !b.sights.empty() && !share_a_sensor(a, b) &&
          horizontal_distance(a.track.core, b.track.core) <= limit;
 }
 
-/// Published tracks first; within each group the older first, because ids only grow.
+/// Published tracks first; within each group the older first (ids only grow).
 void seniors_first(std::vector<Candidate>& candidates, const AssociationConfig& config) {
   std::stable_partition(candidates.begin(), candidates.end(), [&](const Candidate& candidate) {
     return is_settled(candidate.track, config);
   });
 }
 
-/// Of two on one spot the senior one keeps the person.
+/// Of two tracks on the same spot the first in this order keeps the person.
 void merge_doubles(std::vector<Candidate>& candidates, const AssociationConfig& config) {
   seniors_first(candidates, config);
   for (std::size_t i = 1; i < candidates.size(); ++i) {
@@ -233,7 +233,7 @@ void admit(std::vector<Candidate>& candidates, const std::vector<Observer>& obse
   for (Candidate& candidate : candidates) admission.judge(candidate.track);
 }
 
-/// As many as a frame holds: false bodies must not displace people whom several sensors see.
+/// Keeps as many as a frame holds; false bodies must not displace people whom several sensors see.
 void keep_the_best(std::vector<Person>& people) {
   if (people.size() <= kMaxBodies) return;
   std::stable_partition(people.begin(), people.end(),
@@ -256,7 +256,7 @@ Grouping publish(std::vector<Candidate> candidates, const AssociationConfig& con
   return grouping;
 }
 
-/// Takes the views of rays out of the others.
+/// Moves the ray bodies out of `views` and returns them.
 std::vector<PlacedView> taken_rays(std::vector<PlacedView>& views) {
   const auto rays = std::stable_partition(views.begin(), views.end(),
                                           [](const PlacedView& view) { return !view.rays; });
@@ -266,7 +266,7 @@ std::vector<PlacedView> taken_rays(std::vector<PlacedView>& views) {
   return taken;
 }
 
-/// New people, with where their joints are.
+/// Makes a candidate of each group of views, with the places of its joints.
 std::vector<Candidate> found(std::vector<std::vector<PlacedView>> people, std::uint64_t& next_id) {
   std::vector<Candidate> candidates;
   for (auto& members : people) {

@@ -11,9 +11,9 @@
 namespace chorus::associate {
 namespace {
 
-constexpr std::size_t kEnough = 3;      // joints that tell something
-constexpr std::size_t kMaxNew = 64;     // views considered at one instant; the rest waits
-constexpr std::size_t kMaxPairs = 256;  // hypotheses considered, the best ones
+constexpr std::size_t kEnough = 3;      // joints needed to decide
+constexpr std::size_t kMaxNew = 64;     // views considered at one instant; the others wait
+constexpr std::size_t kMaxPairs = 256;  // hypotheses considered, best first
 
 Ray ray_of(const SensorView& view, JointId joint) {
   return {view.eye, view.skeleton[joint].position};
@@ -24,7 +24,7 @@ std::optional<double> median_of(std::vector<double> values) {
   return median(std::move(values));
 }
 
-/// Shown by rays in both views.
+/// Median distance between the two rays of each joint that both views show as a ray [m].
 std::optional<double> apart(const SensorView& a, const SensorView& b) {
   std::vector<double> distances;
   for (std::size_t i = 0; i < kJointCount; ++i) {
@@ -35,7 +35,7 @@ std::optional<double> apart(const SensorView& a, const SensorView& b) {
   return median_of(std::move(distances));
 }
 
-/// Neither farther from a camera nor larger than a person may be.
+/// Neither farther from a camera nor larger than a person can be.
 bool is_plausible(const Located& body, std::span<const PlacedView> views,
                   const BodyLimits& limits) {
   const auto core = middle_of(body);
@@ -50,13 +50,13 @@ bool is_plausible(const Located& body, std::span<const PlacedView> views,
   return reach >= limits.min_reach && reach <= limits.max_reach;
 }
 
-/// Two views that may show one person, and all others that agree.
+/// Two views that may show the same person, and all other views that agree.
 struct Hypothesis {
   std::vector<std::size_t> views;  ///< One per sensor.
-  double misfit = 0.0;             ///< Mean of the members' [m].
+  double misfit = 0.0;             ///< Mean over the views [m].
 };
 
-/// Of every other sensor the view that fits best, if it fits.
+/// Adds, for every other sensor, the view that fits best, if it fits well enough.
 void add_supporters(Hypothesis& found, const std::vector<PlacedView>& views, const Located& body,
                     double limit) {
   struct Supporter {

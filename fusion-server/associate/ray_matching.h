@@ -1,9 +1,9 @@
-// Bodies that cameras without depth show: whose they are, and where.
+// Assigns the bodies of cameras without depth to people and locates them.
 //
-// One such view has no place.  Whether it shows somebody who is tracked already is the distance of
-// its rays from the joints of the track: that takes size and posture into account, so that somebody
-// behind another is told apart.  New people are founded where rays of two cameras meet, joint by
-// joint (epipolar consistency), preferring hypotheses that more cameras agree with.
+// One such view has no place.  Whether it shows a tracked person is judged by the distance of its
+// rays from the joints of the track: this takes size and posture into account, so that two people
+// in line are told apart.  New people are found where rays of two cameras meet, joint by joint
+// (epipolar consistency), preferring hypotheses that more cameras support.
 #pragma once
 
 #include <array>
@@ -15,19 +15,19 @@
 
 namespace chorus::associate {
 
-/// Where the joints of a person are, as far as known; world [m].
+/// Positions of a person's joints, as far as known; world [m].
 using Located = std::array<std::optional<Eigen::Vector3d>, kJointCount>;
 
-/// The joints that have a place.
+/// The joints of the body that have a position.
 [[nodiscard]] Located points_of(const Skeleton<WorldSpace>& body);
 
-/// Per joint the mean of the points, or where two or more rays meet.
+/// Per joint the mean of the points, or the point where two or more rays meet.
 [[nodiscard]] Located locate(const std::vector<PlacedView>& views);
 
-/// Mean of the core joints, of all if there is none; nothing when no joint is located.
+/// Mean of the core joints, or of all joints if no core joint is located; nothing if none is.
 [[nodiscard]] std::optional<Eigen::Vector3d> middle_of(const Located& body);
 
-/// Median distance of the rays of a view from the joints of a body that has moved by `shift` [m];
+/// Median distance of a view's rays from the joints of a body that has moved by `shift` [m];
 /// nothing when they have fewer than three joints in common.
 [[nodiscard]] std::optional<double> misfit(const SensorView& view, const Located& body,
                                            const Eigen::Vector3d& shift);
@@ -35,8 +35,8 @@ using Located = std::array<std::optional<Eigen::Vector3d>, kJointCount>;
 /// The same for a track of which only the core is known.
 [[nodiscard]] std::optional<double> misfit(const SensorView& view, const Eigen::Vector3d& core);
 
-/// Views of rays that show the same person, one per sensor, at least two.  `limit`: median distance
-/// of the rays beyond which they are not one person's [m].  Views that nothing fits are left out.
+/// Groups of ray views that show the same person, at most one per sensor, at least two.  `limit`:
+/// greatest median distance of rays of one person [m].  Views that fit no other are left out.
 [[nodiscard]] std::vector<std::vector<PlacedView>> meet(std::vector<PlacedView> views, double limit,
                                                         const BodyLimits& bodies);
 

@@ -12,8 +12,8 @@
 namespace chorus::core {
 namespace {
 
-constexpr double kReach = 2.5;   // [m] sensor to walk: where its rotation matters
-constexpr double kMisfit = 0.3;  // [m] held sensors that differ by more have been moved
+constexpr double kReach = 2.5;   // [m] sensor to walk: rotation errors are judged at this range
+constexpr double kMisfit = 0.3;  // [m] held sensors that differ by more were moved
 
 int rank(Verdict verdict) {
   switch (verdict) {
@@ -41,7 +41,7 @@ bool stands_well(const Registration& registration, const SensorId& sensor) {
   return verdict_of(registration, sensor) == Verdict::Good;
 }
 
-/// Sensors that the candidate adds, or places well where we do not.
+/// Sensors that the candidate adds, or places well where the registration in use does not.
 std::set<SensorId> newcomers(const Registration& current, const Registration& candidate,
                              SolveKind kind) {
   std::set<SensorId> found;
@@ -54,7 +54,7 @@ std::set<SensorId> newcomers(const Registration& current, const Registration& ca
   return found;
 }
 
-/// The sensor itself, and points before, beside and above the walk as it sees it.
+/// The sensor itself, and points in front of, next to and above the walk as the sensor sees it.
 void add_marks(const Eigen::Isometry3d& pose, std::vector<Eigen::Vector3d>& marks) {
   const Eigen::Vector3d walk = kReach * Eigen::Vector3d::UnitZ();
   for (const Eigen::Vector3d& mark : {Eigen::Vector3d(Eigen::Vector3d::Zero()), walk,
@@ -64,7 +64,7 @@ void add_marks(const Eigen::Isometry3d& pose, std::vector<Eigen::Vector3d>& mark
   }
 }
 
-/// From the candidate's world to ours, by the sensors that both place and that stay.
+/// From the candidate's world to ours, by the sensors that both place and that are held.
 std::optional<Eigen::Isometry3d> between_worlds(const Registration& current,
                                                 const Registration& candidate,
                                                 const std::set<SensorId>& moving) {
@@ -81,7 +81,7 @@ std::optional<Eigen::Isometry3d> between_worlds(const Registration& current,
   return fit->target_from_source;
 }
 
-/// Chain and error from our master, whatever the candidate's master was.
+/// Recomputes chain and error from our master, whatever the candidate's master was.
 void lead_from_master(const Registration& current, Extrinsics& place) {
   if (place.chain.empty() || place.chain.front() == current.master) return;
   const auto known = current.sensors.find(place.chain.front());
@@ -108,7 +108,7 @@ void add_once(std::vector<std::string>& reasons, const std::vector<std::string>&
   }
 }
 
-/// Those of the candidate's reasons that name no sensor.
+/// The candidate's reasons that name no sensor.
 std::vector<std::string> common_reasons(const Registration& registration) {
   std::vector<std::string> reasons = registration.reasons;
   for (const auto& [sensor, own] : registration.verdicts) {
@@ -117,7 +117,7 @@ std::vector<std::string> common_reasons(const Registration& registration) {
   return reasons;
 }
 
-/// Replaces what is known about one sensor's standing.
+/// Replaces the verdict on one sensor.
 void take_verdict(Registration& registration, const SensorId& sensor, SensorVerdict verdict) {
   const auto shared = common_reasons(registration);
   registration.verdicts[sensor] = std::move(verdict);
@@ -145,7 +145,7 @@ Verdict least_of_placed(const Registration& registration) {
   return least;
 }
 
-/// Registrations from before there were verdicts per sensor, and given ones.
+/// Gives every sensor a verdict in registrations made before there were any, and in given ones.
 void spell_out_verdicts(Registration& registration) {
   for (const auto& [sensor, place] : registration.sensors)
     registration.verdicts.try_emplace(sensor, SensorVerdict{registration.verdict, {}});
@@ -165,7 +165,7 @@ bool should_replace(const Registration& current, const Registration& candidate, 
   if (!covers(candidate, current)) return false;
   if (rank(candidate.verdict) != rank(current.verdict))
     return rank(candidate.verdict) > rank(current.verdict);
-  // A provisional solve in the middle of a walk does not replace a good registration; its end may.
+  // A provisional solve in mid-walk does not replace a good registration; the final one may.
   return kind == SolveKind::Final || current.verdict == Verdict::Provisional;
 }
 

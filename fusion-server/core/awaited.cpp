@@ -25,7 +25,7 @@ std::vector<SensorId> those(const Situation& s, Wanted wanted) {
   return found;
 }
 
-/// Names the silent sensors; true when none delivers, so that nothing else matters.
+/// Reports the silent sensors; true when no sensor delivers, so that nothing else matters.
 bool say_silent(const Situation& s, std::vector<std::string>& out) {
   const auto silent =
       those(s, [&](const SensorId& sensor) { return !s.last_seen.delivers(sensor, s.now); });
@@ -41,7 +41,7 @@ bool say_silent(const Situation& s, std::vector<std::string>& out) {
   return silent.size() == s.sensors.size();
 }
 
-/// What is still missing for a walk; true when somebody walks in sight of enough sensors.
+/// Reports what is missing for a walk; true when somebody walks in view of enough sensors.
 bool say_walker(const Situation& s, std::vector<std::string>& out) {
   const auto seeing =
       those(s, [&](const SensorId& sensor) { return s.last_seen.bodies(sensor, s.now) > 0; });

@@ -1,4 +1,4 @@
-// What is missing for a registration, said so that a person in the room knows what to do next.
+// What a registration still needs, worded so that a person in the room knows what to do next.
 #pragma once
 
 #include <optional>
@@ -12,16 +12,16 @@
 namespace chorus::core {
 
 struct Situation {
-  const std::set<SensorId>& sensors;  ///< Configured ones.
+  const std::set<SensorId>& sensors;  ///< The configured ones.
   const Registration& registration;
   const LastSeen& last_seen;
-  const SessionStatus* session = nullptr;  ///< The one that runs; null: none does.
+  const SessionStatus* session = nullptr;  ///< The running session; null if none is running.
   bool automatic = true;                   ///< Sessions start by themselves.
-  std::optional<Duration> retry;           ///< Until one may start by itself again.
+  std::optional<Duration> retry;           ///< Time until one may start by itself again.
   Timestamp now;
 };
 
-/// One sentence each; empty when every sensor has a place and no session runs.
+/// One sentence per need; empty when every sensor has a place and no session is running.
 [[nodiscard]] std::vector<std::string> awaited(const Situation& situation);
 
 }  // namespace chorus::core

@@ -42,7 +42,7 @@ void FusionCore::reconfigure(CoreConfig config) {
 void FusionCore::take(SensorFrame frame) {
   if (!config_.sensors.contains(frame.sensor)) return;
   sift(frame);
-  if (!histories_.contains(frame.sensor)) awaited_by_ = 0;  // one more to wait for
+  if (!histories_.contains(frame.sensor)) awaited_by_ = 0;  // one more sensor to wait for
   const align::PushVerdict verdict = histories_[frame.sensor].push(frame);
   if (verdict == align::PushVerdict::Duplicate) return;
   if (verdict == align::PushVerdict::Backwards || verdict == align::PushVerdict::Future) {
@@ -52,7 +52,7 @@ void FusionCore::take(SensorFrame frame) {
   registrar_.take(frame);
 }
 
-/// Removes bodies that are not a person's; the others of the frame stay.
+/// Removes bodies that cannot be a person's; the frame's other bodies stay.
 void FusionCore::sift(SensorFrame& frame) {
   const associate::BodyLimits& limits = config_.pipeline.association.bodies;
   std::string_view why;
@@ -118,7 +118,7 @@ bool FusionCore::improves(const Answered& answered, Timestamp now) const {
   });
 }
 
-/// Asked whenever a frame arrives, so who is awaited is decided once for each instant.
+/// Called whenever a frame arrives; the sensors to wait for are computed once per instant.
 Duration FusionCore::idle(Timestamp now) {
   const Tick tick = schedule_.next(now);
   if (awaited_by_ != tick.sequence) {
@@ -137,15 +137,15 @@ Duration FusionCore::idle(Timestamp now) {
 
 void FusionCore::forget() {
   registrar_.forget();
-  memory_.tracks.people.clear();  // the ids go on
-  memory_.sides.people.clear();   // a sensor's habits stay its own
+  memory_.tracks.people.clear();  // ids continue to count
+  memory_.sides.people.clear();   // what was learned about each sensor stays
   hindsight_.forget();
 }
 
 Outcome FusionCore::solved(Solution solution, Timestamp now) {
   const Outcome outcome = registrar_.solved(std::move(solution), now);
   if (outcome != Outcome::Nothing)
-    hindsight_.forget();  // what was answered stands in another world
+    hindsight_.forget();  // all earlier answers were given in another world
   return outcome;
 }
 

@@ -1,6 +1,6 @@
-// Everything the pipeline thread owns: histories, tracks, registration and its session.
+// All state of the pipeline thread: histories, tracks, registration and its session.
 //
-// No thread, no socket, no clock: frames, commands and solutions go in, snapshots and jobs come
+// It uses no thread, socket or clock: frames, commands and solutions go in, snapshots and jobs come
 // out.
 #pragma once
 
@@ -24,7 +24,7 @@ struct CoreConfig {
   pipeline::PipelineConfig pipeline;
   registration::RegistrationConfig registration;
   SessionConfig session;
-  std::set<SensorId> sensors;  ///< Frames of others are ignored.
+  std::set<SensorId> sensors;  ///< Frames of other sensors are ignored.
   std::uint64_t first_sequence = 1;
   std::uint64_t first_session = 1;
   std::uint64_t first_person = 1;
@@ -37,12 +37,12 @@ class FusionCore {
   void reconfigure(CoreConfig config);
   void take(SensorFrame frame);
 
-  /// The next snapshot when its time has come.
+  /// The next snapshot if it is due.
   [[nodiscard]] std::optional<Snapshot> tick(Timestamp now);
-  /// An earlier snapshot once more, with frames that came too late for it: people keep their ids.
-  /// Ask after each tick; usually there is none.
+  /// An earlier snapshot fused again with frames that came too late for it; people keep their ids.
+  /// Call it after each tick; usually there is none.
   [[nodiscard]] std::optional<Snapshot> amended(Timestamp now);
-  /// How long nothing is due unless a frame arrives.
+  /// For how long nothing will be due unless a frame arrives.
   [[nodiscard]] Duration idle(Timestamp now);
 
   /// See Registrar.
@@ -58,11 +58,11 @@ class FusionCore {
   Outcome solved(Solution solution, Timestamp now);
 
   [[nodiscard]] const Registration& registration() const { return registrar_.registration(); }
-  /// All of it except storage and commands, which belong to others.
+  /// All of it except storage and commands, which are handled elsewhere.
   [[nodiscard]] RegistrationProgress progress(Timestamp now) const;
 
   [[nodiscard]] const std::vector<SensorReport>& reports() const noexcept { return reports_; }
-  /// Bodies in the sensor's newest frame, with a place or without.
+  /// Number of bodies in the sensor's newest frame, whether the sensor has a place or not.
   [[nodiscard]] std::size_t bodies(const SensorId& sensor, Timestamp now) const {
     return registrar_.last_seen().bodies(sensor, now);
   }
@@ -71,13 +71,13 @@ class FusionCore {
   [[nodiscard]] std::string complaint(const SensorId& sensor, Timestamp now) const;
   [[nodiscard]] Share share(const SensorId& sensor) const { return shares_.of(sensor); }
   [[nodiscard]] std::uint64_t skipped() const noexcept { return schedule_.skipped(); }
-  /// No person has had this id or a higher one yet.
+  /// No person has had this id or a higher one so far.
   [[nodiscard]] std::uint64_t next_person() const noexcept { return memory_.tracks.next_id; }
 
  private:
   struct Refusals {
     std::uint64_t count = 0;
-    Timestamp last;  ///< Receipt of the last frame with something refused.
+    Timestamp last;  ///< When the last frame with something refused was received.
     std::string_view why;
   };
 
@@ -92,9 +92,9 @@ class FusionCore {
   Registrar registrar_;
   std::map<SensorId, Refusals> refused_;
   std::map<SensorId, associate::FrozenBodies> frozen_;
-  pipeline::Waiting awaited_;           ///< By the pending instant, when last asked about.
+  pipeline::Waiting awaited_;           ///< To be waited for at the pending instant.
   std::uint64_t awaited_by_ = 0;        ///< Sequence of that instant; zero: none.
-  std::vector<SensorId> last_awaited_;  ///< Those it waited for to the last.
+  std::vector<SensorId> last_awaited_;  ///< Sensors waited for until the last answer was given.
   Hindsight hindsight_;
   Shares shares_;
   std::vector<SensorReport> reports_;

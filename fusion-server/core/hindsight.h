@@ -1,4 +1,4 @@
-// Instants that were answered without a sensor, kept for a second answer once its frames have come.
+// Keeps instants that were answered without some sensor, to fuse them again with its late frames.
 #pragma once
 
 #include <deque>
@@ -11,16 +11,16 @@
 
 namespace chorus::core {
 
-/// For each sensor of a snapshot, the share of all joints that it contributed to [0, 1]; empty
-/// without bodies.
+/// For each sensor of a snapshot, the fraction of all joints that it contributed to, in [0, 1];
+/// empty if there are no bodies.
 using Parts = std::map<SensorId, double>;
 [[nodiscard]] Parts parts_of(const Snapshot& snapshot);
 
-/// An instant as it was answered, with what the answer was based on.
+/// An instant that was answered, with the data that the answer was based on.
 struct Answered {
   Tick tick;
-  pipeline::Memory before;        ///< What earlier instants had left.
-  std::vector<SensorId> without;  ///< Sensors with a place whose frames did not arrive in time.
+  pipeline::Memory before;        ///< The memory before this instant.
+  std::vector<SensorId> without;  ///< Registered sensors whose frames did not arrive in time.
   Parts parts;
   Duration extension{0};  ///< How much longer than usual it may have waited.
 };
@@ -29,9 +29,9 @@ class Hindsight {
  public:
   explicit Hindsight(Duration delay) : delay_(delay) {}
 
-  /// Complete instants need not be added.
+  /// Instants answered with all sensors need not be added.
   void remember(Answered answered);
-  /// The oldest instant old enough for late frames to have arrived by now.
+  /// The oldest instant for which late frames must have arrived by now.
   [[nodiscard]] std::optional<Answered> due(Timestamp now);
   void forget() { waiting_.clear(); }
 
@@ -40,18 +40,18 @@ class Hindsight {
   std::deque<Answered> waiting_;
 };
 
-/// A sensor's part in the fused bodies, each averaged over about a second [0, 1].
+/// A sensor's contribution to the fused bodies, averages over about a second [0, 1].
 struct Share {
-  double in_time = 0.0;     ///< Share of all joints that it contributed to.
-  double afterwards = 0.0;  ///< The same with its late frames, as /frame?at= has it.
-  double awaited = 0.0;     ///< Share of all instants whose answer waited for it to the last.
+  double in_time = 0.0;     ///< Fraction of all joints that it contributed to.
+  double afterwards = 0.0;  ///< The same including its late frames, as /frame?at= shows it.
+  double awaited = 0.0;     ///< Fraction of instants that waited for it until they were answered.
 };
 
-/// Shares of all sensors, updated instant by instant.
+/// The shares of all sensors, updated at each instant.
 class Shares {
  public:
   void answered(const Snapshot& snapshot, const std::vector<SensorId>& awaited);
-  /// No better answer than this will follow.
+  /// Takes the final contributions of an instant: no later answer will be better.
   void settled(const Parts& parts);
   [[nodiscard]] Share of(const SensorId& sensor) const;
 

@@ -1,5 +1,5 @@
-// Which sensors deliver, which see somebody, and how many: judged by their frames alone, whether or
-// not they have a place.
+// Which sensors deliver, which see bodies, and how many: judged by their frames alone, whether they
+// have a place or not.
 #pragma once
 
 #include <cstddef>
@@ -12,23 +12,23 @@
 
 namespace chorus::core {
 
-/// A frame counts this long, by our clock.
+/// A frame counts for this long after its receipt.
 inline constexpr Duration kSeenLately = std::chrono::seconds(2);
 
 class LastSeen {
  public:
   void add(const SensorFrame& frame);
-  void keep(const std::set<SensorId>& sensors);  ///< Forgets all others.
+  void keep(const std::set<SensorId>& sensors);  ///< Forgets all other sensors.
 
-  /// Bodies in its newest frame; zero when that is old.
+  /// Number of bodies in its newest frame; zero when that is old.
   [[nodiscard]] std::size_t bodies(const SensorId& sensor, Timestamp now) const;
   [[nodiscard]] bool delivers(const SensorId& sensor, Timestamp now) const;
-  /// Sensors that saw a body lately.
+  /// Sensors that recently saw a body.
   [[nodiscard]] std::set<SensorId> seeing(Timestamp now) const;
 
  private:
   struct Newest {
-    Timestamp received;  ///< Of its newest frame.
+    Timestamp received;  ///< When its newest frame came.
     std::size_t bodies = 0;
     Timestamp saw{};  ///< When its last frame with a body came.
   };

@@ -11,11 +11,11 @@ namespace chorus::core {
 namespace {
 
 constexpr std::size_t kSessionsKept = 8;
-/// A sensor that could not be placed starts no session for this long, then for twice as long, and
-/// so on.
+/// A sensor that could not be placed starts no session for this long; the time doubles with every
+/// further failure.
 constexpr Duration kFirstRetry = std::chrono::seconds(30);
-constexpr int kMaxDoublings = 5;  // 16 minutes
-/// After somebody has cancelled a session, none starts by itself for this long.
+constexpr int kMaxDoublings = 5;  // at most 16 minutes
+/// After a session was cancelled by hand, none starts by itself for this long.
 constexpr Duration kAfterCancel = std::chrono::seconds(60);
 
 void keep_configured(Registration& registration, const std::set<SensorId>& sensors) {
@@ -117,7 +117,7 @@ void Registrar::start_by_itself(Timestamp now) {
   const bool busy = !sessions_.empty() && running(sessions_.front());
   if (!config_.session.automatic || busy || now < not_before_) return;
   const std::set<SensorId> seeing = last_seen_.seeing(now);
-  // A single sensor has nobody to be registered with, unless it is the only one there is.
+  // A single sensor has no partner to be registered with, unless it is the only one there is.
   const bool enough = seeing.size() >= 2 || (seeing.size() == 1 && config_.sensors.size() == 1);
   std::set<SensorId> missing = unplaced(registration_, seeing);
   std::erase_if(missing, [&](const SensorId& sensor) { return waits(sensor, now); });
@@ -126,7 +126,7 @@ void Registrar::start_by_itself(Timestamp now) {
 
 std::optional<SolveJob> Registrar::due_job(Timestamp now) {
   if (solving_) {
-    // Nobody needs the result for half of the walk any more.
+    // A provisional result for half of the walk is of no use any more.
     if (solving_kind_ == SolveKind::Provisional && session_.final_due()) stop_solve_.request_stop();
     return std::nullopt;
   }
@@ -139,7 +139,7 @@ std::optional<SolveJob> Registrar::due_job(Timestamp now) {
   if (*kind == SolveKind::Final) sessions_.front().state = SessionState::Solving;
   SolveJob job{sessions_.front().id, *kind, session_.walk(), config_.registration,
                stop_solve_.get_token()};
-  // The world must not jump from solve to solve: the master stays while it takes part.
+  // The world must not jump from solve to solve: the master stays as long as it takes part.
   const SensorId& master = registration_.master;
   const bool walks = std::any_of(job.walk.begin(), job.walk.end(),
                                  [&](const SharedTrack& track) { return track.sensor == master; });
@@ -180,7 +180,7 @@ Outcome Registrar::solved(Solution solution, Timestamp now) {
       !sessions_.empty() && running(sessions_.front()) && sessions_.front().id == solution.session;
   if (!wanted || solution.given_up) return Outcome::Nothing;
   session_.solved_in(solution.cost);
-  // Places of sensors that are no longer configured do not constrain the new registration.
+  // Places of sensors that are no longer configured must not constrain the new registration.
   keep_configured(registration_, config_.sensors);
   if (before_) keep_configured(*before_, config_.sensors);
   sessions_.front().verdict = solution.registration.verdict;
@@ -199,7 +199,7 @@ Outcome Registrar::settle_provisional(const Registration& candidate) {
   return Outcome::Adopted;
 }
 
-/// Compared with what was in use before the session: its own provisional ones do not count.
+/// Compares with the registration from before the session: the session's own do not count.
 Outcome Registrar::settle_final(const Registration& candidate, Timestamp now) {
   SessionStatus& current = sessions_.front();
   auto next =
@@ -262,7 +262,7 @@ std::vector<std::string> Registrar::awaits(Timestamp now) const {
   return awaited(situation);
 }
 
-/// How long until the first unplaced sensor that sees somebody may start a session; nothing: now.
+/// Time until the first unplaced sensor that sees a body may start a session; nothing: now.
 std::optional<Duration> Registrar::retry_in(Timestamp now) const {
   std::optional<Timestamp> first;
   for (const SensorId& sensor : unplaced(registration_, last_seen_.seeing(now))) {

@@ -1,8 +1,8 @@
-// The registration in use, the session that improves it, and the record of the last few sessions.
+// The registration in use, the session that improves it, and a record of the last sessions.
 //
-// No thread, no socket, no clock: frames, requests and solutions go in, solve jobs come out.  A
-// session's provisional registrations belong to it: when its last solve is refused, they are
-// withdrawn.  A sensor that could not be placed does not start sessions by itself again and again.
+// It uses no thread, socket or clock: frames, requests and solutions go in, solve jobs come out.
+// Provisional registrations belong to the session: when its final solve is refused, they are
+// withdrawn.  A sensor that could not be placed does not start sessions again and again.
 #pragma once
 
 #include <deque>
@@ -20,7 +20,7 @@
 
 namespace chorus::core {
 
-/// A solve for the worker thread.
+/// A solve to be run by the worker thread.
 struct SolveJob {
   std::uint64_t session = 0;
   SolveKind kind = SolveKind::Provisional;
@@ -34,7 +34,7 @@ struct Solution {
   SolveKind kind = SolveKind::Provisional;
   Registration registration;
   Duration cost{0};       ///< How long the solve took.
-  bool given_up = false;  ///< Stopped before the end: no result.
+  bool given_up = false;  ///< It was stopped before the end: no result.
 };
 
 struct RegistrarConfig {
@@ -43,7 +43,7 @@ struct RegistrarConfig {
   std::set<SensorId> sensors;
 };
 
-/// What became of a solution.
+/// The effect of a solution.
 enum class Outcome {
   Nothing,    ///< The registration in use stays.
   Adopted,    ///< It was replaced or extended.
@@ -57,15 +57,15 @@ class Registrar {
   void reconfigure(RegistrarConfig config);
   void take(const SensorFrame& frame);
 
-  /// Starts a session, or takes over the automatic one that runs, and returns its id; Conflict when
-  /// somebody has started the one that runs.
+  /// Starts a session, or takes over an automatic one that is running, and returns its id; Conflict
+  /// when the running one was started by hand.
   [[nodiscard]] Result<std::uint64_t> start(Duration target, Timestamp now);
   /// Cancels this session and all its effects; NotFound when it is not running.
   [[nodiscard]] Result<void> cancel(std::uint64_t session, Timestamp now);
   /// Cancels the session and forgets the registration.
   void forget();
 
-  /// At most one job is out at a time; its solution comes back through solved().
+  /// At most one job is out at a time; its solution is returned through solved().
   [[nodiscard]] std::optional<SolveJob> due_job(Timestamp now);
   Outcome solved(Solution solution, Timestamp now);
 
@@ -74,7 +74,7 @@ class Registrar {
   /// Newest first.
   [[nodiscard]] std::vector<SessionStatus> sessions() const;
   [[nodiscard]] std::uint64_t next_session() const noexcept { return next_session_; }
-  /// What is missing for a (better) registration, one sentence for people each.
+  /// What is missing for a (better) registration, as sentences for people.
   [[nodiscard]] std::vector<std::string> awaits(Timestamp now) const;
 
  private:

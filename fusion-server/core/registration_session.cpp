@@ -48,7 +48,7 @@ void RegistrationSession::seal(Track& track) {
 
 void RegistrationSession::add(const SensorFrame& frame) {
   if (!collecting_ || frame.bodies.empty()) return;
-  // By our own clock at receipt: a sensor whose clock is wrong must not stretch the session.
+  // Measured by our clock at receipt: a sensor's wrong clock must not stretch the session.
   if (last_seen_) {
     const Duration pause = frame.received - *last_seen_;
     if (pause > Duration{0} && pause <= config_.max_pause) elapsed_ += pause;

@@ -1,7 +1,7 @@
-// Watching somebody walk until the sensors' places can be solved (Otto 5.2.1).
+// Collects a person's walk until the sensors' places can be solved (Otto 5.2.1).
 //
-// Without IO and without a clock: frames go in, at some point a solve is due.  The walk is kept in
-// chunks that are shared with whoever solves it, so that nothing is copied here.
+// It uses no I/O and no clock: frames go in, and at times a solve is due.  The walk is kept in
+// chunks that are shared with the solver, so that nothing is copied here.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +16,11 @@
 namespace chorus::core {
 
 struct SessionConfig {
-  bool automatic = true;  ///< Start by itself when a sensor that sees somebody has no place yet.
-  Duration target = std::chrono::seconds(30);      ///< Seconds of walk until the final solve.
-  Duration first_solve = std::chrono::seconds(6);  ///< First provisional solve.
+  bool automatic = true;  ///< Start by itself when a sensor that sees a body has no place yet.
+  Duration target = std::chrono::seconds(30);      ///< Length of walk until the final solve.
+  Duration first_solve = std::chrono::seconds(6);  ///< The same until the first provisional one.
   Duration solve_every = std::chrono::seconds(2);
-  /// A longer time with nobody in sight does not count as walking.
+  /// A longer pause with nobody in sight does not count as walking.
   Duration max_pause = std::chrono::milliseconds(500);
   std::size_t max_frames = 20000;  ///< Per sensor; more are dropped, so that memory stays bounded.
 
@@ -36,33 +36,33 @@ struct SharedTrack {
 };
 using SharedWalk = std::vector<SharedTrack>;
 
-/// In one piece, as solvers want it: copies every frame.
+/// The whole walk as solvers want it; copies every frame.
 [[nodiscard]] std::vector<registration::WalkTrack> assembled(const SharedWalk& walk);
 
 class RegistrationSession {
  public:
   explicit RegistrationSession(SessionConfig config) : config_(config) {}
 
-  /// Starts to collect; what was collected before is forgotten.
+  /// Starts to collect; the walk collected before is dropped.
   void start(Duration target);
   void cancel();
-  /// Sets how much walk is wanted from now on; what was collected stays.
+  /// Changes the length of walk that is wanted; what was collected stays.
   void retarget(Duration target) { target_ = target; }
 
-  /// Takes note of a frame; one without bodies only shows that nobody is there.
+  /// Adds a frame; one without bodies only shows that nobody is in sight.
   void add(const SensorFrame& frame);
 
-  /// At most one answer per step of the walk: a solve of walk() that should run now.  After Final
-  /// the session no longer collects.
+  /// The kind of solve of walk() that should run now; at most one per step of the walk.  After
+  /// Final the session no longer collects.
   [[nodiscard]] std::optional<SolveKind> due();
   [[nodiscard]] bool final_due() const noexcept { return collecting_ && elapsed_ >= target_; }
-  /// How long the last solve took: the next provisional one waits three times as long.
+  /// Takes the duration of the last solve: the next provisional one waits three times as long.
   void solved_in(Duration cost) { cost_ = cost; }
 
   [[nodiscard]] bool collecting() const noexcept { return collecting_; }
   [[nodiscard]] Duration elapsed() const noexcept { return elapsed_; }
   [[nodiscard]] Duration target() const noexcept { return target_; }
-  /// Shares what has been collected; once collecting has ended, hands it over.
+  /// Shares the walk collected so far; once collecting has ended, hands it over.
   [[nodiscard]] SharedWalk walk();
 
  private:
@@ -79,8 +79,8 @@ class RegistrationSession {
   bool collecting_ = false;
   Duration target_{0};
   Duration elapsed_{0};
-  Duration solved_at_{0};  ///< Elapsed time of the last solve.
-  Duration cost_{0};       ///< Of the last solve.
+  Duration solved_at_{0};  ///< Elapsed time at the last solve.
+  Duration cost_{0};       ///< Duration of the last solve.
   std::optional<Timestamp> last_seen_;
   std::map<SensorId, Track> tracks_;
 };

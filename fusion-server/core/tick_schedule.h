@@ -1,6 +1,6 @@
 // When the fused output ticks: instants on the grid k / rate of UTC, each answered once, in order.
 //
-// Pure: the caller says what time it is and whether the pipeline could answer completely now.
+// Pure: the caller passes the time and whether the pipeline could give a complete answer now.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@ namespace chorus::core {
 
 struct TickConfig {
   int rate_hz = 30;
-  /// An instant is answered at most this long after it, and what TickSchedule::extend says.
+  /// An instant is answered at most this long after it, plus what extend() adds.
   Duration alignment_delay = std::chrono::milliseconds(200);
-  /// Between two answers, but at most half an interval: after a stall the late answers come one by
-  /// one, so that whoever polls the latest frame sees each of them.
+  /// Least time between two answers, limited to half an interval: after a stall the late answers
+  /// come one by one, so that a client polling the latest frame sees each of them.
   Duration min_spacing = std::chrono::milliseconds(13);
-  /// When further behind than this (suspended host), skips, and says so.
+  /// If further behind than this (suspended host), instants are skipped, and this is reported.
   Duration max_lag = std::chrono::seconds(1);
-  /// This long after an instant it is fused once more, if frames came too late for it.
+  /// This long after an instant it is fused again if frames came too late for it.
   Duration late_frames = std::chrono::milliseconds(800);
 
   bool operator==(const TickConfig&) const = default;
@@ -34,17 +34,17 @@ class TickSchedule {
   explicit TickSchedule(TickConfig config, std::uint64_t first_sequence = 1)
       : config_(config), sequence_(first_sequence) {}
 
-  /// The instant to answer next.  Starts at the first one after `now`, skips when the clock or the
-  /// load put us further behind than max_lag, and starts anew when the clock was set back.
+  /// The instant to answer next.  Starts at the first one after `now`, skips instants when we are
+  /// further behind than max_lag, and restarts when the clock was set back.
   [[nodiscard]] Tick next(Timestamp now);
 
-  /// Zero: answer it now.  Else: wait at most this long, and ask again when a frame arrives.
+  /// Zero: answer it now.  Otherwise: wait at most this long, and ask again when a frame arrives.
   [[nodiscard]] Duration wait(Timestamp now, bool ready) const;
 
-  /// Instants may wait this much longer than the alignment delay, from now on.
+  /// From now on, instants may wait this much longer than the alignment delay.
   void extend(Duration extension) { extension_ = extension; }
 
-  /// The tick of next() has been answered.
+  /// To be called when the tick of next() has been answered.
   void answered(Timestamp now);
 
   /// Changes the grid; the sequence continues.
@@ -61,13 +61,13 @@ class TickSchedule {
 
   TickConfig config_;
   Duration extension_{0};
-  std::int64_t index_ = 0;  ///< Of the pending instant; zero: not started.
+  std::int64_t index_ = 0;  ///< Index of the pending instant; zero: not started.
   std::uint64_t sequence_;
   std::uint64_t skipped_ = 0;
   Timestamp last_answer_{};
 };
 
-/// Index of the last grid instant at or before t, and the instant of an index.
+/// Index of the last grid instant at or before t; grid_instant() is the inverse.
 [[nodiscard]] std::int64_t grid_index(Timestamp t, int rate_hz);
 [[nodiscard]] Timestamp grid_instant(std::int64_t index, int rate_hz);
 

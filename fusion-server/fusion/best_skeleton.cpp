@@ -10,7 +10,7 @@
 namespace chorus::fusion {
 namespace {
 
-/// Among equals the smallest sensor id; null when there is no view.
+/// The highest score; of equals the smallest sensor id; null when there is no view.
 const SensorView* best_of(const Person& person) {
   const SensorView* best = nullptr;
   for (const SensorView& view : person.views) {
@@ -44,7 +44,7 @@ class BestSkeleton final : public Estimator {
   }
 
  private:
-  /// The mean of one view is that view, with the error model's covariance.
+  /// The weighted mean of a single view is that view, with the error model's covariance.
   static std::unique_ptr<Estimator> alone(FusionConfig config) {
     config.method = Method::Mean;
     return joint_wise(config);
@@ -68,7 +68,7 @@ class BestSkeleton final : public Estimator {
   Duration hysteresis_;
   std::unique_ptr<Estimator> alone_;
   std::optional<SensorId> chosen_;
-  std::optional<Timestamp> rival_since_;  ///< Since when another view has been better.
+  std::optional<Timestamp> rival_since_;  ///< Since when another view has scored higher.
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
-// One view alone, where Otto et al. 5.2.5 begin: the best skeleton.  The view changes only after
-// another has been better for FusionConfig::hysteresis, or when it is gone, so that the body does
-// not flicker between two equal views.
+// The best skeleton (Otto et al. 5.2.5): one view at a time is used unchanged.  The view is
+// switched only after another has been better for FusionConfig::hysteresis, or when it is gone, so
+// that the body does not flicker between two equally good views.
 #pragma once
 
 #include <memory>

@@ -1,8 +1,8 @@
 // How uncertain one view's measurement of one joint is, for every method of fusion.
 //
-// A measurement with a covariance of its own is believed.  Otherwise a ray errs alike in all
-// directions, and a sensor of points is sharp across its line of sight and blunt along it:
-//   Sigma = across^2 I + (along^2 - across^2) r r^T,   r = unit ray eye -> joint
+// A measurement's own covariance is used where it has one.  Otherwise a ray has the same error in
+// all directions, and a point is precise across the line of sight and imprecise along it:
+//   Sigma = across^2 I + (along^2 - across^2) r r^T,   r = unit vector from eye to joint
 #pragma once
 
 #include <map>
@@ -16,17 +16,17 @@ namespace chorus::fusion {
 class ErrorModel {
  public:
   virtual ~ErrorModel() = default;
-  /// Of the joint's position [m^2], or of its ray's direction [rad^2], in world axes.  That of a
-  /// position is positive definite; that of a direction need not be, because only what is across
-  /// the ray counts.  Asked only for joints that are given in the view.
+  /// Covariance of the joint's position [m^2], or of its ray's direction [rad^2], in world axes.  A
+  /// position's is positive definite; a direction's need not be, because only its part across the
+  /// ray counts.  Call it only for joints that are given in the view.
   [[nodiscard]] virtual Eigen::Matrix3d covariance(const SensorView& view, JointId joint) const = 0;
 };
 
-/// One noise for all sensors except those that have their own.
+/// The same noise for all sensors except those that have their own.
 [[nodiscard]] std::unique_ptr<const ErrorModel> line_of_sight_errors(
     const NoiseModel& noise, const std::map<SensorId, NoiseModel>& of_sensors);
 
-/// The formula above for one joint seen from `eye`, both in world [m]; isotropic when the eye is in
+/// The formula above for one joint seen from `eye`, both in world [m]; isotropic when the eye is at
 /// the joint or unknown.
 [[nodiscard]] Eigen::Matrix3d line_of_sight_covariance(const Joint& joint,
                                                        const Eigen::Vector3d& eye,

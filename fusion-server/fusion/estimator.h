@@ -1,7 +1,7 @@
-// The seam of fusion: turns the views of one person into one body, instant after instant.
+// Interface of all fusion methods: turns the views of one person into one body, instant by instant.
 //
-// An estimator belongs to one person and may remember; instants come in order of time.  Apart from
-// its memory it is pure: same views, same bodies.
+// An estimator belongs to one person and may have memory; instants come in order of time.  Apart
+// from its memory it is pure: the same views give the same bodies.
 #pragma once
 
 #include <memory>
@@ -19,8 +19,8 @@ struct Instant {
 class Estimator {
  public:
   virtual ~Estimator() = default;
-  /// A joint nobody saw is NotTracked with zero position, unless the method predicts it.  The order
-  /// of the views affects rounding only.
+  /// A joint that nobody saw is NotTracked at position zero, unless the method predicts it.  The
+  /// order of the views affects rounding only.
   [[nodiscard]] virtual FusedBody fuse(const Person& person, const Instant& instant) = 0;
   /// A copy, with everything it remembers.
   [[nodiscard]] virtual std::unique_ptr<Estimator> clone() const = 0;

@@ -1,4 +1,4 @@
-// Many views of each person -> one body each, by the configured method and its memory.
+// Fuses the views of each person into one body, by the configured method and its memory.
 #pragma once
 
 #include <map>
@@ -14,8 +14,8 @@
 
 namespace chorus::fusion {
 
-/// One estimator per person and method.  A value: a copy remembers the same and then goes its own
-/// way.
+/// One estimator per person and method.  A value type: a copy starts with the same memory and from
+/// then on is independent.
 class Memory {
  public:
   Memory() = default;
@@ -25,8 +25,8 @@ class Memory {
   Memory& operator=(Memory&&) noexcept = default;
   ~Memory() = default;
 
-  /// One body per person, in their order, each by method_for it.  When the configuration changes,
-  /// everybody is forgotten.
+  /// One body per person, in the order of `people`, each fused by method_for() it.  When the
+  /// configuration changes, all memory is cleared.
   [[nodiscard]] std::vector<FusedBody> fuse(const std::vector<Person>& people,
                                             const Instant& instant, const FusionConfig& config);
   /// Forgets people who are no longer tracked.
@@ -37,8 +37,8 @@ class Memory {
   std::map<std::pair<PersonId, Method>, std::unique_ptr<Estimator>> estimators_;
 };
 
-/// One instant by itself, as a method without memories answers it.  The order of the views affects
-/// rounding only.
+/// Fuses one instant by itself, as a method does while its memory is empty.  The order of the views
+/// affects rounding only.
 [[nodiscard]] FusedBody fuse(const Person& person, const std::vector<SensorId>& sensors,
                              const FusionConfig& config);
 

@@ -11,7 +11,7 @@
 namespace chorus::fusion {
 namespace {
 
-constexpr int kIterations = 8;     // Huber settles in 4-6
+constexpr int kIterations = 8;     // the Huber re-weighting converges in 4-6
 constexpr double kSettled = 1e-6;  // [m]
 
 struct Estimate {
@@ -35,7 +35,7 @@ double huber_weight(double distance, double huber) {
   return distance <= huber || !(huber > 0) ? 1.0 : huber / distance;
 }
 
-/// Of the estimate, pose errors included.
+/// Covariance of the estimate, pose errors included.
 Eigen::Matrix3d stated(std::span<const JointView> views, std::span<const double> trust) {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < views.size(); ++i) {

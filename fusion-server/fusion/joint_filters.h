@@ -1,4 +1,4 @@
-// What methods that go through a body joint by joint share: the loop, and a filter for each joint.
+// Shared by methods that fuse a body joint by joint: the loop, and one filter per joint.
 #pragma once
 
 #include <array>
@@ -11,19 +11,19 @@ namespace chorus::fusion {
 
 using JointFilters = std::array<PointFilter, kJointCount>;
 
-/// Is the joint on the body's centre axis?
+/// Whether the joint is on the body's centre axis.
 [[nodiscard]] bool in_trunk(JointId joint);
 
-/// Density of the white acceleration of a joint: 3 for the trunk, 40 for limbs [m^2 / s^3].
+/// Spectral density of a joint's white-noise acceleration: 3 for trunk, 40 for limbs [m^2 / s^3].
 [[nodiscard]] double process_density(JointId joint);
 
-/// One filter per joint, with nothing seen, each with its joint's density.
+/// One filter per joint, still without measurements, each with its joint's process density.
 [[nodiscard]] JointFilters joint_filters();
 
-/// Puts a fused joint into its place in the body.
+/// Writes a fused joint into the body.
 void put(FusedBody& body, JointId joint, const FusedJoint& fused);
 
-/// The body of a person, `fuse_joint` being asked for each joint in their order.
+/// The body of a person; `fuse_joint` is called for each joint in order.
 template <class FuseJoint>
 [[nodiscard]] FusedBody joint_by_joint(PersonId person, const FuseJoint& fuse_joint) {
   FusedBody body;

@@ -13,7 +13,7 @@
 namespace chorus::fusion {
 namespace {
 
-/// Heaviest; then most tracked joints; then smallest sensor id, so that order never matters.
+/// Highest weight first, then most tracked joints, then smallest sensor id: order never matters.
 Person heaviest_view_of(const Person& person) {
   const auto heavier = [](const SensorView& a, const SensorView& b) {
     const double weight_a = Weight::clamped(a.weight).value();

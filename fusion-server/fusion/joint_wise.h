@@ -1,5 +1,5 @@
 // Methods without memory that fuse each joint separately: Otto's weighted mean, the plain mean, the
-// heaviest view, robust inverse variance (Otto et al. 5.2.5; inverse_variance.h).
+// view of the highest weight, robust inverse variance (Otto et al. 5.2.5; inverse_variance.h).
 #pragma once
 
 #include <memory>

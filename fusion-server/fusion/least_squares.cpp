@@ -15,27 +15,27 @@ namespace chorus::fusion {
 namespace {
 
 constexpr int kIterations = 20;
-constexpr double kSettled = 1e-6;       // [m]
-constexpr double kFar = 5.0;            // standard deviations from which influence fades
-constexpr double kContradicts = 3.0;    // standard deviations beyond which other starts are tried
-constexpr std::size_t kMaxStarts = 12;  // views that pairs are taken from
-constexpr double kNearest = 0.1;        // [m] a joint nearer than this is behind its camera
-constexpr double kFirstRange = 3.0;     // [m] of rays while their range is unknown
-constexpr double kMinAngle = 1e-5;      // [rad] no camera is sharper
-constexpr double kLeastInformation = 1e-2;  // [1/m^2] less along any axis is none: 10 m
-constexpr double kScalePrior = 4.0;    // views, or degrees of freedom, that say the scale is one
-constexpr std::size_t kManyViews = 4;  // from which a median tells the scale
-constexpr double kMedianOf2 = 1.3863;  // of chi^2 with two degrees of freedom
+constexpr double kSettled = 1e-6;           // [m]
+constexpr double kFar = 5.0;                // [standard deviations] beyond this, influence fades
+constexpr double kContradicts = 3.0;        // [standard deviations] beyond it, try other starts
+constexpr std::size_t kMaxStarts = 12;      // views of which pairs are formed
+constexpr double kNearest = 0.1;            // [m] a nearer joint counts as behind the camera
+constexpr double kFirstRange = 3.0;         // [m] assumed range of a ray while it is unknown
+constexpr double kMinAngle = 1e-5;          // [rad] no camera is more precise
+constexpr double kLeastInformation = 1e-2;  // [1/m^2] less along any axis counts as none: 10 m
+constexpr double kScalePrior = 4.0;         // of "the scale is one", in views or degrees of freedom
+constexpr std::size_t kManyViews = 4;       // from this many on, a median estimates the scale
+constexpr double kMedianOf2 = 1.3863;       // median of chi^2 with two degrees of freedom
 constexpr double kMedianOf3 = 2.3660;
 
-/// A view as a point with information; that of a ray is zero along it.
+/// A view as a point with an information matrix; for a ray the information along it is zero.
 struct Term {
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  bool usable = true;  ///< The joint is before this camera.
+  bool usable = true;  ///< The joint is in front of this camera.
 };
 
-/// Across the ray, at range one [1/rad^2].
+/// Information across the ray at a range of one [1/rad^2].
 Eigen::Matrix3d angular_information(const JointView& view) {
   const Eigen::Vector3d& d = view.joint.position;
   Eigen::Matrix<double, 3, 2> basis;
@@ -46,7 +46,7 @@ Eigen::Matrix3d angular_information(const JointView& view) {
   return basis * spread.inverse() * basis.transpose();
 }
 
-/// All views of a joint; the rays' part that does not depend on the point is worked out once.
+/// All views of a joint; the part of the rays that does not depend on the point is precomputed.
 class Terms {
  public:
   explicit Terms(std::span<const JointView> views) : views_(views) {
@@ -59,7 +59,7 @@ class Terms {
   [[nodiscard]] std::size_t size() const { return views_.size(); }
   [[nodiscard]] int constraints(std::size_t i) const { return views_[i].joint.bears() ? 2 : 3; }
 
-  /// About a point; without one, ranges are kFirstRange.
+  /// The view's term at a point; without a point, ranges are kFirstRange.
   [[nodiscard]] Term at(std::size_t i, const std::optional<Eigen::Vector3d>& point) const {
     const JointView& view = views_[i];
     if (!view.joint.bears()) return {view.joint.position, fixed_[i], true};
@@ -95,7 +95,7 @@ std::optional<Estimate> solve(const Terms& terms, std::span<const double> trust,
   return estimate;
 }
 
-/// In standard deviations; infinite behind a camera.
+/// Distance in standard deviations; infinite behind a camera.
 double distance_of(const Term& term, const Eigen::Vector3d& point) {
   if (!term.usable) return std::numeric_limits<double>::infinity();
   const Eigen::Vector3d off = point - term.place;
@@ -111,7 +111,7 @@ double trust_at(double distance, double huber) {
 
 struct Loss {
   double huber;
-  double scale;  ///< Of the residuals, squared.
+  double scale;  ///< Squared scale of the residuals.
 };
 
 std::vector<double> trusts_at(const Terms& terms, const Eigen::Vector3d& point, const Loss& loss) {
@@ -123,7 +123,7 @@ std::vector<double> trusts_at(const Terms& terms, const Eigen::Vector3d& point, 
   return trust;
 }
 
-/// Cauchy's loss of a point: near enough to ours, and fading.
+/// Cauchy's loss of a point: close enough to ours, and its influence fades too.
 double loss_at(const Terms& terms, const Eigen::Vector3d& point) {
   constexpr double kBehind = 1e3;
   double loss = 0.0;
@@ -134,7 +134,7 @@ double loss_at(const Terms& terms, const Eigen::Vector3d& point) {
   return loss;
 }
 
-/// Where all views together put the joint, the ranges of the rays twice refined.
+/// Where all views together put the joint; the ranges of the rays are refined twice.
 std::optional<Eigen::Vector3d> plain_start(const Terms& terms, std::span<const double> trust) {
   std::optional<Eigen::Vector3d> point;
   for (int round = 0; round < 3; ++round) {
@@ -145,7 +145,7 @@ std::optional<Eigen::Vector3d> plain_start(const Terms& terms, std::span<const d
   return point;
 }
 
-/// Of the starts that one or two views give, the one that most others agree with.
+/// Of all starts computed from one or two views, the one that agrees with the most other views.
 Eigen::Vector3d best_start(const Terms& terms, Eigen::Vector3d start) {
   double least = loss_at(terms, start);
   const std::size_t count = std::min(terms.size(), kMaxStarts);
@@ -171,10 +171,10 @@ bool contradictory(const Terms& terms, const Eigen::Vector3d& point) {
   return false;
 }
 
-/// How much larger than stated the residuals are in the middle, squared, at least one: of many
-/// views their median, so that outliers have no part in it.
+/// By how much the typical squared residual exceeds what was stated, at least one: with many views
+/// their median, so that outliers do not matter.
 double scale_of(const Terms& terms, const Eigen::Vector3d& point) {
-  std::vector<double> ratios;  // of what is usual
+  std::vector<double> ratios;  // residual over its usual value, squared
   double constraints = 0.0;
   for (std::size_t i = 0; i < terms.size(); ++i) {
     const double distance = distance_of(terms.at(i, point), point);
@@ -188,7 +188,7 @@ double scale_of(const Terms& terms, const Eigen::Vector3d& point) {
   return std::max(1.0, (kScalePrior + count * found) / (kScalePrior + count));
 }
 
-/// Of few views, whose disagreement tells little: the mean, held back by what was stated.
+/// For few views, whose residuals say little: the mean, drawn towards the stated scale by a prior.
 double scale_of_few(const Terms& terms, std::span<const double> trust,
                     const Eigen::Vector3d& point) {
   double sum = kScalePrior;
@@ -202,7 +202,7 @@ double scale_of_few(const Terms& terms, std::span<const double> trust,
   return std::max(1.0, sum / std::max(kScalePrior, freedom));
 }
 
-/// Re-weights until the point rests; `scale` of the residuals, squared.
+/// Re-weights until the point no longer moves; `scale` is the squared scale of the residuals.
 std::optional<LeastSquares> settle(const Terms& terms, const Eigen::Vector3d& start, double huber,
                                    double scale) {
   LeastSquares found{start, {}, trusts_at(terms, start, {huber, scale})};

@@ -1,12 +1,12 @@
 // Robust least squares over the points and rays of one joint.
 //
-// A point z constrains all three axes, with its covariance Sigma.  A ray from an eye in the unit
+// A point z constrains all three axes, with its covariance Sigma.  A ray from an eye along the
+// unit
 // direction d constrains the two axes across it: at range r = d . (p - eye) its direction's
-// covariance C [rad^2] is one of r^2 C, seen across d.
 //   p = argmin sum_i rho(|p - z_i|_Sigma_i)
 // solved by Gauss-Newton with re-weighting.  The influence of a measurement grows like Huber's up
-// to `huber`, stays, and fades beyond kFar.  That is not convex: where measurements contradict each
-// other, every pair of them is tried as the start (docs/papers/rays.md).
+// to `huber`, then stays constant, and fades beyond kFar.  That is not convex: where measurements
+// contradict each other, every pair of them is tried as a start (docs/papers/rays.md).
 #pragma once
 
 #include <optional>
@@ -18,13 +18,13 @@ namespace chorus::fusion {
 
 struct LeastSquares {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  /// Inverse information, times the squared scale of the residuals where that is above one [m^2].
+  /// Inverse information, times the squared scale of the residuals where that exceeds one [m^2].
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   std::vector<double> trust;  ///< Per view, in [0, 1]; 0: the joint is behind this camera.
 };
 
-/// Nothing when the views do not determine a point: none, or rays that leave their depth open.
-/// `huber` in standard deviations; 0: no robust loss.
+/// Nothing when the views do not determine a point: no views, or only rays that leave depth open.
+/// `huber` is in standard deviations; 0: no robust loss.
 [[nodiscard]] std::optional<LeastSquares> least_squares(std::span<const JointView> views,
                                                         double huber);
 

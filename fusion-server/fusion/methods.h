@@ -14,7 +14,7 @@ namespace chorus::fusion {
 struct MethodRow {
   Method method;
   std::string_view name;
-  /// For one person, with an empty memory.
+  /// Creates an estimator for one person, with an empty memory.
   std::unique_ptr<Estimator> (*begin)(const FusionConfig& config);
 };
 
@@ -22,10 +22,10 @@ struct MethodRow {
 [[nodiscard]] std::string_view name_of(Method method);
 [[nodiscard]] std::optional<Method> method_named(std::string_view name);
 
-/// A method with the configured parameters, for one person.
+/// An estimator of this method for one person, with the configured parameters.
 [[nodiscard]] std::unique_ptr<Estimator> begin(Method method, const FusionConfig& config);
 
-/// The configured method, or for a person of whom there are rays alone the one that uses them.
+/// The configured method; for a person seen only by rays, the method that can use rays.
 [[nodiscard]] Method method_for(const Person& person, const FusionConfig& config);
 
 }  // namespace chorus::fusion

@@ -1,18 +1,18 @@
-// How uncertain one sensor is of a joint: of a place along and across its line of sight, or of a
-// direction.
+// How uncertain one sensor's measurement of a joint is: of a position along and across the line of
+// sight, or of a direction.
 #pragma once
 
 #include "common/base/units.h"
 
 namespace chorus::fusion {
 
-/// Standard deviations [m].  Defaults: a Kinect-like depth sensor at 2.5 m, of which slow errors
-/// alike in all directions are the largest part; a camera whose landmarks are good to 26 mm at 3 m.
+/// Standard deviations [m].  Defaults: a Kinect-like depth sensor at 2.5 m, mostly slow errors that
+/// are equal in all directions; a camera whose landmarks are accurate to 26 mm at 3 m.
 struct NoiseModel {
   double along = 0.015;
   double across = 0.015;
-  double inferred_factor = 2.0;  ///< Inferred joints are this much worse.
-  double ray = deg(0.5);         ///< Of a ray without a covariance of its own [rad].
+  double inferred_factor = 2.0;  ///< Factor on the standard deviations of inferred joints.
+  double ray = deg(0.5);         ///< Direction of a ray without its own covariance [rad].
 
   bool operator==(const NoiseModel&) const = default;
 };

@@ -9,7 +9,7 @@
 namespace chorus::fusion {
 namespace {
 
-constexpr double kWeightFloor = 0.02;  // decision 0007: a view of weight zero says a little
+constexpr double kWeightFloor = 0.02;  // decision 0007: a view of weight zero counts a little
 
 class OttoKalman final : public Estimator {
  public:
@@ -34,7 +34,7 @@ class OttoKalman final : public Estimator {
       const double sigma = config_.kalman_sigma;
       filters_[joint].update(instant, s.joint.position, sigma * sigma / s.weight);
     }
-    FusedJoint fused = weighted_mean(views);  // state, orientation, contributors
+    FusedJoint fused = weighted_mean(views);  // only for state, orientation, contributors
     if (!views.empty()) seen_[joint] = instant;
     const bool coasting = seen_[joint] && instant - *seen_[joint] <= config_.kalman_coast;
     const auto position = filters_[joint].at(instant);

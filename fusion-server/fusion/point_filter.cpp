@@ -5,9 +5,9 @@
 namespace chorus::fusion {
 namespace {
 
-constexpr double kFirstSpeed = 1.0;  // [m/s] standard deviation of a velocity not yet seen
+constexpr double kFirstSpeed = 1.0;  // [m/s] standard deviation of a velocity not yet measured
 
-/// P after dt seconds.
+/// Covariance P of position and velocity after dt seconds of process noise.
 Eigen::Matrix2d spread_after(const Eigen::Matrix2d& covariance, double dt, double density) {
   Eigen::Matrix2d step;
   step << 1, dt, 0, 1;

@@ -13,20 +13,20 @@
 
 namespace chorus::fusion {
 
-/// Asynchronous: every update has its own time.
+/// Accepts measurements at any times, in order.
 class PointFilter {
  public:
-  /// A point unseen for longer starts anew.
+  /// After a longer time without measurements the point starts anew.
   static constexpr Duration kForgotten = std::chrono::milliseconds(500);
 
   explicit PointFilter(double density) : density_(density) {}  ///< [m^2 / s^3]
 
-  /// A measurement of the point at `instant`, `variance` per axis [m^2].
+  /// Takes a measurement of the point at `instant`, with `variance` per axis [m^2].
   void update(Timestamp instant, const Eigen::Vector3d& position, double variance);
-  /// Where it should be at `instant`, or at its last update if that is later; none before the
-  /// first.
+  /// Predicted position at `instant`, or at the last update if that is later; nothing before the
+  /// first update.
   [[nodiscard]] std::optional<Eigen::Vector3d> at(Timestamp instant) const;
-  /// Of at(instant), per axis [m^2]; zero before the first update.
+  /// Variance of at(instant) per axis [m^2]; zero before the first update.
   [[nodiscard]] double variance_at(Timestamp instant) const;
   [[nodiscard]] const Eigen::Vector3d& velocity() const { return velocity_; }  ///< [m/s]
   [[nodiscard]] double position_variance() const { return covariance_(0, 0); }

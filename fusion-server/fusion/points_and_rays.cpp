@@ -18,7 +18,7 @@ bool any_point(std::span<const JointView> views) {
   return std::ranges::any_of(views, [](const JointView& view) { return view.joint.seen(); });
 }
 
-/// Along the least certain axis [m].
+/// Standard deviation along the least certain axis [m].
 double largest_sigma(const Eigen::Matrix3d& covariance) {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(covariance, Eigen::EigenvaluesOnly);
@@ -74,7 +74,7 @@ class PointsAndRays final : public Estimator {
     return any_point(views) || largest_sigma(found.covariance) <= config_.max_sigma;
   }
 
-  /// With the predicted place as one more measurement.
+  /// Fuses the joint with its predicted position as one more measurement.
   [[nodiscard]] FusedJoint bounded(std::size_t joint, Timestamp instant,
                                    std::vector<JointView> views) const {
     const auto predicted = filters_[joint].at(instant);

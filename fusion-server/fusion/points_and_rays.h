@@ -1,11 +1,11 @@
-// Each joint by robust least squares over everything that is known of it: points, and the rays of
-// cameras without depth (least_squares.h).
+// Each joint by robust least squares over all its measurements: points, and the rays of cameras
+// without depth (least_squares.h).
 //
-// Two rays or more make a point.  A single ray makes none: the joint is missing, unless the place
-// it had bounds its depth.  That place is predicted from the last instants in which the joint was
-// determined (point_filter.h), with a variance that grows, for at most config.kalman_coast; a joint
-// so bounded is Inferred.  Rays that leave an axis more uncertain than config.max_sigma make no
-// point either.
+// Two or more rays determine a point.  A single ray does not: the joint is missing, unless its last
+// place limits its depth.  That place is predicted from the last instants in which the joint was
+// determined (point_filter.h), with a growing variance, for at most config.kalman_coast; a joint
+// found in this way is Inferred.  Rays that leave an axis more uncertain than config.max_sigma
+// determine no point either.
 #pragma once
 
 #include <memory>

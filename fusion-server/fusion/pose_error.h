@@ -1,12 +1,12 @@
-// What a tracked pose errs by beyond its sensor's noise: slowly, and the more the farther out on a
-// limb a joint is.  It changes no place; stated covariances have it.
+// Error of a tracked pose beyond its sensor's noise: it changes slowly and grows towards the ends
+// of the limbs.  It affects no position, only the covariances that are stated.
 #pragma once
 
 #include "common/body/skeleton.h"
 
 namespace chorus::fusion {
 
-/// Standard deviations per axis and view [m], round.  Fitted on simulated sensors (profiles A, B
+/// Standard deviations per axis and view [m], rounded.  Fitted on simulated sensors (profiles A, B
 /// and D, seeds from 1001 on; docs/benchmarks/fusion.md, Stated errors).
 struct PoseError {
   double neck = 0.0;       ///< Neck, upper end of the spine.
@@ -20,7 +20,7 @@ struct PoseError {
   bool operator==(const PoseError&) const = default;
 };
 
-/// Per axis [m^2].
+/// Variance per axis [m^2].
 [[nodiscard]] double pose_variance(const PoseError& error, JointId joint, JointState state);
 
 }  // namespace chorus::fusion

@@ -5,7 +5,7 @@
 namespace chorus::fusion {
 namespace {
 
-/// 1 at zero, falling linearly to 0 at `limit`; NaN gives zero.
+/// 1 at angle zero, falling linearly to 0 at `limit`; NaN gives zero.
 Weight falling(double angle, double limit) noexcept {
   if (!(limit > 0)) return Weight::clamped(0);
   return Weight::clamped(1.0 - std::abs(angle) / limit);

@@ -1,8 +1,8 @@
 // Quality heuristics: how far one sensor's view of one body may be trusted.
 //
 // Implements Otto et al., JVRB 13(2016) no. 3, Sect. 5.2.5, Eqs. (1)-(3).
-// Pure and total: every double yields a Weight in [0, 1], and NaN yields zero.
-// Metres and radians, measured in the observing sensor's space.
+// Pure and defined for every input: every double yields a Weight in [0, 1], and NaN yields zero.
+// In metres and radians, measured in the observing sensor's space.
 #pragma once
 
 #include "common/base/units.h"
@@ -10,7 +10,7 @@
 
 namespace chorus::fusion {
 
-/// Where the heuristics peak and where they fall to zero; the published values by default.
+/// Where each heuristic is 1 and where it reaches zero; the published values by default.
 struct QualityLimits {
   double best_distance = 2.5;    ///< d of Eq. (1) at which the weight is 1 [m]
   double distance_reach = 1.0;   ///< |d - best_distance| at which it is 0 [m]
@@ -23,8 +23,8 @@ struct QualityLimits {
 /// Eq. (1): 1 - (d - 2.5 m)^2 for 1.5 m < d <= 3.5 m, else 0.  Continuous at both ends.
 [[nodiscard]] Weight distance_weight(double distance, const QualityLimits& = {}) noexcept;
 
-/// Eq. (2): 1 - |phi| / 30 deg for |phi| <= 30 deg, else 0.  A rear view (|phi| > 90 deg) is zero
-/// too.
+/// Eq. (2): 1 - |phi| / 30 deg for |phi| <= 30 deg, else 0.  So a rear view (|phi| > 90 deg) is
+/// zero.
 [[nodiscard]] Weight facing_weight(double facing, const QualityLimits& = {}) noexcept;
 
 /// Eq. (3): 1 - |alpha| / 25 deg for |alpha| <= 25 deg, else 0.

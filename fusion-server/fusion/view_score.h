@@ -7,8 +7,8 @@ namespace chorus::fusion {
 
 [[nodiscard]] long tracked_joints(const SensorView& view);
 
-/// Share of tracked joints plus how squarely the body faces the sensor, each in [0, 1]; an unknown
-/// facing counts as a side view.
+/// Fraction of joints tracked plus how squarely the body faces the sensor, each in [0, 1]; an
+/// unknown facing counts as a side view.
 [[nodiscard]] double view_score(const SensorView& view);
 
 }  // namespace chorus::fusion

@@ -1,4 +1,4 @@
-// A weight in [0, 1]: built only by clamping, closed under product; zero means "ignore".
+// A weight in [0, 1]: created only by clamping, closed under products; zero means "ignore".
 #pragma once
 
 namespace chorus::fusion {
@@ -6,7 +6,7 @@ namespace chorus::fusion {
 class Weight {
  public:
   constexpr Weight() = default;
-  /// NaN and negative give zero, above one gives one.
+  /// NaN and negative values give zero, values above one give one.
   [[nodiscard]] static constexpr Weight clamped(double value) noexcept {
     return Weight(value > 0.0 ? (value < 1.0 ? value : 1.0) : 0.0);
   }

@@ -8,7 +8,7 @@
 namespace chorus::fusion {
 FusedJoint weighted_mean(std::span<const JointView> views) {
   double total = 0.0;
-  for (const JointView& s : views) total += s.weight > 0 ? s.weight : 0.0;  // drops NaN too
+  for (const JointView& s : views) total += s.weight > 0 ? s.weight : 0.0;  // skips NaN too
   if (!(total > 0)) return {};
   FusedJoint fused;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();

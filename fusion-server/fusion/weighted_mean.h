@@ -8,9 +8,9 @@
 
 namespace chorus::fusion {
 
-/// Positions by sum w p / sum w, orientation by sign-aligned LERP.  Views with zero weight
-/// contribute nothing; when every weight is zero there is no result (the caller decides, decision
-/// 0007).
+/// Positions by sum w p / sum w, orientation by sign-aligned LERP. Views with zero weight
+/// contribute nothing; when every weight is zero there is no result (what happens then is up to the
+/// caller, see decision 0007).
 [[nodiscard]] FusedJoint weighted_mean(std::span<const JointView> views);
 
 }  // namespace chorus::fusion
