@@ -61,7 +61,7 @@ class BodyFilter final : public Estimator {
   }
 
  private:
-  /// Where joints should be that were seen not long ago.
+  /// Predicted places of the joints that were seen recently.
   [[nodiscard]] PlacedBody expected_at(Timestamp instant) const {
     PlacedBody body;
     for (std::size_t j = 0; j < kJointCount; ++j) {
@@ -74,7 +74,7 @@ class BodyFilter final : public Estimator {
     return body;
   }
 
-  /// The joint after the filter, which only views teach.
+  /// The joint after filtering; the filter takes only joints that views determined.
   PlacedJoint filtered(std::size_t j, Timestamp instant, const PlacedJoint& now, bool determined) {
     if (!determined) return now;
     slow_[j] = mean_variance(now.covariance);

@@ -8,30 +8,30 @@
 namespace chorus::fusion {
 
 struct BodyModel {
-  /// How far a sensor's whole body is off in size, standard deviation of the ratio.
+  /// Standard deviation of the ratio by which a sensor's whole body is too large or too small.
   double scale = 0.06;
-  /// How far it is turned about the vertical axis while it is seen from the side [rad]; nothing up
-  /// to `turn_from`, in full from `turn_full` on, angles between frontal and side-on.
+  /// How far it is turned about the vertical axis when seen from the side [rad]: zero up to
+  /// `turn_from`, in full from `turn_full` on; both are angles between frontal and side-on.
   double turn = deg(20);
   double turn_from = deg(40);
   double turn_full = deg(90);
-  /// How well a bone keeps its length [m], and over what time its length is learned.
+  /// How constant a bone's length is [m], and the time over which the length is learned.
   double bone = 0.003;
   Duration bone_memory = std::chrono::seconds(60);
-  /// What a sensor has a joint off by is followed at this rate [1/s], 0: not at all, and forgotten
-  /// in this time.
+  /// Rate at which a sensor's offset of each joint is followed [1/s], 0: not at all; and the time
+  /// after which it is forgotten.
   double bias_rate = 3.0;
   Duration bias_memory = std::chrono::milliseconds(300);
-  /// Huber's threshold, in standard deviations that have the pose errors in them.
+  /// Huber's threshold, in standard deviations that include the pose errors.
   double huber = 1.0;
-  /// Densities of white acceleration of a resting and of a moving joint [m^2 / s^3]; limbs move,
-  /// and rest, livelier by `limb`.  Resting 0: no filter over time.
+  /// Spectral densities of the white-noise acceleration of a resting and of a moving joint [m^2 /
+  /// s^3]; `limb` is a factor for limbs.  Resting 0: no filter over time.
   double resting = 0.003;
   double moving = 20.0;
   double limb = 4.0;
-  /// What of the stated standard deviation of one instant is new at the next.
+  /// Fraction of one instant's stated standard deviation that is independent at the next instant.
   double white = 0.25;
-  /// How long a joint that nobody sees is carried.
+  /// How long a joint that nobody sees is predicted.
   Duration carry = std::chrono::seconds(1);
 
   bool operator==(const BodyModel&) const = default;

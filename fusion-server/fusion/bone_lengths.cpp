@@ -6,11 +6,11 @@
 namespace chorus::fusion {
 namespace {
 
-constexpr double kAlike = 0.5;         // [s] for which errors are the same
-constexpr double kLeastPassed = 5e-3;  // [s] so much a first instant counts
-constexpr double kLongest = 0.1;       // [s] and an instant after a gap
+constexpr double kAlike = 0.5;         // [s] within which errors are the same
+constexpr double kLeastPassed = 5e-3;  // [s] the least that an instant counts for,
+constexpr double kLongest = 0.1;       // [s] and the most, after a gap
 
-/// For each bone the one of the other side; its own for bones in the middle.
+/// For each bone its counterpart on the other side; bones in the middle map to themselves.
 std::array<std::size_t, kBones.size()> other_sides() {
   std::array<std::size_t, kBones.size()> other{};
   for (std::size_t b = 0; b < kBones.size(); ++b) {

@@ -1,8 +1,8 @@
 // The lengths of one person's bones, learned while the person is seen.
 //
-// Each instant gives a length with the variance of its two ends.  Errors are alike for about half a
-// second, so that much time counts as one independent sight; old sights fade.  Both sides of a body
-// are taken to be alike: docs/papers/body.md (8).
+// Each instant yields a length, with the variance of both ends.  Errors stay the same for about
+// half a second, so that span counts as one independent measurement; old ones fade.  Both sides of
+// a body are assumed to be of equal size: docs/papers/body.md (8).
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace chorus::fusion {
 
 class BoneLengths {
  public:
-  /// Of an instant, `passed` [s] after the one before.
+  /// Takes the body of an instant, `passed` [s] after the previous one.
   void learn(const PlacedBody& seen, double passed, const BodyModel& model);
   [[nodiscard]] HeldBones held(const BodyModel& model) const;
 

@@ -5,9 +5,9 @@
 namespace chorus::fusion {
 namespace {
 
-constexpr double kNoLength = 1e-3;  // [m] a bone this short has no direction
+constexpr double kNoLength = 1e-3;  // [m] a shorter bone has no direction
 
-/// The normal equations, one node a joint; what was eliminated is kept for the way back.
+/// A joint's part of the normal equations; eliminated parts are kept for back-substitution.
 struct Node {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -16,7 +16,7 @@ struct Node {
 /// x_child = offset + follow x_parent.
 struct Follower {
   bool held = false;
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();  ///< Of the child, its parent being known.
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();  ///< Of the child, given its parent.
   Eigen::Matrix3d follow = Eigen::Matrix3d::Zero();
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
 };
@@ -42,7 +42,7 @@ class Tree {
   [[nodiscard]] const PlacedBody& body() const { return body_; }
 
  private:
-  /// Eqs. (5), (6): the child leaves; what it says of its parent stays.
+  /// Eqs. (5), (6): eliminates the child; its information about its parent stays.
   void eliminate(std::size_t b, const HeldBone& bone) {
     followers_[b] = {};
     const std::size_t p = index_of(kBones[b].parent);
@@ -70,7 +70,7 @@ class Tree {
     }
   }
 
-  /// Eq. (7); parents come before children.
+  /// Eq. (7): places a child; parents are placed before their children.
   void place_child(std::size_t b) {
     const Follower& follower = followers_[b];
     if (!follower.held) return;

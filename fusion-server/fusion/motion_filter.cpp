@@ -6,12 +6,12 @@
 namespace chorus::fusion {
 namespace {
 
-constexpr double kFirstSpeed = 1.0;   // [m/s] standard deviation of a velocity not yet seen
-constexpr double kRests = 0.5;        // [s] for which a point rests, or moves, on the average
-constexpr double kLeastShare = 1e-3;  // no model is ever out of the question
-constexpr double kReach = 3.5;        // standard deviations beyond which a measurement is cut off
+constexpr double kFirstSpeed = 1.0;   // [m/s] standard deviation of a velocity not yet measured
+constexpr double kRests = 0.5;        // [s] mean time that a point stays at rest, or in motion
+constexpr double kLeastShare = 1e-3;  // a model's least probability: none is ever excluded
+constexpr double kReach = 3.5;        // [standard deviations] farther measurements are clipped
 constexpr double kAxes = 3.0;
-constexpr double kSlowing = 0.4;  // [s] in which speed is lost that nobody sees
+constexpr double kSlowing = 0.4;  // [s] time constant of the decay of an unseen point's speed
 
 }  // namespace
 

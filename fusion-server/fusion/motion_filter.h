@@ -1,8 +1,8 @@
-// Where a point is that rests at times and moves at others: two constant-velocity filters, mixed.
+// Filters a point that rests at times and moves at others: two constant-velocity filters, mixed.
 //
-// An interacting multiple model of two: a stiff one for rest, a nimble one for motion.  Their
-// shares follow from how well each foretold what came, so that rest is smooth and motion does not
-// lag (docs/papers/body.md (9)-(12)).  All noise is alike on all axes.  Metres, seconds.
+// An interacting multiple model (IMM) of two: a stiff one for rest, an agile one for motion.  Their
+// probabilities follow from how well each predicted the measurements, so that rest is smooth and
+// motion does not lag (docs/papers/body.md (9)-(12)).  All noise is isotropic.  Metres, seconds.
 #pragma once
 
 #include <array>
@@ -16,11 +16,11 @@ namespace chorus::fusion {
 
 class MotionFilter {
  public:
-  /// A point unseen for longer starts anew.
+  /// After a longer time without measurements the point starts anew.
   static constexpr Duration kForgotten = std::chrono::milliseconds(1000);
 
   struct Densities {
-    double resting;  ///< Of the white acceleration [m^2 / s^3].
+    double resting;  ///< Density of the white-noise acceleration [m^2 / s^3].
     double moving;
   };
   struct Motion {
@@ -31,9 +31,9 @@ class MotionFilter {
 
   explicit MotionFilter(const Densities& densities);
 
-  /// A measurement at `instant`, later than those before, `variance` per axis [m^2].
+  /// Takes a measurement at `instant`, later than all before, with `variance` per axis [m^2].
   void update(Timestamp instant, const Eigen::Vector3d& position, double variance);
-  /// Where it should be; none before the first update.  Speed is lost in the course of a second.
+  /// Predicted motion; none before the first update.  Its speed decays in the course of a second.
   [[nodiscard]] std::optional<Motion> at(Timestamp instant) const;
   [[nodiscard]] const std::optional<Timestamp>& updated() const { return updated_; }
 
@@ -50,7 +50,7 @@ class MotionFilter {
   void begin(Timestamp instant, const Eigen::Vector3d& position, double variance);
   static void mix(Models& models, double passed);
   static void predict(Model& model, double passed);
-  /// Returns how likely the measurement was, logarithm.
+  /// Updates one model; returns the log likelihood of the measurement.
   static double correct(Model& model, const Eigen::Vector3d& position, double variance,
                         double reach);
 

@@ -12,12 +12,12 @@ namespace chorus::fusion {
 namespace {
 
 constexpr int kRounds = 3;
-constexpr int kFirstWeighings = 5;  // of the views of a joint, from their mean on
-constexpr int kWeighings = 2;       // from where the joint was a round before
+constexpr int kFirstWeighings = 5;  // re-weightings of a joint's views, starting from their mean
+constexpr int kWeighings = 2;       // the same, starting from the previous round's result
 
 Eigen::Matrix3d round_covariance(double variance) { return variance * Eigen::Matrix3d::Identity(); }
 
-/// Along the least certain axis [m].
+/// Standard deviation along the least certain axis [m].
 double largest_sigma(const Eigen::Matrix3d& covariance) {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(covariance, Eigen::EigenvaluesOnly);
@@ -77,7 +77,7 @@ bool SightedBody::determined(std::size_t joint) const {
   return placed_[joint].placed && !sights_[joint].bounded;
 }
 
-/// Eq. (3), by re-weighting.
+/// Eq. (3), solved by re-weighting.
 PlacedJoint SightedBody::robust_mean(Sights& sights, const PlacedJoint* start) const {
   const double huber = config_.body.huber;
   PlacedJoint joint = start != nullptr ? *start : PlacedJoint{};

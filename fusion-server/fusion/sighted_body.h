@@ -1,7 +1,7 @@
-// All views of one person at one instant, put together into one body.
+// Combines all views of one person at one instant into one body.
 //
-// The joints, the bones and what each view errs by as a whole depend on each other; each in turn is
-// solved for while the others are held (docs/papers/body.md (1)-(3)).  No memory.
+// The joints, the bones and the error of each view as a whole depend on each other; each in turn is
+// solved for while the others are fixed (docs/papers/body.md (1)-(3)).  No memory.
 #pragma once
 
 #include <map>
@@ -15,36 +15,36 @@
 
 namespace chorus::fusion {
 
-/// What each sensor has each joint off by [m]; empty joints of a sensor are zero.
+/// Each sensor's constant offset of each joint [m]; zero for joints without one.
 using Biases = std::map<SensorId, std::array<Eigen::Vector3d, kJointCount>>;
 
 class SightedBody {
  public:
-  /// `biases` are taken off the points.
+  /// `biases` are subtracted from the points.
   SightedBody(const Person& person, const Instant& instant, const ErrorModel& errors,
               const FusionConfig& config, const Biases& biases);
 
-  /// Solves for everything, bones held to their lengths where these are known.  `expected`: where
-  /// joints should be, which bounds those that too few rays show.
+  /// Solves for everything; bones of known length keep it.  `expected`: predicted places, which
+  /// limit the depth of joints shown by too few rays.
   void settle(const HeldBones& bones, const PlacedBody& expected);
 
-  /// The joints as the mended views have them, bones let go.
+  /// The joints according to the corrected views, without the constraint of the bones.
   [[nodiscard]] const PlacedBody& placed() const { return placed_; }
-  /// Has the joint its place from views alone?
+  /// Whether the views alone determine the joint's place.
   [[nodiscard]] bool determined(std::size_t joint) const;
-  /// After so much time [s]: the biases follow what is left of the points beside the body.
+  /// Updates the biases from the points' residuals against `body`, `passed` [s] after the last.
   void learn(Biases& biases, const PlacedBody& body, double passed) const;
-  /// State, orientation and contributors of a joint; its place is not set.
+  /// State, orientation and contributors of a joint; its position is not set.
   [[nodiscard]] FusedJoint shown(JointId joint) const;
 
  private:
-  /// A joint's views, mended, and how far each is trusted.
+  /// A joint's views, corrected, and how far each is trusted.
   struct Sights {
     std::vector<JointView> views;
     std::vector<double> variance;  ///< Per axis [m^2].
     std::vector<double> trust;
-    bool round = true;     ///< Points whose errors are alike on all axes.
-    bool bounded = false;  ///< By where the joint should be, not by views alone.
+    bool round = true;     ///< All points have isotropic errors.
+    bool bounded = false;  ///< The predicted place was needed besides the views.
   };
 
   void take(std::size_t joint, const Instant& instant, const ErrorModel& errors,

@@ -14,11 +14,11 @@ namespace {
 
 using enum JointId;
 
-constexpr double kLeastTurn = 0.005;  // [rad] what a frontal view may be turned by
-constexpr double kOff = 1e-9;         // of a nuisance that is switched off
-constexpr double kNarrow = 0.1;       // [m] shoulders nearer to each other tell no direction
+constexpr double kLeastTurn = 0.005;  // [rad] prior for the turn of a frontal view
+constexpr double kOff = 1e-9;         // prior of a nuisance parameter that is switched off
+constexpr double kNarrow = 0.1;       // [m] shoulders closer together give no direction
 
-/// Where the two nuisances act from.
+/// The centres of scaling and turning.
 struct Centres {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   const PlacedBody& body;
@@ -40,7 +40,7 @@ bool in_core(std::size_t joint) {
   return std::ranges::find(kCoreJoints, static_cast<JointId>(joint)) != kCoreJoints.end();
 }
 
-/// The end of the spine that a joint hangs on.
+/// The end of the spine that a joint is connected to.
 std::size_t axis_of(std::size_t joint) {
   static const auto kAxis = [] {
     std::array<std::size_t, kJointCount> axis{};
@@ -54,7 +54,7 @@ std::size_t axis_of(std::size_t joint) {
   return kAxis[joint];
 }
 
-/// d z_j / d scale and d z_j / d turn.
+/// Derivatives d z_j / d scale and d z_j / d turn.
 Eigen::Matrix<double, 3, 2> slopes_at(std::size_t joint, const Centres& at) {
   const Eigen::Vector3d& place = at.body[joint].position;
   Eigen::Matrix<double, 3, 2> slopes = Eigen::Matrix<double, 3, 2>::Zero();
@@ -67,7 +67,7 @@ Eigen::Matrix<double, 3, 2> slopes_at(std::size_t joint, const Centres& at) {
   return slopes;
 }
 
-/// The view's place of a joint without the misfit.
+/// The view's position of a joint, corrected for the misfit.
 Eigen::Vector3d mended_at(std::size_t joint, const SeenBody& seen, const Centres& at,
                           const Misfit& misfit) {
   Eigen::Vector3d place = seen.place[joint];
@@ -79,7 +79,7 @@ Eigen::Vector3d mended_at(std::size_t joint, const SeenBody& seen, const Centres
   return place - misfit.scale * (at.body[joint].position - at.middle);
 }
 
-/// Angle between how the body is seen and frontal, be it from before or behind [rad].
+/// Angle between the direction of sight and frontal, from the front or the rear alike [rad].
 double side_on(const SeenBody& seen, const Centres& at) {
   const PlacedJoint& left = at.body[index_of(ShoulderLeft)];
   const PlacedJoint& right = at.body[index_of(ShoulderRight)];

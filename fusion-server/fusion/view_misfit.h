@@ -1,11 +1,11 @@
-// What one view's body errs by as a whole: it is too large, or turned.
+// The error of one view's body as a whole: its size, and its turn.
 //
-// A tracker that fits a body of its own proportions gets all bones of a frame wrong by one ratio;
-// and one that sees a body from the side takes it to be turned towards itself (Otto et al. 3.2).
-// Neither averages out over joints, so each is a nuisance of the view with a normal prior:
+// A tracker that fits a body of its own proportions scales all bones of a frame wrongly by one
+// ratio; one that sees a body from the side takes it to be turned towards itself (Otto et al. 3.2).
+// Neither averages out over joints, so each is a normally distributed nuisance of the view:
 //   z_j = x_j + s (x_j - c) + t (up x (x_j - a_j)) + e_j                      docs/papers/body.md
 //   (2)
-// c the middle of the trunk, a_j the upper or lower end of the spine.
+// with c the middle of the trunk and a_j the upper or lower end of the spine.
 #pragma once
 
 #include <array>
@@ -16,9 +16,9 @@
 
 namespace chorus::fusion {
 
-/// One view's joints.
+/// The joints of one view.
 struct SeenBody {
-  Eigen::Vector3d eye = Eigen::Vector3d::Zero();  ///< Where the sensor stands [m].
+  Eigen::Vector3d eye = Eigen::Vector3d::Zero();  ///< Position of the sensor [m].
   std::array<Eigen::Vector3d, kJointCount> place{};
   std::array<double, kJointCount> variance{};  ///< Per axis [m^2]; 0: not seen as a point.
 };
@@ -28,12 +28,12 @@ struct Misfit {
   double turn = 0.0;  ///< About +y [rad].
 };
 
-/// The most likely one, given where the joints are, by one step from `before`; robust against
-/// single joints.
+/// The most likely misfit, given the places of the joints, by one step from `before`; robust
+/// against outlying joints.
 [[nodiscard]] Misfit misfit_of(const SeenBody& seen, const PlacedBody& body, const Misfit& before,
                                const BodyModel& model);
 
-/// The view's places without it.
+/// The view's positions without the misfit.
 [[nodiscard]] std::array<Eigen::Vector3d, kJointCount> mended(const SeenBody& seen,
                                                               const PlacedBody& body,
                                                               const Misfit& misfit);

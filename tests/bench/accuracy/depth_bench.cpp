@@ -1,7 +1,7 @@
-// Profile C beside profiles A and B: how far one sensor's joints are from the truth when errors
-// emerge from depth images and when they are drawn.
+// Profile C compared with profiles A and B: how far one sensor's joints are from the truth when
+// errors emerge from depth images, and when they are drawn at random.
 //
-// Labels as given, and labels repaired where left and right are exchanged as a whole.
+// Both with labels as given, and with labels repaired where left and right are exchanged.
 #include <algorithm>
 #include <array>
 #include <ctime>
@@ -28,9 +28,9 @@ namespace {
 using namespace synthetic;
 
 constexpr Timestamp kBegin = from_unix_ns(1'795'000'000'000'000'000);
-constexpr double kDistance = 2.6;  // of the walk's middle before the sensor [m]
+constexpr double kDistance = 2.6;  // from the sensor to the middle of the walk [m]
 
-/// How the person truly stands before the sensor.
+/// How the person truly stands towards the sensor.
 constexpr std::array<const char*, 3> kViews{"facing", "side", "rear"};
 
 std::size_t view_of(double facing) {
@@ -40,8 +40,8 @@ std::size_t view_of(double facing) {
 
 /// Sums over the frames of one view.
 struct Tally {
-  double given = 0;     ///< Of joint errors [m]
-  double repaired = 0;  ///< [m]
+  double given = 0;     ///< Sum of joint errors [m]
+  double repaired = 0;  ///< The same, labels repaired [m]
   std::size_t joints = 0;
   std::size_t inferred = 0;
   std::size_t frames = 0;
@@ -69,7 +69,7 @@ struct Outcome {
   std::size_t ids = 0;
 };
 
-/// One sensor before people who move about a point 2.6 m away.
+/// One sensor in front of people who move about a point 2.6 m away.
 Scene scene_of(std::vector<Person> people) {
   Scene scene;
   scene.people = std::move(people);
@@ -133,7 +133,7 @@ std::vector<Person> walkers(PathKind path, std::uint64_t seed, std::size_t count
   return make_people(script, count);
 }
 
-/// Somebody who stands the whole time, turned so far from facing the sensor.
+/// Somebody who stands still, turned by `yaw` from facing the sensor.
 Person standing(std::uint64_t seed, double yaw) {
   const Walker still([&] {
     WalkerScript script;
@@ -156,7 +156,7 @@ double share(std::size_t part, std::size_t whole) {
   return whole == 0 ? std::nan("") : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// Over the draws that have the view.
+/// The spread over the draws that contain the view.
 void spread(Report& report, const std::string& name, const std::string& metric,
             std::vector<double> values, const char* unit) {
   std::erase_if(values, [](double value) { return std::isnan(value); });
@@ -197,7 +197,7 @@ void show(Report& report, const std::string& name, const std::vector<Outcome>& o
          each(outcomes, [](const Outcome& o) { return static_cast<double>(o.ids); }), "");
 }
 
-/// The statistics of real logs that no parameter of profile C aims at.
+/// Statistics of real logs that no parameter of profile C was fitted to.
 void show_log(Report& report, const std::string& name, const std::vector<Outcome>& outcomes) {
   using enum JointId;
   const auto bone = [&](JointId child) {
@@ -242,7 +242,7 @@ void measure_speed(Report& report) {
   (void)record(scene, choice_of("C", report.seed()), kBegin, kBegin + from_seconds(length));
   const double spent = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
   report.row("one-sensor-C", "times_real_time", length / spent, "");
-  // A build without optimisation is some ten times slower and says nothing.
+  // A build without optimisation is about ten times slower and says nothing.
   if (!report.quick()) {
     report.condition(
         fmt::format("one sensor of profile C: {:.0f} times real time, at least 3", length / spent),

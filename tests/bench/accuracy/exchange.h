@@ -9,24 +9,24 @@
 
 namespace chorus::bench {
 
-/// Delay of one way: least + exponential; now and then a spike more.  [s]
+/// Delay of one direction: least + exponential; sometimes a spike is added. [s]
 struct Network {
   double least = 0.4e-3;
   double jitter = 1.5e-3;     ///< Mean of the exponential part.
-  double spike_share = 0.05;  ///< Of the ways.
+  double spike_share = 0.05;  ///< Fraction of the messages.
   double spike = 30e-3;       ///< Mean of its exponential.
-  double asymmetry = 0.0;     ///< The way there takes so much longer than the way back.
+  double asymmetry = 0.0;     ///< The request takes this much longer than the answer.
 };
 
-/// A host and the network before it.
+/// A sensor host and the network in front of it.
 struct Link {
   Network network;
   synthetic::HostClock clock;  ///< Of the sensor host; the fusion host's is true.
   std::uint64_t seed = 1;
 };
 
-/// A request sent at `sent` and answered as soon as it has been held so long and it is `ready`
-/// (true times).
+/// A request sent at `sent` and answered when `held` has passed and `ready` is reached (true
+/// times).
 struct Request {
   Timestamp sent;
   Duration held{0};
@@ -34,8 +34,8 @@ struct Request {
 };
 [[nodiscard]] ClockExchange exchange_of(const Link& link, const Request& request);
 
-/// The tracks as the fusion server sees them: every stamp corrected by what the exchanges so far
-/// tell.  One request is under way at a time: a long poll asks again when it has its answer.
+/// The tracks as the fusion server sees them: every stamp is corrected by the exchanges before it.
+/// One request is under way at a time: a long poll asks again when it has its answer.
 [[nodiscard]] std::vector<registration::WalkTrack> with_corrected_clocks(const Workshop& workshop,
                                                                          const Network& network);
 

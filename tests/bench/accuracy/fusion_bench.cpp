@@ -1,4 +1,4 @@
-// Fused joints beside single sensors and all other methods, on the same frames and the same views.
+// Compares fused joints with single sensors and all other methods, on the same frames and views.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ using synthetic::PathKind;
 
 constexpr Duration kSweepLength = std::chrono::seconds(5);
 constexpr std::size_t kQuickDraws = 2;
-constexpr Duration kQuickLength = std::chrono::seconds(10);  // the least to register from
+constexpr Duration kQuickLength = std::chrono::seconds(10);  // the shortest walk to register from
 
 using Draws = std::vector<std::vector<Scored>>;
 
@@ -45,7 +45,7 @@ Draws draw_all(const Report& report, const FusionCase& each,
   });
 }
 
-/// Of figures that not every method has: only the methods that have it.
+/// Whether a method has a figure; not every method has all of them.
 bool has_any(const Draws& draws, std::size_t method, std::size_t metric) {
   return std::ranges::any_of(draws, [&](const std::vector<Scored>& draw) {
     return !std::isnan(draw[method].values[metric]);
@@ -60,7 +60,7 @@ Comparison compare(const std::string& name, const Draws& draws, std::size_t metr
     for (std::size_t draw = 0; draw < draws.size(); ++draw) {
       const Scored& scored = draws[draw][method];
       const double value = scored.values[metric];
-      // What no joint was asked about is no failure.
+      // No value because no joint was asked about is no failure.
       if (shown.kind == Kind::Stated && std::isnan(value)) continue;
       comparison.add(scored.method, draw, value);
     }
@@ -68,7 +68,7 @@ Comparison compare(const std::string& name, const Draws& draws, std::size_t metr
   return comparison;
 }
 
-/// Of covariances, where no figure is better for being lower: every method that states one.
+/// Figures of covariances, where lower is not better: every method that states one.
 void report_stated(Report& report, const std::string& name, const Draws& draws,
                    std::size_t metric) {
   const Comparison found = compare(name, draws, metric);
@@ -81,7 +81,7 @@ void report_stated(Report& report, const std::string& name, const Draws& draws,
   }
 }
 
-/// Errors over the joints that every method answers.
+/// Errors over the joints for which every method gives an answer.
 void report_common(Report& report, const std::string& name, const Draws& draws) {
   Comparison comparison(name, "mpjpe_common_mm", "mm");
   for (std::size_t draw = 0; draw < draws.size(); ++draw) {
@@ -92,7 +92,7 @@ void report_common(Report& report, const std::string& name, const Draws& draws) 
   comparison.report(report);
 }
 
-/// Each way to begin by itself.
+/// One row for each way to begin.
 void report_cold_starts(Report& report, const std::string& name, const Draws& draws) {
   for (std::size_t kind = 0; kind < kColdStarts.size(); ++kind) {
     Draws own;
@@ -105,7 +105,7 @@ void report_cold_starts(Report& report, const std::string& name, const Draws& dr
   }
 }
 
-/// The comparison of mpjpe_mm.
+/// Returns the comparison of mpjpe_mm.
 Comparison report_draws(Report& report, const std::string& name, const Draws& draws, bool in_full) {
   for (std::size_t metric = 0; metric < metrics().size(); ++metric) {
     if (!in_full && !is_short_metric(metrics()[metric])) continue;
@@ -128,7 +128,7 @@ Comparison measure(Report& report, const FusionCase& each) {
   return report_draws(report, each.name, draws, each.in_full);
 }
 
-/// What each part of our method is worth: ours is the whole, the rows beside lack one part.
+/// What each part of our method contributes: `ours` has all parts, every other row leaves one out.
 void ablate(Report& report) {
   fusion::FusionConfig whole;
   fusion::FusionConfig not_robust = whole;
@@ -149,7 +149,7 @@ void ablate(Report& report) {
   compare(each.name, draws, 0).report(report);
 }
 
-/// One source of error after the other turned down and up.
+/// Turns one source of error after the other down and up.
 void sweep(Report& report) {
   std::vector<Contender> contenders;
   for (Contender& each : all_contenders()) {
@@ -185,9 +185,9 @@ std::vector<FusionCase> all_cases() {
   return cases;
 }
 
-/// A regression shows here long before anybody reads the table.
+/// Catches a regression long before anybody reads the table.
 void hold_to_ceiling(Report& report, const Comparison& found) {
-  constexpr double kCeiling = 60.0;  // [mm] about twice what it is; 97 before sides were resolved
+  constexpr double kCeiling = 60.0;  // [mm] about twice the present; 97 before sides were resolved
   report.condition(fmt::format("{}: our mean joint error is below {} mm", kMainCase, kCeiling),
                    found.spread_of(kOurs).median < kCeiling);
 }

@@ -18,7 +18,7 @@ constexpr Duration kLength = std::chrono::seconds(30);
 constexpr Duration kRenderedLength = std::chrono::seconds(10);  // profile C renders images
 constexpr Duration kColdLength = std::chrono::seconds(12);
 
-/// A ring of six and one person: walking, standing, turning, at work, met cold.
+/// A ring of six and one person: walking, standing, turning, at work, or with a cold start.
 std::vector<FusionCase> scenes_of(const std::string& profile) {
   const std::string name = "workshop6-" + profile;
   FusionCase cold{name + "-cold", contest_of(profile, 6, PathKind::Random), true};
@@ -32,7 +32,7 @@ std::vector<FusionCase> scenes_of(const std::string& profile) {
       std::move(cold)};
 }
 
-/// Where every sensor exchanges left and right, and where it exchanges them back [rad].
+/// The yaws at which every sensor exchanges left and right, and exchanges them back [rad].
 struct Flips {
   double out;
   double back;
@@ -109,7 +109,7 @@ std::vector<FusionCase> flip_cases() {
 
 void begin_cold(Setting& setting, std::size_t draw) {
   constexpr std::uint64_t kPurpose = 771;
-  constexpr double kBuildSpread = 0.08;  // as of those who walk from the first
+  constexpr double kBuildSpread = 0.08;  // the same as for people who walk from the start
   ColdScript script{static_cast<ColdStart>(draw % kColdStarts.size()), setting.seed,
                     begin_of(setting.seed)};
   script.body_scale += synthetic::Draw{setting.seed, kPurpose}.uniform(-kBuildSpread, kBuildSpread);

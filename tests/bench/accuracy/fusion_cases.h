@@ -1,4 +1,4 @@
-// The scenes that fusion is measured in, as a table.
+// The table of scenes in which fusion is measured.
 #pragma once
 
 #include <string>
@@ -14,24 +14,24 @@ inline constexpr const char* kMainCase = "workshop6-A";
 struct FusionCase {
   std::string name;
   Contest contest;
-  bool in_full = false;   ///< Every metric, not only the first ones.
-  std::string also = {};  ///< The short rows under this name too.
+  bool in_full = false;   ///< Reports every metric, not only the first ones.
+  std::string also = {};  ///< Reports the short rows under this name too.
   bool quick = false;     ///< Part of the smoke run.
-  bool cold = false;      ///< Draws take turns in how they begin, see begin_cold().
+  bool cold = false;      ///< Draws rotate through the ways to begin, see begin_cold().
   std::size_t draws = 20;
 };
 
-/// A ring of so many sensors around one person who moves like this.
+/// A ring of `sensors` sensors around one person who moves along `walk`.
 [[nodiscard]] Contest contest_of(const std::string& profile, std::size_t sensors,
                                  synthetic::PathKind walk);
 
-/// Walking, standing, turning, at work, met cold on every profile; few and many sensors.
+/// Walking, standing, turning, at work, cold starts, on every profile; few and many sensors.
 [[nodiscard]] std::vector<FusionCase> main_cases();
 
-/// One habit of exchanging left and right after the other, all else profile A.
+/// Various yaws at which left and right are exchanged; everything else as in profile A.
 [[nodiscard]] std::vector<FusionCase> flip_cases();
 
-/// Somebody who begins as is the turn of this draw.
+/// Makes the person begin in the way that this draw's number selects.
 void begin_cold(Setting& setting, std::size_t draw);
 
 }  // namespace chorus::bench

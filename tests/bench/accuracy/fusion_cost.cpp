@@ -24,7 +24,7 @@ struct CostCase {
   const char* name;
   std::size_t sensors;
   std::size_t persons;
-  double most_p99_ms;  ///< Condition.
+  double most_p99_ms;  ///< The condition.
 };
 constexpr std::array kCases{CostCase{"cost-10x6", 10, 6, 2.0}, CostCase{"scale-64x2", 64, 2, 5.0}};
 
@@ -39,7 +39,7 @@ Workshop workshop_of(const Report& report, const CostCase& each) {
   return draw_workshop(setting);
 }
 
-/// Of every instant from frames to snapshot [ms].
+/// Time of every instant from frames to snapshot [ms].
 std::vector<double> step_times(const Workshop& workshop, fusion::Method method) {
   pipeline::PipelineConfig config;
   config.fusion.method = method;

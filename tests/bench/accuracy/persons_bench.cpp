@@ -1,5 +1,5 @@
-// Who is who: identities beside a first attempt at association and beside the sensors' own ids;
-// with single sources of error turned up and down, and with parts of the association taken out.
+// Identities: our association compared with a first attempt and with the sensors' own ids; with
+// single sources of error turned up and down, and with parts of the association left out.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -51,15 +51,15 @@ Draws draw_all(const Report& report, PersonsCase each, const std::vector<Associa
   });
 }
 
-/// Draws in which nobody's id ever changed, in percent.
+/// Draws in which no person's id ever changed, in percent.
 double no_switch_percent(const Draws& draws, const std::string& method) {
   const auto faultless = std::ranges::count_if(
       draws, [&](const Identities& found) { return found.at(method).switches == 0; });
   return kPercent * static_cast<double>(faultless) / static_cast<double>(draws.size());
 }
 
-/// Ours as it is, and with one part out each.  What cannot be switched (prediction, one-to-one
-/// assignment) is what nearest-neighbour lacks.
+/// Ours unchanged, and variants that leave one part out.  The parts that cannot be switched off
+/// (prediction, one-to-one assignment) are those that nearest-neighbour lacks.
 std::vector<Association> ablations() {
   const associate::AssociationConfig whole;
   std::vector<Association> all{{kOurs, whole}};
@@ -81,7 +81,7 @@ std::vector<Association> ablations() {
   return all;
 }
 
-/// Ours and the other methods, or ours and itself without some part.
+/// Either ours and the other methods, or ours and its ablations.
 Draws only(const Draws& draws, bool ablated) {
   Draws kept = draws;
   for (Identities& identities : kept) {
@@ -92,7 +92,7 @@ Draws only(const Draws& draws, bool ablated) {
   return kept;
 }
 
-/// One row per method beside ours.
+/// One row for each method that ours is compared with.
 void report_no_switch(Report& report, const std::string& name, const Draws& draws) {
   const double ours = no_switch_percent(draws, kOurs);
   for (const auto& [method, identity] : draws.front()) {
@@ -114,7 +114,7 @@ void report_figure(Report& report, const std::string& name, const Draws& draws,
   if (figure.better == Better::Higher) comparison.report_wins(report);
 }
 
-/// Where the median is zero, the mean over the draws still tells.
+/// Where the median is zero, the mean over the draws still differs.
 void report_mean_ghosts(Report& report, const std::string& name, const Draws& draws) {
   double sum = 0.0;
   for (const Identities& found : draws)
@@ -149,7 +149,7 @@ void measure(Report& report, const PersonsCase& each) {
   if (each.sides) report_sides(report, each);
   if (ablated) report_draws(report, "ablation-" + each.name, only(draws, true));
   if (each.name != kCrossingTwo) return;
-  constexpr double kMin = 50.0;  // [%] generous: a regression, not a target
+  constexpr double kMin = 50.0;  // [%] generous: it catches a regression, it is no target
   report.condition(
       fmt::format("{}: in at least {} % of the draws no id changes", kCrossingTwo, kMin),
       no_switch_percent(draws, kOurs) >= kMin);
@@ -160,7 +160,7 @@ PersonsCase case_named(const std::string& name) {
   return *std::ranges::find(cases, name, &PersonsCase::name);
 }
 
-/// A source of error that can lead association astray.
+/// A source of error that can mislead association.
 struct Part {
   const char* name;
   void (*scale)(synthetic::kinect::Profile&, double factor);
@@ -179,10 +179,10 @@ constexpr std::array kParts{
            p.delivery.gaps_per_minute *= f;
            p.delivery.drop_share = std::min(0.9, p.delivery.drop_share * f);
          }},
-    Part{"occlusion", [](Profile& p, double f) { p.visibility.girth *= f; }},  // of who hides whom
+    Part{"occlusion", [](Profile& p, double f) { p.visibility.girth *= f; }},  // the occluders'
     Part{"yaw", [](Profile& p, double f) { p = with_source(std::move(p), Yaw, f); }}};
 
-/// One source after the other, in the scene that tells methods apart; x1 is the same for all.
+/// Varies one source after the other in the scene that separates methods; x1 is the same for all.
 void sweep(Report& report) {
   PersonsCase usual = case_named("crossing-2-hidden");
   usual.length = kSweepLength;

@@ -35,14 +35,14 @@ std::vector<Eigen::Isometry3d> ring(std::size_t count, double radius = 3.0) {
   return ring_places(ring);
 }
 
-/// One instant as the sensors see it, before anybody decided who it is.
+/// What the sensors see at one instant, before it is assigned to people.
 using Sights = associate::Scene;
 
-/// A method: who is there, instant after instant; remembers what it needs.
+/// A method: returns the people at each instant; keeps whatever memory it needs.
 using Grouper = std::function<std::vector<Person>(const Sights& sights)>;
 
-/// Profile A tracks many joints falsely where they are occluded, by an error about their true
-/// place: it would see through the screen.  Here what is occluded is known to be.
+/// Profile A tracks many occluded joints falsely, with an error about their true position: it would
+/// see through the screen.  Here it is known which joints are occluded.
 void know_the_occluded(synthetic::kinect::Profile& profile, std::size_t) {
   profile.visibility.inferred_occluded = 1.0;
 }
@@ -53,7 +53,7 @@ PersonsCase behind_screen(std::string name, People (*people)(std::uint64_t seed)
   return hidden;
 }
 
-/// One sensor takes furniture for people, often and for long.
+/// One sensor mistakes furniture for people, often and for long.
 PersonsCase beside_furniture() {
   PersonsCase each{"furniture-2-B", "B", ring(6), crossing_two};
   each.adjust = [](synthetic::kinect::Profile& profile, std::size_t place) {
@@ -82,7 +82,7 @@ Setting setting_of(const PersonsCase& each, std::uint64_t seed) {
   return setting;
 }
 
-/// Horizontally; not finite: not in the room.
+/// Horizontal position; not finite: the person is not in the room.
 Eigen::Vector2d true_place(const Workshop& workshop, std::size_t person, Timestamp instant,
                            const SensorId& master) {
   const Eigen::Vector2d place = baselines::place_of(true_body(workshop, person, instant, master));
@@ -116,7 +116,7 @@ Grouper by_nearest_neighbour() {
   };
 }
 
-/// One sensor's own ids at face value.
+/// Takes one sensor's own ids as they are.
 Grouper by_sensor(const SensorId& sensor) {
   return [sensor](const Sights& sights) {
     std::vector<Person> people;
@@ -127,7 +127,7 @@ Grouper by_sensor(const SensorId& sensor) {
   };
 }
 
-/// A method under way through a draw.
+/// The state of one method during a draw.
 struct Contestant {
   std::string name;
   Grouper group;
@@ -146,7 +146,7 @@ std::vector<Contestant> contestants_in(const Workshop& workshop,
   return all;
 }
 
-/// Everybody's true place; nobody claimed yet.
+/// Everybody's true place; no person is claimed yet.
 Roll roll_at(const Workshop& workshop, Timestamp instant) {
   Roll roll{instant, {}, {}};
   const SensorId& master = workshop.tracks.front().sensor;
@@ -160,7 +160,7 @@ Period period_of(const Workshop& workshop) {
   return {workshop.begin + kStart, workshop.begin + workshop.setting.length - kTail};
 }
 
-/// Everybody at every instant, by every method.
+/// Calls the roll by every method, at every instant: who is said to be who.
 void call_rolls(const Workshop& workshop, std::vector<Contestant>& contestants) {
   const Registration places = true_registration(workshop, workshop.tracks.front().sensor);
   visit_scenes(workshop.tracks, places, period_of(workshop), [&](const Sights& sights) {
@@ -189,7 +189,7 @@ bool is_exchanged(const Person& person, const Skeleton<WorldSpace>& exact) {
 std::vector<PersonsCase> persons_cases() {
   constexpr Duration kFiveMinutes = std::chrono::minutes(5);
   constexpr Duration kMinute = std::chrono::minutes(1);
-  // Profile C renders images; what hides whom costs with the square of the people.
+  // Profile C renders images; the cost of occlusion grows with the square of the people.
   constexpr Duration kRendered = std::chrono::seconds(12);
   constexpr Duration kOfFour = std::chrono::seconds(20);
   constexpr Duration kOfSix = std::chrono::seconds(15);

@@ -1,5 +1,5 @@
-// The scenes that association is measured in, and who is said to be who in one draw of them, by
-// every method.
+// The scenes in which association is measured, and whom each method takes for whom in one draw of
+// them.
 #pragma once
 
 #include <map>
@@ -19,18 +19,18 @@ struct PersonsCase {
   std::vector<synthetic::Person> (*people)(std::uint64_t seed);
   std::vector<synthetic::Occluder> occluders = {};
   Duration length = std::chrono::seconds(30);
-  /// Changes the sensor at a place after the draw.
+  /// Changes the profile of the sensor at `place` after the draw.
   std::function<void(synthetic::kinect::Profile&, std::size_t place)> adjust = {};
   std::size_t draws = 20;
-  bool sides = false;  ///< Is asked for sides_wrong_in() too.
+  bool sides = false;  ///< sides_wrong_in() is measured too.
 };
 
-/// The one that is measured in quick runs and swept.
+/// The case that is measured in quick runs and used for sweeps.
 inline constexpr const char* kCrossingTwo = "crossing-2";
 
 [[nodiscard]] std::vector<PersonsCase> persons_cases();
 
-/// Association as configured, under a name.
+/// A named configuration of association.
 struct Association {
   std::string name;
   associate::AssociationConfig config = {};
@@ -39,13 +39,13 @@ struct Association {
 /// By method.
 using Identities = std::map<std::string, Identity>;
 
-/// One draw: each of `ours`, and beside them `nearest-neighbour` (greedy, without prediction) and
-/// `best-sensor-ids` (one sensor's own ids at face value, the sensor chosen knowing the truth).
+/// One draw: each of `ours`, and in addition `nearest-neighbour` (greedy, without prediction) and
+/// `best-sensor-ids` (the ids of one sensor as they are, the best sensor chosen by the truth).
 [[nodiscard]] Identities identities_in(const PersonsCase& each, std::uint64_t seed,
                                        const std::vector<Association>& ours);
 
-/// The whole product's perception: share of the instants at which somebody's views together fit
-/// them better with left and right exchanged, people who are not answered left out.
+/// The product's whole perception: fraction of the instants at which a person's views together fit
+/// better with left and right exchanged; people without an answer are left out.
 [[nodiscard]] double sides_wrong_in(const PersonsCase& each, std::uint64_t seed);
 
 }  // namespace chorus::bench

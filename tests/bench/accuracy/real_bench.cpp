@@ -1,5 +1,5 @@
-// chorus-bench real: the bundled four camera views of a real person, fused every way we have,
-// against the published triangulation (tests/data/README.md; good to a few centimetres).
+// chorus-bench real: the bundled four camera views of a real person, fused by all our methods,
+// compared with the published triangulation (tests/data/README.md; accurate to a few cm).
 //
 // Once with the published extrinsics, once with extrinsics registered from the person alone.
 #include <algorithm>
@@ -26,17 +26,17 @@ using importers::Lateral;
 
 constexpr const char* kFolder = "tests/data/pose2sim_mediapipe";  // run from the repository root
 constexpr double kRateHz = 60.0;                                  // of the recording
-constexpr double kPlainMeanMm = 104;   // measured outside this project: plain mean of the four
+constexpr double kPlainMeanMm = 104;   // measured outside this project: plain mean of the four,
 constexpr double kBestCameraMm = 140;  // and the best single camera
 
 constexpr double kNoWorseMm = 5;
 
-/// What the importer's depth and bearing are worth, from the same recording (see landmark_fit.h).
+/// Accuracy of the importer's depth and bearing, from the same recording (see landmark_fit.h).
 constexpr fusion::NoiseModel kCameraNoise{0.25, 0.025, 3.0};
 
 using Truth = std::vector<importers::TruthFrame>;
 
-/// Fused joints and the true ones beside them.
+/// Fused joints with the true ones.
 struct JointPairs {
   std::vector<Eigen::Vector3d> fused;
   std::vector<Eigen::Vector3d> truth;
@@ -66,7 +66,7 @@ double camera_error_mm(const record::FrameRecording& view, const Eigen::Isometry
   return pairs.percentile_mm(Eigen::Isometry3d::Identity(), 0.5);
 }
 
-/// Where our world lies in the published one, judged by the master alone.
+/// The pose of our world in the published one, determined from the master alone.
 Eigen::Isometry3d published_from_ours(const Registration& ours, const Registration& published) {
   return published.sensors.at(ours.master).world_from_sensor *
          ours.sensors.at(ours.master).world_from_sensor.inverse();
@@ -81,11 +81,11 @@ struct FusedScore {
   double missing_percent = 0.0;  ///< Of the true joints, in all frames of the recording.
 };
 
-/// The rigid motion that lays most joints on the truth; views that mixed up left and right count
-/// little.
+/// The rigid motion that brings most joints onto the truth; views with left and right exchanged
+/// hardly count.
 Eigen::Isometry3d best_motion(const JointPairs& pairs) {
   constexpr int kRounds = 20;
-  constexpr double kScale = 0.05;  // [m]; Cauchy weight one half
+  constexpr double kScale = 0.05;  // [m]; at this distance the Cauchy weight is one half
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
   std::vector<double> weights(pairs.fused.size(), 1.0);
   for (int round = 0; round < kRounds; ++round) {
@@ -145,10 +145,10 @@ pipeline::OfflineConfig config_for(const Case& each) {
   config.rate_hz = kRateHz;
   config.pipeline.fusion.method = each.method;
   config.pipeline.fusion.noise = each.noise;
-  // Views of one person lie up to half a metre apart in depth; there is one person.
+  // Views of one person differ by up to half a metre in depth; there is only one person.
   config.pipeline.association.gate = 1.5;
   config.pipeline.association.cluster = 1.5;
-  // As tests/data/pose2sim_mediapipe/fusion.json, which says why.
+  // As in tests/data/pose2sim_mediapipe/fusion.json, which gives the reason.
   config.registration.joints = registration::JointChoice::All;
   config.registration.along_ratio = 8.0;
   config.registration.use_floor = false;
@@ -175,7 +175,7 @@ Registration published_registration(const ImportedSet& set) {
   return registration;
 }
 
-/// The recipe of the data's own notes: rigid perspective-n-point per camera.
+/// The method described with the data: rigid perspective-n-point per camera.
 Result<std::vector<record::FrameRecording>> plain_views() {
   const auto cameras = importers::read_cameras(std::string(kFolder) + "/cameras.json");
   if (!cameras) return pass(cameras);
@@ -189,7 +189,7 @@ Result<std::vector<record::FrameRecording>> plain_views() {
   return views;
 }
 
-/// Every camera alone; returns the best one's error.
+/// Adds a row per camera alone; returns the best one's error.
 double add_single_cameras(Report& report, const ImportedSet& set,
                           const std::vector<record::FrameRecording>& plain) {
   double best = std::numeric_limits<double>::infinity();
@@ -211,7 +211,7 @@ struct Run {
   std::optional<Registration> extrinsics;  ///< None: registered from the person.
 };
 
-/// All methods over one kind of extrinsics; returns the last one's error.
+/// Runs all methods with one kind of extrinsics; returns the last one's error.
 Result<double> add_methods(Report& report, const Run& run, const ImportedSet& set, double mean_mm) {
   const Registration published = published_registration(set);
   double last = std::numeric_limits<double>::quiet_NaN();
@@ -236,7 +236,7 @@ Result<double> add_methods(Report& report, const Run& run, const ImportedSet& se
   return last;
 }
 
-/// The same landmarks as rays, without a depth of their own: all cameras, and two of them.
+/// The same landmarks as rays, without depth: from all cameras, and from two of them.
 Result<double> add_rays(Report& report, double mean_mm) {
   importers::ImportOptions options;
   options.rays = true;
@@ -263,7 +263,7 @@ Result<double> add_rays(Report& report, double mean_mm) {
   return of_all;
 }
 
-/// Each camera's place from the person alone beside the published one.
+/// Compares each camera's place, registered from the person alone, with the published one.
 Result<void> add_places(Report& report, const ImportedSet& set) {
   const Registration published = published_registration(set);
   const auto result = pipeline::fuse_offline(tracks_of(set.recordings), std::nullopt,
@@ -274,7 +274,7 @@ Result<void> add_places(Report& report, const ImportedSet& set) {
     return fail(ErrorCode::Unavailable, "registration", "no registration came out.");
   const Eigen::Isometry3d turn = published_from_ours(ours, published);
   for (const auto& [sensor, place] : published.sensors) {
-    if (sensor == ours.master) continue;  // the worlds are laid on one another there
+    if (sensor == ours.master) continue;  // both worlds coincide there by definition
     const auto found = ours.sensors.find(sensor);
     const std::string name = "place-" + sensor.str();
     if (found == ours.sensors.end()) {
@@ -291,7 +291,7 @@ Result<void> add_places(Report& report, const ImportedSet& set) {
   return {};
 }
 
-/// The recipe of the data's own notes, fused by the plain mean [mm].
+/// The method described with the data, fused by the plain mean [mm].
 Result<double> plain_mean(Report& report, const ImportedSet& set,
                           const std::vector<record::FrameRecording>& plain) {
   const auto fused =

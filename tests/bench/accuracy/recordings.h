@@ -1,4 +1,4 @@
-// Real recordings that may not travel with the project, each with rows of its own.
+// Real recordings that may not be distributed with the project; each has rows of its own.
 #pragma once
 
 #include <filesystem>
@@ -8,21 +8,21 @@
 
 namespace chorus::bench {
 
-/// Kinect v2 beside optical targets: raw, and the same frames through the pipeline of one sensor.
+/// Kinect v2 compared with optical targets: raw, and the same frames fused by the pipeline.
 [[nodiscard]] Result<void> compare_with_keraal(Report& report, const std::filesystem::path& folder);
 
-/// Three cameras of one take without clocks: chains of yaws, copied cameras, what passes for
-/// registered.
+/// Three cameras of one take without clocks: closure of the yaws along chains, copied camera files,
+/// and which pairs count as registered.
 [[nodiscard]] Result<void> close_nw_ucla_chains(Report& report,
                                                 const std::filesystem::path& folder);
 
-/// Two views of one pose.
+/// Two views of a single pose must not be registered.
 [[nodiscard]] Result<void> refuse_ntu_poses(Report& report, const std::filesystem::path& folder);
 
-/// Capture times.
+/// Checks capture times.
 [[nodiscard]] Result<void> time_labanotation(Report& report, const std::filesystem::path& folder);
 
-/// Left and right through the pipeline, one sensor each.
+/// Left and right after the pipeline, one sensor each.
 [[nodiscard]] Result<void> side_labanotation(Report& report, const std::filesystem::path& folder);
 [[nodiscard]] Result<void> side_keraal(Report& report, const std::filesystem::path& folder);
 [[nodiscard]] Result<void> side_ntu(Report& report, const std::filesystem::path& folder);

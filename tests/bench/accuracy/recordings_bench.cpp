@@ -1,7 +1,7 @@
-// chorus-bench recordings: real Kinect recordings that may not travel with the project, read from
-// ../shared/data (or $CHORUS_SHARED/data) and left out, saying so, where that is absent.
+// chorus-bench recordings: real Kinect recordings that may not be distributed with the project,
+// read from ../shared/data (or $CHORUS_SHARED/data); skipped, with a note, where that is absent.
 //
-// The weights of posture were learned from two of them; nothing else is tuned on any.
+// The posture weights were learned from two of them; nothing else is tuned on any.
 #include <array>
 #include <cstdlib>
 

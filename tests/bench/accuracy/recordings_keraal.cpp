@@ -30,7 +30,7 @@ double rms(const std::vector<double>& errors) {
   return errors.empty() ? std::nan("") : std::sqrt(sum / static_cast<double>(errors.size()));
 }
 
-/// An optical target sits on the skin of a limb: it is held against the middle of two joints.
+/// An optical target sits on the skin of a limb: it is compared with the midpoint of two joints.
 struct Target {
   const char* name;
   JointId from;
@@ -59,7 +59,7 @@ struct OpticalFrame {
   std::array<Eigen::Quaterniond, kTargets.size()> world_from_target;
 };
 
-/// Rows of 17 x (x y z [mm] qx qy qz qw), and a trailing blank.
+/// Rows of 17 x (x y z [mm] qx qy qz qw), with a trailing blank.
 Result<std::vector<OpticalFrame>> read_optical(const fs::path& file) {
   constexpr std::size_t kPerTarget = 7;
   const auto text = importers::read_bounded(file, 64u << 20);
@@ -82,7 +82,7 @@ Result<std::vector<OpticalFrame>> read_optical(const fs::path& file) {
 
 using Bodies = std::vector<Skeleton<WorldSpace>>;
 
-/// Kinect at 30 Hz beside optical at 60 Hz: frame i meets optical frame 2 i + shift.
+/// Kinect at 30 Hz and optical at 60 Hz: frame i corresponds to optical frame 2 i + shift.
 struct Take {
   Bodies bodies;
   std::vector<OpticalFrame> optical;
@@ -120,7 +120,7 @@ Fit fit(const Take& take) {
   return found ? Fit{found->target_from_source, found->rms} : Fit{};
 }
 
-/// The start of the two recordings differs by some optical frames: the shift that fits best.
+/// The two recordings start some optical frames apart: finds the shift that fits best.
 void find_shift(Take& take) {
   Fit best;
   int chosen = 0;
@@ -134,8 +134,8 @@ void find_shift(Take& take) {
   take.shift = chosen;
 }
 
-/// rms per joint group after a rigid motion; `own_place`: and after each target's mean place on the
-/// limb, in the target's own axes, is known.
+/// rms per joint group after a rigid motion; `own_place`: also after subtracting each target's mean
+/// offset from the limb, in the target's axes.
 double take_rms(const Take& take, bool own_place) {
   const Fit motion = fit(take);
   std::vector<double> errors;
@@ -164,7 +164,7 @@ Bodies raw_bodies(const FrameRecording& recording) {
   return bodies;
 }
 
-/// The same frames through the whole pipeline of one sensor; empty where it had no body.
+/// The same frames after the whole pipeline with one sensor; empty where it gave no body.
 Result<Bodies> fused_bodies(const FrameRecording& recording) {
   Registration given;
   given.master = recording.sensor;

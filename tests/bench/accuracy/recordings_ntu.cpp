@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using registration::WalkTrack;
 
-/// Frame -> camera -> the pose it saw ("C002 1 0 x y z depthX depthY state").
+/// Frame -> camera -> the pose seen ("C002 1 0 x y z depthX depthY state").
 std::map<int, std::map<std::string, Skeleton<SensorSpace>>> read_poses(const fs::path& file) {
   std::map<int, std::map<std::string, Skeleton<SensorSpace>>> poses;
   std::ifstream text(file);
@@ -37,7 +37,7 @@ std::map<int, std::map<std::string, Skeleton<SensorSpace>>> read_poses(const fs:
   return poses;
 }
 
-/// Yaw between two cameras from one pose: what a naive registrar would take for the truth.
+/// Yaw between two cameras from a single pose: what a naive registrar would take for the truth.
 double yaw_of_one_pose(const std::map<std::string, Skeleton<SensorSpace>>& pose) {
   std::vector<Eigen::Vector3d> target;
   std::vector<Eigen::Vector3d> source;

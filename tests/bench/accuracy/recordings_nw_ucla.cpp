@@ -46,7 +46,7 @@ bool same_numbers(const FrameRecording& a, const FrameRecording& b) {
   return true;
 }
 
-/// No clock: views are tried with every start shift up to a second, and the best fit is kept.
+/// Without clocks: tries all start shifts up to a second and keeps the best fit.
 std::optional<PairwiseRegistration> register_unclocked(const FrameRecording& target,
                                                        const FrameRecording& source) {
   registration::RegistrationConfig config;
@@ -67,10 +67,10 @@ std::optional<PairwiseRegistration> register_unclocked(const FrameRecording& tar
   return best;
 }
 
-/// Does the product, as it is configured, take these clockless clips for a registered pair?
+/// Whether the product, as configured, takes these clips without clocks for a registered pair.
 bool accepts(const FrameRecording& target, const FrameRecording& source) {
   registration::RegistrationConfig config;
-  config.use_floor = false;  // Kinect v1 gives none
+  config.use_floor = false;  // Kinect v1 delivers none
   const auto edge =
       register_pair({target.sensor, target.frames}, {source.sensor, source.frames}, config);
   return edge.has_value();
@@ -96,11 +96,11 @@ void close_chain(const Views& views, Closure& closure) {
 /// Counts over all takes.
 struct Census {
   std::size_t complete = 0;  ///< Takes with all three views.
-  std::size_t copies = 0;    ///< ... of which two are the same numbers.
-  std::size_t refused = 0;   ///< ... and the importer says so.
-  std::size_t wrongly = 0;   ///< It says so, and they are not.
-  std::size_t pairs = 0;     ///< Of walks.
-  std::size_t accepted = 0;  ///< ... taken for registered.
+  std::size_t copies = 0;    ///< ... of which two have the same numbers.
+  std::size_t refused = 0;   ///< ... and which the importer refuses as copies.
+  std::size_t wrongly = 0;   ///< Takes that it refuses as copies although they are not.
+  std::size_t pairs = 0;     ///< Pairs of walks.
+  std::size_t accepted = 0;  ///< ... that were accepted as registered.
   Closure closure;
 };
 
@@ -140,7 +140,7 @@ Result<void> close_nw_ucla_chains(Report& report, const fs::path& folder) {
     if (count_copies(views, census) && walking) count_walk(views, census);
   }
   const auto count = [](std::size_t number) { return static_cast<double>(number); };
-  constexpr double kWarpedDeg = 5.0;  // what warping time by hand reached on these chains
+  constexpr double kWarpedDeg = 5.0;  // what warping time by hand achieved on these chains
   const double yaw = to_deg(median(census.closure.yaw));
   report.row("nw-ucla", "complete_takes", count(census.complete), "takes");
   report.row("nw-ucla", "copied_cameras_refused", count(census.refused), "takes", "copied-cameras",

@@ -1,7 +1,7 @@
-// Left and right of one sensor's recordings through the whole pipeline.
+// Left and right in single-sensor recordings after the whole pipeline.
 //
-// People of most collections face the sensor: its labels are the truth.  Those of NW-UCLA walk
-// about, and the way they walk is; labels of people seen from behind are exchanged there.
+// In most collections people face the sensor: its labels are the truth.  In NW-UCLA they walk
+// about, and the direction of walking is the truth; seen from behind, their labels are exchanged.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -26,7 +26,7 @@ using record::FrameRecording;
 
 using Body = Skeleton<WorldSpace>;
 
-/// What a body seen at frame `index` of a recording is worth; nothing where that cannot be told.
+/// Whether the labels of the body at frame `index` are right; nothing where that is unknown.
 struct Truth {
   bool as_labelled = true;  ///< The sensor's own labels are right.
 };
@@ -48,7 +48,7 @@ struct Share {
 
 struct Shares {
   Share as_labelled;  ///< Where the sensor's labels are right.
-  Share exchanged;    ///< Where they are not.
+  Share exchanged;    ///< Where they are wrong.
 };
 
 /// The sensor's body nearest to a fused one.
@@ -102,7 +102,7 @@ std::optional<Truth> labels_are_right(const FrameRecording&, std::size_t, const 
   return Truth{};
 }
 
-/// From where the body goes within eight frames.
+/// Judges by the direction in which the body moves within eight frames.
 std::optional<Truth> walks_forwards(const FrameRecording& recording, std::size_t index,
                                     const Body& raw) {
   constexpr std::size_t kFrames = 4;
@@ -127,11 +127,11 @@ using Reader = Result<FrameRecording> (*)(const fs::path&, const importers::Impo
 
 struct Collection {
   const char* name;
-  const char* ending;  ///< Of the files, and their beginning.
+  const char* ending;  ///< How the names of the files end; next, how they begin.
   const char* beginning;
   Reader read;
   Judge judge;
-  double least_percent;  ///< Right where the labels are right; 0: reported only.
+  double least_percent;  ///< Least right where the labels are right; 0: only reported.
 };
 
 Result<void> count_all(Report& report, const fs::path& folder, const Collection& each) {

@@ -1,5 +1,5 @@
-// How well a walk registers sensors, beside other ways on the same frames: cases, ablations, stress
-// sweeps, and a thousand short walks with unsynchronised clocks.
+// How well a walk registers sensors, compared with other methods on the same frames: cases,
+// ablations, stress sweeps, and a thousand short walks with unsynchronised clocks.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -32,7 +32,7 @@ std::vector<std::vector<MethodScores>> measure(Report& report, const Registratio
   return scores;
 }
 
-/// A ceiling that only a broken estimator reaches; what is good is for the table to say.
+/// A ceiling that only a broken estimator exceeds; how good the result is stands in the table.
 void watch(Report& report, const RegistrationCase& each, const std::vector<Score>& ours) {
   constexpr double kCeiling = 60.0;  // [mm]
   std::vector<double> position;
@@ -42,7 +42,7 @@ void watch(Report& report, const RegistrationCase& each, const std::vector<Score
                    median(position) < kCeiling);
 }
 
-/// What was claimed on white noise before the sensor model existed; kept so that it can be
+/// The claim for white noise, from before the sensor model existed; kept so that it can be
 /// repeated.
 void measure_gauss(Report& report) {
   Setting setting;
@@ -89,7 +89,7 @@ void sweep_stress(Report& report) {
   }
 }
 
-/// Any walk, any angle, 10 s, hosts up to half a second off, either profile.
+/// Any walk, any angle, 10 s, hosts' clocks off by up to half a second, either profile.
 Score short_walk(std::uint64_t seed, bool corrected) {
   using synthetic::PathKind;
   constexpr PathKind kWalks[] = {PathKind::Random, PathKind::Circle, PathKind::Line};

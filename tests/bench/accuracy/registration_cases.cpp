@@ -17,7 +17,7 @@ using synthetic::PathKind;
 
 constexpr double kUnsynchronised = 0.5;  // [s]
 
-/// A van, 2 m high, that is pushed to and fro between the person and two of the sensors.
+/// A van, 2 m high, that moves to and fro between the person and two of the sensors.
 synthetic::Occluder van() {
   synthetic::Occluder box;
   box.world_from_box.translation() = Eigen::Vector3d(-0.6, 1.0, 1.8);
@@ -92,7 +92,7 @@ double covered_percent(const std::vector<Score>& draws) {
                      : 100.0 * static_cast<double>(covered) / static_cast<double>(placed);
 }
 
-/// Otto Table 1: position deviation [mm] of two sensors so far apart [deg].
+/// Otto Table 1: position deviation [mm] of two sensors at this angle [deg].
 struct PublishedPair {
   int angle;
   double deviation;
@@ -112,14 +112,14 @@ std::vector<RegistrationCase> pairs(const std::string& profile) {
   return cases;
 }
 
-/// Other walks, something in the way, clocks that are off.
+/// Other walks, an occluder, clocks that are off.
 std::vector<RegistrationCase> disturbed_rings(const std::string& profile) {
   std::vector<RegistrationCase> cases;
   for (const auto& [name, path] :
        {std::pair{"circle", PathKind::Circle}, {"line", PathKind::Line}}) {
     Setting walked = ring(profile);
     walked.walk = path;
-    // The untimed ICP fails on both walks by a metre and takes most of the time: once is enough.
+    // The untimed ICP fails on both walks by a metre and takes most of the time: run it once.
     cases.push_back({fmt::format("ring6-{}-{{}}s-{}", name, profile),
                      walked,
                      {30},
@@ -154,7 +154,7 @@ constexpr Metric kMetrics[] = {
 
 std::vector<RegistrationCase> registration_cases(const std::string& profile) {
   std::vector<RegistrationCase> cases = pairs(profile);
-  const bool rendered = profile == "C";  // costs most of a draw: one walk for all lengths
+  const bool rendered = profile == "C";  // most of a draw's cost: use one walk for all lengths
   if (rendered) {
     cases.push_back({"ring6-{}s-" + profile, ring(profile), {30, 60}, timed_baselines()});
   } else {
@@ -164,7 +164,7 @@ std::vector<RegistrationCase> registration_cases(const std::string& profile) {
   }
   Setting row = row_of_four();
   row.profile = profile;
-  const int along = rendered ? 30 : 60;  // [s]; the same way, once there and back
+  const int along = rendered ? 30 : 60;  // [s]; the same path, there and back once
   cases.push_back({"line4-" + profile, row, {along}, timed_baselines(), false, true});
   return cases;
 }

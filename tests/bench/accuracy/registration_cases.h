@@ -1,4 +1,4 @@
-// The cases that registration is measured in, as a table: cases x draws x methods.
+// The table of cases in which registration is measured: cases x draws x methods.
 #pragma once
 
 #include "tests/bench/methods/registration_methods.h"
@@ -8,19 +8,19 @@ namespace chorus::bench {
 
 /// One scene, registered from walks of one or several lengths.
 struct RegistrationCase {
-  /// "ring6-{}s-A": the length comes in where the braces are.
+  /// "ring6-{}s-A": the braces stand for the length.
   std::string name;
   Setting setting;
-  std::vector<int> lengths;  ///< [s]; the first so many seconds of the longest.
+  std::vector<int> lengths;  ///< [s]; each is a beginning of the longest walk.
   std::vector<RegistrationMethod> beside;
-  bool corrected = false;    ///< Stamps corrected as the server does it.
-  bool last_only = false;    ///< Score the last sensor alone.
-  double table1 = kNoRatio;  ///< What the paper has for such a pair [mm].
+  bool corrected = false;    ///< Stamps are corrected as the server does.
+  bool last_only = false;    ///< Scores only the last sensor.
+  double table1 = kNoRatio;  ///< The paper's value for such a pair [mm].
   std::size_t draws = 20;
 };
 
-/// Every case of one profile.  The untimed ICP, whose result no clock changes and which takes most
-/// of the time, stands beside pairs and 30 s rings only.
+/// All cases of one profile.  The untimed ICP, whose result does not depend on clocks and which
+/// takes most of the time, runs only on pairs and 30 s rings.
 [[nodiscard]] std::vector<RegistrationCase> registration_cases(const std::string& profile);
 
 /// Scores by method, "ours" first.
@@ -29,11 +29,11 @@ struct MethodScores {
   std::vector<Score> draws;
 };
 
-/// Runs one case over its draws, for every length.  Seeds count from `first_seed`.
+/// Runs one case over its draws, for every length; draws have seeds from `first_seed` on.
 [[nodiscard]] std::vector<std::vector<MethodScores>> run_case(const RegistrationCase& each,
                                                               std::uint64_t first_seed);
 
-/// The rows of one length; `table1` [mm] stands beside the positions where it is a number.
+/// The rows of one length; `table1` [mm] is shown next to the positions if it is a number.
 void report_case(Report& report, const std::string& name, const std::vector<MethodScores>& scores,
                  double table1 = kNoRatio);
 

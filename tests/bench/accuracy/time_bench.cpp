@@ -1,6 +1,6 @@
-// How well a sensor host's clock is known: the clock model alone on simulated exchanges, with the
-// network and the clock made worse and with parts of the filter taken out; then what its
-// corrections are worth to fused bodies.
+// How well a sensor host's clock is known: the clock model alone on simulated exchanges, with
+// network and clock made worse and with parts of the filter left out; then how much its corrections
+// improve fused bodies.
 #include <array>
 #include <functional>
 
@@ -61,7 +61,7 @@ void measure_clock(Report& report, const ClockCase& each) {
       compare(each.name, kShort, draws, methods).spread_of(kOurs).median < each.ceiling_ms);
 }
 
-/// A source of error of a clock or of the way to it.
+/// A source of error in a clock or in the network to it.
 struct ClockSource {
   const char* name;
   void (*scale)(ClockCase&, double factor);
@@ -73,7 +73,7 @@ constexpr std::array kClockSources{
     ClockSource{"offset", [](ClockCase& c, double f) { c.offset *= f; }},
     ClockSource{"drift", [](ClockCase& c, double f) { c.drift *= f; }}};
 
-/// The wire in the office, whose way there takes half a millisecond longer than the way back.
+/// The wired office network, whose requests take half a millisecond longer than the answers.
 void sweep(Report& report) {
   const auto methods = clock_methods();
   for (const ClockSource& source : kClockSources) {
@@ -88,7 +88,7 @@ void sweep(Report& report) {
   }
 }
 
-/// What each part of the filter is worth: ours is the whole, the rows beside lack one part.
+/// What each part of the filter contributes: `ours` has all parts, every other row leaves one out.
 void ablate(Report& report) {
   const auto methods = clock_ablations();
   for (const char* name : {"lan-ntp", "lan", "wifi", "device-390ppm", "ntp-step"}) {
@@ -98,7 +98,7 @@ void ablate(Report& report) {
   }
 }
 
-/// Fused errors of one draw [mm]: corrected, as the hosts stamped, and with perfect clocks.
+/// Fused errors of one draw [mm]: stamps corrected, stamps as given, and perfect clocks.
 struct FusedErrors {
   double corrected = 0.0;
   double uncorrected = 0.0;

@@ -16,7 +16,7 @@ using synthetic::HostClock;
 
 constexpr std::uint64_t kPurpose = 801;
 constexpr std::int64_t kSomeTime = 1'795'000'000'000'000'000;
-constexpr double kSettling = 10.0;  // errors count from here on [s]
+constexpr double kSettling = 10.0;  // errors count from this time on [s]
 constexpr double kMillisecond = 1e3;
 
 double ms_of(Duration duration) { return seconds(duration) * kMillisecond; }
@@ -25,7 +25,7 @@ Duration cristian(const ClockExchange& each) {
   return (each.sent - each.their_receipt) / 2 + (each.received - each.their_sending) / 2;
 }
 
-/// Mean or median of the last so many.
+/// Mean or median of the last `count` values.
 template <class Reduce>
 ClockMethod last_ones(std::size_t count, Reduce reduce) {
   return [count, reduce, last = std::deque<double>()](const ClockExchange& each) mutable {
@@ -147,7 +147,7 @@ std::vector<ClockErrors> clock_errors(const ClockCase& each, const std::vector<N
   std::vector<std::vector<double>> errors(methods.size());
   Timestamp free = begin;
   for (double time = 0.0; time < each.length; time += 1.0 / each.rate) {
-    // One request is under way at a time: who waits for an answer lets his turn pass.
+    // One request is under way at a time: while waiting for an answer, turns are skipped.
     constexpr Duration kAtOnce = std::chrono::microseconds(100);
     const Timestamp turn = begin + from_seconds(time);
     if (turn < free) continue;

@@ -1,6 +1,6 @@
-// Estimates of a sensor host's clock side by side on the same simulated exchanges.
+// Estimates of a sensor host's clock, compared on the same simulated exchanges.
 //
-// Error = what is added to the host's stamps, minus what should be [ms].
+// Error = correction added to the host's stamps, minus the true correction [ms].
 #pragma once
 
 #include <functional>
@@ -11,25 +11,25 @@
 
 namespace chorus::bench {
 
-/// What to add to the host's stamps, after one more exchange.
+/// The correction of the host's stamps after one more exchange.
 using ClockMethod = std::function<Duration(const ClockExchange&)>;
 
 struct NamedClock {
   std::string name;
-  std::function<ClockMethod()> make;  ///< A fresh one that has seen nothing yet.
+  std::function<ClockMethod()> make;  ///< Makes a new one without exchanges.
 };
 
-/// The server's, and what it is held against: one stamp half a round trip ago, Cristian's offset as
-/// mean or median, and what NTP leaves.
+/// The server's method, and those it is compared with: one stamp half a round trip ago, the mean or
+/// median of Cristian's offsets, and what NTP achieves.
 [[nodiscard]] std::vector<NamedClock> clock_methods();
-/// The server's, and the server's with one part out each.
+/// The server's method, and variants that leave one part out.
 [[nodiscard]] std::vector<NamedClock> clock_ablations();
 
-/// A host's clock and the network before it.
+/// A host's clock and the network in front of it.
 struct ClockCase {
   std::string name;
-  std::string target;       ///< For people, from the notes and measured peers.
-  double ceiling_ms = 0.0;  ///< Of p95, condition; 0: none.
+  std::string target;       ///< As text, from the notes and measured peers.
+  double ceiling_ms = 0.0;  ///< Condition on p95; 0: none.
   Network network;
   double offset = 0.0;  ///< Drawn uniformly from +- this [s]
   double drift = 0.0;   ///< Drawn from +- this [s/s]
@@ -41,15 +41,15 @@ struct ClockCase {
 [[nodiscard]] std::vector<ClockCase> clock_cases();
 [[nodiscard]] ClockCase clock_case(const std::string& name);
 
-/// Errors of one method after it has settled.
+/// Errors of one method once it has settled.
 struct ClockErrors {
   double rms = 0.0;
   double p95 = 0.0;
   double p99 = 0.0;
-  double deviation = 0.0;  ///< Standard deviation: without what is constant.
+  double deviation = 0.0;  ///< Standard deviation: a constant error does not count.
 };
 
-/// One draw, in the order of the methods.
+/// Errors of one draw, in the order of the methods.
 [[nodiscard]] std::vector<ClockErrors> clock_errors(const ClockCase& each,
                                                     const std::vector<NamedClock>& methods,
                                                     std::uint64_t seed);
