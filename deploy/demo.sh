@@ -114,7 +114,7 @@ build() {
   export CCACHE_SLOPPINESS=pch_defines,time_macros
   command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   cmake --preset release "${launcher[@]}" --log-level=WARNING > "$logs/configure.out"
-  cmake --build build/release -j "$(build_jobs)" --target chorus-sensor chorus-fusion chorus
+  cmake --build build/release -j "$(deploy/build-jobs.sh)" --target chorus-sensor chorus-fusion chorus
 }
 
 # install_modules FOLDER: what its package-lock.json names, unless that is there.
@@ -122,14 +122,6 @@ install_modules() {
   cmp -s "$1/package-lock.json" "$1/node_modules/.chorus-lock" && return
   npm ci --prefix "$1" --no-progress
   cp "$1/package-lock.json" "$1/node_modules/.chorus-lock"
-}
-
-# The largest translation units take about 1.5 GB each.
-build_jobs() {
-  local by_memory=$(( $(awk '/^MemAvailable/ {print $2}' /proc/meminfo) / 1500000 ))
-  local cores; cores=$(nproc)
-  local jobs=$(( by_memory < cores ? by_memory : cores ))
-  echo $(( jobs < 1 ? 1 : jobs ))
 }
 
 need_free_ports() {

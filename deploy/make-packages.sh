@@ -39,14 +39,6 @@ own_version() {
   fi
 }
 
-# The largest translation units take about 1.5 GB each.
-build_jobs() {
-  local by_memory=$(( $(awk '/^MemAvailable/ {print $2}' /proc/meminfo) / 1500000 ))
-  local cores; cores=$(nproc)
-  local jobs=$(( by_memory < cores ? by_memory : cores ))
-  echo $(( jobs < 1 ? 1 : jobs ))
-}
-
 page_files() {
   local folder
   for folder in services/viewer services/pose-runner; do
@@ -81,7 +73,7 @@ if [[ -z "$tree" ]]; then
   export CCACHE_SLOPPINESS=pch_defines,time_macros
   command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   cmake --preset package "${launcher[@]}" --log-level=WARNING >/dev/null
-  cmake --build "$tree" -j "$(build_jobs)" --target chorus-sensor chorus-sensor-small chorus-fusion chorus chorus-host pages
+  cmake --build "$tree" -j "$(deploy/build-jobs.sh)" --target chorus-sensor chorus-sensor-small chorus-fusion chorus chorus-host pages
 fi
 
 step "packages"
