@@ -15,6 +15,7 @@ namespace chorus::http {
 namespace {
 
 constexpr std::string_view kEventStream = "text/event-stream";
+constexpr std::string_view kAnyMethods = "GET, HEAD, POST, PUT, DELETE, OPTIONS";
 constexpr std::string_view kJsonSuffix = ".json";
 constexpr std::string_view kWaitApplied = "Preference-Applied: wait\r\n";
 
@@ -134,6 +135,8 @@ Reaction Responder::react(const RequestHead& head, const Peer& peer) const {
   const auto path = decode_path(head.path, storage);
   if (!path) return Reaction::of(fault(path.error(), head, any_route_));
   auto match = named(*router_, *path);
+  if (head.method == Method::Options && is_stranger(head, peer))
+    return options(any_route_, kAnyMethods);
   if (auto refused = turn_away(head, peer, match ? match->entry : nullptr))
     return Reaction::of(std::move(*refused));
   if (!match) {
@@ -154,6 +157,15 @@ Reaction Responder::react(const RequestHead& head, const Peer& peer) const {
     default:
       return write(head, std::move(*match), peer);
   }
+}
+
+/// To those a browser's question before a request is answered the same for every path.  It comes
+/// without a token, and one that comes with it is not looked at: that would tell whether it is
+/// right.
+bool Responder::is_stranger(const RequestHead& head, const Peer& peer) const {
+  RequestHead anonymous = head;
+  anonymous.authorization = {};
+  return refuse_access(anonymous, peer, Role::Read, guard_).has_value();
 }
 
 bool Responder::is_vital(const RequestHead& head) const {

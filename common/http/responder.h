@@ -82,6 +82,7 @@ class Responder {
                                                 Role needed, std::string_view route) const;
   [[nodiscard]] std::optional<Answer> turn_away(const RequestHead& head, const Peer& peer,
                                                 const Router::Entry* entry) const;
+  [[nodiscard]] bool is_stranger(const RequestHead& head, const Peer& peer) const;
   [[nodiscard]] Reaction options(const std::string& route, std::string_view allowed) const;
   [[nodiscard]] Answer represent(const DocumentPtr& document, const RequestHead& head,
                                  std::string_view route) const;

@@ -39,6 +39,29 @@ TEST(Strangers, AConfiguredNameIsOurs) {
   EXPECT_EQ(status_in(answer_to(service, "GET /frame HTTP/1.1\r\nHost: evil.example\r\n")), 421);
 }
 
+TEST(Strangers, APreflightTellsNothing) {
+  ServerConfig config;
+  config.tokens = {{"abcdefabcdef", Role::Read}};
+  TestServer service(config);
+  const auto body_of = [&](const std::string& path, const std::string& field = {}) {
+    std::string answer =
+        answer_to(service, "OPTIONS " + path + " HTTP/1.1\r\nHost: localhost\r\n" + field);
+    const std::size_t date = answer.find("Test-Clock");
+    return date == std::string::npos ? answer
+                                     : answer.erase(date, answer.find("\r\n", date) - date);
+  };
+  const auto without_date = [](std::string answer) {
+    const std::size_t date = answer.find("Date:");
+    return date == std::string::npos ? answer
+                                     : answer.erase(date, answer.find("\r\n", date) - date);
+  };
+  const std::string known = without_date(body_of("/frame"));
+  EXPECT_EQ(status_in(known), 204);
+  EXPECT_EQ(without_date(body_of("/nothing/here")), known);
+  EXPECT_EQ(without_date(body_of("/frame", "Authorization: Bearer abcdefabcdef\r\n")), known);
+  EXPECT_THAT(known, HasSubstr("DELETE"));
+}
+
 TEST(Strangers, NoPageOfAnotherOriginReadsByDefault) {
   TestServer service;
   service.frame->publish(frame_document(1));
