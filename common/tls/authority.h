@@ -1,0 +1,36 @@
+// A small certificate authority: for the hosts of a workshop, which no public authority knows.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "common/base/result.h"
+
+namespace chorus::tls {
+
+/// PEM both; whoever has the key is the authority, or the host.
+struct Issued {
+  std::string certificate;
+  std::string key;
+};
+
+struct Validity {
+  std::chrono::sys_seconds from;
+  std::chrono::sys_seconds until;
+};
+
+/// An hour ago, since clocks of a workshop differ, until this many days from now.
+[[nodiscard]] Validity for_days(int days);
+
+/// A new authority (elliptic curve P-256) that signs hosts and no further authorities.  `name` is
+/// what people see: "Chorus of hall 3".
+[[nodiscard]] Result<Issued> new_authority(const std::string& name, const Validity& validity);
+
+/// A new key and a certificate for one host with these names and numeric addresses; the first is
+/// its common name.  InvalidArgument for what is neither; Malformed when the authority is none.
+[[nodiscard]] Result<Issued> new_certificate(const Issued& authority,
+                                             const std::vector<std::string>& hosts,
+                                             const Validity& validity);
+
+}  // namespace chorus::tls

@@ -1,0 +1,31 @@
+// What stands in a certificate.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/result.h"
+
+struct x509_st;
+
+namespace chorus::tls {
+
+struct CertificateFacts {
+  std::string subject;             ///< Its common name.
+  std::string issuer;              ///< Of who signed it.
+  std::vector<std::string> names;  ///< Hosts it is for: "sensor-1.local", "10.0.0.11".
+  std::chrono::sys_seconds not_before{};
+  std::chrono::sys_seconds not_after{};
+};
+
+[[nodiscard]] CertificateFacts facts_of(const x509_st& certificate);
+
+/// Of the first certificate of a PEM text; Malformed when there is none.
+[[nodiscard]] Result<CertificateFacts> facts_of(std::string_view pem);
+
+/// "2026-11-22"
+[[nodiscard]] std::string date_text(std::chrono::sys_seconds time);
+
+}  // namespace chorus::tls

@@ -1,0 +1,42 @@
+// What the files of this room share of OpenSSL; nobody else includes it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <openssl/bio.h>
+#include <openssl/evp.h>
+#include <openssl/ssl.h>
+#include <openssl/x509.h>
+
+namespace chorus::tls {
+
+struct Freeing {
+  void operator()(BIO* it) const { BIO_free_all(it); }
+  void operator()(EVP_PKEY* it) const { EVP_PKEY_free(it); }
+  void operator()(SSL* it) const { SSL_free(it); }
+  void operator()(SSL_CTX* it) const { SSL_CTX_free(it); }
+  void operator()(X509* it) const { X509_free(it); }
+};
+template <class T>
+using Owned = std::unique_ptr<T, Freeing>;
+
+/// Why the last call failed, in OpenSSL's words; forgets it.
+[[nodiscard]] std::string last_reason();
+
+/// Read-only, of bytes that outlive it.
+[[nodiscard]] Owned<BIO> bio_of(std::string_view bytes);
+
+/// The certificates of a PEM text, in its order; none when one of them is broken.
+[[nodiscard]] std::vector<Owned<X509>> certificates_in(std::string_view pem);
+
+/// The unencrypted private key of a PEM text; null: there is none.
+[[nodiscard]] Owned<EVP_PKEY> key_in(std::string_view pem);
+
+/// What servers and clients have in common: TLS 1.2 and above, forward secrecy, nothing that
+/// outlives a connection.
+[[nodiscard]] Owned<SSL_CTX> new_context(const SSL_METHOD* method);
+
+}  // namespace chorus::tls
