@@ -6,6 +6,7 @@
 #include "common/http/client_wire.h"
 #include "common/http/status.h"
 #include "common/net/connect.h"
+#include "common/net/stream.h"
 #include "common/time/clock.h"
 
 namespace chorus::http {
@@ -17,19 +18,21 @@ using Parser = beast::http::response_parser<beast::http::string_body>;
 }  // namespace
 
 struct AsyncClient::Impl : std::enable_shared_from_this<AsyncClient::Impl> {
-  Impl(asio::io_context& io, std::string to_host, std::uint16_t to_port, ClientLimits with)
-      : host(std::move(to_host)),
-        port(to_port),
+  Impl(asio::io_context& io, const Url& to, ClientLimits with, tls::Trust believing)
+      : host(to.host),
+        port(to.port),
+        secure(to.secure),
+        trust(std::move(believing)),
         limits(with),
+        authority(authority_of(host, port)),
         executor(io.get_executor()),
         resolver(executor),
-        socket(executor),
-        timer(executor) {
-    authority = authority_of(host, port);
-  }
+        stream(executor),
+        timer(executor) {}
 
   void begin(ClientRequest request, std::chrono::milliseconds answer_timeout, Callback on_done);
   void connect();
+  void seal();
   void write();
   void read();
   void on_head(net::error_code failed);
@@ -44,11 +47,13 @@ struct AsyncClient::Impl : std::enable_shared_from_this<AsyncClient::Impl> {
 
   const std::string host;
   const std::uint16_t port;
+  const bool secure;
+  const tls::Trust trust;
   const ClientLimits limits;
-  std::string authority;
+  const std::string authority;
   net::Executor executor;
   net::Resolver resolver;
-  net::Socket socket;
+  net::Stream stream;
   net::Timer timer;
 
   Callback callback;          ///< Set while a request is under way.
@@ -95,19 +100,34 @@ void AsyncClient::Impl::connect() {
   arm(limits.connect_timeout, "connect");
   net::Connecting to{host, port,
                      [self = shared_from_this(), mine = attempt] { return self->attempt == mine; }};
-  net::connect_to(std::move(to), resolver, socket,
+  net::connect_to(std::move(to), resolver, stream.socket(),
                   [self = shared_from_this()](net::error_code failed, std::string_view doing) {
                     if (failed) return self->retry_or_fail(failed, doing);
+                    if (self->secure) return self->seal();
                     self->connected = true;
                     self->write();
                   });
+}
+
+void AsyncClient::Impl::seal() {
+  arm(limits.connect_timeout, "TLS handshake");
+  stream.seal_as_client(
+      trust, host,
+      [self = shared_from_this(), mine = attempt](const net::Stream::Sealing& sealing) {
+        if (self->attempt != mine) return;
+        if (sealing.failure)
+          return self->finish(
+              fail(sealing.failure->code, self->authority, sealing.failure->message));
+        self->connected = true;
+        self->write();
+      });
 }
 
 void AsyncClient::Impl::write() {
   arm(answer_time, "answer");
   sent_ns = to_unix_ns(SystemClock().now());
   asio::async_write(
-      socket, asio::buffer(out),
+      stream, asio::buffer(out),
       [self = shared_from_this(), mine = attempt](net::error_code failed, std::size_t) {
         if (self->attempt != mine) return;
         if (failed) return self->retry_or_fail(failed, "send");
@@ -122,7 +142,7 @@ void AsyncClient::Impl::read() {
   parser->skip(head_only);
   in.reserve(kMaxAnswerHeadBytes);
   beast::http::async_read_header(
-      socket, in, *parser,
+      stream, in, *parser,
       [self = shared_from_this(), mine = attempt](net::error_code failed, std::size_t) {
         if (self->attempt == mine) self->on_head(failed);
       });
@@ -136,7 +156,7 @@ void AsyncClient::Impl::on_head(net::error_code failed) {
   if (!head_only && length && *length > limits.max_body_bytes) return too_large();
   if (parser->is_done()) return on_answer();
   beast::http::async_read(
-      socket, in, *parser,
+      stream, in, *parser,
       [self = shared_from_this(), mine = attempt](net::error_code body_failed, std::size_t) {
         if (self->attempt != mine) return;
         body_failed ? self->on_failed_read(body_failed) : self->on_answer();
@@ -203,16 +223,19 @@ void AsyncClient::Impl::finish_later(Error error) {
 }
 
 void AsyncClient::Impl::drop() {
-  net::error_code ignored;
   resolver.cancel();
-  socket.close(ignored);
+  stream.close();
   in.clear();
   connected = false;
 }
 
 AsyncClient::AsyncClient(boost::asio::io_context& io, std::string host, std::uint16_t port,
                          ClientLimits limits)
-    : impl_(std::make_shared<Impl>(io, std::move(host), port, limits)) {}
+    : AsyncClient(io, Url{std::move(host), port}, limits) {}
+
+AsyncClient::AsyncClient(boost::asio::io_context& io, const Url& url, ClientLimits limits,
+                         const tls::Trust& trust)
+    : impl_(std::make_shared<Impl>(io, url, limits, trust)) {}
 
 AsyncClient::~AsyncClient() { close(); }
 

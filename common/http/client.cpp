@@ -7,10 +7,10 @@
 namespace chorus::http {
 
 Result<ClientResponse> fetch(const Url& url, const ClientRequest& request,
-                             const ClientLimits& limits) {
+                             const ClientLimits& limits, const tls::Trust& trust) {
   asio::io_context io(1);
   std::optional<Result<ClientResponse>> answer;
-  AsyncClient client(io, url.host, url.port, limits);
+  AsyncClient client(io, url, limits, trust);
   ClientRequest once = request;
   if (once.target.empty()) once.target = url.target;
   once.headers.emplace_back("Connection", "close");

@@ -12,6 +12,7 @@
 
 #include "common/base/result.h"
 #include "common/http/document.h"
+#include "common/tls/credentials.h"
 
 namespace boost::asio {
 class io_context;
@@ -23,10 +24,15 @@ struct Url {
   std::string host;
   std::uint16_t port = 80;
   std::string target = "/";
+  bool secure = false;  ///< https
 };
 
-/// Reads http://host[:port][/path][?query]; anything else is InvalidArgument.
+/// Reads http://host[:port][/path][?query], or https:// (port 443 then); anything else is
+/// InvalidArgument.
 [[nodiscard]] Result<Url> parse_url(std::string_view text);
+
+/// "https://host:port/path"
+[[nodiscard]] std::string url_text(const Url& url, std::string_view target);
 
 struct ClientRequest {
   std::string method = "GET";
@@ -50,8 +56,10 @@ struct ClientLimits {
 };
 
 /// Sends one request on its own connection; blocks.
+/// `trust`: whom the client believes about an https:// server.
 [[nodiscard]] Result<ClientResponse> fetch(const Url& url, const ClientRequest& request,
-                                           const ClientLimits& limits = {});
+                                           const ClientLimits& limits = {},
+                                           const tls::Trust& trust = {});
 
 /// One kept-alive connection on the caller's io_context: one request at a time, callbacks on its
 /// thread.  Reconnects on demand; a GET on a connection that was closed meanwhile is repeated on a
@@ -63,6 +71,9 @@ class AsyncClient {
 
   AsyncClient(boost::asio::io_context& io, std::string host, std::uint16_t port,
               ClientLimits limits = {});
+  /// By the URL's host, port and scheme; its target is not used.
+  AsyncClient(boost::asio::io_context& io, const Url& url, ClientLimits limits = {},
+              const tls::Trust& trust = {});
   ~AsyncClient();
   void send(ClientRequest request, std::chrono::milliseconds answer_timeout, Callback callback);
   void close();

@@ -169,6 +169,9 @@ void Conversation::serve(std::size_t head_size) {
   count(context_.counters.requests);
   if (!head_.keep_alive) close_after_ = true;
   if (!may_ask()) return refuse(status::kUnavailable, "too many connections; keep fewer open");
+  if (expects_tls_)
+    return refuse(status::kBadRequest,
+                  "this port speaks TLS only; ask the same address with https://");
   reaction_ = context_.responder.react(head_, peer_);
   if (reaction_.kind != Reaction::Kind::ReadBody) note(head_, peer_, reaction_.answer.status);
   switch (reaction_.kind) {

@@ -35,6 +35,10 @@ class Conversation {
 
   Conversation(ConversationContext context, Peer peer, Charge charge);
 
+  /// Before begin: the client speaks without TLS to a server that asks for it.  Its request is
+  /// refused with what to do.
+  void expect_tls() { expects_tls_ = true; }
+
   [[nodiscard]] Orders begin(SteadyTime now);
   /// Called when there are too many connections: answers one request, if it is for something vital.
   [[nodiscard]] Orders begin_in_reserve(SteadyTime now);
@@ -110,6 +114,7 @@ class Conversation {
   bool end_of_input_ = false;
   bool close_after_ = false;
   bool in_reserve_ = false;
+  bool expects_tls_ = false;
   bool downloading_ = false;
   bool continuing_ = false;  ///< "100 Continue" is being written.
 

@@ -9,6 +9,7 @@
 #include "common/http/media_range.h"
 #include "common/http/status.h"
 #include "common/net/connect.h"
+#include "common/net/stream.h"
 #include "common/time/clock.h"
 
 namespace chorus::http {
@@ -28,17 +29,20 @@ bool is_event_stream(const ClientResponse& head) {
 }  // namespace
 
 struct AsyncEventStream::Impl : std::enable_shared_from_this<AsyncEventStream::Impl> {
-  Impl(asio::io_context& io, std::string to_host, std::uint16_t to_port, ClientLimits with)
-      : host(std::move(to_host)),
-        port(to_port),
+  Impl(asio::io_context& io, const Url& to, ClientLimits with, tls::Trust believing)
+      : host(to.host),
+        port(to.port),
+        secure(to.secure),
+        trust(std::move(believing)),
         limits(with),
         authority(authority_of(host, port)),
         resolver(io.get_executor()),
-        socket(io.get_executor()),
+        stream(io.get_executor()),
         timer(io.get_executor()),
         rest(io.get_executor()) {}
 
   void begin(const ClientRequest& request, Handlers with);
+  void seal();
   void write();
   void read_head();
   void on_head(net::error_code failed);
@@ -54,10 +58,12 @@ struct AsyncEventStream::Impl : std::enable_shared_from_this<AsyncEventStream::I
 
   const std::string host;
   const std::uint16_t port;
+  const bool secure;
+  const tls::Trust trust;
   const ClientLimits limits;
   const std::string authority;
   net::Resolver resolver;
-  net::Socket socket;
+  net::Stream stream;
   net::Timer timer;
   net::Timer rest;
   /// Shared, because a handler may close() the stream while it is running.
@@ -79,19 +85,30 @@ void AsyncEventStream::Impl::begin(const ClientRequest& request, Handlers with) 
   arm(limits.connect_timeout, "connect");
   const auto self = shared_from_this();
   net::Connecting to{host, port, [self, mine = attempt] { return self->is(mine); }};
-  net::connect_to(std::move(to), resolver, socket,
+  net::connect_to(std::move(to), resolver, stream.socket(),
                   [self](net::error_code failed, std::string_view doing) {
-                    if (!failed) return self->write();
+                    if (!failed) return self->secure ? self->seal() : self->write();
                     self->end({ErrorCode::Unavailable, self->authority,
                                "cannot " + std::string(doing) + ": " + failed.message()});
                   });
+}
+
+void AsyncEventStream::Impl::seal() {
+  arm(limits.connect_timeout, "TLS handshake");
+  stream.seal_as_client(
+      trust, host,
+      [self = shared_from_this(), mine = attempt](const net::Stream::Sealing& sealing) {
+        if (!self->is(mine)) return;
+        if (!sealing.failure) return self->write();
+        self->end({sealing.failure->code, self->authority, sealing.failure->message});
+      });
 }
 
 void AsyncEventStream::Impl::write() {
   arm(limits.answer_timeout, "answer");
   sent_ns = to_unix_ns(SystemClock().now());
   asio::async_write(
-      socket, asio::buffer(out),
+      stream, asio::buffer(out),
       [self = shared_from_this(), mine = attempt](net::error_code failed, std::size_t) {
         if (!self->is(mine)) return;
         failed ? self->end(
@@ -107,7 +124,7 @@ void AsyncEventStream::Impl::read_head() {
       std::numeric_limits<std::uint64_t>::max());  // a stream lasts until one side hangs up
   in.reserve(kMaxAnswerHeadBytes);
   beast::http::async_read_header(
-      socket, in, *parser,
+      stream, in, *parser,
       [self = shared_from_this(), mine = attempt](net::error_code failed, std::size_t) {
         if (self->is(mine)) self->on_head(failed);
       });
@@ -143,7 +160,7 @@ void AsyncEventStream::Impl::read_now() {
   parser->eager(true);
   in.reserve(kReadBytes);
   beast::http::async_read_some(
-      socket, in, *parser,
+      stream, in, *parser,
       [self = shared_from_this(), mine = attempt](net::error_code failed, std::size_t) {
         if (self->is(mine)) self->on_read(failed);
       });
@@ -184,9 +201,8 @@ void AsyncEventStream::Impl::end(Error error) {
 
 void AsyncEventStream::Impl::drop() {
   ++attempt;
-  net::error_code ignored;
   resolver.cancel();
-  socket.close(ignored);
+  stream.close();
   timer.cancel();
   rest.cancel();
   in.clear();
@@ -196,7 +212,11 @@ void AsyncEventStream::Impl::drop() {
 
 AsyncEventStream::AsyncEventStream(boost::asio::io_context& io, std::string host,
                                    std::uint16_t port, ClientLimits limits)
-    : impl_(std::make_shared<Impl>(io, std::move(host), port, limits)) {}
+    : AsyncEventStream(io, Url{std::move(host), port}, limits) {}
+
+AsyncEventStream::AsyncEventStream(boost::asio::io_context& io, const Url& url, ClientLimits limits,
+                                   const tls::Trust& trust)
+    : impl_(std::make_shared<Impl>(io, url, limits, trust)) {}
 
 AsyncEventStream::~AsyncEventStream() { close(); }
 

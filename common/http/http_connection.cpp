@@ -29,31 +29,50 @@ HttpConnection::HttpConnection(ServerCore& core, net::Socket socket,
                                const net::tcp::endpoint& remote)
     : Connection(net::account_of(remote.address())),
       core_(core),
-      socket_(std::move(socket)),
+      stream_(std::move(socket)),
       conversation_({core.config, core.responder, core.counters, core.stopping},
-                    peer_of(core, socket_, remote),
+                    peer_of(core, stream_.socket(), remote),
                     [this](const std::string& account) { return core_.charge(*this, account); }) {
   net::error_code ignored;
-  socket_.set_option(net::tcp::no_delay(true), ignored);
+  stream_.socket().set_option(net::tcp::no_delay(true), ignored);
 }
 
-void HttpConnection::start() { carry_out(conversation_.begin(core_.now)); }
-void HttpConnection::start_in_reserve() { carry_out(conversation_.begin_in_reserve(core_.now)); }
+void HttpConnection::start() { begin(&Conversation::begin); }
+void HttpConnection::start_in_reserve() { begin(&Conversation::begin_in_reserve); }
 void HttpConnection::wake() { carry_out(conversation_.woken(core_.now)); }
 void HttpConnection::expire() { carry_out(conversation_.expired(core_.now)); }
 void HttpConnection::stop() { carry_out(conversation_.stop(core_.now)); }
 void HttpConnection::close() { carry_out(conversation_.close(core_.now)); }
 
+void HttpConnection::begin(Beginning beginning) {
+  if (core_.config.identity) return seal(beginning);
+  carry_out((conversation_.*beginning)(core_.now));
+}
+
+/// The handshake first, in no more time than a request may take.
+void HttpConnection::seal(Beginning beginning) {
+  deadline_ = core_.now + core_.config.limits.header_timeout;
+  stream_.seal_as_server(
+      *core_.config.identity, [me = self(), beginning](const net::Stream::Sealing& sealing) {
+        if (me->conversation_.closed()) return;
+        if (sealing.failure) {
+          count(me->core_.counters.handshakes_failed);
+          me->core_.failed_handshakes.hit(me->peer_address() + " " + sealing.failure->message);
+          return me->close();
+        }
+        if (sealing.plain) me->conversation_.expect_tls();
+        me->carry_out((me->conversation_.*beginning)(me->core_.now));
+      });
+}
+
 void HttpConnection::carry_out(const Orders& orders) {
   deadline_ = conversation_.deadline();
-  if (orders.small_queue) net::keep_queue_small(socket_);
+  if (orders.small_queue) net::keep_queue_small(stream_.socket());
   if (orders.stop_waiting) core_.stop_waiting(conversation_.reaction().entry->index, this);
   if (orders.upgrade) return upgrade();
   if (orders.close) return hang_up();
   if (orders.half_close) {
-    net::error_code failed;
-    socket_.shutdown(net::tcp::socket::shutdown_send, failed);
-    if (failed) return close();
+    if (stream_.end_saying()) return close();
   }
   if (orders.read) read();
   if (orders.write) write();
@@ -66,7 +85,7 @@ void HttpConnection::carry_out(const Orders& orders) {
 
 void HttpConnection::read() {
   const auto room = conversation_.room();
-  socket_.async_read_some(
+  stream_.async_read_some(
       asio::buffer(room.data(), room.size()),
       [me = self()](net::error_code failed, std::size_t size) {
         Conversation& conversation = me->conversation_;
@@ -81,7 +100,7 @@ void HttpConnection::write() {
     const std::string_view part = conversation_.output()[i];
     buffers[i] = asio::buffer(part.data(), part.size());
   }
-  asio::async_write(socket_, buffers, [me = self()](net::error_code failed, std::size_t size) {
+  asio::async_write(stream_, buffers, [me = self()](net::error_code failed, std::size_t size) {
     Conversation& conversation = me->conversation_;
     me->carry_out(failed ? conversation.send_failed(size, me->core_.now)
                          : conversation.sent(size, me->core_.now));
@@ -89,8 +108,8 @@ void HttpConnection::write() {
 }
 
 void HttpConnection::settle() {
-  if (net::is_queue_small(socket_)) return carry_out(conversation_.settled(core_.now));
-  socket_.async_wait(net::Socket::wait_write, [me = self()](net::error_code broken) {
+  if (net::is_queue_small(stream_.socket())) return carry_out(conversation_.settled(core_.now));
+  stream_.socket().async_wait(net::Socket::wait_write, [me = self()](net::error_code broken) {
     me->carry_out(broken ? me->conversation_.close(me->core_.now)
                          : me->conversation_.settled(me->core_.now));
   });
@@ -99,15 +118,14 @@ void HttpConnection::settle() {
 /// Hands the socket, and what was read from it, to a connection that speaks the other protocol.
 void HttpConnection::upgrade() {
   const Reaction& chosen = conversation_.reaction();
-  WebSocketOpening opening{std::move(socket_), conversation_.handshake(), peer_address(),
+  WebSocketOpening opening{std::move(stream_), conversation_.handshake(), peer_address(),
                            chosen.entry,       chosen.dialogue,           chosen.protocol};
   open_websocket(core_, std::move(opening), this);
 }
 
 void HttpConnection::hang_up() {
   const auto keep = shared_from_this();  // forget() may drop the last reference.
-  net::error_code ignored;
-  socket_.close(ignored);
+  stream_.close();
   core_.forget(this);
 }
 

@@ -9,7 +9,7 @@
 
 #include "common/http/connection.h"
 #include "common/http/conversation.h"
-#include "common/net/asio.h"
+#include "common/net/stream.h"
 
 namespace chorus::http {
 
@@ -26,9 +26,12 @@ class HttpConnection final : public Connection {
   void expire() override;
   void stop() override;
   void close() override;
-  [[nodiscard]] bool idle() const override { return conversation_.idle(); }
+  [[nodiscard]] bool idle() const override { return conversation_.idle(); }  // shaking hands, too
 
  private:
+  using Beginning = Orders (Conversation::*)(SteadyTime);
+  void begin(Beginning beginning);
+  void seal(Beginning beginning);
   void carry_out(const Orders& orders);
   void read();
   void write();
@@ -40,7 +43,7 @@ class HttpConnection final : public Connection {
   }
 
   ServerCore& core_;
-  net::Socket socket_;
+  net::Stream stream_;
   Conversation conversation_;
 };
 

@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "common/base/rate_report.h"
 #include "common/http/connection.h"
 #include "common/http/counters.h"
 #include "common/http/responder.h"
@@ -49,6 +50,7 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   AtomicCounters counters;
   net::AcceptLoop accepting;
   net::Every sweeping;
+  RateReport failed_handshakes{"TLS handshake failed"};
 
   SteadyTime now;  ///< Coarse: the time of the last sweep.
   bool stopping = false;

@@ -20,7 +20,7 @@ class WebSocketConnection final : public Connection {
   WebSocketConnection(ServerCore& core, WebSocketOpening opening)
       : Connection(std::move(opening.peer_address)),
         core_(core),
-        stream_(std::move(opening.socket), {core.config.limits, kMaxSaid}),
+        stream_(std::move(opening.stream), {core.config.limits, kMaxSaid}),
         entry_(opening.entry) {}
 
   void open(std::string received);

@@ -9,14 +9,14 @@
 
 #include "common/http/connection.h"
 #include "common/http/router.h"
-#include "common/net/asio.h"
+#include "common/net/stream.h"
 
 namespace chorus::http {
 
 struct ServerCore;
 
 struct WebSocketOpening {
-  net::Socket socket;
+  net::Stream stream;
   std::string received;  ///< See handshake_of.
   std::string peer_address;
   const Router::Entry* entry = nullptr;

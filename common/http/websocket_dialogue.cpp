@@ -17,7 +17,7 @@ class DialogueConnection final : public Connection {
   DialogueConnection(ServerCore& core, WebSocketOpening opening)
       : Connection(std::move(opening.peer_address)),
         core_(core),
-        stream_(std::move(opening.socket),
+        stream_(std::move(opening.stream),
                 {core.config.limits, opening.entry->dialogue->max_message_bytes,
                  std::move(opening.protocol)}),
         dialogue_(std::move(opening.dialogue)) {}

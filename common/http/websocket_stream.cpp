@@ -6,8 +6,22 @@
 
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/websocket/stream.hpp>
+#include <boost/beast/websocket/teardown.hpp>
 
 #include "common/net/token_bucket.h"
+
+// How Beast ends and closes a stream of ours; it finds these by the stream's namespace.
+namespace chorus::net {
+
+inline void beast_close_socket(Stream& stream) { stream.close(); }
+
+template <class Handler>
+void async_teardown(boost::beast::role_type role, Stream& stream, Handler&& handler) {
+  stream.end_saying();
+  boost::beast::websocket::async_teardown(role, stream.socket(), std::forward<Handler>(handler));
+}
+
+}  // namespace chorus::net
 
 namespace chorus::http {
 namespace {
@@ -19,17 +33,16 @@ constexpr net::Allowance kPings{.per_second = 5.0, .burst = 50.0};
 }  // namespace
 
 struct WebSocketStream::Beast {
-  Beast(net::Socket socket, std::size_t max_message)
-      : stream(std::move(socket)), said(max_message) {}
+  Beast(net::Stream from, std::size_t max_message) : stream(std::move(from)), said(max_message) {}
 
-  websocket::stream<net::Socket> stream;
+  websocket::stream<net::Stream> stream;
   boost::beast::flat_buffer said;
   net::TokenBucket pings{kPings};
   bool writing = false;
 };
 
-WebSocketStream::WebSocketStream(net::Socket socket, const WebSocketOptions& options)
-    : beast_(std::make_unique<Beast>(std::move(socket), options.max_message)) {
+WebSocketStream::WebSocketStream(net::Stream from, const WebSocketOptions& options)
+    : beast_(std::make_unique<Beast>(std::move(from), options.max_message)) {
   websocket::stream_base::timeout patience{};
   patience.handshake_timeout = options.limits.header_timeout;
   patience.idle_timeout = options.limits.idle_timeout;
@@ -88,21 +101,15 @@ void WebSocketStream::write(std::string_view text, Done done) {
 bool WebSocketStream::say_goodbye(Goodbye code) {
   if (beast_->writing || !is_open()) return false;
   const auto number = static_cast<std::uint16_t>(code);
-  const std::array<unsigned char, 4> frame{0x88, 2, static_cast<unsigned char>(number >> 8),
-                                           static_cast<unsigned char>(number & 0xFF)};
-  net::error_code failed;
-  socket().non_blocking(true, failed);
-  if (!failed && socket().write_some(asio::buffer(frame), failed) != frame.size()) return false;
-  if (!failed) socket().shutdown(net::Socket::shutdown_send, failed);
-  return !failed;
+  const std::array<char, 4> frame{'\x88', 2, static_cast<char>(number >> 8),
+                                  static_cast<char>(number & 0xFF)};
+  net::Stream& stream = beast_->stream.next_layer();
+  return stream.say_now({frame.data(), frame.size()}) && !stream.end_saying();
 }
 
 bool WebSocketStream::is_open() const { return beast_->stream.is_open(); }
-net::Socket& WebSocketStream::socket() { return beast_->stream.next_layer(); }
+net::Socket& WebSocketStream::socket() { return beast_->stream.next_layer().socket(); }
 
-void WebSocketStream::close() {
-  net::error_code ignored;
-  socket().close(ignored);
-}
+void WebSocketStream::close() { beast_->stream.next_layer().close(); }
 
 }  // namespace chorus::http

@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "common/http/server.h"
-#include "common/net/asio.h"
+#include "common/net/stream.h"
 
 namespace chorus::http {
 
@@ -33,7 +33,7 @@ class WebSocketStream {
  public:
   using Done = std::function<void(net::error_code)>;
 
-  WebSocketStream(net::Socket socket, const WebSocketOptions& options);
+  WebSocketStream(net::Stream from, const WebSocketOptions& options);
   ~WebSocketStream();
   WebSocketStream(const WebSocketStream&) = delete;
   WebSocketStream& operator=(const WebSocketStream&) = delete;

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "common/http/client.h"
 #include "common/net/address.h"
 
 namespace chorus::service {
@@ -57,6 +58,27 @@ void read_limits(ConfigReader& config, http::ServerLimits& out) {
 
 }  // namespace
 
+std::string root_of(const http::ServerConfig& http, bool secure, std::uint16_t port) {
+  return http::url_text({http.address, port, {}, secure}, "/");
+}
+
+void read_identity(ConfigReader config, std::optional<tls::Identity>& out) {
+  std::string certificate;
+  std::string key;
+  config.read("certificate", certificate);
+  config.read("key", key);
+  if (certificate.empty() && key.empty()) return;
+  if (certificate.empty()) return config.complain("certificate", "is needed beside the key");
+  if (key.empty()) return config.complain("key", "is needed beside the certificate");
+  auto identity = tls::Identity::load(certificate, key);
+  if (identity) {
+    out = std::move(*identity);
+  } else {
+    const bool of_key = identity.error().context == key;
+    config.complain(of_key ? "key" : "certificate", to_string(identity.error()));
+  }
+}
+
 void read_http(ConfigReader config, http::ServerConfig& out) {
   config.read("address", out.address);
   int port = out.port;
@@ -64,6 +86,7 @@ void read_http(ConfigReader config, http::ServerConfig& out) {
   out.port = static_cast<std::uint16_t>(port);
   config.read("bearer_token", out.bearer_token);
   read_tokens(config, out.tokens);
+  read_identity(config.child("tls"), out.identity);
   config.read("allowed_origin", out.allowed_origin);
   read_names(config, out);
   read_limits(config, out.limits);

@@ -1,12 +1,23 @@
 // The section "http" of a configuration, the same for every service.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <string>
+
 #include "common/base/config_reader.h"
 #include "common/http/server.h"
+#include "common/tls/credentials.h"
 
 namespace chorus::service {
 
 /// An absent key keeps the value that `out` has: each service has its own default port.
 void read_http(ConfigReader config, http::ServerConfig& out);
+
+/// "https://0.0.0.0:8081/": where a service is.
+[[nodiscard]] std::string root_of(const http::ServerConfig& http, bool secure, std::uint16_t port);
+
+/// The certificate and key that a child "tls" names; none when it names none.
+void read_identity(ConfigReader config, std::optional<tls::Identity>& out);
 
 }  // namespace chorus::service

@@ -121,6 +121,8 @@ void add_server(MetricsText& text, const http::ServerCounters& counters) {
           counters.unauthorized},
       Row{"chorus_http_closed_for_room_total", "Idle connections that gave way to others.",
           counters.closed_for_room},
+      Row{"chorus_http_handshakes_failed_total", "TLS handshakes that failed.",
+          counters.handshakes_failed},
   };
   const std::array now{
       Row{"chorus_http_connections", "Open connections.", counters.connections_open},

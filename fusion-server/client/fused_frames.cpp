@@ -15,6 +15,7 @@
 #include "common/resource/frame_resource.h"
 #include "fusion-server/client/live_poll.h"
 #include "fusion-server/client/recordings.h"
+#include "fusion-server/client/service_client.h"
 
 namespace chorus::client {
 namespace {
@@ -142,9 +143,9 @@ Result<FusedFrames> read_file(const std::string& source) {
 /// A server's frames for a while: each one once, by conditional long poll.
 class Listening {
  public:
-  Listening(const http::Url& server, std::string source)
+  Listening(const http::Url& server, std::string source, tls::Trust trust)
       : source_(std::move(source)),
-        poll_(io_, server, {std::string(kFusedTopic), "application/json"},
+        poll_(io_, server, {std::string(kFusedTopic), "application/json", {}, std::move(trust)},
               {[this](const http::ClientResponse& answer) { take(answer); },
                [this](const Error& error, int status) { failed(error, status); }}) {}
 
@@ -211,7 +212,9 @@ Result<FusedFrames> listen_to(const std::string& source, std::chrono::millisecon
   std::string& path = url->target;
   while (path.ends_with('/')) path.pop_back();
   if (path.ends_with(kFusedTopic)) path.resize(path.size() - kFusedTopic.size());
-  return Listening(*url, source).run(listen);
+  auto trust = authorities();
+  if (!trust) return pass(trust);
+  return Listening(*url, source, std::move(*trust)).run(listen);
 }
 
 }  // namespace
@@ -239,7 +242,8 @@ Result<FusedSamples> read_fused_lines(std::istream& lines, const std::string& or
 
 Result<FusedFrames> read_fused_frames(const std::string& source, std::chrono::milliseconds listen) {
   if (source == "-") return of_lines(std::cin, "standard input");
-  if (source.starts_with("http://")) return listen_to(source, listen);
+  if (source.starts_with("http://") || source.starts_with("https://"))
+    return listen_to(source, listen);
   return read_file(source);
 }
 

@@ -35,7 +35,7 @@ void StreamCount::cannot_read(const Error& why) {
 LivePoll::LivePoll(asio::io_context& io, const http::Url& base, Options options, Takers takers)
     : options_(std::move(options)),
       takers_(std::move(takers)),
-      client_(io, base.host, base.port),
+      client_(io, base, {}, options_.trust),
       timer_(io) {
   std::string prefix = base.target;
   while (prefix.ends_with('/')) prefix.pop_back();

@@ -32,6 +32,7 @@ class LivePoll {
     std::string accept = "text/turtle";
     /// Asked again after each such interval; zero: long poll instead.
     std::chrono::milliseconds every{0};
+    tls::Trust trust = {};  ///< Of an https:// server.
   };
   /// Both are called on the thread of `io`.
   struct Takers {

@@ -60,8 +60,9 @@ record::CellHead head_of(const nlohmann::json& self, bool tracker) {
 
 Result<std::unique_ptr<LiveRecording>> LiveRecording::start(asio::io_context& io,
                                                             LiveRecordingOptions options) {
-  const std::string url = "http://" + options.service.host + ":" +
-                          std::to_string(options.service.port) + options.service.target;
+  const std::string url = http::url_text(options.service, options.service.target);
+  auto trust = authorities();
+  if (!trust) return pass(trust);
   const auto client = ServiceClient::of(url);
   if (!client) return pass(client);
   const auto self = client->get("/");
@@ -81,7 +82,7 @@ Result<std::unique_ptr<LiveRecording>> LiveRecording::start(asio::io_context& io
   recording.limits.min_free_bytes = 0;  // it is the user's own file
   auto recorder = record::Recorder::start(std::move(recording));
   if (!recorder) return pass(recorder);
-  std::unique_ptr<LiveRecording> live(new LiveRecording(io, std::move(options)));
+  std::unique_ptr<LiveRecording> live(new LiveRecording(io, std::move(options), std::move(*trust)));
   live->recorder_ = std::move(*recorder);
   if (tracker) {
     live->poll_tracker(part_at(*sensors, "sensors"));
@@ -95,12 +96,13 @@ Result<std::unique_ptr<LiveRecording>> LiveRecording::start(asio::io_context& io
 void LiveRecording::poll_frames(const std::string& topic, Take take) {
   StreamCount& count = counts_[topic];
   polls_.emplace_back(
-      io_, options_.service, LivePoll::Options{topic},
+      io_, options_.service, LivePoll::Options{.target = topic, .trust = trust_},
       LivePoll::Takers{std::move(take), [&count](const Error& error, int) { count.fail(error); }});
 }
 
 void LiveRecording::poll_state(LivePoll::Options what, Take take) {
   const std::string path = what.target;
+  what.trust = trust_;
   polls_.emplace_back(
       io_, options_.service, std::move(what),
       LivePoll::Takers{[this, path, take = std::move(take)](const http::ClientResponse& answer) {

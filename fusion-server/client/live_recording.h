@@ -41,8 +41,8 @@ class LiveRecording {
   [[nodiscard]] std::chrono::steady_clock::duration silence() const;
 
  private:
-  LiveRecording(asio::io_context& io, LiveRecordingOptions options)
-      : io_(io), options_(std::move(options)) {}
+  LiveRecording(asio::io_context& io, LiveRecordingOptions options, tls::Trust trust)
+      : io_(io), options_(std::move(options)), trust_(std::move(trust)) {}
 
   using Take = std::function<void(const http::ClientResponse&)>;
   void poll_frames(const std::string& topic, Take take);
@@ -57,6 +57,7 @@ class LiveRecording {
 
   asio::io_context& io_;
   LiveRecordingOptions options_;
+  tls::Trust trust_;
   std::unique_ptr<record::Recorder> recorder_;
   std::deque<LivePoll> polls_;
   std::map<std::string, StreamCount> counts_;

@@ -1,5 +1,7 @@
 #include "fusion-server/client/service_client.h"
 
+#include <unistd.h>
+
 #include <cstdlib>
 #include <limits>
 
@@ -11,6 +13,9 @@
 namespace chorus::client {
 namespace {
 
+constexpr const char* kAuthoritiesVariable = "CHORUS_CA";
+constexpr const char* kAuthoritiesOfWorkshop = "/etc/chorus/tls/ca.crt";
+
 /// Where the server wants a bearer token.
 constexpr const char* kTokenVariable = "CHORUS_TOKEN";
 
@@ -20,6 +25,26 @@ std::vector<std::pair<std::string, std::string>> authorization() {
   const char* token = std::getenv(kTokenVariable);
   if (token == nullptr || *token == '\0') return {};
   return {{"Authorization", std::string("Bearer ") + token}};
+}
+
+std::string default_server() {
+  const bool secure = ::access(kAuthoritiesOfWorkshop, R_OK) == 0;
+  return std::string(secure ? "https" : "http") + "://127.0.0.1:8080/";
+}
+
+Result<tls::Trust> authorities() {
+  const char* file = std::getenv(kAuthoritiesVariable);
+  if (file != nullptr && *file != '\0') return tls::Trust::load(file);
+  if (::access(kAuthoritiesOfWorkshop, R_OK) == 0) return tls::Trust::load(kAuthoritiesOfWorkshop);
+  return tls::Trust();
+}
+
+Result<http::ClientResponse> fetch_trusted(const http::Url& url, const http::ClientRequest& request,
+                                           const http::ClientLimits& limits) {
+  if (!url.secure) return http::fetch(url, request, limits);
+  const auto trust = authorities();
+  if (!trust) return pass(trust);
+  return http::fetch(url, request, limits, *trust);
 }
 
 Error refusal_of(const http::ClientResponse& answer, const std::string& where) {
@@ -64,11 +89,12 @@ Result<nlohmann::json> ServiceClient::ask(std::string_view method, std::string_v
   if (!body.empty()) request.headers.push_back({"Content-Type", "application/json"});
   for (auto& header : authorization()) request.headers.push_back(std::move(header));
   request.body = std::move(body);
-  const std::string where = fmt::format("http://{}:{}{}", base_.host, base_.port, request.target);
-  const auto answer = http::fetch(base_, request);
-  if (!answer)
+  const std::string where = http::url_text(base_, request.target);
+  const auto answer = fetch_trusted(base_, request);
+  if (!answer && answer.error().message.starts_with("cannot connect"))
     return fail(answer.error().code, where,
                 answer.error().message + "; is chorus-fusion running there?");
+  if (!answer) return fail(answer.error().code, where, answer.error().message);
   if (answer->status >= http::status::kBadRequest)
     return tl::unexpected<Error>(refusal_of(*answer, where));
   if (answer->body.empty()) return nlohmann::json();

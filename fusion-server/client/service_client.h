@@ -10,6 +10,7 @@
 
 #include "common/base/result.h"
 #include "common/http/client.h"
+#include "common/tls/credentials.h"
 
 namespace chorus::client {
 
@@ -19,7 +20,18 @@ namespace chorus::client {
 /// The header of every request: the bearer token in CHORUS_TOKEN, if one is set.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> authorization();
 
-inline constexpr const char* kDefaultServer = "http://127.0.0.1:8080/";
+/// Whom an https:// server has to be vouched for by: the file in CHORUS_CA; else that of the
+/// workshop, where this host has one that the user may read (/etc/chorus/tls/ca.crt); else the
+/// operating system's.
+[[nodiscard]] Result<tls::Trust> authorities();
+
+/// http::fetch with these authorities.
+[[nodiscard]] Result<http::ClientResponse> fetch_trusted(const http::Url& url,
+                                                         const http::ClientRequest& request,
+                                                         const http::ClientLimits& limits = {});
+
+/// The fusion server of this host: with https where `chorus init` would have given it TLS.
+[[nodiscard]] std::string default_server();
 
 class ServiceClient {
  public:

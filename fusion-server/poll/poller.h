@@ -16,6 +16,7 @@
 #include "common/sensor/sensor_frame.h"
 #include "common/time/clock.h"
 #include "common/time/clock_estimate.h"
+#include "common/tls/credentials.h"
 #include "fusion-server/poll/poll_fsm.h"
 
 namespace chorus::poll {
@@ -24,6 +25,7 @@ struct PolledSensor {
   SensorId id;
   std::string url;         ///< Of the service's `/`: "http://127.0.0.1:8081/".
   std::string token = {};  ///< Sent with every request; empty: none.
+  tls::Trust trust = {};   ///< Whom its certificate has to be from, with https.
 
   bool operator==(const PolledSensor&) const = default;
 };

@@ -12,6 +12,7 @@
 #include "common/base/log.h"
 #include "common/resource/link_lines.h"
 #include "common/service/common_resources.h"
+#include "common/service/http_config.h"
 #include "fusion-server/rest/frame_sink.h"
 #include "fusion-server/rest/metrics.h"
 #include "fusion-server/rest/registration_resources.h"
@@ -150,8 +151,8 @@ struct FusionServer::Impl {
   Impl(FusionSettings c, std::shared_ptr<const Clock> k)
       : config(std::move(c)), clock(std::move(k)) {
     serving.run = fmt::format("{:x}", to_unix_ns(clock->now()) / 1'000'000);
-    serving.root =
-        fmt::format("http://{}:{}/", config.at_start.http.address, config.at_start.http.port);
+    const StartSettings& at_start = config.at_start;
+    serving.root = service::root_of(at_start.http, at_start.secure, at_start.http.port);
   }
 
   std::shared_ptr<http::Router> make_router();
@@ -305,6 +306,7 @@ Result<void> FusionServer::start() {
   s.sinks = std::move(*sinks);
   http::ServerConfig http = s.config.at_start.http;
   http.tokens = s.config.live.tokens;
+  http.identity = s.config.live.identity;
   http.clock = s.clock;
   http.policy = resource::answer_policy();
   s.http = std::make_unique<http::Server>(http, s.make_router());
@@ -329,6 +331,7 @@ void FusionServer::take(const LiveSettings& live) {
   s.loop->ask(core_config(s.config));
   s.poller->poll(live.sensors);
   s.http->set_tokens(live.tokens);
+  if (live.identity) s.http->set_identity(*live.identity);
 }
 
 bool FusionServer::alive() {

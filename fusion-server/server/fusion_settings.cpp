@@ -53,6 +53,16 @@ void read_sensors(ConfigReader& root, LiveSettings& out) {
   }
 }
 
+/// One for all sensors: they are the hosts of one workshop.
+tls::Trust read_trust(ConfigReader poll) {
+  std::string file;
+  poll.read("ca", file);
+  auto trust = tls::Trust::load(file);
+  if (trust) return *trust;
+  poll.complain("ca", to_string(trust.error()));
+  return {};
+}
+
 void read_poll(ConfigReader reader, poll::PollTimings& out) {
   reader.read_s("wait_s", out.wait, seconds(1), seconds(30));
   reader.read_ms("answer_slack_ms", out.answer_slack, milliseconds(50), seconds(30));
@@ -202,6 +212,8 @@ Result<FusionSettings> read_fusion_settings(ConfigReader root) {
   service::read_http(root.child("http"), at_start.http);
   live.tokens = http::all_tokens(std::exchange(at_start.http.bearer_token, {}),
                                  std::exchange(at_start.http.tokens, {}));
+  live.identity = std::exchange(at_start.http.identity, {});
+  at_start.secure = live.identity.has_value();
   service::read_log(root.child("log"), live.log);
   read_poll(root.child("poll"), at_start.poll);
   read_output(root.child("output"), settings);
@@ -211,6 +223,8 @@ Result<FusionSettings> read_fusion_settings(ConfigReader root) {
   read_facing(root.child("facing"), live.pipeline.sides);
   read_fusion(root.child("fusion"), live.pipeline.fusion);
   read_sensors(root, live);
+  const tls::Trust trust = read_trust(root.child("poll"));
+  for (poll::PolledSensor& sensor : live.sensors) sensor.trust = trust;
   read_registration(root.child("registration"), settings);
   outputs::read_outputs(root.child("outputs"), at_start.outputs);
   root.read("state_dir", at_start.state_dir);

@@ -1,6 +1,7 @@
 // Everything deploy/config/fusion.json can say, as plain values in two parts.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ namespace chorus::server {
 /// What a reload takes over.
 struct LiveSettings {
   service::LogConfig log;
-  std::vector<http::Token> tokens;  ///< Of http.
+  std::vector<http::Token> tokens;        ///< Of http.
+  std::optional<tls::Identity> identity;  ///< Of http.
   std::vector<poll::PolledSensor> sensors;
   core::TickConfig output;
   pipeline::PipelineConfig pipeline;
@@ -33,7 +35,8 @@ struct LiveSettings {
 /// What needs a restart.
 struct StartSettings {
   std::string title = "Chorus fusion server";
-  http::ServerConfig http = {.port = 8080};  ///< Without its tokens.
+  http::ServerConfig http = {.port = 8080};  ///< Without its tokens and identity.
+  bool secure = false;                       ///< There is an identity.
   poll::PollTimings poll;
   Duration history = std::chrono::seconds(10);  ///< How long /frames/{seq} and ?at= reach back.
   outputs::OutputsConfig outputs;

@@ -25,7 +25,7 @@ constexpr milliseconds kLook{200};
 constexpr auto kGoneAfter = std::chrono::seconds(10);
 
 struct RecordArguments {
-  std::string url = client::kDefaultServer;
+  std::string url = client::default_server();
   std::string out;
   double seconds = 0.0;
   bool raw = false;

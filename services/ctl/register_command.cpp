@@ -29,7 +29,7 @@ constexpr std::chrono::milliseconds kAskEvery{250};
 constexpr std::chrono::seconds kPatience{60};
 
 struct RegisterArguments {
-  std::string url = client::kDefaultServer;
+  std::string url = client::default_server();
   double seconds = 30.0;  // a walk through a room, as in the guide
   bool fresh = false;
   bool cancel = false;

@@ -1,5 +1,7 @@
 #include "services/ctl/server_option.h"
 
+#include <cstdlib>
+
 #include <CLI/CLI.hpp>
 
 namespace chorus::ctl {
@@ -7,6 +9,10 @@ namespace chorus::ctl {
 void add_server_option(CLI::App& app, std::string& url, const std::string& what,
                        const std::string& names) {
   app.add_option(names, url, what)->envname("CHORUS_URL")->capture_default_str();
+  // Where client::authorities() looks: everything that asks a server finds it there.
+  app.add_option_function<std::string>(
+      "--ca", [](const std::string& file) { ::setenv("CHORUS_CA", file.c_str(), 1); },
+      "The authority of an https:// server, a PEM file; also CHORUS_CA");
 }
 
 }  // namespace chorus::ctl

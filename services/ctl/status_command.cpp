@@ -19,7 +19,7 @@ namespace chorus::ctl {
 namespace {
 
 struct StatusArguments {
-  std::string url = client::kDefaultServer;
+  std::string url = client::default_server();
   bool json = false;
 };
 
@@ -49,7 +49,7 @@ std::string own_words(const std::string& sensor_url) {
   if (!url) return {};
   http::ClientRequest request;
   request.target = url->target + (url->target.ends_with('/') ? "healthz" : "/healthz");
-  const auto answer = http::fetch(*url, request, kBrief);
+  const auto answer = client::fetch_trusted(*url, request, kBrief);
   if (!answer || answer->status < http::status::kBadRequest) return {};
   return client::text_at(nlohmann::json::parse(answer->body, nullptr, false), "detail", "");
 }

@@ -10,6 +10,7 @@
 
 #include "common/record/frame_recording.h"
 #include "common/resource/link_lines.h"
+#include "common/service/http_config.h"
 #include "services/sensor/metrics_text.h"
 
 namespace chorus::sensor_service {
@@ -31,8 +32,7 @@ ServiceOptions service_options(const Setup& setup) {
   options.history.span = at_start.history;
   options.images = setup.settings.live.images;
   options.serving.run = run_name();
-  options.serving.root =
-      "http://" + at_start.http.address + ":" + std::to_string(at_start.http.port) + "/";
+  options.serving.root = service::root_of(at_start.http, at_start.secure, at_start.http.port);
   return options;
 }
 
@@ -52,6 +52,7 @@ service::RecordingsOptions recordings_options(const Setup& setup, const ServiceO
 http::ServerConfig server_config(const Setup& setup) {
   http::ServerConfig config = setup.settings.at_start.http;
   config.tokens = setup.settings.live.tokens;
+  config.identity = setup.settings.live.identity;
   config.clock = setup.clock;
   config.policy = resource::answer_policy();
   return config;
@@ -114,12 +115,13 @@ service::Concerns SensorHost::concerns() const {
 }
 
 Result<void> SensorHost::start() {
-  service::log_concerns(setup_.settings.at_start.recording);
+  const StartSettings& at_start = setup_.settings.at_start;
+  service::log_concerns(at_start.recording);
   if (auto ok = server_.start(); !ok) return ok;
-  log::info("sensor serving", {{"sensor", setup_.settings.at_start.id.str()},
-                               {"url", "http://" + setup_.settings.at_start.http.address + ":" +
-                                           std::to_string(server_.port()) + "/"},
-                               {"device", setup_.device->describe().label}});
+  log::info("sensor serving",
+            {{"sensor", at_start.id.str()},
+             {"url", service::root_of(at_start.http, at_start.secure, server_.port())},
+             {"device", setup_.device->describe().label}});
   encoder_ = std::jthread([this](const std::stop_token& stop) {
     while (service_.encode_next(stop)) {
     }
@@ -176,6 +178,7 @@ void SensorHost::take(const LiveSettings& live) {
   setup_.settings.live = live;
   service_.show_images(live.images);
   server_.set_tokens(live.tokens);
+  if (live.identity) server_.set_identity(*live.identity);
 }
 
 service::About about_sensor() {

@@ -28,6 +28,8 @@ Result<SensorSettings> read_sensor_settings(ConfigReader root) {
   service::read_http(root.child("http"), at_start.http);
   live.tokens = http::all_tokens(std::exchange(at_start.http.bearer_token, {}),
                                  std::exchange(at_start.http.tokens, {}));
+  live.identity = std::exchange(at_start.http.identity, {});
+  at_start.secure = live.identity.has_value();
   root.read("images", live.images);
   root.read_s("history_s", at_start.history, std::chrono::seconds(1), std::chrono::seconds(120));
   read_clock_errors(root.child("clock"), at_start.clock);

@@ -1,6 +1,7 @@
 // deploy/config/sensor.json as a struct of two parts.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@ namespace chorus::sensor_service {
 /// What a reload takes over.
 struct LiveSettings {
   service::LogConfig log;
-  std::vector<http::Token> tokens;  ///< Of http.
+  std::vector<http::Token> tokens;        ///< Of http.
+  std::optional<tls::Identity> identity;  ///< Of http.
   bool images = false;
 
   bool operator==(const LiveSettings&) const = default;
@@ -26,7 +28,8 @@ struct LiveSettings {
 /// What needs a restart.
 struct StartSettings {
   SensorId id;
-  http::ServerConfig http = {.port = 8081};    ///< Without its tokens.
+  http::ServerConfig http = {.port = 8081};    ///< Without its tokens and identity.
+  bool secure = false;                         ///< There is an identity.
   Duration history = std::chrono::seconds(3);  ///< How long /frames/{seq} and ?at= reach back.
   ClockErrors clock;  ///< Of a simulated host; a real host's clock is kept by NTP.
   service::RecordingConfig recording;

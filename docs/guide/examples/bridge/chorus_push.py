@@ -7,15 +7,19 @@
         captured, people = my_camera.next()                    # chorus_push.now_ns() of the exposure; landmarks in metres
         pusher.push([{"id": p.id, "points": p.landmarks} for p in people], captured)
 
-ws://HOST:PORT/push is a WebSocket, http://HOST:PORT/push one POST a frame, anything else the path of a local socket.  The
+ws://HOST:PORT/push is a WebSocket, http://HOST:PORT/push one POST a frame, anything else the path of a local socket.  wss:// and https://
+are for a sensor with TLS: `ca` (or CHORUS_CA) names the ca.crt of its authority, where the system does not know that.  The
 clock of this program need not be right: questions for the time are answered here.  When the sensor is not there, frames are
 dropped and the connection is tried again once a second.  What the messages mean: proto/bridge.md.
 """
 import base64
 import http.client
+import io
 import json
 import os
+import select
 import socket
+import ssl
 import struct
 import sys
 import threading
@@ -40,6 +44,51 @@ class Refused(ConnectionError):
 
 def complain(text):
     print("chorus_push:", text, file=sys.stderr, flush=True)
+
+
+def _trusting(ca):
+    return ssl.create_default_context(cafile=ca or os.environ.get("CHORUS_CA") or None)
+
+
+class SealedStream(io.RawIOBase):
+    """A TLS socket that one thread reads while another writes, which Python's own does not allow."""
+
+    def __init__(self, sealed):
+        super().__init__()
+        self.socket = sealed
+        self.socket.setblocking(False)
+        self.lock = threading.Lock()
+
+    def readable(self):
+        return True
+
+    def readinto(self, room):
+        while True:
+            try:
+                with self.lock:
+                    return self.socket.recv_into(room)
+            except (ssl.SSLWantReadError, ssl.SSLWantWriteError):
+                select.select([self.socket], [], [])
+
+    def sendall(self, data):
+        left = memoryview(data)
+        while left:
+            try:
+                with self.lock:
+                    left = left[self.socket.send(left):]
+            except (ssl.SSLWantReadError, ssl.SSLWantWriteError):
+                select.select([], [self.socket], [], TIMEOUT_S)
+
+    def settimeout(self, seconds):
+        pass
+
+    def close(self):
+        super().close()
+        try:
+            self.socket.shutdown(socket.SHUT_RDWR)  # ends a select of the other thread
+        except OSError:
+            pass
+        self.socket.close()
 
 
 class LineWay:
@@ -71,11 +120,16 @@ class WebSocketWay:
 
     TEXT, CLOSE, PING, PONG = 1, 8, 9, 10
 
-    def __init__(self, url, token):
+    def __init__(self, url, token, ca):
         parts = urllib.parse.urlsplit(url)
-        self.socket = socket.create_connection((parts.hostname, parts.port or 80), TIMEOUT_S)
+        secure = parts.scheme == "wss"
+        self.socket = socket.create_connection((parts.hostname, parts.port or (443 if secure else 80)), TIMEOUT_S)
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        self.stream = self.socket.makefile("rb")
+        if secure:
+            self.socket = SealedStream(_trusting(ca).wrap_socket(self.socket, server_hostname=parts.hostname))
+            self.stream = io.BufferedReader(self.socket)
+        else:
+            self.stream = self.socket.makefile("rb")
         self.lock = threading.Lock()
         key = base64.b64encode(os.urandom(16)).decode()
         fields = [f"GET {parts.path or '/push'} HTTP/1.1", f"Host: {parts.netloc}", "Connection: Upgrade", "Upgrade: websocket",
@@ -185,10 +239,13 @@ class Talk:
 class Post:
     """One POST a frame.  The way back of each tells the next one our clock."""
 
-    def __init__(self, url, token, hello, clock, tell):
+    def __init__(self, url, token, ca, hello, clock, tell):
         parts = urllib.parse.urlsplit(url)
         self.path = parts.path or "/push"
-        self.connection = http.client.HTTPConnection(parts.hostname, parts.port or 80, timeout=TIMEOUT_S)
+        if parts.scheme == "https":
+            self.connection = http.client.HTTPSConnection(parts.hostname, parts.port or 443, timeout=TIMEOUT_S, context=_trusting(ca))
+        else:
+            self.connection = http.client.HTTPConnection(parts.hostname, parts.port or 80, timeout=TIMEOUT_S)
         self.connection.connect()
         self.connection.sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.headers = {"Content-Type": "application/x-ndjson", **({"Authorization": f"Bearer {token}"} if token else {})}
@@ -223,8 +280,8 @@ class Post:
 class Pusher:
     """`hello` without its type; `clock` gives nanoseconds since 1970 and is what `captured` counts by."""
 
-    def __init__(self, url, hello, token=None, clock=now_ns, tell=complain):
-        self.url, self.token, self.clock, self.tell = url, token, clock, tell
+    def __init__(self, url, hello, token=None, clock=now_ns, tell=complain, ca=None):
+        self.url, self.token, self.clock, self.tell, self.ca = url, token, clock, tell, ca
         self.hello = json.dumps({"type": "hello", "version": 1, **hello})
         self.sequence = 0
         self.dropped = 0
@@ -259,9 +316,9 @@ class Pusher:
         return True
 
     def _connect(self):
-        if self.url.startswith("http://"):
-            return Post(self.url, self.token, self.hello, self.clock, self.tell)
-        way = WebSocketWay(self.url, self.token) if self.url.startswith("ws://") else LineWay(self.url)
+        if self.url.startswith(("http://", "https://")):
+            return Post(self.url, self.token, self.ca, self.hello, self.clock, self.tell)
+        way = WebSocketWay(self.url, self.token, self.ca) if self.url.startswith(("ws://", "wss://")) else LineWay(self.url)
         return Talk(way, self.hello, self.clock, self.tell)
 
     def close(self):

@@ -1,0 +1,103 @@
+// A TCP connection that may be sealed by TLS: what HTTP, its event streams and WebSockets run over.
+//
+// One type for both, so that nothing above is compiled twice.  Unsealed it hands every call on to
+// its socket.  Meets Asio's AsyncReadStream and AsyncWriteStream for one thread: at most one read
+// and one write at a time, handlers kept by whoever owns the stream, default allocators.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "common/base/error.h"
+#include "common/net/asio.h"
+#include "common/tls/credentials.h"
+
+namespace chorus::net {
+
+class Stream {
+ public:
+  using executor_type = Executor;
+  using Done = std::function<void(error_code, std::size_t)>;
+
+  /// How sealing went.
+  struct Sealing {
+    std::optional<Error> failure = {};  ///< What to do about it included; its context is the host.
+    bool plain = false;                 ///< A client that speaks no TLS: the stream stays unsealed.
+  };
+  using Sealed = std::function<void(Sealing)>;  ///< Called once, never before the call returns.
+
+  explicit Stream(const Executor& executor) : socket_(executor) {}
+  explicit Stream(Socket socket) : socket_(std::move(socket)) {}
+  Stream(Stream&&) = default;  ///< Not while anything is under way.
+  Stream& operator=(Stream&&) = delete;
+  ~Stream() = default;
+
+  /// Of a connected socket.  Neither has a time limit: close() ends it.
+  void seal_as_client(const tls::Trust& trust, const std::string& host, Sealed done);
+  void seal_as_server(const tls::Identity& identity, Sealed done);
+  [[nodiscard]] bool sealed() const { return secret_ != nullptr; }
+
+  [[nodiscard]] executor_type get_executor() { return socket().get_executor(); }
+  /// Bytes go through read and write only, once it is sealed.
+  [[nodiscard]] Socket& socket();
+
+  template <class Buffers, class Handler>
+  void async_read_some(const Buffers& buffers, Handler&& handler) {
+    if (!sealed()) {
+      socket_.async_read_some(buffers, std::forward<Handler>(handler));
+      return;
+    }
+    asio::mutable_buffer room;
+    for (auto at = asio::buffer_sequence_begin(buffers); at != asio::buffer_sequence_end(buffers);
+         ++at) {
+      if (room.size() == 0) room = *at;
+    }
+    read_sealed(room, erased(std::forward<Handler>(handler)));
+  }
+
+  template <class Buffers, class Handler>
+  void async_write_some(const Buffers& buffers, Handler&& handler) {
+    if (!sealed()) {
+      socket_.async_write_some(buffers, std::forward<Handler>(handler));
+      return;
+    }
+    std::string said;
+    for (auto at = asio::buffer_sequence_begin(buffers); at != asio::buffer_sequence_end(buffers);
+         ++at) {
+      const asio::const_buffer part(*at);
+      said.append(static_cast<const char*>(part.data()),
+                  std::min(part.size(), kMostAtOnce - said.size()));
+    }
+    write_sealed(said, erased(std::forward<Handler>(handler)));
+  }
+
+  /// Sends all of it at once or returns false; then close() it.  Not while a write is under way.
+  [[nodiscard]] bool say_now(std::string_view said);
+  /// Says that nothing more comes; what comes in can still be read.
+  error_code end_saying();
+  /// Cancels what is under way; afterwards it is unsealed and may be connected again.
+  void close();
+
+ private:
+  struct Secret;
+  static constexpr std::size_t kMostAtOnce = 64 * 1024;
+
+  /// Handlers of composed operations can be moved only.
+  template <class Handler>
+  static Done erased(Handler&& handler) {
+    auto kept = std::make_shared<std::decay_t<Handler>>(std::forward<Handler>(handler));
+    return [kept](error_code failed, std::size_t size) { std::move (*kept)(failed, size); };
+  }
+  void read_sealed(asio::mutable_buffer room, Done done);
+  void write_sealed(std::string_view said, Done done);
+
+  Socket socket_;                   ///< Closed once it is sealed.
+  std::shared_ptr<Secret> secret_;  ///< Shared with what is under way.
+};
+
+}  // namespace chorus::net
