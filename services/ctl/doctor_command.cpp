@@ -34,6 +34,7 @@ void examine(const std::string& kind, const std::string& file, Findings& all) {
   }
   all.push_back(health_finding(*service));
   all.push_back(token_finding(*service));
+  append(all, certificate_findings(*service));
   append(all, disk_findings(*service));
   append(all, sensor_findings(*service));
 }

@@ -4,16 +4,21 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "common/base/file.h"
 #include "common/base/json.h"
 #include "common/base/version.h"
 #include "common/http/client.h"
 #include "common/http/status.h"
+#include "common/tls/certificate.h"
+#include "common/tls/credentials.h"
 #include "fusion-server/client/service_client.h"
 
 namespace chorus::ctl {
@@ -25,15 +30,18 @@ constexpr double kLeastFree = 1024.0;          // [MB]: half an hour of six sens
 constexpr double kBytesPerMb = 1e6;
 constexpr double kNsPerMs = 1e6;
 
+/// `trust`: of an https:// service; none: client::authorities().
 Result<http::ClientResponse> ask(const std::string& base, const std::string& path,
-                                 const std::string& token) {
+                                 const std::string& token,
+                                 const std::optional<tls::Trust>& trust = {}) {
   const auto url = http::parse_url(base);
   if (!url) return pass(url);
   http::ClientRequest request;
   request.target = url->target + (url->target.ends_with('/') ? "" : "/") + path;
   request.headers = {{"Accept", "application/json, text/plain;q=0.5"}};
   if (!token.empty()) request.headers.emplace_back("Authorization", "Bearer " + token);
-  return http::fetch(*url, request, kBrief);
+  if (trust) return http::fetch(*url, request, kBrief, *trust);
+  return client::fetch_trusted(*url, request, kBrief);
 }
 
 /// The words of a problem document; without one, the bare status.
@@ -52,6 +60,13 @@ std::string existing(std::filesystem::path folder) {
   while (folder.has_relative_path() && !std::filesystem::exists(folder, ignored))
     folder = folder.parent_path();
   return folder.empty() ? "." : folder.string();
+}
+
+Result<tls::CertificateFacts> facts_in(const std::string& file) {
+  constexpr std::uintmax_t kMaxBytes = 1u << 20;
+  const auto text = read_file(file, kMaxBytes);
+  if (!text) return pass(text);
+  return tls::facts_of(*text);
 }
 
 Finding folder_finding(const std::string& what, const std::string& folder) {
@@ -92,7 +107,7 @@ ClockDifference clock_difference(const http::ClientResponse& answer) {
 }
 
 Finding of_answering(const std::string& subject, const std::string& url, const std::string& token,
-                     const http::ClientResponse& clock) {
+                     const http::ClientResponse& clock, const tls::Trust& trust) {
   const auto [difference, uncertainty] = clock_difference(clock);
   if (std::abs(difference) - uncertainty > kMostClockDifference) {
     return {false, subject,
@@ -100,7 +115,7 @@ Finding of_answering(const std::string& subject, const std::string& url, const s
                         difference > 0 ? "ahead of" : "behind"),
             "let chrony on both hosts follow the same server (docs/guide/workshop.md)"};
   }
-  const auto metrics = ask(url, "metrics", token);
+  const auto metrics = ask(url, "metrics", token, trust);
   const std::string theirs = metrics ? version_in(metrics->body) : "";
   if (!theirs.empty() && theirs != version()) {
     return {false, subject, fmt::format("runs version {}, and this is {}", theirs, version()),
@@ -109,23 +124,29 @@ Finding of_answering(const std::string& subject, const std::string& url, const s
   return {true, subject, fmt::format("answers at {}, clock {:+.1f} ms", url, difference)};
 }
 
-Finding sensor_finding(const nlohmann::json& sensor) {
+Finding unreached(const std::string& subject, const Error& error) {
+  // A certificate that is refused says what to do itself.
+  if (error.message.find("certificate") != std::string::npos)
+    return {false, subject, to_string(error),
+            "chorus doctor on that host looks at its certificate"};
+  return {false, subject, to_string(error),
+          "is chorus-sensor running there (systemctl status chorus-sensor), does it listen on "
+          "the network (http.address), does a firewall let its port through?"};
+}
+
+Finding sensor_finding(const nlohmann::json& sensor, const tls::Trust& trust) {
   const std::string subject = "sensor " + text_in(sensor, "id");
   const std::string url = text_in(sensor, "url");
   const std::string token = text_in(sensor, "token");
-  const auto clock = ask(url, "clock", token);
-  if (!clock) {
-    return {false, subject, to_string(clock.error()),
-            "is chorus-sensor running there (systemctl status chorus-sensor), does it listen on "
-            "the network (http.address), does a firewall let its port through?"};
-  }
+  const auto clock = ask(url, "clock", token, trust);
+  if (!clock) return unreached(subject, clock.error());
   if (clock->status == http::status::kUnauthorized) {
     return {false, subject, "does not take our token",
             "copy one of its http.tokens (role read) to \"token\" of this sensor, and reload"};
   }
   if (clock->status != http::status::kOk)
     return {false, subject, words_of(*clock), "ask chorus doctor on that host"};
-  return of_answering(subject, url, token, *clock);
+  return of_answering(subject, url, token, *clock, trust);
 }
 
 }  // namespace
@@ -139,8 +160,16 @@ std::uint16_t ExaminedService::port() const {
 std::string ExaminedService::url() const {
   std::string address = text_in(client::part_at(config, "http"), "address");
   if (address.empty() || address == "0.0.0.0" || address == "::") address = "127.0.0.1";
+  const auto facts = facts_in(certificate());
+  if (facts && !facts->names.empty() &&
+      std::ranges::find(facts->names, address) == facts->names.end())
+    address = facts->names.front();
   if (address.find(':') != std::string::npos) address = "[" + address + "]";
-  return fmt::format("http://{}:{}/", address, port());
+  return fmt::format("{}://{}:{}/", certificate().empty() ? "http" : "https", address, port());
+}
+
+std::string ExaminedService::certificate() const {
+  return text_in(client::part_at(client::part_at(config, "http"), "tls"), "certificate");
 }
 
 std::string ExaminedService::read_token() const {
@@ -176,6 +205,9 @@ Finding clock_finding(const NtpStatus& clock) {
 Finding health_finding(const ExaminedService& service) {
   const std::string subject = "chorus-" + service.kind;
   const auto answer = ask(service.url(), "healthz", "");
+  if (!answer && answer.error().message.find("certificate") != std::string::npos)
+    return {false, subject, to_string(answer.error()),
+            "does this host have the ca.crt of its authority in /etc/chorus/tls?"};
   if (!answer) {
     return {
         false, subject, "does not answer at " + service.url(),
@@ -201,6 +233,28 @@ Finding token_finding(const ExaminedService& service) {
                       service.kind)};
 }
 
+Findings certificate_findings(const ExaminedService& service) {
+  constexpr std::chrono::days kEarly{30};
+  const std::string file = service.certificate();
+  if (file.empty()) return {};
+  const std::string subject = "certificate " + file;
+  const std::string advice =
+      "chorus init certificate NAME... --renew where the authority is, copy it here, then: "
+      "systemctl reload chorus-" +
+      service.kind;
+  const auto facts = facts_in(file);
+  if (!facts) return {{false, subject, facts.error().message, advice}};
+  const auto now = std::chrono::system_clock::now();
+  const std::string until = tls::date_text(facts->not_after);
+  if (now > facts->not_after) return {{false, subject, "has expired on " + until, advice}};
+  if (now < facts->not_before)
+    return {{false, subject, "is not good before " + tls::date_text(facts->not_before),
+             "set the clock of this host"}};
+  if (now + kEarly > facts->not_after) return {{false, subject, "expires on " + until, advice}};
+  return {
+      {true, subject, fmt::format("good until {}, for {}", until, fmt::join(facts->names, ", "))}};
+}
+
 Findings disk_findings(const ExaminedService& service) {
   Findings all;
   const std::string recordings = text_in(client::part_at(service.config, "recording"), "folder");
@@ -213,8 +267,11 @@ Findings disk_findings(const ExaminedService& service) {
 Findings sensor_findings(const ExaminedService& service) {
   Findings all;
   if (service.kind != "fusion") return all;
+  const std::string file = text_in(client::part_at(service.config, "poll"), "ca");
+  const auto trust = tls::Trust::load(file);
+  if (!trust) all.push_back({false, "poll.ca", to_string(trust.error()), "mend poll.ca"});
   for (const auto& sensor : client::part_at(service.config, "sensors"))
-    all.push_back(sensor_finding(sensor));
+    all.push_back(sensor_finding(sensor, trust.value_or(tls::Trust())));
   if (all.empty())
     all.push_back({false, "sensors", "none is named in " + service.file,
                    "chorus init fusion --sensor ID=URL,TOKEN"});

@@ -9,12 +9,14 @@ namespace {
 
 constexpr std::array kHostCommands{
     Command{
-        "init", "Writes the configuration of a service, with comments and tokens",
+        "init", "Writes the configuration of a service, or a certificate for it",
         "Examples:\n"
         "  chorus init sensor --id s1 --device bridge\n"
         "  chorus init fusion --sensor s1=http://10.0.0.11:8081/,TOKEN --output vrpn=10.0.0.20\n"
         "  chorus init sensor --ask               asks for what matters\n"
         "  chorus init fusion --out -             only shows it\n"
+        "  chorus init ca                         an authority for the hosts of a workshop\n"
+        "  chorus init certificate s1.local 10.0.0.11 --out s1   for one of them, into folder s1\n"
         "An existing file is never overwritten.  Then: systemctl restart chorus-SERVICE.",
         &add_init},
     Command{"doctor", "Checks this host: clock, services, tokens, disk, and the way to each sensor",

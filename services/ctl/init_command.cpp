@@ -1,14 +1,10 @@
 // chorus init: writes the configuration of a service, from options or from answers to questions.
-#include <fcntl.h>
-#include <grp.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cerrno>
-#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -18,6 +14,8 @@
 
 #include "common/base/strong_id.h"
 #include "services/ctl/command.h"
+#include "services/ctl/new_file.h"
+#include "services/ctl/written_certificates.h"
 #include "services/ctl/written_config.h"
 
 namespace chorus::ctl {
@@ -37,6 +35,10 @@ struct InitArguments {
   std::vector<std::string> sensors;
   std::string sensors_from;
   std::vector<std::string> outputs;
+  std::string tls;  ///< Folder; see tls_folder.
+  bool no_tls = false;
+  AuthorityWishes authority;
+  CertificateWishes certificate;
 };
 
 /// The name of this host as an id; characters that an id does not allow become "-".
@@ -84,9 +86,19 @@ bool is_loopback(const std::string& address) {
   return address.starts_with("127.") || address == "::1" || address == "localhost";
 }
 
+/// Where this host's certificate is; empty: without TLS.
+std::string tls_folder(const InitArguments& arguments) {
+  if (arguments.no_tls) return {};
+  if (!arguments.tls.empty()) return arguments.tls;
+  std::error_code hidden;
+  const bool made = std::filesystem::exists(std::string(kTlsFolder) + "/host.crt", hidden);
+  return made ? kTlsFolder : "";
+}
+
 ServiceWishes service_wishes(const InitArguments& arguments, std::uint16_t port) {
   ServiceWishes wishes{
       arguments.address, arguments.port == 0 ? port : arguments.port, arguments.token, {}};
+  wishes.tls = tls_folder(arguments);
   if (is_loopback(wishes.address)) return wishes;
   if (wishes.token.empty()) wishes.token = new_token();
   wishes.read_token = new_token();
@@ -95,29 +107,7 @@ ServiceWishes service_wishes(const InitArguments& arguments, std::uint16_t port)
 
 /// Writes a new file, readable by the owner and the service's group; never overwrites one.
 Result<void> write_new(const std::string& file, const std::string& text) {
-  if (file == "-") {
-    std::cout << text;
-    return {};
-  }
-  constexpr mode_t kOwnerAndGroup = 0640;
-  const int made = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kOwnerAndGroup);
-  if (made < 0 && errno == EEXIST) {
-    return fail(ErrorCode::InvalidArgument, file,
-                "exists and is not overwritten: edit it, move it away, or give --out FILE");
-  }
-  if (made < 0) {
-    return fail(ErrorCode::Io, file,
-                std::string("cannot be written: ") + std::strerror(errno) +
-                    " (as root, or with --out FILE)");
-  }
-  const group* const services = ::getgrnam("chorus");
-  const bool handed =
-      services == nullptr || ::geteuid() != 0 || ::fchown(made, 0, services->gr_gid) == 0;
-  const bool written = ::write(made, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-  ::close(made);
-  if (handed && written) return {};
-  ::unlink(file.c_str());
-  return fail(ErrorCode::Io, file, std::string("cannot be written: ") + std::strerror(errno));
+  return write_file(file, text, Readers::Services);
 }
 
 std::string shown_host() {
@@ -129,8 +119,9 @@ void tell_next(const InitArguments& arguments, const ServiceWishes& wishes) {
   const std::string& service = arguments.service;
   std::cerr << fmt::format("{} written.  Next:\n  systemctl restart chorus-{}\n", arguments.out,
                            service);
-  const std::string url = fmt::format(
-      "http://{}:{}/", is_loopback(wishes.address) ? "127.0.0.1" : shown_host(), wishes.port);
+  const std::string url =
+      fmt::format("{}://{}:{}/", wishes.tls.empty() ? "http" : "https",
+                  is_loopback(wishes.address) ? "127.0.0.1" : shown_host(), wishes.port);
   if (service == "sensor") {
     std::cerr << fmt::format("On the fusion host:\n  chorus init fusion --sensor {}={}{}{}\n",
                              arguments.sensor.id, url, wishes.read_token.empty() ? "" : ",",
@@ -188,7 +179,36 @@ Result<ServiceWishes> write_fusion(InitArguments& arguments) {
   return wishes.service;
 }
 
+Result<int> run_init_ca(const InitArguments& arguments) {
+  AuthorityWishes wishes = arguments.authority;
+  if (!arguments.out.empty()) wishes.folder = arguments.out;
+  if (auto ok = write_authority(wishes); !ok) return pass(ok);
+  std::cerr << fmt::format(
+      "{0}/ca.crt and {0}/ca.key written.  Who has ca.key can stand in for every host: keep it "
+      "here.\nGive ca.crt to browsers and programs.  Next, for each host:\n  chorus init "
+      "certificate HOST ADDRESS\n",
+      wishes.folder);
+  return kExitOk;
+}
+
+Result<int> run_init_certificate(const InitArguments& arguments) {
+  CertificateWishes wishes = arguments.certificate;
+  if (!arguments.out.empty()) wishes.folder = arguments.out;
+  if (auto ok = write_certificate(wishes); !ok) return pass(ok);
+  std::cerr << fmt::format(
+      "{0}/host.crt, host.key and ca.crt written.  Where they are in {1}, chorus init makes "
+      "services that use them;\na service that has them: systemctl reload chorus-SERVICE.\n",
+      wishes.folder, kTlsFolder);
+  return kExitOk;
+}
+
 Result<int> run_init(InitArguments& arguments) {
+  if (arguments.service == "ca") return run_init_ca(arguments);
+  if (arguments.service == "certificate") return run_init_certificate(arguments);
+  if (!arguments.certificate.hosts.empty()) {
+    return fail(ErrorCode::InvalidArgument, arguments.certificate.hosts.front(),
+                "is not understood after \"" + arguments.service + "\"; see chorus init --help");
+  }
   if (arguments.out.empty()) arguments.out = "/etc/chorus/" + arguments.service + ".json";
   if (arguments.sensor.id.empty()) arguments.sensor.id = host_id();
   if (arguments.ask) ask_for(arguments);
@@ -199,15 +219,40 @@ Result<int> run_init(InitArguments& arguments) {
   return kExitOk;
 }
 
+void add_tls_options(CLI::App& options, InitArguments& arguments) {
+  options
+      .add_option(
+          "--tls", arguments.tls,
+          "Folder of host.crt, host.key and ca.crt; default: /etc/chorus/tls if it has them")
+      ->excludes(options.add_flag("--no-tls", arguments.no_tls, "Speak http without TLS"));
+  CertificateWishes& certificate = arguments.certificate;
+  options.add_option("hosts", certificate.hosts,
+                     "certificate: names and addresses; default: this host's name");
+  options.add_option("--authority", certificate.authority, "certificate: the folder of `init ca`")
+      ->capture_default_str();
+  options.add_flag("--renew", certificate.renew, "certificate: replaces the one that is there");
+  options.add_option("--name", arguments.authority.name, "ca: what browsers call it");
+  constexpr int kLongest = 36500;
+  options
+      .add_option_function<int>(
+          "--days",
+          [&arguments](int days) { arguments.authority.days = arguments.certificate.days = days; },
+          "ca, certificate: good for so long; default: 3650, 800")
+      ->check(CLI::Range(1, kLongest));
+}
+
 }  // namespace
 
 Run add_init(CLI::App& options) {
   const auto arguments = std::make_shared<InitArguments>();
-  options.add_option("service", arguments->service, "sensor or fusion")
+  options
+      .add_option("service", arguments->service,
+                  "sensor, fusion, ca (an authority of one's own) or certificate")
       ->required()
-      ->check(CLI::IsMember({"sensor", "fusion"}));
+      ->check(CLI::IsMember({"sensor", "fusion", "ca", "certificate"}));
   options.add_option("--out", arguments->out,
-                     "File; default: /etc/chorus/SERVICE.json; -: standard output");
+                     "File; default: /etc/chorus/SERVICE.json; -: standard output; ca, "
+                     "certificate: a folder, default /etc/chorus/ca, /etc/chorus/tls");
   options.add_flag("--ask", arguments->ask, "Ask for what matters");
   options.add_option("--listen", arguments->address, "Address; 127.0.0.1: this host alone")
       ->capture_default_str();
@@ -239,6 +284,7 @@ Run add_init(CLI::App& options) {
                   "fusion: vrpn=CLIENT,..., dtrack=HOST:PORT, ...; may be repeated")
       ->take_all()
       ->allow_extra_args(false);
+  add_tls_options(options, *arguments);
   return [arguments] { return run_init(*arguments); };
 }
 

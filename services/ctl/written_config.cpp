@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "common/base/parse.h"
 #include "common/base/strong_id.h"
 #include "common/http/client.h"
 
@@ -81,15 +82,34 @@ std::string tokens_of(const ServiceWishes& wishes) {
       fmt::join(rows, ","));
 }
 
+std::string tls_of(const std::string& folder) {
+  if (folder.empty()) return {};
+  return fmt::format(
+      ",\n"
+      "    // https only.  A reload takes a renewed certificate over (chorus init certificate "
+      "--renew).\n"
+      "    \"tls\": {{ \"certificate\": {}, \"key\": {} }}",
+      quoted(folder + "/host.crt"), quoted(folder + "/host.key"));
+}
+
 std::string http_of(const ServiceWishes& wishes) {
   return fmt::format(
       "  \"http\": {{\n"
       "    // Where it listens: 127.0.0.1 is this host alone, 0.0.0.0 the whole network (then with "
       "tokens).\n"
       "    \"address\": {},\n"
-      "    \"port\": {}{}\n"
+      "    \"port\": {}{}{}\n"
       "  }},\n\n",
-      quoted(wishes.address), wishes.port, tokens_of(wishes));
+      quoted(wishes.address), wishes.port, tls_of(wishes.tls), tokens_of(wishes));
+}
+
+/// s1 stands at the first place of a ring of six, s2 at the second: simulated sensors of one
+/// workshop look at the same person from different sides.
+std::size_t ring_place_of(const std::string& id) {
+  constexpr std::size_t kPlaces = 6;
+  const std::size_t digits = id.find_last_not_of("0123456789") + 1;
+  const auto number = parse_number<std::size_t>(std::string_view(id).substr(digits));
+  return (number.value_or(1) + kPlaces - 1) % kPlaces;
 }
 
 std::string device_of(const SensorWishes& wishes) {
@@ -109,6 +129,12 @@ std::string device_of(const SensorWishes& wishes) {
         "    // A webcam (chorus camera list shows them), a stream (rtsp://...) or a video file.\n"
         "    \"camera\": { \"source\": " +
         quoted(wishes.camera) + " }";
+  } else if (wishes.device == "simulated") {
+    out += fmt::format(
+        ",\n"
+        "    // Where it stands among six around the room.\n"
+        "    \"simulated\": {{ \"ring\": {{ \"index\": {} }} }}",
+        ring_place_of(wishes.id));
   } else if (wishes.device == "replay") {
     out += ",\n    \"replay\": { \"recording\": " + quoted(wishes.recording) + " }";
   }
@@ -127,6 +153,16 @@ std::string sensors_of(const std::vector<PolledWish>& sensors) {
       "  // The sensors to read; \"token\" is one of the sensor's own, with role read or more.\n"
       "  \"sensors\": [{}\n  ],\n\n",
       fmt::join(rows, ","));
+}
+
+std::string poll_of(const FusionWishes& wishes) {
+  const bool secure = std::any_of(wishes.sensors.begin(), wishes.sensors.end(),
+                                  [](const auto& s) { return s.url.starts_with("https:"); });
+  if (!secure || wishes.service.tls.empty()) return {};
+  return fmt::format(
+      "  // Who vouches for the sensors.\n"
+      "  \"poll\": {{ \"ca\": {} }},\n\n",
+      quoted(wishes.service.tls + "/ca.crt"));
 }
 
 std::string output_text(const OutputWish& wish) {
@@ -219,7 +255,7 @@ std::string sensor_config(const SensorWishes& wishes) {
 
 std::string fusion_config(const FusionWishes& wishes) {
   return heading("chorus-fusion", "fusion.json") + "{\n" + http_of(wishes.service) +
-         sensors_of(wishes.sensors) + outputs_of(wishes.outputs) +
+         sensors_of(wishes.sensors) + poll_of(wishes) + outputs_of(wishes.outputs) +
          "  // POST /recordings/ starts a recording here. (restart)\n"
          "  \"recording\": { \"folder\": \"/var/lib/chorus/fusion/recordings\" },\n\n"
          "  // Where the sensors stand is kept here over restarts. (restart)\n"

@@ -17,6 +17,7 @@ struct ServiceWishes {
   std::uint16_t port = 0;
   std::string token;       ///< Role control; empty: none.
   std::string read_token;  ///< Role read, for clients that only read; empty: none.
+  std::string tls = {};    ///< Folder of host.crt, host.key, ca.crt; empty: without TLS.
 };
 
 struct SensorWishes {

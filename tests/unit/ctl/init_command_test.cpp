@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 
 #include "common/service/config_source.h"
+#include "common/tls/certificate.h"
+#include "common/tls/credentials.h"
 #include "fusion-server/server/fusion_settings.h"
 #include "services/ctl/written_config.h"
 #include "tests/support/temporary_folder.h"
@@ -122,6 +124,85 @@ TEST(Init, SaysWhatIsWrongWithAWish) {
   EXPECT_THAT(complaint({"sensor", "--device", "kinect"}), HasSubstr("none of bridge"));
   EXPECT_THAT(complaint({"sensor", "--device", "replay"}), HasSubstr("needs the file"));
   EXPECT_THAT(complaint({"sensor", "--id", "a b"}), HasSubstr("a b"));
+}
+
+TEST(Init, SimulatedSensorsOfOneWorkshopStandInDifferentPlaces) {
+  const auto place = [](const std::string& id) {
+    return run({"sensor", "--id", id, "--device", "simulated", "--out", "-"}).out;
+  };
+  EXPECT_THAT(place("s1"), HasSubstr("\"index\": 0"));
+  EXPECT_THAT(place("s3"), HasSubstr("\"index\": 2"));
+  EXPECT_THAT(place("corner-7"), HasSubstr("\"index\": 0"));
+  EXPECT_THAT(place("window"), HasSubstr("\"index\": 0"));
+}
+
+class InitTls : public ::testing::Test {
+ protected:
+  [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
+  [[nodiscard]] static unsigned mode_of(const std::string& file) {
+    return static_cast<unsigned>(std::filesystem::status(file).permissions());
+  }
+
+  testing::TemporaryFolder folder_;
+};
+
+TEST_F(InitTls, AnAuthorityVouchesForAHost) {
+  ASSERT_EQ(run({"ca", "--out", at("ca"), "--name", "Hall 3"}).code, kExitOk);
+  EXPECT_EQ(mode_of(at("ca/ca.key")), 0600u);
+  EXPECT_EQ(mode_of(at("ca")), 0700u);
+  const Outcome made = run({"certificate", "s1.local", "10.0.0.11", "--authority", at("ca"),
+                            "--out", at("s1"), "--days", "90"});
+  ASSERT_EQ(made.code, kExitOk) << made.error;
+  EXPECT_EQ(mode_of(at("s1/host.key")), 0640u);
+  const auto facts = tls::facts_of(testing::bytes_of(at("s1/host.crt")));
+  ASSERT_TRUE(facts);
+  EXPECT_EQ(facts->issuer, "Hall 3");
+  EXPECT_THAT(facts->names,
+              ::testing::ElementsAre("s1.local", "10.0.0.11", "localhost", "127.0.0.1", "::1"));
+  EXPECT_TRUE(tls::Identity::load(at("s1/host.crt"), at("s1/host.key")));
+  EXPECT_EQ(testing::bytes_of(at("s1/ca.crt")), testing::bytes_of(at("ca/ca.crt")));
+}
+
+TEST_F(InitTls, NothingIsOverwrittenUnlessRenewed) {
+  ASSERT_EQ(run({"ca", "--out", at("ca")}).code, kExitOk);
+  const std::string authority = testing::bytes_of(at("ca/ca.key"));
+  EXPECT_EQ(run({"ca", "--out", at("ca")}).code, kExitFailed);
+  EXPECT_EQ(testing::bytes_of(at("ca/ca.key")), authority);
+  const std::vector<std::string> again{"certificate", "a",     "--authority",
+                                       at("ca"),      "--out", at("t")};
+  ASSERT_EQ(run(again).code, kExitOk);
+  const std::string first = testing::bytes_of(at("t/host.crt"));
+  const Outcome refused = run(again);
+  EXPECT_EQ(refused.code, kExitFailed);
+  EXPECT_THAT(refused.error, HasSubstr("--renew"));
+  EXPECT_EQ(testing::bytes_of(at("t/host.crt")), first);
+  std::vector<std::string> renewed = again;
+  renewed.emplace_back("--renew");
+  EXPECT_EQ(run(renewed).code, kExitOk);
+  EXPECT_NE(testing::bytes_of(at("t/host.crt")), first);
+  EXPECT_TRUE(tls::Identity::load(at("t/host.crt"), at("t/host.key")));
+}
+
+TEST_F(InitTls, ServicesUseWhatIsThere) {
+  ASSERT_EQ(run({"ca", "--out", at("ca")}).code, kExitOk);
+  ASSERT_EQ(run({"certificate", "a", "--authority", at("ca"), "--out", at("t")}).code, kExitOk);
+  const Outcome made =
+      run({"fusion", "--out", "-", "--tls", at("t"), "--sensor", "s1=https://10.0.0.11:8081/"});
+  ASSERT_EQ(made.code, kExitOk) << made.error;
+  const server::FusionSettings settings = settings_of(made.out);
+  ASSERT_TRUE(settings.live.identity);
+  EXPECT_TRUE(settings.at_start.secure);
+  EXPECT_EQ(settings.live.sensors[0].trust, tls::Trust::load(at("t/ca.crt")).value());
+  EXPECT_FALSE(settings_of(run({"fusion", "--out", "-", "--no-tls"}).out).live.identity);
+}
+
+TEST_F(InitTls, MistakesSayWhatToDo) {
+  EXPECT_THAT(run({"certificate", "a", "--authority", at("no"), "--out", at("t")}).error,
+              HasSubstr("--authority"));
+  ASSERT_EQ(run({"ca", "--out", at("ca")}).code, kExitOk);
+  EXPECT_THAT(run({"certificate", "a b", "--authority", at("ca"), "--out", at("t")}).error,
+              HasSubstr("neither a host's name"));
+  EXPECT_THAT(run({"sensor", "stray", "--out", "-"}).error, HasSubstr("stray"));
 }
 
 }  // namespace
