@@ -3,10 +3,12 @@
 #
 #   deploy/workshop.sh INVENTORY lay-out    packages, time, configurations, services; again: updates what is there
 #   deploy/workshop.sh INVENTORY check      chorus doctor on every host
+#   deploy/workshop.sh INVENTORY renew      new certificates on every host, taken over without a restart
 #   deploy/workshop.sh INVENTORY remove     the packages; configuration and state stay
 #   deploy/workshop.sh INVENTORY purge      everything
 #
 # INVENTORY is JSON: docs/guide/workshop.md shows one.  You need ssh as root to each host, without a password being asked.
+# The fusion host is the authority of the certificates; its ca.crt is put beside INVENTORY, for browsers and programs.
 # CHORUS_SSH replaces `ssh`: it gets the host and a command, as ssh does.
 set -euo pipefail
 
@@ -74,7 +76,7 @@ while read -r role rest; do
     packages) packages=$rest ;;
   esac
 done <<<"$lines"
-fusion_address=$(printf '%s\n' "${hosts[@]}" | awk '$1 == "fusion" {print $3}')
+read -r fusion_host fusion_address < <(printf '%s\n' "${hosts[@]}" | awk '$1 == "fusion" {print $2, $3}')
 
 reach() { on "$1" true </dev/null || fail "$1 does not let us in: try ssh $1 true, and copy your key there (ssh-copy-id)"; }
 
@@ -96,27 +98,53 @@ keep_time() {  # ROLE SSH
   fi
 }
 
-# The token of role read in the configuration that comes by standard input; empty when there is none.
-read_token() {
+# How to read the sensor at this address, by its configuration, which comes by standard input: "https://10.0.0.11:8081/,TOKEN".
+way_to() {  # ADDRESS
   python3 -c '
 import json, re, sys
 text = re.sub(r"(\"(?:\\.|[^\"\\])*\")|//[^\n]*", lambda match: match.group(1) or "", sys.stdin.read())
-tokens = json.loads(text).get("http", {}).get("tokens", [])
-print(next((t["token"] for t in tokens if t.get("role") == "read"), ""))'
+http = json.loads(text).get("http", {})
+token = next((t["token"] for t in http.get("tokens", []) if t.get("role") == "read"), "")
+host = f"[{sys.argv[1]}]" if ":" in sys.argv[1] else sys.argv[1]
+scheme = "https" if http.get("tls") else "http"
+port = http.get("port", 8081)
+print(f"{scheme}://{host}:{port}/" + ("," + token if token else ""))' "$1"
+}
+
+# The authority is made once, on the fusion host, and its key stays there.
+found_authority() {
+  on "$fusion_host" "test -e /etc/chorus/ca/ca.crt || chorus init ca 2>/dev/null" </dev/null
+  on "$fusion_host" "cat /etc/chorus/ca/ca.crt" </dev/null > "$(dirname "$inventory")/ca.crt"
+}
+
+# A certificate for the name and the address of a host.  Its key goes through our pipe, never into a file of ours.
+certify() {  # SSH ADDRESS [--renew]
+  local name
+  if [[ -z "${3:-}" ]] && on "$1" "test -e /etc/chorus/tls/host.crt" </dev/null; then return; fi
+  name=$(on "$1" hostname </dev/null)
+  [[ $name =~ ^[A-Za-z0-9_.-]+$ ]] || name=$2
+  on "$fusion_host" "t=\$(mktemp -d) && chorus init certificate $name $name.local $2 --out \$t/tls 2>/dev/null && tar -C \$t -cf - tls; rm -rf \$t" </dev/null |
+    on "$1" "tar -C /etc/chorus --no-same-owner -xf - && chown -R root:chorus /etc/chorus/tls && chmod 750 /etc/chorus/tls"
 }
 
 lay_out_sensor() {  # SSH ADDRESS ID DEVICE
   install_on "$1" chorus-sensor chrony
   keep_time sensor "$1"
+  certify "$1" "$2"
   on "$1" "test -e /etc/chorus/sensor.json || chorus init sensor --id $3 --device $4 2>/dev/null" </dev/null
   on "$1" "systemctl restart chorus-sensor" </dev/null
-  local token; token=$(on "$1" "cat /etc/chorus/sensor.json" </dev/null | read_token)
-  polled+=("$3=http://$2:8081/${token:+,$token}")
+  polled+=("$3=$(on "$1" "cat /etc/chorus/sensor.json" </dev/null | way_to "$2")")
+}
+
+# What the sensor hosts need of it comes first: the time and the certificates.
+lay_out_authority() {  # SSH ADDRESS
+  install_on "$1" chorus-fusion chrony
+  keep_time fusion "$1"
+  found_authority
+  certify "$1" "$2"
 }
 
 lay_out_fusion() {  # SSH
-  install_on "$1" chorus-fusion chrony
-  keep_time fusion "$1"
   local wishes=''
   (( ${#outputs[@]} == 0 )) || wishes=$(printf ' --output %s' "${outputs[@]}")
   # Tokens travel by standard input: a command line is seen by everybody on that host.
@@ -131,11 +159,28 @@ lay_out() {
   local role host address id device
   for entry in "${hosts[@]}"; do
     read -r role host address id device <<<"$entry"
-    step "$role $host"
     reach "$host"
+  done
+  step "authority $fusion_host"
+  lay_out_authority "$fusion_host" "$fusion_address"
+  for entry in "${hosts[@]}"; do
+    read -r role host address id device <<<"$entry"
+    step "$role $host"
     if [[ $role == sensor ]]; then lay_out_sensor "$host" "$address" "$id" "$device"; else lay_out_fusion "$host"; fi
   done
   step "laid out; next: $0 $inventory check, then walk through the room (chorus register on the fusion host)"
+}
+
+renew() {
+  local role host address rest
+  found_authority
+  for entry in "${hosts[@]}"; do
+    read -r role host address rest <<<"$entry"
+    step "$role $host"
+    certify "$host" "$address" --renew
+    on "$host" "systemctl reload chorus-$role" </dev/null
+  done
+  step "new certificates on ${#hosts[@]} hosts"
 }
 
 check() {
@@ -161,6 +206,7 @@ take_away() {  # remove|purge
 case $task in
   lay-out) lay_out ;;
   check) check ;;
+  renew) renew ;;
   remove|purge) take_away "$task" ;;
   *) usage >&2; fail "unknown task $task" ;;
 esac

@@ -13,8 +13,13 @@ TOKEN = "0123456789abcdef"
 FAKE_SSH = """#!/bin/bash
 echo "$1 | $2" >> "$NOTES/commands"
 case $2 in
-  *"tar -C"*) tar -tf - > "$NOTES/sent.$1" ;;
-  "cat /etc/chorus/sensor.json") printf '// http://x\\n{"http": {"tokens": [{"token": "%s", "role": "read"}]}}' '""" + TOKEN + """' ;;
+  *"tar -C /var/tmp"*) tar -tf - > "$NOTES/sent.$1" ;;
+  "cat /etc/chorus/sensor.json") printf '// http://x\\n{"http": {"tls": {"key": "k"}, "tokens": [{"token": "%s", "role": "read"}]}}' '""" + TOKEN + """' ;;
+  *"test -e /etc/chorus/tls/host.crt") [[ "$1" == *has-one* ]] ;;
+  hostname) echo "name-of-${1#*@}" ;;
+  "cat /etc/chorus/ca/ca.crt") echo "AUTHORITY" ;;
+  *"chorus init certificate"*) echo "CERTIFICATE ${2#*certificate }" ;;
+  *"tar -C /etc/chorus --no-same-owner"*) cat > "$NOTES/certificate.$1" ;;
   *"sensors-from"*|*"conf.d/chorus.conf &&"*) cat >> "$NOTES/input.$1" ;;
   true) [[ "$1" != *away* ]] ;;
   "chorus doctor") [[ "$1" != *ill* ]] ;;
@@ -49,11 +54,11 @@ class Workshop(unittest.TestCase):
         file = self.folder / name
         return file.read_text() if file.exists() else ""
 
-    def test_lays_out_sensors_first_then_the_fusion_host(self):
+    def test_installs_the_authority_first_then_the_sensors(self):
         done = self.run_it("lay-out")
         self.assertEqual(done.returncode, 0, done.stderr)
         hosts = [line.split(" | ")[0] for line in self.noted("commands").splitlines() if "install.sh" in line]
-        self.assertEqual(hosts, ["root@10.0.0.11", "admin@host-2", "root@10.0.0.10"])
+        self.assertEqual(hosts, ["root@10.0.0.10", "root@10.0.0.11", "admin@host-2"])
         self.assertIn("install.sh", self.noted("sent.admin@host-2"))
         commands = self.noted("commands")
         self.assertIn("install.sh chorus-sensor chrony", commands)
@@ -64,8 +69,8 @@ class Workshop(unittest.TestCase):
     def test_the_fusion_host_gets_every_sensor_with_its_token_and_not_on_a_command_line(self):
         self.run_it("lay-out")
         given = self.noted("input.root@10.0.0.10")
-        self.assertIn(f"s1=http://10.0.0.11:8081/,{TOKEN}\n", given)
-        self.assertIn(f"s2=http://10.0.0.12:8081/,{TOKEN}\n", given)
+        self.assertIn(f"s1=https://10.0.0.11:8081/,{TOKEN}\n", given)
+        self.assertIn(f"s2=https://10.0.0.12:8081/,{TOKEN}\n", given)
         self.assertNotIn(TOKEN, self.noted("commands"))
 
     def test_sensor_hosts_follow_the_time_of_the_fusion_host(self):
@@ -86,6 +91,22 @@ class Workshop(unittest.TestCase):
         done = self.run_it("check", ill)
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("1 of 3 hosts are not well", done.stderr)
+
+    def test_every_host_gets_a_certificate_of_the_fusion_host(self):
+        self.run_it("lay-out")
+        self.assertEqual((self.folder / "ca.crt").read_text(), "AUTHORITY\n")
+        made = [line for line in self.noted("commands").splitlines() if "init certificate" in line]
+        self.assertEqual([line.split(" | ")[0] for line in made], ["root@10.0.0.10"] * 3)
+        self.assertIn("CERTIFICATE name-of-host-2 name-of-host-2.local 10.0.0.12 ", self.noted("certificate.admin@host-2"))
+        self.assertIn("|| chorus init ca", self.noted("commands"), "an authority that is there is kept")
+
+    def test_a_certificate_that_is_there_is_kept_until_it_is_renewed(self):
+        has = {**INVENTORY, "sensors": [{"id": "s1", "address": "10.0.0.11", "ssh": "root@has-one"}]}
+        self.run_it("lay-out", has)
+        self.assertEqual(self.noted("certificate.root@has-one"), "")
+        self.assertEqual(self.run_it("renew", has).returncode, 0)
+        self.assertIn("10.0.0.11", self.noted("certificate.root@has-one"))
+        self.assertIn("root@has-one | systemctl reload chorus-sensor", self.noted("commands"))
 
     def test_takes_everything_away(self):
         self.assertEqual(self.run_it("purge").returncode, 0)
