@@ -4,21 +4,14 @@
 #   tests/run.sh --sanitize address|thread [ctest arguments]
 #     the unit, integration and fusion-system tests instead, built with that sanitizer (presets asan and tsan)
 #   tests/run.sh --workshop
-#     instead: makes the packages, installs them into fresh Debian roots without network, and looks (as root, minutes)
+#     instead: makes the packages, installs them into fresh Debian roots without network, and looks; then five of these as hosts of a
+#     workshop, with networks of their own (as root, minutes)
 # CHORUS_JOBS=N limits the build (default: all cores, but no more than the memory can feed).
 # CHORUS_TARGETS="base.file_test ..." builds only these with --sanitize; then choose the same tests by -R.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 step() { printf '\n== %s\n' "$*"; }
-
-# The largest translation units (point clouds, sockets) take about 1.5 GB each.
-build_jobs() {
-  local by_memory=$(( $(awk '/^MemAvailable/ {print $2}' /proc/meminfo) / 1500000 ))
-  local cores; cores=$(nproc)
-  local jobs=$(( by_memory < cores ? by_memory : cores ))
-  echo $(( jobs < 1 ? 1 : jobs ))
-}
 
 # npm ci once per lock file: a second run finds the stamp and is quick.
 npm_packages() {
@@ -30,7 +23,9 @@ npm_packages() {
 
 if [ "${1:-}" = --workshop ]; then
   deploy/install-packages.sh build workshop
-  exec python3 -B tests/package/installed_root.py
+  python3 -B tests/package/installed_root.py
+  export CHORUS_PACKAGES=${CHORUS_PACKAGES:-$PWD/var/packages}
+  exec python3 -B tests/package/networked_workshop.py
 fi
 
 sanitizer=""
@@ -47,7 +42,7 @@ fi
 launcher=()
 export CCACHE_SLOPPINESS=pch_defines,time_macros  # else it keeps nothing that reads a precompiled header
 command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-jobs=${CHORUS_JOBS:-$(build_jobs)}
+jobs=${CHORUS_JOBS:-$(deploy/build-jobs.sh)}
 
 # A finding ends the test that met it.  Everything linked dynamically is not instrumented, so the thread sanitizer
 # is told not to look into what it cannot see (tests/tsan.supp).
