@@ -78,8 +78,8 @@ struct ServerCounters {
   std::uint64_t events_skipped = 0;  ///< Events that a slow reader of a stream did not get.
   std::uint64_t bytes_sent = 0;
   std::uint64_t downloads_open = 0;
-  std::uint64_t unauthorized = 0;     ///< Requests with a wrong token, or without one they need.
-  std::uint64_t closed_for_room = 0;  ///< Idle connections closed to make room for others.
+  std::uint64_t unauthorized = 0;       ///< Requests with a wrong token, or without one they need.
+  std::uint64_t closed_for_room = 0;    ///< Idle connections closed to make room for others.
   std::uint64_t handshakes_failed = 0;  ///< Of TLS: broken off, garbage, or the client objects.
   std::uint64_t connections_limit = 0;  ///< Most connections at once, given the descriptors.
 };

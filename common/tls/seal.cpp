@@ -119,7 +119,10 @@ std::string Seal::take_output() {
 
 Seal::Step Seal::handshake() {
   ERR_clear_error();
-  return step_of(SSL_do_handshake(ssl_.get()));
+  const Step step = step_of(SSL_do_handshake(ssl_.get()));
+  if (step != Step::Ended) return step;
+  failure_ = {ErrorCode::Unavailable, host_, "ended the TLS handshake without a reason"};
+  return Step::Failed;
 }
 
 Seal::Heard Seal::read(std::span<char> room) {

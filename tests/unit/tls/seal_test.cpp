@@ -150,6 +150,14 @@ TEST_F(SealTest, WhoSpeaksNoTlsIsTold) {
   EXPECT_THAT(client.failure().message, HasSubstr("http://"));
 }
 
+TEST_F(SealTest, AHandshakeThatIsEndedHasFailed) {
+  Seal client = Seal::of_client(workshop_.trust(), "localhost");
+  ASSERT_EQ(client.handshake(), Step::NeedsInput);
+  client.receive(std::string_view("\x15\x03\x03\x00\x02\x01\x00", 7));  // "I close"
+  EXPECT_EQ(client.handshake(), Step::Failed);
+  EXPECT_THAT(client.failure().message, HasSubstr("handshake"));
+}
+
 TEST_F(SealTest, GarbageFailsAndNothingElse) {
   std::minstd_rand random(7);
   Seal hello_of = Seal::of_client(workshop_.trust(), "localhost");
