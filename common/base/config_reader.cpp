@@ -19,11 +19,11 @@ namespace {
 using nlohmann::json;
 
 constexpr JsonLimits kLimits{.bytes = 1024 * 1024, .nesting = 16, .comments = true};
-constexpr std::size_t kMaxArrayLength = 4096;  ///< Also the largest index of --set.
-constexpr std::size_t kShownCharacters = 80;   ///< Of a foreign text quoted in our messages.
+constexpr std::size_t kMaxArrayLength = 4096;  ///< Also the largest array index that --set accepts.
+constexpr std::size_t kShownCharacters = 80;   ///< Of foreign text, quoted in our messages.
 constexpr double kMillisecondsPerSecond = 1e3;
 
-/// What is wrong with a text, with the key that is given twice.
+/// What is wrong with a text; names the key that was given twice, if any.
 std::string reason_of(const Error& error) {
   return error.context.empty() ? error.message : "'" + error.context + "': " + error.message;
 }
@@ -49,13 +49,13 @@ std::string range_text(double least, double most) {
   return "from " + log::number_text(least) + " to " + log::number_text(most);
 }
 
-/// A non-negative array index, or nothing.
+/// A non-negative array index, or none.
 std::optional<std::size_t> index_in(std::string_view part) {
   const auto index = parse_number<std::size_t>(part);
   return index && *index < kMaxArrayLength ? index : std::nullopt;
 }
 
-/// The place that a --set path names, created if missing; null when a value is in the way.
+/// The place that a --set path names, created if missing; null when another value blocks the path.
 json* place_at(json& root, std::string_view path) {
   json* at = &root;
   int depth = 0;
@@ -84,10 +84,10 @@ struct ConfigReader::Node {
   std::string path;  ///< "sensors.0"; empty at the root
   std::shared_ptr<std::vector<std::string>> problems;
   std::string origin;                        ///< Root only.
-  std::set<std::string, std::less<>> known;  ///< Every key that has been asked for.
+  std::set<std::string, std::less<>> known;  ///< Every key that was asked for.
   std::map<std::string, std::shared_ptr<Node>> children;
 
-  /// The value at a key, which becomes known; null when it is absent.
+  /// The value at a key, which counts as known from now on; null when the key is absent.
   const json* find(std::string_view key) {
     known.emplace(key);
     const auto found = value.find(std::string(key));
@@ -98,7 +98,7 @@ struct ConfigReader::Node {
     problems->push_back(joined(path, key) + ": " + message);
   }
 
-  /// "port: must be a whole number, not "x"".
+  /// For example: "port: must be a whole number, not "x"".
   void complain_type(std::string_view key, std::string_view wanted, const json& got) const {
     complain(key, "must be " + std::string(wanted) + ", not " + shown_json(got));
   }
@@ -151,7 +151,7 @@ Result<void> ConfigReader::set(std::string_view assignment) {
   const std::string_view text = assignment.substr(equals + 1);
   auto parsed = parse_json(text, kLimits);
   if (!parsed) {
-    // 127.0.0.1 or a path is a text without quotes; a broken list or object is a mistake.
+    // 127.0.0.1 or a path is a text without quotes, but a broken list or object is a mistake.
     if (!text.empty() && std::string_view("[{\"").find(text.front()) != std::string_view::npos)
       return fail(ErrorCode::Malformed, context, reason_of(parsed.error()));
   }
@@ -176,7 +176,7 @@ void ConfigReader::read(std::string_view key, int& out, int least, int most) {
   const json* value = node_->find(key);
   if (value == nullptr) return;
   if (!value->is_number_integer()) return node_->complain_type(key, "a whole number", *value);
-  const double wide = value->get<double>();  // exact for every int, large for what is larger
+  const double wide = value->get<double>();  // exact for every int; larger numbers stay large
   if (wide < least || wide > most) {
     return node_->complain_type(key, range_text(least, most), *value);
   }

@@ -1,4 +1,4 @@
-// Parse, don't validate: JSON with // comments into a plain struct, every mistake named.
+// Parse, don't validate: reads JSON with // comments into a plain struct and names every mistake.
 //
 //   auto root = ConfigReader::parse(text, "deploy/config/fusion.json");
 //   root->read("port", config.port);
@@ -6,9 +6,9 @@
 //   quality.read("best_distance_m", config.quality.best_distance);
 //   if (auto ok = root->finish(); !ok) return pass(ok);   // unknown keys, wrong types, ranges
 //
-// A key that is absent leaves the default.  finish() reports every problem at once: unknown keys
-// with their full path and the nearest known key, wrong types, values out of range.  Keys carry
-// their unit as suffix.
+// An absent key leaves the default.  finish() reports all problems at once: unknown keys with their
+// full path and the nearest known key, wrong types, values out of range.  Keys carry their unit as
+// a suffix.
 #pragma once
 
 #include <cstdint>
@@ -36,31 +36,31 @@ class ConfigReader {
   void read(std::string_view key, std::string& out);
   void read(std::string_view key, std::vector<double>& out);
   void read(std::string_view key, std::vector<std::string>& out);
-  /// Key ends in _ms; the value is milliseconds.
+  /// The key ends in _ms; the value is in milliseconds.
   void read_ms(std::string_view key, Duration& out, Duration least, Duration most);
-  /// Key ends in _s; the value is seconds.
+  /// The key ends in _s; the value is in seconds.
   void read_s(std::string_view key, Duration& out, Duration least, Duration most);
-  /// Key ends in _deg; the value is degrees, `out` radians.
+  /// The key ends in _deg; the value is in degrees, `out` in radians.
   void read_deg(std::string_view key, double& out, double least_deg, double most_deg);
-  /// One of `names`; `index` is left alone when the key is absent.
+  /// One of `names`; an absent key leaves `index` unchanged.
   void read_choice(std::string_view key, std::size_t& index,
                    const std::vector<std::string_view>& names);
 
-  /// A nested object; absent gives an empty reader.  Children share the problem list of the root.
+  /// A nested object, empty when it is absent.  Children share the root's list of problems.
   [[nodiscard]] ConfigReader child(std::string_view key);
-  /// The objects of an array; absent gives none.
+  /// The objects of an array; none when it is absent.
   [[nodiscard]] std::vector<ConfigReader> items(std::string_view key);
   [[nodiscard]] bool has(std::string_view key) const;
-  /// What stands at the key, set() included, as JSON without comments; "" when it is absent.
+  /// The value at the key, set() included, as JSON without comments; "" when it is absent.
   [[nodiscard]] std::string text(std::string_view key) const;
-  /// All of it.
+  /// The whole object.
   [[nodiscard]] std::string text() const;
 
-  /// Adds a problem found by the caller at this key ("must be below ...").
+  /// Adds a problem that the caller found at this key ("must be below ...").
   void complain(std::string_view key, std::string message);
 
-  /// All problems in one Error (Malformed/InvalidArgument), or success.  Call on the root, once,
-  /// last.
+  /// All problems in one Error (Malformed or InvalidArgument), or success.  Call it on the root,
+  /// once, last.
   [[nodiscard]] Result<void> finish() const;
 
   struct Node;  ///< Private: the parsed tree and the problem list.

@@ -1,4 +1,4 @@
-// Duration: nanoseconds, for both clocks.  Its own header so that config can speak of time.
+// Duration: nanoseconds, for both clocks.  In its own header so that configs can use times.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// The environment of this process as a value, so that tests have one of their own.
+// The environment of this process as a value, so that tests can supply their own.
 #pragma once
 
 #include <cstdlib>
@@ -10,7 +10,7 @@ namespace chorus {
 /// The value of an environment variable; null when it is not set.
 using Environment = std::function<const char*(const char* name)>;
 
-/// That of this process.
+/// The environment of this process.
 [[nodiscard]] inline Environment own_environment() {
   return [](const char* name) -> const char* { return std::getenv(name); };
 }

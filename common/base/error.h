@@ -1,4 +1,4 @@
-// Why something expected did not happen.
+// Errors: why something that can be expected to fail did fail.
 //
 // An Error says what (code), where (context: a URI, a config key path, a joint, a file and line)
 // and what to change (message, a full sentence for a person).  Every code maps to one HTTP status.
@@ -15,16 +15,16 @@ enum class ErrorCode {
   Malformed,        ///< Bytes that do not follow their format.
   TooLarge,         ///< A stated limit was exceeded.
   NotFound,
-  Gone,           ///< Was here, has been evicted.
-  NotAcceptable,  ///< No representation the client accepts.
-  Unsupported,    ///< Well-formed, but a method, version or feature we do not have.
+  Gone,           ///< It existed, but has been discarded.
+  NotAcceptable,  ///< No representation that the client accepts.
+  Unsupported,    ///< Well-formed, but we lack this method, version or feature.
   Unauthorized,
   Forbidden,
   Conflict,     ///< Not now: the state forbids it (a session is running already).
   Unavailable,  ///< Not ready, or the other side does not answer; trying again may help.
   Timeout,
-  Io,        ///< The operating system said no.
-  Internal,  ///< Our own fault.
+  Io,        ///< The operating system refused.
+  Internal,  ///< A fault of ours.
 };
 
 struct Error {

@@ -6,10 +6,10 @@
 
 namespace chorus {
 
-/// The hash of no bytes, where hashing starts.
+/// The hash of no bytes; hashing starts with it.
 inline constexpr std::uint64_t kFnvBasis = 0xcbf29ce484222325;
 
-/// The hash of `bytes`; pass the hash of what precedes them to continue it.
+/// The hash of `bytes`; to continue, pass the hash of the bytes before them.
 [[nodiscard]] constexpr std::uint64_t fnv1a(std::string_view bytes,
                                             std::uint64_t hash = kFnvBasis) noexcept {
   constexpr std::uint64_t kPrime = 0x100000001b3;

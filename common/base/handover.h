@@ -1,7 +1,7 @@
 // A queue between two threads whose producer never waits.
 //
 // Bounded: when it is full, the oldest element is dropped and counted.  The consumer gets the
-// newest ones and knows how many it missed.
+// newest elements and learns how many it missed.
 #pragma once
 
 #include <chrono>
@@ -42,7 +42,7 @@ class Handover {
     return taken;
   }
 
-  /// Wakes the consumer; elements given from now on are ignored.
+  /// Wakes the consumer; elements added from now on are ignored.
   void close() {
     {
       const std::scoped_lock lock(mutex_);

@@ -1,4 +1,4 @@
-// How often a measured value fell below each of some bounds.
+// Counts how often a measured value fell below each of several bounds.
 #pragma once
 
 #include <atomic>
@@ -8,7 +8,7 @@
 
 namespace chorus {
 
-/// How often values fell below each bound.  Any thread may observe.
+/// Counts values by bucket.  Any thread may call observe().
 class Histogram {
  public:
   /// Upper bounds, ascending and finite; a last bucket without a bound is added.

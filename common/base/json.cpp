@@ -12,14 +12,14 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kShownKey = 80;  // characters of a foreign key in our messages
+constexpr std::size_t kShownKey = 80;  // characters of a foreign key that our messages quote
 
-/// What the parser's callback throws; never leaves this file.
+/// Thrown by the parser's callback; never leaves this file.
 struct TooDeep : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Refuses what the parser would silently swallow: a key given twice, and nesting without bound.
+/// Refuses what the parser would silently accept: a repeated key, and unlimited nesting.
 class StructureGuard {
  public:
   explicit StructureGuard(int nesting) : nesting_(nesting) {}
@@ -44,7 +44,7 @@ class StructureGuard {
   std::string repeated_;
 };
 
-/// "[json.exception.parse_error.101] parse error at line 1..." without its first part.
+/// "[json.exception.parse_error.101] parse error at line 1..." without the part in brackets.
 std::string readable(const Json::exception& error) {
   const std::string_view what = error.what();
   const std::size_t end = what.find("] ");

@@ -1,4 +1,4 @@
-// JSON from outside: bounded in size and nesting, without repeated keys, never throwing.
+// JSON from outside: limited in size and nesting, no repeated keys, no exceptions.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,8 @@ struct JsonLimits {
   bool comments = false;  ///< Whether // and /* */ are allowed, as in configurations.
 };
 
-/// The parsed document.  TooLarge beyond the limits.  Malformed: not JSON (the message says where),
-/// or an object has a key twice (the context is that key).
+/// The parsed document.  TooLarge beyond the limits.  Malformed when it is not JSON (the message
+/// says where), or when an object has a key twice (the context is that key).
 [[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text,
                                                 const JsonLimits& limits = {});
 

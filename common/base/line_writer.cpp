@@ -22,7 +22,7 @@ namespace {
 
 constexpr int kLookMs = 1000;  // A stuck writer checks this often whether it is still needed.
 
-/// Blocks all signals for the thread being created: they are for the program's own threads.
+/// Blocks all signals in the new thread: they are meant for the program's own threads.
 class SignalsBlocked {
  public:
   SignalsBlocked() {
@@ -50,15 +50,15 @@ struct LineWriter::State {
 
   struct Line {
     std::string text;
-    std::uint64_t missing_before = 0;  ///< Lines dropped between the one before and this one.
+    std::uint64_t missing_before = 0;  ///< Lines dropped just before this one.
   };
 
   const LineWriterOptions options;
   std::mutex mutex;
   std::condition_variable changed;
   std::vector<Line> waiting;           ///< Guarded by mutex.
-  std::uint64_t missing_last = 0;      ///< Dropped since the last of `waiting`; guarded by mutex.
-  std::uint64_t untold = 0;            ///< Missing, but not told yet; the writer's thread's.
+  std::uint64_t missing_last = 0;      ///< Dropped after the last of `waiting`; guarded by mutex.
+  std::uint64_t untold = 0;            ///< Missing, not yet reported; writer's thread only.
   std::atomic<std::size_t> bytes = 0;  ///< Waiting or being written.
   std::atomic<std::uint64_t> dropped = 0;
   /// Pieces that the reader has taken, or that are lost for good.
@@ -66,12 +66,12 @@ struct LineWriter::State {
   std::atomic<bool> ended = false;
 };
 
-/// False when the reader is gone, or nobody needs the writer any more.
+/// False when the reader is gone, or the writer is no longer needed.
 bool LineWriter::State::write_out(std::string_view rest) {
   while (!rest.empty() && !ended) {
     pollfd ready{options.descriptor, POLLOUT, 0};
     if (::poll(&ready, 1, kLookMs) <= 0 || ended) continue;
-    // No more than a pipe takes at once, so that one piece never waits for the reader.
+    // At most what a pipe takes at once, so that no piece waits halfway for the reader.
     const ssize_t taken =
         ::write(options.descriptor, rest.data(), std::min<std::size_t>(rest.size(), PIPE_BUF));
     if (taken < 0 && (errno == EINTR || errno == EAGAIN)) continue;

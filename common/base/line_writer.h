@@ -1,7 +1,7 @@
-// Writes lines to a file descriptor from a thread of its own, so that no caller waits for a reader.
+// Writes lines to a file descriptor from its own thread, so that no caller waits for a reader.
 //
-// Writing to a pipe that nobody reads blocks.  Here a bounded number of bytes is queued; lines
-// beyond that are dropped and counted, and the count is written once the reader continues.
+// Writing to a full pipe blocks until somebody reads it.  So lines are queued here, up to a limit;
+// further ones are dropped and counted, and the count is written once the reader continues.
 #pragma once
 
 #include <chrono>
@@ -15,8 +15,8 @@ namespace chorus {
 
 struct LineWriterOptions {
   int descriptor = 2;
-  std::size_t most_bytes = 1u << 20;  ///< Of queued lines.
-  /// The line that tells how many are missing here.  Called on the writer's thread.
+  std::size_t most_bytes = 1u << 20;  ///< Limit of the queued lines.
+  /// Makes the line that says how many lines are missing.  Called on the writer's thread.
   std::function<std::string(std::uint64_t dropped)> gap;
 };
 
@@ -31,10 +31,10 @@ class LineWriter {
   /// `line` ends in a line feed.
   void write(std::string line);
 
-  /// Waits until all lines so far are written; false when the reader takes nothing for that long.
+  /// Waits until all queued lines are written; false if the reader takes nothing for `patience`.
   bool flush(std::chrono::milliseconds patience);
 
-  /// The same for a signal handler: touches no lock and allocates nothing.
+  /// The same for a signal handler: takes no lock and allocates nothing.
   void flush_in_signal_handler(std::chrono::milliseconds patience) const noexcept;
 
   [[nodiscard]] std::uint64_t dropped() const noexcept;

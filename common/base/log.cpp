@@ -36,7 +36,7 @@ constexpr std::array kLevels{
 constexpr const char* kTextPattern = "%Y-%m-%dT%H:%M:%S.%eZ %v";
 constexpr const char* kJsonPattern = R"({"time":"%Y-%m-%dT%H:%M:%S.%eZ",%v})";
 
-/// Gives formatted lines to the writer.
+/// Passes formatted lines to the writer.
 class QueueSink final : public spdlog::sinks::base_sink<std::mutex> {
  public:
   explicit QueueSink(LineWriter& writer) : writer_(writer) {}
@@ -55,7 +55,7 @@ class QueueSink final : public spdlog::sinks::base_sink<std::mutex> {
 struct Sink {
   spdlog::logger logger{"chorus", std::make_shared<spdlog::sinks::stderr_sink_mt>()};
   std::atomic<Format> format{Format::Text};
-  std::atomic<LineWriter*> writer = nullptr;  ///< Once configured; never destroyed.
+  std::atomic<LineWriter*> writer = nullptr;  ///< Set by configuring; never destroyed.
   std::once_flag queued;
 
   Sink() { logger.set_pattern(kTextPattern, spdlog::pattern_time_type::utc); }
@@ -84,7 +84,7 @@ bool plain(char c) {
          std::string_view("_-./:+@%,").find(c) != std::string_view::npos;
 }
 
-/// Words stay unquoted; text that could be mistaken for the next field or line is quoted.
+/// Plain words stay unquoted; text that could be mistaken for the next field or line is quoted.
 std::string as_word(std::string_view text) {
   for (const char c : text) {
     if (!plain(c)) return json_text(text);
@@ -94,7 +94,7 @@ std::string as_word(std::string_view text) {
 
 std::string text_line(const LevelName& level, std::string_view name, Fields fields) {
   std::string line(level.name);
-  line.resize(6, ' ');  // aligned: the longest level name and a space
+  line.resize(6, ' ');  // to align: length of the longest level name, plus a space
   // An event name is ours and may hold spaces, but never a line break.
   for (const char c : name) line += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
   for (const Field& field : fields) {
@@ -118,7 +118,7 @@ std::string line_of(const LevelName& level, std::string_view name, Fields fields
                                 : text_line(level, name, fields);
 }
 
-/// Reports dropped lines.  Not through the queue: the report belongs where they are missing.
+/// Reports dropped lines.  Bypasses the queue, because the report belongs where they are missing.
 std::string gap_line(std::uint64_t lines) {
   const Format format = sink().format.load();
   const LevelName& level = row_of(Level::Warn);
@@ -136,10 +136,10 @@ constexpr std::chrono::milliseconds kLastPatience{500};
 void flush_on_crash(int signal) {
   if (const LineWriter* writer = sink().writer.load())
     writer->flush_in_signal_handler(kLastPatience);
-  std::raise(signal);  // SA_RESETHAND: now for good
+  std::raise(signal);  // SA_RESETHAND: this time it ends the process
 }
 
-/// Only if nobody else, such as a sanitizer, handles the signal.
+/// Installs the handler only if nothing else, such as a sanitizer, handles the signal.
 void watch_for_crash(int signal) {
   struct sigaction now {};
   if (::sigaction(signal, nullptr, &now) != 0 || now.sa_handler != SIG_DFL) return;
@@ -162,7 +162,7 @@ void begin_queue() {
 }  // namespace
 
 std::string number_text(double value) {
-  std::array<char, 32> text{};  // the longest shortest double has 24 characters
+  std::array<char, 32> text{};  // a double's shortest form has at most 24 characters
   const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc{} ? std::string(text.data(), end) : std::string("nan");
 }

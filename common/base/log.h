@@ -16,13 +16,13 @@ namespace chorus::log {
 enum class Level { Debug, Info, Warn, Error };
 enum class Format { Text, Json };
 
-/// The shortest decimal that reads back as the same double; "nan" and "inf" as they are.
+/// The shortest decimal that reads back as the same double; "nan" and "inf" for those.
 [[nodiscard]] std::string number_text(double value);
 
 struct Field {
   std::string_view key;
   std::string value;
-  bool bare = false;  ///< A number or a Boolean: unquoted in JSON.
+  bool bare = false;  ///< True for a number or a Boolean: unquoted in JSON.
 
   Field(std::string_view k, std::string_view v) : key(k), value(v) {}
   Field(std::string_view k, const std::string& v) : key(k), value(v) {}
@@ -35,15 +35,15 @@ struct Field {
 };
 using Fields = std::initializer_list<Field>;
 
-/// Chooses level and format; from now on a thread of its own writes the lines (log_queue.h).
+/// Sets level and format; from now on a separate thread writes the lines (log_queue.h).
 void configure(Level least, Format format);
 
-/// "debug", "info", "warn", "error" / "text", "json", as config and command line spell them.
+/// Reads "debug", "info", "warn" or "error" / "text" or "json", as in config and command line.
 [[nodiscard]] Result<Level> parse_level(std::string_view text);
 [[nodiscard]] Result<Format> parse_format(std::string_view text);
 
-/// Whether lines of this level are written; worth asking before the fields of a frequent line are
-/// made.
+/// True if lines of this level are written; worth checking before building the fields of a frequent
+/// line.
 [[nodiscard]] bool is_wanted(Level level);
 
 void event(Level level, std::string_view name, Fields fields = {});

@@ -1,9 +1,9 @@
-// The queue between whoever logs and whoever reads the log.
+// The queue between the code that logs and the reader of the log.
 //
-// From log::configure() on, lines are queued and written to standard error by a thread of their
-// own.  Nobody who logs waits for a reader: when a pipe is full and 1 MiB waits for it, lines are
-// dropped, counted, and the count is logged as soon as there is room.  What waits is written out at
-// exit and when a signal such as SIGSEGV or SIGABRT ends the process, as long as somebody reads.
+// From log::configure() on, a separate thread writes queued lines to standard error.  Code that
+// logs never waits for the reader: when the pipe is full and 1 MiB is queued, lines are dropped and
+// counted, and the count is logged as soon as there is room.  At exit, and when a signal such as
+// SIGSEGV or SIGABRT ends the process, the queue is written out while somebody reads.
 #pragma once
 
 #include <chrono>
@@ -11,7 +11,7 @@
 
 namespace chorus::log {
 
-/// Waits until everything logged so far is out; false when nobody reads for so long.
+/// Waits until all lines logged so far are written; false when nobody reads within `patience`.
 bool flush(std::chrono::milliseconds patience = std::chrono::milliseconds(500));
 
 /// Lines dropped since the start.

@@ -8,7 +8,7 @@
 
 namespace chorus {
 
-/// The upper of the two middle values when their number is even.  There must be at least one value.
+/// For an even number of values the upper of the two middle ones.  There must be at least one.
 template <class Value>
 [[nodiscard]] Value median(std::vector<Value> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

@@ -1,4 +1,4 @@
-// Spelling help: the known word nearest to an unknown one.
+// Spelling help: finds the known word nearest to an unknown one.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace chorus {
 
-/// Least number of inserted, deleted and replaced characters between two words.
+/// Levenshtein distance: the least number of inserted, deleted and replaced characters.
 [[nodiscard]] std::size_t levenshtein(std::string_view a, std::string_view b);
 
 /// The word of `known` that `word` was most likely meant to be; empty when none is close: at most a

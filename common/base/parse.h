@@ -11,7 +11,7 @@
 
 namespace chorus {
 
-/// The number that `text` begins with; what is behind it stays in `text`.
+/// The number that `text` begins with; what follows it stays in `text`.
 template <class Number>
 [[nodiscard]] std::optional<Number> take_number(std::string_view& text) {
   Number value{};
@@ -49,7 +49,7 @@ template <class Number>
   return value;
 }
 
-/// As in the name of a resource, where each number has one spelling only: "7", not "07".
+/// Reads the number in a resource's name, where each number has only one spelling: "7", not "07".
 [[nodiscard]] inline std::optional<std::uint64_t> parse_name_number(std::string_view text) {
   const auto value = parse_number<std::uint64_t>(text);
   return value && std::to_string(*value) == text ? value : std::nullopt;

@@ -27,7 +27,7 @@ void RateReport::hit(std::string_view detail) {
   write_line();
 }
 
-/// Called with the lock held: lines of one event keep their order.
+/// Called with the lock held, so that the lines of one event stay in order.
 void RateReport::write_line() {
   const std::uint64_t count = total_ - reported_;
   reported_ = total_;

@@ -1,9 +1,9 @@
-// Counts events that repeat and lets one line a second through per event.
+// Counts repeated events and lets one log line per second through for each event.
 //
 // Thread-safe.  `RateReport dropped("frame dropped"); dropped.hit("queue full");` logs the first
-// hit at once and then at most one summary line a second, written by the hit that finds it due,
-// with the count since the last line.  What is still unreported when it is destroyed is reported
-// then, with the detail of the last hit, so no event goes uncounted.
+// hit at once, and then at most one summary line a second with the count since the last line; a hit
+// writes it when it is due.  The destructor reports what is still unreported, with the detail of
+// the last hit, so no event goes uncounted.
 #pragma once
 
 #include <chrono>
@@ -34,7 +34,7 @@ class RateReport {
   std::mutex mutex_;
   std::uint64_t total_ = 0;
   std::uint64_t reported_ = 0;
-  std::string detail_;  ///< Of the last hit.
+  std::string detail_;  ///< The detail of the last hit.
   std::chrono::steady_clock::time_point last_line_{};
 };
 

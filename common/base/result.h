@@ -13,7 +13,7 @@ namespace chorus {
 template <class T>
 using Result = tl::expected<T, Error>;
 
-/// `return fail(ErrorCode::NotFound, path, "there is no such frame");`
+/// Makes an error: `return fail(ErrorCode::NotFound, path, "there is no such frame");`
 [[nodiscard]] inline tl::unexpected<Error> fail(ErrorCode code, std::string context,
                                                 std::string message) {
   return tl::unexpected<Error>(Error{code, std::move(context), std::move(message)});

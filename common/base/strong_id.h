@@ -1,4 +1,4 @@
-// Ids that cannot be mistaken for one another.
+// Ids of distinct types, so that none can be mistaken for another.
 #pragma once
 
 #include <compare>
@@ -26,7 +26,7 @@ class SensorId {
   std::string text_;
 };
 
-/// A sensor's own number for a body it tracks.  Per sensor; may swap and be reused.
+/// A sensor's own number for a body it tracks.  Unique within the sensor; may swap and be reused.
 struct BodyId {
   std::uint64_t value = 0;
   auto operator<=>(const BodyId&) const = default;

@@ -1,4 +1,4 @@
-// Units: radians and metres inside; degrees and millimetres only where people read them.
+// Units: radians and metres internally; degrees and millimetres only for people to read.
 #pragma once
 
 #include <numbers>

@@ -1,11 +1,11 @@
-// Which Chorus this is, for `--version`.
+// The version of Chorus, for `--version`.
 #pragma once
 
 #include <string_view>
 
 namespace chorus {
 
-/// "0.1.0", of the whole project.
+/// "0.1.0"; the whole project has one version.
 [[nodiscard]] std::string_view version();
 
 }  // namespace chorus

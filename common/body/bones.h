@@ -9,7 +9,7 @@
 
 namespace chorus {
 
-/// "SpineBase", "HandTipLeft": as in the Kinect v2 SDK; URI fragments and JSON keys use these.
+/// "SpineBase", "HandTipLeft": as in the Kinect v2 SDK; also used in URI fragments and JSON keys.
 // clang-format off
 inline constexpr std::array<std::string_view, kJointCount> kJointNames{
     "SpineBase", "SpineMid", "Neck", "Head",
@@ -28,7 +28,7 @@ struct Bone {
   JointId child;
 };
 
-/// Every joint but SpineBase hangs on one parent; parents come before children.
+/// Every joint except SpineBase has one parent; parents come before children.
 inline constexpr std::array<Bone, kJointCount - 1> kBones{{
     {JointId::SpineBase, JointId::SpineMid},          {JointId::SpineMid, JointId::SpineShoulder},
     {JointId::SpineShoulder, JointId::Neck},          {JointId::Neck, JointId::Head},
@@ -62,7 +62,7 @@ inline constexpr std::array<MirrorPair, 10> kMirrorPairs{{
     {JointId::FootLeft, JointId::FootRight},
 }};
 
-/// The joint this one hangs on; SpineBase hangs on itself.
+/// The parent of this joint; SpineBase is its own parent.
 [[nodiscard]] JointId parent_of(JointId id);
 
 /// The joint on the other side; a centre joint is its own mirror.

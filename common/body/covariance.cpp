@@ -9,7 +9,7 @@
 namespace chorus {
 namespace {
 
-constexpr double kWireRounding = 1e-7;  // six terms of 8 decimals each, generously
+constexpr double kWireRounding = 1e-7;  // six terms of 8 decimals each, rounded up generously
 
 /// Sylvester's criterion: all leading minors are positive.
 bool is_positive_definite(const Eigen::Matrix3d& c) {
@@ -45,7 +45,7 @@ bool Covariance::plausible() const {
       std::all_of(upper_.begin(), upper_.end(), [](float term) { return std::isfinite(term); });
   if (!finite) return false;
   const Eigen::Matrix3d full = matrix();
-  // Nearly all are; their eigenvalues, which take longer than writing the joint, are not needed.
+  // Most pass here, which spares them the eigenvalues; those take longer than writing the joint.
   if (is_positive_definite(full + kWireRounding * Eigen::Matrix3d::Identity())) return true;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(full, Eigen::EigenvaluesOnly);
   const double largest = solver.eigenvalues().cwiseAbs().maxCoeff();

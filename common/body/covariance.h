@@ -1,8 +1,8 @@
-// How uncertain a joint's measured place or direction is: a symmetric 3x3 covariance, or none
-// known.
+// How uncertain a joint's measured place or direction is: a symmetric 3x3 covariance, or "not
+// known".
 //
-// Axes are those of the space the joint is in.  Of a point [m^2]; of a ray's unit direction
-// [rad^2].
+// The axes are those of the joint's space.  The unit is [m^2] for a point and [rad^2] for a ray's
+// unit direction.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace chorus {
 
 class Covariance {
  public:
-  /// xx xy xz yy yz zz.
+  /// In the order xx xy xz yy yz zz.
   static constexpr std::size_t kTerms = 6;
 
   Covariance() = default;  ///< Not known.
@@ -27,10 +27,10 @@ class Covariance {
   [[nodiscard]] Eigen::Matrix3d matrix() const;
   [[nodiscard]] double term(std::size_t i) const { return static_cast<double>(upper_[i]); }
 
-  /// R C R^T, in the axes that `rotation` leads to.
+  /// R C R^T: the same covariance in the axes that `rotation` leads to.
   [[nodiscard]] Covariance turned(const Eigen::Matrix3d& rotation) const;
 
-  /// Finite, and no direction has a negative variance beyond what rounding on the wire makes.
+  /// True when all is finite and no direction has a negative variance beyond rounding on the wire.
   [[nodiscard]] bool plausible() const;
 
   bool operator==(const Covariance&) const = default;
@@ -40,7 +40,7 @@ class Covariance {
   bool known_ = false;
 };
 
-/// Between a and b; unknown unless both are known.
+/// Interpolates linearly, 0: a, 1: b; unknown unless both are known.
 [[nodiscard]] Covariance between(const Covariance& a, const Covariance& b, double share);
 
 }  // namespace chorus

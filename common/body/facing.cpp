@@ -7,7 +7,7 @@
 namespace chorus {
 namespace {
 
-/// Unit vector the body faces, in the x-z plane: right-to-left line turned by the up axis.
+/// Unit vector in the x-z plane that the body faces: its right-to-left line crossed with +y.
 std::optional<Eigen::Vector3d> forward_of(const Joint& left, const Joint& right) {
   if (!left.seen() || !right.seen()) return std::nullopt;
   Eigen::Vector3d to_left = left.position - right.position;

@@ -1,4 +1,4 @@
-// How a body stands before the sensor that sees it: the angles of Otto Eqs. (2) and (3).
+// How a body stands in front of the sensor that sees it: the angles of Otto Eqs. (2) and (3).
 //
 // Sensor space: +z into the scene, +y up.  Radians, metres.
 #pragma once
@@ -9,15 +9,15 @@
 
 namespace chorus {
 
-/// Yaw of the body away from facing the sensor squarely, in (-pi, pi]; 0 = chest towards the
-/// sensor. From the anatomical shoulder line (hips when a shoulder is not seen) and the horizontal
+/// Yaw of the body away from facing the sensor squarely, in (-pi, pi]; 0: chest towards the sensor.
+/// Computed from the anatomical shoulder line (hips when a shoulder is not seen) and the horizontal
 /// line of sight; none when neither pair is seen or the line is vertical.
 [[nodiscard]] std::optional<double> facing_angle(const Skeleton<SensorSpace>& body);
 
 /// Horizontal angle of the neck off the optical axis; none when the neck is not seen.
 [[nodiscard]] std::optional<double> bearing_angle(const Skeleton<SensorSpace>& body);
 
-/// Distance sensor to neck [m]; none when the neck is not seen.
+/// Distance from the sensor to the neck [m]; none when the neck is not seen.
 [[nodiscard]] std::optional<double> neck_distance(const Skeleton<SensorSpace>& body);
 
 }  // namespace chorus

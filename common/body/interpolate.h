@@ -1,4 +1,4 @@
-// A body between two instants at which it was seen.
+// Interpolates a body between two instants at which it was seen.
 #pragma once
 
 #include <algorithm>
@@ -9,12 +9,12 @@
 
 namespace chorus {
 
-/// Positions are linear (directions of rays normalised), orientations a sign-aligned LERP where
-/// both have one, the state is the worse one; s in [0, 1].  Not tracked when either joint has no
-/// place, nor between a point and a ray.
+/// Positions are interpolated linearly (directions of rays are normalised), orientations by a
+/// sign-aligned LERP where both exist; the state is the worse one; s is in [0, 1].  Not tracked
+/// when either joint has no place, nor between a point and a ray.
 [[nodiscard]] Joint interpolate(const Joint& a, const Joint& b, double s);
 
-/// Joint by joint.  `s` is clamped to [0, 1]; NaN counts as 0.
+/// Interpolates each joint.  `s` is clamped to [0, 1]; NaN counts as 0.
 template <class Space>
 [[nodiscard]] Skeleton<Space> interpolate(const Skeleton<Space>& a, const Skeleton<Space>& b,
                                           double s) {

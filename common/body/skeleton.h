@@ -36,31 +36,31 @@ inline constexpr std::size_t kJointCount = 25;
   return static_cast<std::size_t>(id);
 }
 
-/// What the sensor claims about a joint.  Inferred joints are guesses behind an occlusion.
+/// What the sensor reports about a joint.  Inferred joints are guesses behind an occlusion.
 enum class JointState : std::uint8_t { NotTracked, Inferred, Tracked };
 
-/// What a sensor measures of a joint.  A camera without depth knows only in which direction it is.
+/// What a sensor measures of a joint.  A camera without depth knows only its direction.
 enum class Measurement : std::uint8_t { Point, Ray };
 
 struct Joint {
-  /// Of a Point [m]; of a Ray the unit vector from the sensor's origin towards the joint.
+  /// For a Point its place [m]; for a Ray the unit vector from the sensor's origin to the joint.
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Quaterniond orientation = Eigen::Quaterniond(0, 0, 0, 0);  ///< All zero: not given.
   JointState state = JointState::NotTracked;
   Measurement measurement = Measurement::Point;
-  Covariance covariance = {};  ///< Of `position`, where the sensor knows one.
+  Covariance covariance = {};  ///< Covariance of `position`, if the sensor knows it.
 
-  /// Has a place: a tracked or inferred point.  Code that cannot use rays checks only this.
+  /// True for a tracked or inferred point.  Code that cannot use rays checks only this.
   [[nodiscard]] bool seen() const { return measurement == Measurement::Point && given(); }
-  /// Has a direction: a tracked or inferred ray.
+  /// True for a tracked or inferred ray.
   [[nodiscard]] bool bears() const { return measurement == Measurement::Ray && given(); }
-  /// Either of them.
+  /// True for a tracked or inferred point or ray.
   [[nodiscard]] bool given() const {
     return state != JointState::NotTracked && position.allFinite();
   }
 };
 
-/// Whether there are rays and no point: what cameras without depth show.
+/// True if there are rays but no point, as from cameras without depth.
 [[nodiscard]] bool has_rays_alone(const std::array<Joint, kJointCount>& joints);
 
 template <class Space>
@@ -71,8 +71,8 @@ struct Skeleton {
   [[nodiscard]] Joint& operator[](JointId id) { return joints[index_of(id)]; }
 };
 
-/// The same body seen from the world.  The only door from sensor space to world space.  Rays are
-/// turned, not moved: they begin at the sensor, wherever that stands.
+/// The same body in world space.  There is no other way from sensor space to world space.  Rays are
+/// turned, not moved: they begin at the sensor, wherever it stands.
 [[nodiscard]] Skeleton<WorldSpace> to_world(const Eigen::Isometry3d& world_from_sensor,
                                             const Skeleton<SensorSpace>& body);
 

@@ -81,11 +81,11 @@ class BvhWriter {
 
   const SkeletonFit& fit_;
   const BvhOptions& options_;
-  std::vector<std::size_t> order_;  ///< Channels are written in the order of the joints.
+  std::vector<std::size_t> order_;  ///< Order of the joints when writing their channels.
   std::string text_ = "HIERARCHY\n";
 };
 
-/// `angle` plus the whole turns that bring it nearest to `last`.
+/// `angle` plus the number of whole turns that brings it nearest to `last`.
 double unwrapped(double angle, double last) {
   constexpr double kTurn = 2 * std::numbers::pi;
   return angle + kTurn * std::round((last - angle) / kTurn);

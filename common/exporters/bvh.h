@@ -1,9 +1,9 @@
-// Biovision BVH of one person: hierarchy, then a line of numbers a frame.
+// Biovision BVH of one person: the hierarchy, then one line of numbers per frame.
 //
-// Rest pose and rotations of skeleton_fit.h; joints by our names, the root's OFFSET is zero and its
-// position channels say where SpineBase is.  Rotation channels are "Zrotation Xrotation Yrotation",
-// that is parent_from_joint = Rz * Rx * Ry, degrees, unwrapped: of all triples that mean the same
-// the one nearest to the frame before, so that curves can be interpolated.  World space, +y up.
+// Rest pose and rotations: see skeleton_fit.h.  Joints have our names; the root's OFFSET is zero
+// and its position channels give SpineBase.  Rotation channels are "Zrotation Xrotation Yrotation",
+// i.e. parent_from_joint = Rz * Rx * Ry, degrees, unwrapped: of all equivalent triples the one
+// nearest to the frame before, so that curves can be interpolated.  World space, +y up.
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@ struct BvhOptions {
 [[nodiscard]] std::string bvh_of(const SkeletonFit& fit, double rate_hz,
                                  const BvhOptions& options = {});
 
-/// z, x, y with q = Rz(z) * Rx(x) * Ry(y) [rad], nearest to `last` in the sum of their differences;
-/// at x = +-90 deg, where z and y are about one axis, y stays.
+/// z, x, y with q = Rz(z) * Rx(x) * Ry(y) [rad]; the triple whose angles differ least from `last`
+/// in total.  At x = +-90 deg, where z and y turn about one axis, y is kept.
 [[nodiscard]] std::array<double, 3> euler_zxy(const Eigen::Quaterniond& q,
                                               const std::array<double, 3>& last);
 

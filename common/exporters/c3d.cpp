@@ -12,14 +12,14 @@ namespace chorus::exporters {
 namespace {
 
 constexpr std::size_t kBlock = 512;
-constexpr std::size_t kMaxBlocks = 255;  // of parameters: their number is one byte
+constexpr std::size_t kMaxBlocks = 255;  // of parameters; their number is stored in one byte
 constexpr std::size_t kMaxPersons = 100;
-constexpr std::size_t kLabelsPerParameter = 255;  // dimensions are bytes
-constexpr std::size_t kMaxFrames = 65535;         // of a 16-bit word
+constexpr std::size_t kLabelsPerParameter = 255;  // dimensions are stored in bytes
+constexpr std::size_t kMaxFrames = 65535;         // limit of a 16-bit word
 constexpr char kKey = 0x50;
 constexpr char kIntel = 84;
-constexpr float kFloatsInMillimetres = -1.0f;  // POINT:SCALE: negative for floats; 1 mm
-// is the unit of residuals, and of coordinates up to 32 m for whoever converts to integers
+constexpr float kFloatsInMillimetres = -1.0f;  // POINT:SCALE: negative means floats; 1 mm is
+// the unit of residuals; as integers, coordinates then reach 32 m
 constexpr int kMaxResidual = 255;
 
 void append_word(std::string& bytes, std::size_t value) {
@@ -35,7 +35,7 @@ void append_float(std::string& bytes, float value) {
 
 /// The content of a parameter: type, dimensions, values.
 struct Content {
-  int type = 2;  ///< -1 text, 1 bytes, 2 words, 4 floats.
+  int type = 2;  ///< -1: text, 1: bytes, 2: words, 4: floats.
   std::vector<std::size_t> dimensions;
   std::string values;
 };
@@ -46,7 +46,7 @@ Content word(std::size_t value) {
   return content;
 }
 
-/// A 32-bit count as two words, as TRIAL has them.
+/// A 32-bit count as two words, as TRIAL stores it.
 Content two_words(std::size_t value) {
   Content content{2, {2}, {}};
   append_word(content.values, value & 0xffff);
@@ -88,10 +88,10 @@ class Parameters {
     entry(group_, name, body + content.values);
   }
 
-  /// All blocks, with the header of the parameters.
+  /// All blocks, including the parameter header.
   [[nodiscard]] std::string bytes() const {
     std::string all = std::string(4, '\0') + entries_;
-    all.append(2, '\0');  // the list ends with an entry without a name
+    all.append(2, '\0');  // an entry without a name ends the list
     all.resize((all.size() + kBlock - 1) / kBlock * kBlock, '\0');
     all[0] = 1;
     all[1] = kKey;
@@ -101,7 +101,7 @@ class Parameters {
   }
 
  private:
-  /// Length of the name, number, name, offset to the next entry, content, no description.
+  /// Length of the name, number, name, offset to the next entry, content; no description.
   void entry(int number, std::string_view name, std::string_view content) {
     entries_ += static_cast<char>(name.size());
     entries_ += static_cast<char>(number);
@@ -167,7 +167,7 @@ std::string parameters_of(const Take& take, std::size_t data_start) {
   parameters.group("ANALOG");
   parameters.add("USED", word(0));
   parameters.add("GEN_SCALE", real(1.0));
-  parameters.add("RATE", real(0.0));  // of no samples; py-c3d compares it with the header's
+  parameters.add("RATE", real(0.0));  // of no analog samples; py-c3d compares it with the header's
   for (const std::string_view name : {"LABELS", "DESCRIPTIONS", "UNITS"})
     parameters.add(name, {-1, {0, 0}, {}});
   parameters.add("SCALE", {4, {0}, {}});
@@ -185,16 +185,16 @@ std::string parameters_of(const Take& take, std::size_t data_start) {
 
 std::string header_of(const Take& take, std::size_t data_start) {
   std::string header;
-  header += 2;  // block in which the parameters begin
+  header += 2;  // block at which the parameters begin
   header += kKey;
   append_word(header, take.persons.size() * kJointCount);
-  append_word(header, 0);  // analog samples in a frame
+  append_word(header, 0);  // analog samples per frame
   append_word(header, 1);  // first frame
   append_word(header, std::min(take.frames, kMaxFrames));
   append_word(header, 0);  // interpolated gap
   append_float(header, kFloatsInMillimetres);
   append_word(header, data_start);
-  append_word(header, 0);  // analog samples a channel
+  append_word(header, 0);  // analog samples per channel
   append_float(header, static_cast<float>(take.rate_hz));
   header.resize(kBlock, '\0');
   return header;
@@ -218,7 +218,7 @@ void append_joint(std::string& bytes, const Joint& joint, double variance) {
 Result<std::string> c3d_of(const Take& take) {
   if (take.persons.size() > kMaxPersons)
     return fail(ErrorCode::TooLarge, "C3D", "cannot name the joints of more than 100 persons.");
-  // The length of the parameters does not depend on the number of the block after them.
+  // The length of the parameters does not depend on the block number that they contain.
   const std::size_t blocks = parameters_of(take, 0).size() / kBlock;
   if (blocks > kMaxBlocks)
     return fail(ErrorCode::TooLarge, "C3D",

@@ -1,4 +1,4 @@
-// Every format by name: what `chorus export` calls.
+// Every format by name: `chorus export` calls this.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ enum class ExportFormat { Bvh, C3d, Trc, Csv, Gltf };
 
 struct ExportRow {
   ExportFormat format;
-  std::string_view name;    ///< As on the command line.
+  std::string_view name;    ///< Its name on the command line.
   std::string_view writes;  ///< One line for --help.
 };
 
@@ -27,21 +27,21 @@ inline constexpr std::array<ExportRow, 5> kExportFormats{{
 }};
 
 struct ExportOptions {
-  std::string file_name = "chorus";  ///< Stands in TRC; the name of the file without its folder.
-  double units_per_metre = 100.0;    ///< Of BVH.
+  std::string file_name = "chorus";  ///< For TRC: the file's name without its folder.
+  double units_per_metre = 100.0;    ///< For BVH.
 };
 
 struct ExportedFile {
-  std::string suffix;  ///< "" or "-p3": before the file name's ending.
+  std::string suffix;  ///< "" or "-p3"; goes before the file extension.
   std::string bytes;
 };
 
 struct Exported {
   std::vector<ExportedFile> files;
-  std::vector<std::string> remarks;  ///< For people: how well bones of one length fit.
+  std::vector<std::string> remarks;  ///< For people: how well bones of constant length fit.
 };
 
-/// Several files only for a format that holds one person, and then only for several persons.
+/// Several files result only if the format holds one person and the take has several.
 [[nodiscard]] Result<Exported> exported(const Take& take, ExportFormat format,
                                         const ExportOptions& options = {});
 

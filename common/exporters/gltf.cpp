@@ -8,8 +8,8 @@
 namespace chorus::exporters {
 namespace {
 
-constexpr double kThickness = 0.08;  // of an octahedron, of the bone's length
-constexpr double kWaist = 0.2;       // where it is thickest
+constexpr double kThickness = 0.08;  // of an octahedron, as a fraction of the bone's length
+constexpr double kWaist = 0.2;       // where it is thickest, as a fraction of that length
 constexpr std::array<std::array<double, 3>, 6> kColours{{{0.90, 0.45, 0.13},
                                                          {0.16, 0.50, 0.73},
                                                          {0.20, 0.63, 0.33},
@@ -35,12 +35,12 @@ void add_bone(Mesh& mesh, const Eigen::Vector3d& a, const Eigen::Vector3d& b, st
         Eigen::Vector3d(waist - side), Eigen::Vector3d(waist - other), b})
     mesh.places.push_back(place.cast<float>());
   mesh.joints.insert(mesh.joints.end(), 6, static_cast<std::uint8_t>(joint));
-  // Counter-clockwise from outside: a below, b above, the waist turning from `side` to `other`.
+  // Counter-clockwise from outside: a below, b above, and the waist turns from `side` to `other`.
   for (const int corner : {0, 2, 1, 0, 3, 2, 0, 4, 3, 0, 1, 4, 5, 1, 2, 5, 2, 3, 5, 3, 4, 5, 4, 1})
     mesh.corners.push_back(static_cast<std::uint16_t>(first + corner));
 }
 
-/// Where the joints are at rest, the lowest of them on the floor.
+/// The joints in the rest pose, with the lowest joint on the floor.
 std::vector<Eigen::Vector3d> standing_rest(const SkeletonFit& fit) {
   std::vector<Eigen::Vector3d> rest = rest_positions(fit);
   double lowest = 0.0;
@@ -81,7 +81,7 @@ class GltfWriter {
 
   std::string finish() {
     document_["animations"].push_back(std::move(animation_));
-    for (const char* list : {"meshes", "materials"}) {  // glTF knows no empty lists
+    for (const char* list : {"meshes", "materials"}) {  // glTF does not allow empty lists
       if (document_[list].empty()) document_.erase(list);
     }
     return buffer_.pack(std::move(document_));

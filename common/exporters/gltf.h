@@ -1,10 +1,10 @@
-// glTF 2.0, binary (.glb): every person an animated, skinned skeleton in one file.
+// glTF 2.0, binary (.glb): every person as an animated, skinned skeleton in one file.
 //
-// A person is a node "person-<id>" over a tree of joint nodes (our names), a skin with inverse bind
-// matrices of the rest pose of skeleton_fit.h (on the floor, rotations identity), and a mesh of
-// octahedra along the bones, so that there is something to see.  One animation for all: LINEAR
-// samplers, root translation and a unit quaternion a joint, without sign jumps.  Metres, +y up, as
-// glTF wants it; a person at rest faces +z.
+// A person is a node "person-<id>" above a tree of joint nodes (our names), a skin with the inverse
+// bind matrices of skeleton_fit.h's rest pose (on the floor, all rotations identity), and a mesh of
+// octahedra along the bones to make it visible.  One animation serves all: LINEAR samplers, with
+// the root's translation and a unit quaternion per joint without sign jumps.  Metres and +y up, as
+// glTF requires; a person in the rest pose faces +z.
 #pragma once
 
 #include <span>
@@ -14,7 +14,7 @@
 
 namespace chorus::exporters {
 
-/// Seconds count from the take's start; all fits have the take's frames.
+/// Seconds count from the start of the take; all fits have as many frames as the take.
 [[nodiscard]] std::string gltf_of(std::span<const SkeletonFit> fits, double rate_hz);
 
 }  // namespace chorus::exporters

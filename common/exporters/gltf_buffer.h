@@ -14,18 +14,18 @@
 
 namespace chorus::exporters {
 
-/// What a view is for; the numbers are OpenGL's.
+/// What a view is used for; the numbers are OpenGL's.
 enum class ViewTarget { None = 0, Vertices = 34962, Indices = 34963 };
 
 class GltfBuffer {
  public:
-  /// Each gives the number of the new accessor.
+  /// Each returns the number of the new accessor.
   std::size_t scalars(std::span<const float> values);  ///< With minimum and maximum.
   std::size_t vectors(std::span<const Eigen::Vector3f> values, ViewTarget target);
-  std::size_t quaternions(std::span<const Eigen::Quaternionf> values);   ///< x y z w
+  std::size_t quaternions(std::span<const Eigen::Quaternionf> values);   ///< In the order x y z w.
   std::size_t matrices(std::span<const Eigen::Matrix4f> values);         ///< Column by column.
-  std::size_t vertex_joints(std::span<const std::uint8_t> first_joint);  ///< Others are 0.
-  std::size_t vertex_weights(std::size_t count);  ///< All on the first joint.
+  std::size_t vertex_joints(std::span<const std::uint8_t> first_joint);  ///< The other three are 0.
+  std::size_t vertex_weights(std::size_t count);  ///< The first joint has all the weight.
   std::size_t indices(std::span<const std::uint16_t> values);
 
   /// Adds buffers, bufferViews and accessors to the document and packs both into a GLB.

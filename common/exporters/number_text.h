@@ -1,4 +1,4 @@
-// Numbers that every reader understands: a decimal point, no exponent, no locale, never "-0" or
+// Numbers that every reader understands: with a decimal point and without exponent, locale, "-0" or
 // "nan".
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace chorus::exporters {
 
-/// Appends a number with `digits` after the point; 0 for what is not finite.
+/// Appends a number with `digits` after the point; 0 if it is not finite.
 void append_fixed(std::string& text, double value, int digits);
 
 /// Appends the shortest text that reads back as the same number.

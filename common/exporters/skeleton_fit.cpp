@@ -13,17 +13,17 @@
 namespace chorus::exporters {
 namespace {
 
-constexpr double kMinBone = 1e-4;           // [m]; shorter has no direction
-constexpr int kProcrustesRounds = 3;        // the shape no longer changes by then
+constexpr double kMinBone = 1e-4;           // [m]; a shorter bone has no direction
+constexpr int kProcrustesRounds = 3;        // by then the shape no longer changes
 constexpr std::size_t kShapeFrames = 2000;  // enough for a mean shape
 constexpr double kFootOut = 0.3;
 
-/// Where the bone that ends at a joint points in the T-pose; left is +x, ahead is +z.
+/// The direction, in the T-pose, of the bone that ends at a joint; left is +x, ahead is +z.
 Eigen::Vector3d t_pose_direction(JointId end) {
   struct Row {
     JointId left;
     JointId right;
-    double x, y, z;  ///< Of the left one; x mirrors.
+    double x, y, z;  ///< For the left joint; x is mirrored for the right.
   };
   constexpr Row kRows[] = {
       {JointId::HipLeft, JointId::HipRight, 1, -0.4, 0},
@@ -44,7 +44,7 @@ Eigen::Vector3d t_pose_direction(JointId end) {
   return Eigen::Vector3d::UnitY();  // the spine
 }
 
-/// Median distance of two joints over the frames that have both; none when there is no such frame.
+/// Median distance of two joints over the frames that have both; none if there is no such frame.
 std::optional<double> bone_length(const PersonTrack& track, JointId a, JointId b) {
   std::vector<double> lengths;
   for (const Pose& pose : track.poses) {
@@ -63,11 +63,11 @@ Children children_of(const std::vector<FittedJoint>& joints) {
   return children;
 }
 
-/// The tree of the joints that were ever seen, with T-pose offsets of median length.
+/// The tree of all joints that were ever seen, with T-pose offsets of the median lengths.
 std::vector<FittedJoint> tree_of(const PersonTrack& track) {
   std::vector<FittedJoint> joints{{JointId::SpineBase, 0, Eigen::Vector3d::Zero()}};
-  // Where the children of each joint are attached: to the joint itself, or to its parent when it
-  // was left out.
+  // Where the children of each joint are attached: to the joint itself, or to its parent if the
+  // joint was left out.
   std::array<std::size_t, kJointCount> stands_for{};
   for (const Bone& bone : kBones) {
     const std::size_t parent = stands_for[index_of(bone.parent)];
@@ -89,14 +89,14 @@ Eigen::Quaterniond nearest_rotation(const Eigen::Matrix3d& cross) {
   return Eigen::Quaterniond(turn).normalized();
 }
 
-/// Pairs of (bone at rest, bone as seen), for the children that are seen.
+/// Pairs of a bone at rest and the same bone as seen, for the children that are seen.
 struct BonePairs {
   std::vector<Eigen::Vector3d> rest;
   std::vector<Eigen::Vector3d> seen;
 };
 
 Eigen::Quaterniond turn_between(const BonePairs& pairs, const Eigen::Quaterniond& likely) {
-  // A tiny weight on the likely rotation fixes what the children leave undetermined, and hardly
+  // A tiny weight on the likely rotation determines what the children leave free, and hardly
   // affects the rest.
   constexpr double kLikely = 1e-6;
   Eigen::Matrix3d cross = Eigen::Matrix3d::Zero();
@@ -105,7 +105,7 @@ Eigen::Quaterniond turn_between(const BonePairs& pairs, const Eigen::Quaterniond
   return nearest_rotation(cross + kLikely * cross.norm() * likely.toRotationMatrix());
 }
 
-/// Replaces the offsets below one joint by the mean shape in which its children are seen.
+/// Replaces the offsets of one joint's children by the mean shape in which they are seen.
 void average_shape(const PersonTrack& track, std::vector<FittedJoint>& joints, std::size_t joint,
                    const std::vector<std::size_t>& children) {
   std::vector<Eigen::Vector3d> sums(children.size(), Eigen::Vector3d::Zero());
@@ -129,7 +129,7 @@ void average_shape(const PersonTrack& track, std::vector<FittedJoint>& joints, s
   }
 }
 
-/// Poses one after the other; remembers the last one.
+/// Computes the poses in order and remembers the last one.
 class ChainFollower {
  public:
   explicit ChainFollower(const std::vector<FittedJoint>& joints)
@@ -164,8 +164,8 @@ Eigen::Quaterniond ChainFollower::turn_of(std::size_t joint, const Skeleton<Worl
   const Eigen::Quaterniond& last = pose_.turns[joint];
   if (pairs.rest.empty()) return last;
   if (pairs.rest.size() > 1) return turn_between(pairs, last);
-  // A joint's only child: the shortest arc from rest, whatever came before.  The only visible one
-  // of several: from where the others left it.
+  // A joint's only child: the shortest arc from rest, whatever the last pose was.  If only one of
+  // several children is visible: from the last pose.
   const bool alone = children_[joint].size() == 1;
   const Eigen::Quaterniond start = alone ? Eigen::Quaterniond::Identity() : last;
   return Eigen::Quaterniond::FromTwoVectors(start * pairs.rest[0], pairs.seen[0]) * start;

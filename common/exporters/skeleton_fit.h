@@ -1,21 +1,21 @@
-// A skeleton of constant bones that follows a person: what BVH and glTF can carry.
+// A skeleton of constant bones that follows a person; BVH and glTF can express only such skeletons.
 //
 // Fused joints are points, and the distances between them vary by centimetres.  Files of skeletal
-// animation hold one rest pose and a rotation per joint and frame.  From the whole track:
-//   bones    median length of each (Kinect bones, kBones); a joint that is never seen is left out
-//            and its children hang on its parent;
-//   rest     a T-pose: facing +z, arms along +-x, every rotation identity.  Where a joint has
-//            several children (pelvis, chest, wrists) their rest directions are the mean shape,
-//            found by turning that shape into every frame and averaging (generalised Procrustes,
-//            three rounds from the T-pose);
-//   frames   root position = SpineBase.  Down the tree, a joint with one child turns by the
-//            shortest arc that points the bone at the fused child, seen from where the chain
-//            stands; with several children, by the rotation that fits all of them best (Kabsch): so
-//            pelvis and chest take their twist from the hip and shoulder lines, wrists from the
-//            thumb.  The twist of arms, thighs and shins about themselves is not in the points and
-//            stays zero against the parent.
-// A joint that is not seen keeps its last local rotation; without SpineBase the whole pose is held.
-// Before the first pose the first one is used.  Radians, metres, world space.
+// animation hold one rest pose and a rotation per joint and frame.  We derive from the whole track:
+// bones    the median length of each (Kinect bones, kBones); a joint that is never seen is left
+// out, and its children are attached to its parent;
+// rest     a T-pose: facing +z, arms along +-x, every rotation identity.  Where a joint has
+// several children (pelvis, chest, wrists) their rest directions are the mean shape,
+// found by turning that shape into every frame and averaging (generalised Procrustes,
+// three rounds from the T-pose);
+// frames   root position = SpineBase.  From the root down, a joint with one child turns by the
+// shortest arc that points the bone at the fused child, seen from the joint's place in
+// the chain; a joint with several children takes the rotation that fits all of them
+// best (Kabsch): so pelvis and chest get their twist from the hip and shoulder lines,
+// wrists from the thumb.  The points do not show the twist of arms, thighs and shins
+// about themselves; it stays zero relative to the parent.
+// A joint that is not seen keeps its last local rotation; without SpineBase the whole pose is kept.
+// Frames before the first pose use the first pose.  Radians, metres, world space.
 #pragma once
 
 #include <vector>
@@ -26,17 +26,17 @@ namespace chorus::exporters {
 
 struct FittedJoint {
   JointId id = JointId::SpineBase;
-  std::size_t parent = 0;                            ///< Index; parents come first; 0 is the root.
-  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< From the parent at rest [m].
+  std::size_t parent = 0;                            ///< Index; parents come first; 0: the root.
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< From the parent, at rest [m].
 };
 
 struct FittedPose {
   Eigen::Vector3d root = Eigen::Vector3d::Zero();
-  /// parent_from_joint, in order of the joints; continuous in sign from frame to frame.
+  /// parent_from_joint, in the order of the joints; without sign jumps from frame to frame.
   std::vector<Eigen::Quaterniond> turns;
 };
 
-/// How far the chain is from the fused joints it was made of.
+/// How far the chain is from the fused joints it was fitted to.
 struct FitResidual {
   double rms = 0.0;                    ///< Over all seen joints of all frames with a SpineBase [m].
   double largest = 0.0;                ///< [m]
@@ -47,21 +47,21 @@ struct FitResidual {
 struct SkeletonFit {
   PersonId person;
   std::vector<FittedJoint> joints;
-  std::vector<FittedPose> poses;  ///< One a frame of the track.
+  std::vector<FittedPose> poses;  ///< One for each frame of the track.
   FitResidual residual;
 };
 
 /// Refuses a person whose SpineBase is never seen.
 [[nodiscard]] Result<SkeletonFit> fit_skeleton(const PersonTrack& track);
 
-/// Where the joints of the chain are in a pose [m].
+/// Positions of the chain's joints in a pose [m].
 [[nodiscard]] std::vector<Eigen::Vector3d> chain_positions(const SkeletonFit& fit,
                                                            const FittedPose& pose);
 
-/// Where they are at rest, SpineBase at the origin [m].
+/// Their positions at rest, with SpineBase at the origin [m].
 [[nodiscard]] std::vector<Eigen::Vector3d> rest_positions(const SkeletonFit& fit);
 
-/// Half a bone farther in its direction: where a joint without children ends.  [m], from the joint.
+/// End of a joint without children, from that joint [m]: half a bone farther in its direction.
 [[nodiscard]] Eigen::Vector3d end_offset(const FittedJoint& leaf);
 
 }  // namespace chorus::exporters

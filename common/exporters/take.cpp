@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kNanosecondsPerSecond = 1e9;
 constexpr Duration kSameInstant = std::chrono::microseconds(1);
-constexpr double kWholeHertz = 1e-6;  // relative: instants are whole nanoseconds
-constexpr double kUsualHz = 30.0;     // of a single sample
+constexpr double kWholeHertz = 1e-6;  // relative; because instants are whole nanoseconds
+constexpr double kUsualHz = 30.0;     // for a single sample
 constexpr double kMaxRateHz = 1000.0;
 
 using Samples = std::vector<FusedSample>;
@@ -40,7 +40,7 @@ double usual_rate(const Samples& sorted) {
   }
   if (steps.empty()) return kUsualHz;
   const Duration usual = median(std::move(steps));
-  // The usual step to the nanosecond, adjusted so that the last sample is a whole number of steps
+  // The usual step, adjusted to the nanosecond so that the last sample is a whole number of steps
   // away.
   const auto span = static_cast<double>((sorted.back().instant - sorted.front().instant).count());
   const double count = std::round(span / static_cast<double>(usual.count()));
@@ -58,8 +58,8 @@ Pose pose_between(const FusedSample& a, const FusedSample& b, double s) {
   return pose;
 }
 
-/// The pose of one person at an instant; `after` is their first sample that is not earlier than it
-/// by more than kSameInstant.
+/// The pose of one person at an instant; `after` is the first sample that is not earlier than
+/// `instant` by more than kSameInstant.
 Pose pose_at(const Samples& samples, std::size_t after, Timestamp instant, Duration max_gap) {
   if (after == samples.size()) return {};
   const FusedSample& next = samples[after];

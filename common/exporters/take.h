@@ -1,10 +1,10 @@
-// What is exported: fused skeletons on one uniform grid of instants, one track per person.
+// What is exported: fused skeletons on a uniform grid of instants, one track per person.
 //
 // Fused frames may skip instants, and people come and go; motion files have one rate and no holes.
 // So the samples are put on the grid start + i / rate: a sample within a microsecond of a grid
-// instant is kept as it is; others are interpolated (positions linearly) between neighbours that
-// are at most `max_gap` apart.  The rest is a gap: no joint is tracked there, and each format has
-// its own way to say "missing".  World space, metres, +y up.
+// instant is kept unchanged; other instants are interpolated (positions linearly) between
+// neighbours that are at most `max_gap` apart.  Everything else is a gap: no joint is tracked
+// there, and each format says "missing" in its own way.  World space, metres, +y up.
 #pragma once
 
 #include <array>
@@ -41,27 +41,27 @@ struct Pose {
 
 struct PersonTrack {
   PersonId person;
-  std::vector<Pose> poses;  ///< Take::frames of them.
+  std::vector<Pose> poses;  ///< As many as Take::frames.
 };
 
 struct Take {
-  Timestamp start;  ///< The first sample of anybody.
+  Timestamp start;  ///< The earliest sample of all persons.
   double rate_hz = 0.0;
   std::size_t frames = 0;
   std::vector<PersonTrack> persons;  ///< In order of their ids.
 };
 
 struct TakeOptions {
-  double rate_hz = 0.0;  ///< 0: that of the median step, so that the last sample is on the grid.
+  double rate_hz = 0.0;  ///< 0: about the median step's, so that the last sample is on the grid.
   Duration max_gap = std::chrono::milliseconds(200);
-  std::optional<PersonId> person = {};  ///< Only this one.
+  std::optional<PersonId> person = {};  ///< Export only this person.
 };
 
-/// Poses of all persons together; 2 kB each.
+/// Limit for the poses of all persons together; a pose takes 2 kB.
 inline constexpr std::size_t kMaxPoses = 500'000;
 
-/// Refuses: no samples, a person who is not there (naming those who are), a person twice at one
-/// instant, more than kMaxPoses.  Samples may come in any order.
+/// Refuses: no samples; an unknown person (the error names the known ones); a person twice at one
+/// instant; more than kMaxPoses.  Samples may come in any order.
 [[nodiscard]] Result<Take> make_take(std::vector<FusedSample> samples,
                                      const TakeOptions& options = {});
 

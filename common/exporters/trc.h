@@ -1,9 +1,9 @@
-// TRC: Motion Analysis' table of markers, as OpenSim reads it.  Tabs, three columns a marker, mm.
+// TRC: Motion Analysis' table of markers, as OpenSim reads it.  Tabs, three columns per marker, mm.
 //
-// Rows: file type; names of the file's properties; their values; names of the markers; X1 Y1 Z1
-// ...; an empty row; then frame number, seconds since the start, coordinates.  Missing joints are
-// empty fields.  Several persons: markers are called P1_Head, P2_Head, ...  +y is up, as in
-// OpenSim.
+// Rows: the file type; the names of the file's properties; their values; the names of the markers;
+// X1 Y1 Z1 ...; an empty row; then rows of frame number, seconds since the start, and coordinates.
+// Missing joints are empty fields.  For several persons the markers are called P1_Head, P2_Head,
+// ...  +y is up, as in OpenSim.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace chorus::exporters {
 
-/// `file_name` stands in the first row.
+/// `file_name` appears in the first row.
 [[nodiscard]] std::string trc_of(const Take& take, std::string_view file_name);
 
 }  // namespace chorus::exporters

@@ -1,6 +1,6 @@
 // Rotations: logarithm, exponential, distance, mean, yaw.  Radians; Hamilton quaternions.
 //
-// Total: a zero or non-finite quaternion is treated as identity; q and -q are the same rotation.
+// Total functions: a zero or non-finite quaternion counts as identity; q and -q are equivalent.
 #pragma once
 
 #include <span>
@@ -12,8 +12,8 @@ namespace chorus {
 /// Unit quaternion nearest to q; identity when q is zero or not finite.
 [[nodiscard]] Eigen::Quaterniond normalised_or_identity(const Eigen::Quaterniond& q);
 
-/// True when all four parts are finite and the norm is within 1e-3 of 1 (Kinect leaves give 0 0 0
-/// 0).
+/// True when all four parts are finite and the norm is within 1e-3 of 1 (the Kinect gives leaf
+/// joints 0 0 0 0).
 [[nodiscard]] bool is_unit(const Eigen::Quaterniond& q);
 
 /// Rotation vector of q: axis times angle, angle in [0, pi].
@@ -29,8 +29,8 @@ namespace chorus {
 [[nodiscard]] Eigen::Quaterniond lerp(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b,
                                       double s);
 
-/// Weighted LERP of many: sign-aligned to the heaviest, summed, normalised.  Non-unit entries and
-/// weights that are not positive are ignored; identity when nothing is left.
+/// Weighted LERP of several rotations: sign-aligned to the heaviest, summed, normalised.  Ignores
+/// non-unit entries and weights that are not positive; identity when none is left.
 [[nodiscard]] Eigen::Quaterniond weighted_lerp(std::span<const Eigen::Quaterniond> rotations,
                                                std::span<const double> weights);
 

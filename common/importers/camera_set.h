@@ -1,4 +1,4 @@
-// Calibrated cameras as published with their recording: intrinsics, and where each stands.
+// Calibrated cameras as published with their recording: intrinsics and extrinsics of each.
 #pragma once
 
 #include <filesystem>
@@ -14,16 +14,16 @@ namespace chorus::importers {
 struct CalibratedCamera {
   SensorId sensor;
   Intrinsics intrinsics;
-  Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();  ///< Our axes on both sides.
+  Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();  ///< In our axes.
 };
 
 /// [{"camera", "width", "height", "K": 3x3, "distortion_k1k2p1p2k3": 5,
-///   "camera_from_world": {"R": 3x3, "t_m": 3}}]: OpenCV camera axes, world z up.
-/// Refuses matrices that are no rotations, repeated names, and more than 64 cameras.
+/// "camera_from_world": {"R": 3x3, "t_m": 3}}]: OpenCV camera axes, world z up.
+/// Refuses an R that is no rotation, repeated names, and more than 64 cameras.
 [[nodiscard]] Result<std::vector<CalibratedCamera>> read_cameras(const std::filesystem::path& file,
                                                                  const ImportLimits& limits = {});
 
-/// A z-up world (floor z = 0) turned about x into ours (+y up): (x, y, z) -> (x, z, -y).
+/// Turns a z-up world (floor z = 0) about x into ours (+y up): (x, y, z) -> (x, z, -y).
 [[nodiscard]] Eigen::Matrix3d world_from_z_up();
 
 }  // namespace chorus::importers

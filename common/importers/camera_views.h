@@ -15,19 +15,19 @@
 
 namespace chorus::importers {
 
-/// One view; frames in which nobody was found, or whose landmarks fit no body, are empty.
+/// One view; a frame without detections, or whose landmarks fit no body, is empty.
 [[nodiscard]] Result<record::FrameRecording> read_camera_view(
     const std::filesystem::path& file, const std::vector<CalibratedCamera>& cameras,
     const ImportOptions& options = {}, Lateral lateral = Lateral::PixelRay);
 
-/// The person as triangulated from all views, at the instant of frame `index` of the views.
+/// The person as triangulated from all views, at the instant of the views' frame `index`.
 struct TruthFrame {
   std::uint64_t index = 0;
   Skeleton<WorldSpace> skeleton;
-  std::uint64_t person = 1;  ///< Frames with several people have several entries.
+  std::uint64_t person = 1;  ///< A frame with several people has several entries.
 };
 
-/// {"frames": [frame][33] x [x, y, z] or null}, metres, world z up -> our joints in our world.
+/// Reads {"frames": [frame][33] x [x, y, z] or null}, metres, z up, as our joints in our world.
 [[nodiscard]] Result<std::vector<TruthFrame>> read_triangulation(const std::filesystem::path& file,
                                                                  const ImportLimits& limits = {});
 

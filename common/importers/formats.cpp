@@ -34,7 +34,7 @@ Result<ImportedSet> import_motion(const std::filesystem::path& file, const Impor
   return set;
 }
 
-/// Either a file is a sensor, or one input is the whole set.
+/// Reads either one file as one sensor, or one input as the whole set.
 struct ReaderRow {
   FileFormat format;
   FileReader file = nullptr;
@@ -60,7 +60,7 @@ const ReaderRow& reader_of(FileFormat format) {
 constexpr std::string_view kCamerasFile = "cameras.json";
 constexpr std::string_view kTruthFile = "triangulated.json";
 
-/// The landmark files of a folder in name order: one per calibrated camera, named after it.
+/// The landmark files of a folder, in name order: one per calibrated camera and named after it.
 Result<ImportedSet> import_cameras(const std::filesystem::path& folder,
                                    const ImportOptions& options) {
   const auto cameras = read_cameras(folder / kCamerasFile, options.limits);
@@ -104,8 +104,8 @@ Duration boot_time_of(const record::FrameRecording& recording) {
   return Duration(std::stoll(recording.notes.at(kBootTicksNote)) * kNanosecondsPerTick);
 }
 
-/// The times of one sensor's clock: takes of one afternoon, not of hosts started on different days.
-/// Files that state no times stay where they are.
+/// Keeps the distances between times that count from one sensor's start, if they fit one afternoon:
+/// then they are counts of one clock.  Files that state no times stay unchanged.
 void keep_common_counter(std::vector<record::FrameRecording>& recordings) {
   constexpr Duration kOneAfternoon = std::chrono::hours(6);
   std::vector<record::FrameRecording*> counted;
@@ -139,7 +139,7 @@ Result<void> refuse_repeated_sensors(const std::vector<record::FrameRecording>& 
   return {};
 }
 
-/// The usual step between frames; one second where there is only one frame.
+/// The median step between frames; one second if there is only one frame.
 Duration median_step(const std::vector<SensorFrame>& frames) {
   std::vector<Duration> steps;
   for (std::size_t i = 1; i < frames.size(); ++i)

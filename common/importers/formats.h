@@ -1,4 +1,4 @@
-// Every format by name, and whole sets of files: what `chorus import` calls.
+// Every format by name, and whole sets of files: `chorus import` calls this.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ enum class FileFormat { Labanotation, Ntu, NwUcla, Keraal, Pose2Sim, C3d, Bvh, M
 
 struct FormatRow {
   FileFormat format;
-  std::string_view name;   ///< As on the command line.
+  std::string_view name;   ///< Its name on the command line.
   std::string_view reads;  ///< One line for --help.
 };
 
@@ -43,13 +43,13 @@ struct ImportedSet {
   std::vector<record::FrameRecording> recordings;
   std::map<SensorId, Eigen::Isometry3d> world_from_sensor;  ///< Published extrinsics, if any.
   std::vector<TruthFrame> truth;                            ///< Published truth, if any.
-  std::vector<Error> empty = {};  ///< Inputs that hold nothing and were left out.
+  std::vector<Error> empty = {};  ///< Inputs without content, which were left out.
 };
 
-/// Each input is one sensor; for pose2sim the one input is the folder, for c3d, bvh and mvnx one
+/// Each input is one sensor; for pose2sim the only input is the folder, for c3d, bvh and mvnx a
 /// file whose world becomes ours (motion_file.h).  Refuses sets in which two inputs would be the
-/// same sensor or hold the same numbers.  Every recording's notes say when the set begins and how
-/// long it lasts (set_origin, set_period_ns), so that several replays loop in step.  Files that
+/// same sensor or hold the same numbers.  The notes of every recording say when the set begins and
+/// how long it lasts (set_origin, set_period_ns), so that several replays loop in step.  Files that
 /// count from the start of one sensor keep their distance in time.
 [[nodiscard]] Result<ImportedSet> import_files(FileFormat format,
                                                const std::vector<std::filesystem::path>& inputs,

@@ -1,5 +1,5 @@
-// For JSON formats: bounded reading, and numbers that are checked.  Private to this folder's .cpp
-// files.
+// For JSON formats: limited reading, and checked numbers.  Private to this folder's .cpp files.
+//
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@ namespace chorus::importers {
 [[nodiscard]] Result<nlohmann::json> read_json(const std::filesystem::path& file,
                                                std::uintmax_t max_bytes);
 
-/// The value under a key of an object; `at` names the object in the message.
+/// The value for a key of an object; `at` names the object in error messages.
 [[nodiscard]] Result<const nlohmann::json*> member(const nlohmann::json& object, const char* key,
                                                    const std::string& at);
 
-/// Exactly `out.size()` finite numbers within +-bound from an array.
+/// Reads exactly `out.size()` finite numbers within +-bound from an array.
 [[nodiscard]] Result<void> read_numbers(const nlohmann::json& array, std::span<double> out,
                                         double bound, const std::string& at);
 

@@ -10,7 +10,7 @@
 namespace chorus::importers {
 namespace {
 
-/// Nearer than this to the camera's plane a pixel ray says nothing [m].
+/// A pixel ray closer than this to the camera's plane says nothing [m].
 constexpr double kMinDepth = 0.1;
 
 cv::Matx33d camera_matrix(const Intrinsics& k) {
@@ -37,8 +37,8 @@ struct CameraFit {
   std::vector<cv::Point2d> ray;                           ///< x/z, y/z of each undistorted pixel.
 };
 
-/// SQPnP, then Levenberg-Marquardt: the plain iterative start falls into mirrored poses on views
-/// from behind (whole metres off on one of the four bundled cameras).  May throw cv::Exception.
+/// SQPnP, then Levenberg-Marquardt: the usual iterative start ends in mirrored poses on views from
+/// behind (metres off for one of the four bundled cameras).  May throw cv::Exception.
 std::optional<CameraFit> fit_camera(const PixelsAndBody& points, const Intrinsics& intrinsics) {
   const cv::Matx33d k = camera_matrix(intrinsics);
   const std::vector<double> distortion(intrinsics.distortion.begin(), intrinsics.distortion.end());

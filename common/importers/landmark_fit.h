@@ -1,7 +1,7 @@
-// One image's landmarks as a metric body before the camera: perspective-n-point.
+// Places one image's landmarks as a metric body in front of the camera: perspective-n-point.
 //
 // The detector gives the body in metres about its own hips and, separately, the pixel of each
-// landmark.  The pose that projects the former onto the latter places the body before the camera;
+// landmark.  The pose that projects the body onto these pixels places it in front of the camera;
 // its depth is as good as the detector's guess of the person's size (decimetres), its bearing as
 // good as the pixels.  So each landmark takes its depth from the fit and its lateral place from its
 // own pixel ray: the lateral error is then 15-35 mm, against 31-48 mm for the rigid fit
@@ -14,25 +14,25 @@
 
 namespace chorus::importers {
 
-/// Where landmarks go after the fit.
+/// Where the fit puts the landmarks.
 enum class Lateral {
   PixelRay,   ///< Depth from the fit, direction from the landmark's own pixel.
-  RigidBody,  ///< The fitted body as it is: the plain recipe, kept for comparison.
+  RigidBody,  ///< The fitted body unchanged: the usual method, kept for comparison.
 };
 
-/// In sensor space (x to the sensor's left, y up, z into the scene).  State by kTrackedVisibility;
-/// landmarks that come out behind the camera are NotTracked.  Fails when the pixels fit no body
-/// before the camera.
+/// In sensor space (x to the sensor's left, y up, z into the scene).  The state follows from
+/// kTrackedVisibility; landmarks that turn out behind the camera are NotTracked.  Fails when the
+/// pixels fit no body in front of the camera.
 [[nodiscard]] Result<Landmarks> fit_landmarks(const DetectedLandmarks& detected,
                                               const Intrinsics& intrinsics,
                                               Lateral lateral = Lateral::PixelRay);
 
-/// The rays of the pixels alone, in sensor space; a landmark whose pixel has none is NotTracked.
+/// Only the rays through the pixels, in sensor space; a landmark without a pixel ray is NotTracked.
 [[nodiscard]] Landmarks landmark_rays(const DetectedLandmarks& detected,
                                       const Intrinsics& intrinsics);
 
-/// OpenCV camera axes (x right, y down, z ahead) turned half about z: sensor_from_opencv is its own
-/// inverse.
+/// OpenCV camera axes (x right, y down, z ahead) turned by a half turn about z; sensor_from_opencv
+/// is its own inverse.
 [[nodiscard]] inline Eigen::Matrix3d sensor_from_opencv() {
   return Eigen::Vector3d(-1.0, -1.0, 1.0).asDiagonal();
 }

@@ -14,7 +14,7 @@ constexpr double kMaxPixel = 1e5;
 constexpr double kMaxSeconds = 7 * 24 * 3600.0;
 constexpr int kMaxHz = 1000;
 
-/// `rows` arrays of three numbers each, 33 of them.
+/// Reads 33 arrays of three numbers each.
 Result<void> read_triples(const nlohmann::json& array, double bound, const std::string& at,
                           std::array<std::array<double, 3>, kLandmarkCount>& out) {
   if (!array.is_array() || array.size() != kLandmarkCount)
@@ -43,8 +43,8 @@ Result<DetectedLandmarks> read_detected(const nlohmann::json& image, const nlohm
   return detected;
 }
 
-/// t_s is rounded to microseconds in the files; if it means a whole frame, that exact instant is
-/// used.
+/// The files round t_s to microseconds; if it stands for a whole frame, that frame's exact instant
+/// is used.
 Duration frame_time(double t_s, int hz) {
   constexpr double kRounding = 2e-6;
   const double index = std::round(t_s * hz);

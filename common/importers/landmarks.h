@@ -1,4 +1,4 @@
-// Pose landmarks in files: MediaPipe Pose, 33 of them (common/layout/mediapipe.cpp).
+// Pose landmarks in files: the 33 of MediaPipe Pose (common/layout/mediapipe.cpp).
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ inline constexpr std::size_t kLandmarkCount = 33;  ///< 0 nose, 11/12 shoulders,
 /// Below this MediaPipe visibility a landmark is a guess: Inferred.
 inline constexpr double kTrackedVisibility = 0.6;
 
-/// What the detector saw in one image.
+/// What the detector found in one image.
 struct DetectedLandmarks {
   std::array<Eigen::Vector2d, kLandmarkCount> pixel;
   std::array<Eigen::Vector3d, kLandmarkCount> in_body;  ///< Hip-centred, OpenCV axes [m].
@@ -30,7 +30,7 @@ struct DetectedLandmarks {
 
 struct LandmarkFrame {
   Duration at{0};                             ///< Since the recording's start.
-  std::optional<DetectedLandmarks> detected;  ///< None: nobody found.
+  std::optional<DetectedLandmarks> detected;  ///< None: nobody was detected.
 };
 
 struct LandmarkView {
@@ -43,7 +43,7 @@ struct LandmarkView {
 [[nodiscard]] Result<LandmarkView> read_landmark_view(const std::filesystem::path& file,
                                                       const ImportLimits& limits = {});
 
-/// In any metric space, in the order of layout::kMediapipe.
+/// In any metric space; the order is that of layout::kMediapipe.
 using Landmarks = std::array<layout::Landmark, kLandmarkCount>;
 
 }  // namespace chorus::importers

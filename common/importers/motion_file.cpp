@@ -25,11 +25,11 @@ constexpr std::size_t kShownLabels = 40;
 constexpr double kNanosecondsPerSecond = 1e9;
 constexpr double kMaxSeconds = 7 * 24 * 3600.0;
 
-/// What the readers have in common: one motion per person, all of one length.
+/// The common result of all readers: one motion per person, all of one length.
 struct Captured {
   std::string device;
   std::vector<motion::Motion> persons;
-  std::vector<std::uint64_t> ids;  ///< Of the persons.
+  std::vector<std::uint64_t> ids;  ///< Ids of the persons.
   std::map<std::string, std::string> notes = {};
 };
 
@@ -40,13 +40,13 @@ std::string list_of(const std::vector<std::string>& labels) {
   return labels.size() > kShownLabels ? text + " ..." : text;
 }
 
-/// "P10" -> 10: what our own export calls a person.
+/// "P10" -> 10: our own export names persons like this.
 std::optional<std::uint64_t> person_named(std::string_view name) {
   if (!name.starts_with('P')) return std::nullopt;
   return parse_number<std::uint64_t>(name.substr(1));
 }
 
-/// The ids in the names, if every name has a different one; else 1, 2, ... in the order of the
+/// The ids in the names, if every name has a different one; otherwise 1, 2, ... in the order of the
 /// file.
 std::vector<std::uint64_t> ids_of(const std::vector<motion::C3dSubject>& subjects) {
   std::vector<std::uint64_t> ids;
@@ -112,7 +112,7 @@ Result<Captured> captured(const std::filesystem::path& file, MotionFormat format
 
 FloorPlane floor_of_world() { return {Eigen::Vector3d::UnitY(), 0.0}; }
 
-/// World and sensor space are the same here.
+/// World and sensor space coincide here.
 Skeleton<SensorSpace> as_seen(const Skeleton<WorldSpace>& body) {
   return to_sensor(Eigen::Isometry3d::Identity(), body);
 }

@@ -11,7 +11,7 @@ std::ptrdiff_t separators(std::string_view line) {
   return std::ranges::count_if(line, [](char c) { return c == ',' || c == ' ' || c == '\t'; });
 }
 
-/// The last line has no line end, and fewer values than the line before it.
+/// True when the last line has no line end, and fewer values than the line before it.
 bool cut_off(std::string_view text) {
   const std::size_t end = text.rfind('\n');
   if (end == std::string_view::npos || end + 1 == text.size()) return false;
@@ -40,7 +40,7 @@ Result<record::FrameRecording> read_text_recording(const std::filesystem::path& 
   LineReader lines(*text, file.string());
   auto read = format.read(lines, options, whole);
   if (!read && cut_off(*text)) {
-    // The program that wrote it was stopped in the middle of a line.
+    // The program that wrote the file was stopped in the middle of a line.
     whole = std::move(recording);
     const std::string_view complete = std::string_view(*text).substr(0, text->rfind('\n') + 1);
     LineReader again(complete, file.string());

@@ -1,4 +1,4 @@
-// What all line-by-line formats share: reading the file, naming the sensor, refusing an empty file.
+// What all line-by-line formats share: reads the file, names the sensor, refuses an empty file.
 #pragma once
 
 #include <filesystem>
@@ -14,8 +14,8 @@ namespace chorus::importers {
 
 struct TextFormat {
   std::string device;                        ///< FrameRecording::device
-  std::map<std::string, std::string> notes;  ///< "origin" is added.
-  std::string unit;                          ///< What an empty file holds none of, for the message.
+  std::map<std::string, std::string> notes;  ///< "origin" is added to them.
+  std::string unit;                          ///< What an empty file lacks, for the message.
   std::function<Result<void>(LineReader&, const ImportOptions&, record::FrameRecording&)> read;
 };
 

@@ -12,7 +12,7 @@ namespace chorus::importers {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
-constexpr std::size_t kShownFieldBytes = 24;  // a wrong field is quoted no longer than this
+constexpr std::size_t kShownFieldBytes = 24;  // longest quotation of a wrong field
 
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(kBlanks);

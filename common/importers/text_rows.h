@@ -1,4 +1,4 @@
-// Text formats, row by row: bounded reading, and mistakes named by file, line and column.
+// Text formats, row by row: limited reading, and errors that name file, line and column.
 #pragma once
 
 #include <cstddef>
@@ -14,11 +14,11 @@
 
 namespace chorus::importers {
 
-/// A whole file; refuses what is larger than max_bytes, missing, or not a plain file.
+/// Reads a whole file; refuses one that is larger than max_bytes, missing, or not a plain file.
 [[nodiscard]] Result<std::string> read_bounded(const std::filesystem::path& file,
                                                std::uintmax_t max_bytes);
 
-/// Walks the lines of a text that outlives it; "\r\n" and a missing last line end are fine.
+/// Walks through the lines of a text that outlives it; accepts "\r\n" and a missing last line end.
 class LineReader {
  public:
   LineReader(std::string_view text, std::string origin) : rest_(text), origin_(std::move(origin)) {}
@@ -27,7 +27,7 @@ class LineReader {
   [[nodiscard]] std::optional<std::string_view> next();
   /// The next line that is not blank.
   [[nodiscard]] std::optional<std::string_view> next_filled();
-  /// Malformed at "file:line" of the line given last.
+  /// Malformed at "file:line" of the line returned last.
   [[nodiscard]] tl::unexpected<Error> malformed(std::string message) const;
 
  private:
@@ -36,8 +36,8 @@ class LineReader {
   std::size_t line_ = 0;
 };
 
-/// The fields of one row.  A ',' separates exactly, but may also end the row (LabanotationSuite
-/// writes that); ' ' stands for any run of blanks.
+/// The fields of one row.  A ',' separates two fields exactly, but may also end the row
+/// (LabanotationSuite writes that); ' ' stands for any run of blanks.
 class Row {
  public:
   /// Refuses a row that does not have exactly `expected` fields (such as a truncated one).
@@ -46,7 +46,7 @@ class Row {
 
   [[nodiscard]] Result<std::int64_t> integer(std::size_t column) const;
   [[nodiscard]] Result<std::uint64_t> natural(std::size_t column) const;
-  /// Finite numbers from `first` on, as many as `out` holds, each within +-bound.
+  /// Reads finite numbers from field `first` on, as many as `out` holds, each within +-bound.
   [[nodiscard]] Result<void> numbers(std::size_t first, std::span<double> out, double bound) const;
 
  private:

@@ -9,12 +9,12 @@ namespace chorus::importers {
 
 inline constexpr int kKinectHz = 30;  ///< Nominal rate of Kinect v1 and v2; real ones drop frames.
 
-/// The note for such times.
+/// The note for times made this way.
 inline constexpr const char* kUniformTimeNote =
     "no times in the file; an exact 30 Hz is assumed, dropped frames are invisible";
 
-/// Instant of frame `index`, to the nearest nanosecond, without accumulating error: the pipeline's
-/// own grid.
+/// The instant of frame `index`, to the nearest nanosecond, without accumulated error: the same
+/// grid as the pipeline's.
 [[nodiscard]] constexpr Timestamp uniform_instant(Timestamp start, std::size_t index, int hz) {
   constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
   const auto twice = 2 * static_cast<std::int64_t>(index) * kNanosecondsPerSecond / hz;

@@ -1,4 +1,4 @@
-// Azure Kinect Body Tracking SDK (k4abt), also on Orbbec Femto cameras through Orbbec's wrapper.
+// Azure Kinect Body Tracking SDK (k4abt), also for Orbbec Femto cameras through Orbbec's wrapper.
 #include "common/layout/tables.h"
 
 namespace chorus::layout {
@@ -26,7 +26,7 @@ constexpr std::array kRecipes{
 
 }  // namespace
 
-/// Confidence level in steps of a half: 0 none, 0.5 low (predicted behind an occlusion), 1 medium.
+/// Confidence is the level times 0.5: 0 none, 0.5 low (predicted behind an occlusion), 1 medium.
 const Layout kAzureKinect{"azure_kinect_32",
                           "Azure Kinect Body Tracking SDK",
                           "https://learn.microsoft.com/en-us/azure/kinect-dk/body-joints",

@@ -14,7 +14,7 @@ constexpr auto kRecipes = recipes();
 
 }  // namespace
 
-/// Confidence is TrackingState by name; a number counts halves: 0 not tracked, 0.5 inferred, 1
+/// Confidence is TrackingState by name, or as a number times 0.5: 0 not tracked, 0.5 inferred, 1
 /// tracked.
 const Layout kKinectV2{"kinect_v2_25",
                        "Kinect for Windows SDK 2.0",

@@ -19,7 +19,7 @@ const Landmark& landmark_at(std::span<const Landmark> landmarks, std::size_t ind
   return index < landmarks.size() ? landmarks[index] : missing;
 }
 
-/// Adds the landmark's part to the joint; false when there is none to add.
+/// Adds the landmark's part to the joint; false when the landmark has nothing to add.
 bool add(Joint& joint, const Share& share, const Landmark& landmark) {
   const bool other_kind = landmark.measurement != joint.measurement;
   if (landmark.state == JointState::NotTracked || !landmark.position.allFinite() || other_kind)
@@ -29,7 +29,7 @@ bool add(Joint& joint, const Share& share, const Landmark& landmark) {
   return true;
 }
 
-/// Of a weighted mean of independent landmarks: the sum of w^2 C.
+/// Covariance of a weighted mean of independent landmarks: the sum of w^2 C.
 Covariance covariance_of(const Recipe& recipe, std::span<const Landmark> landmarks) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (const Share& share : recipe.shares) {

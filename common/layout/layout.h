@@ -1,5 +1,5 @@
 // Skeleton layouts: which landmarks a tracker provides, in which order, and how our joints are made
-// from them.  One table per file, each with the source of its order.
+// of them.  One table per file, each with the published source of its order.
 #pragma once
 
 #include <array>
@@ -28,12 +28,12 @@ struct Recipe {
 
 struct Layout {
   std::string_view name;                        ///< "mediapipe_33"
-  std::string_view tracker;                     ///< For people.
+  std::string_view tracker;                     ///< Its name for people.
   std::string_view source;                      ///< Where its order is published.
   std::span<const std::string_view> landmarks;  ///< By number, in the spelling of the source.
-  /// A joint that no entry makes is one that the tracker does not provide.  If several entries make
-  /// one joint, the first that is seen counts; the others are substitutes, whose joint is at most
-  /// Inferred.
+  /// The tracker does not provide a joint that no entry makes.  If
+  /// several entries make one joint, the first that is seen counts;
+  /// the others are substitutes and make the joint Inferred at best.
   std::span<const Recipe> recipes;
   double tracked_from = 0.0;   ///< Lowest confidence (0 to 1) of a Tracked landmark ...
   double inferred_from = 0.0;  ///< ... and of an Inferred one.
@@ -42,7 +42,7 @@ struct Layout {
 /// All layouts.
 [[nodiscard]] std::span<const Layout* const> layouts();
 
-/// NotFound lists the known ones.
+/// NotFound lists the known layouts.
 [[nodiscard]] Result<const Layout*> find_layout(std::string_view name);
 
 [[nodiscard]] std::optional<std::size_t> landmark_named(const Layout& layout,
@@ -59,10 +59,10 @@ struct Landmark {
 };
 
 /// `landmarks` are in the layout's order; those missing at the end are not tracked.  A joint is as
-/// certain as its least certain landmark; its covariance assumes independent errors of the
-/// landmarks, and is known if all of theirs are.  Rays are averaged in direction: for landmarks at
-/// different depths this is only nearly the ray to their centre (3 mm for the hips at 3 m).
-/// Landmarks have no orientation, so the joints have none.
+/// certain as its least certain landmark; its covariance assumes that the landmarks' errors are
+/// independent, and is known if all of theirs are.  Rays are averaged in direction: for landmarks
+/// at different depths the result is only nearly the ray to their centre (off by 3 mm for hips at 3
+/// m). Landmarks have no orientation, so the joints have none.
 [[nodiscard]] std::array<Joint, kJointCount> joints_of(const Layout& layout,
                                                        std::span<const Landmark> landmarks);
 

@@ -29,7 +29,7 @@ constexpr std::array kRecipes{
 
 }  // namespace
 
-/// Confidence is "visibility"; a landmark that is not visible is a guess, never absent.
+/// Confidence is "visibility"; an invisible landmark is a guess, never absent.
 const Layout kMediapipe{"mediapipe_33",
                         "MediaPipe Pose, BlazePose",
                         "https://ai.google.dev/edge/mediapipe/solutions/vision/pose_landmarker",

@@ -22,7 +22,7 @@ constexpr std::array kRecipes{
 
 }  // namespace
 
-/// Confidence is the joint's status by halves: 0 not tracked, 0.5 low, 1 tracked.
+/// Confidence is the joint's status times 0.5: 0 not tracked, 0.5 low, 1 tracked.
 const Layout kOrbbecAstra{
     "orbbec_astra_19",
     "Orbbec Astra SDK",

@@ -31,7 +31,7 @@ constexpr std::array<std::string_view, 38> kNames38{
     "LEFT_SMALL_TOE", "RIGHT_SMALL_TOE", "LEFT_HEEL", "RIGHT_HEEL", "LEFT_HAND_THUMB_4", "RIGHT_HAND_THUMB_4",
     "LEFT_HAND_INDEX_1", "RIGHT_HAND_INDEX_1", "LEFT_HAND_MIDDLE_4", "RIGHT_HAND_MIDDLE_4", "LEFT_HAND_PINKY_1", "RIGHT_HAND_PINKY_1"};
 
-// Of the hand, ..._1 are knuckles and ..._4 tips.
+// In the names of the hand, ..._1 is a knuckle and ..._4 a tip.
 constexpr std::array kRecipes38{
     only(JointId::SpineBase, 0), only(JointId::SpineMid, 2),
     neck(12, 13, 8, 9), only(JointId::Neck, 4),
@@ -46,7 +46,7 @@ constexpr std::array kRecipes38{
 
 }  // namespace
 
-/// Confidence is keypoint_confidence / 100 here and below.
+/// Here and below, confidence is keypoint_confidence / 100.
 const Layout kZed34{"zed_34", "ZED SDK, BODY_34", kSource, kNames34, kRecipes34, 0.5, 0.1};
 const Layout kZed38{"zed_38", "ZED SDK, BODY_38", kSource, kNames38, kRecipes38, 0.5, 0.1};
 

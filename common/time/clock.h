@@ -1,4 +1,4 @@
-// Clocks are arguments: whoever needs the time is given a Clock.
+// Clocks are arguments: code that needs the time is given a Clock.
 #pragma once
 
 #include <atomic>
@@ -13,7 +13,7 @@ class Clock {
   [[nodiscard]] virtual Timestamp now() const = 0;
 };
 
-/// The host's UTC (CLOCK_REALTIME), as NTP keeps it, plus a fixed error for simulated hosts.
+/// The host's UTC (CLOCK_REALTIME), as NTP keeps it, plus a fixed error for a simulated host.
 class SystemClock final : public Clock {
  public:
   SystemClock() = default;

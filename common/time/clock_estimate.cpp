@@ -8,7 +8,7 @@
 namespace chorus {
 namespace {
 
-// Stamps must be UTC after 2001 and before 2255, so that sums and differences cannot overflow.
+// Stamps must lie between 2001 and 2255 (UTC), so that sums and differences cannot overflow.
 constexpr std::int64_t kMinNs = 1'000'000'000'000'000'000;
 constexpr std::int64_t kMaxNs = 9'000'000'000'000'000'000;
 
@@ -69,7 +69,7 @@ void ClockFilter::add(const ClockExchange& exchange) {
       return;  // an outlier until the next ones agree with it
     }
   }
-  // A later sample with less uncertainty makes an older, worse one useless forever.
+  // A later sample with less uncertainty makes an older, worse one useless for good.
   while (!samples_.empty() && grown(samples_.back(), now) >= sample.uncertainty)
     samples_.pop_back();
   samples_.push_back(sample);

@@ -1,7 +1,7 @@
-// How far another host's clock is off ours, from the stamps on each answer (Cristian 1989).
+// How far another host's clock differs from ours, from the stamps on each answer (Cristian 1989).
 //
-// We stamp sending (t0) and receipt (t3), the other side its receipt (t1) and sending (t2):
-//   theirs - ours = ((t1 - t0) + (t2 - t3)) / 2,   |error| <= ((t3 - t0) - (t2 - t1)) / 2.
+// We stamp sending (t0) and receipt (t3); the other side stamps its receipt (t1) and sending (t2):
+// theirs - ours = ((t1 - t0) + (t2 - t3)) / 2,   |error| <= ((t3 - t0) - (t2 - t1)) / 2.
 // A long poll may wait any time between t1 and t2.  Network delay is one-sided noise, so the
 // exchange with the least delay wins (minimum filter over a sliding window).
 #pragma once
@@ -24,20 +24,20 @@ struct ClockExchange {
 };
 
 struct ClockEstimate {
-  Duration ours_minus_theirs{0};  ///< Add to their stamps to get ours.
-  Duration uncertainty{0};        ///< Bound on the error, grown by drift since the exchange.
+  Duration ours_minus_theirs{0};  ///< Add this to their stamps to get ours.
+  Duration uncertainty{0};        ///< Bound of the error; grows by drift since the exchange.
 };
 
 struct ClockFilterLimits {
   Duration window = std::chrono::seconds(30);
-  double drift = 100e-6;  ///< Twice what an unsynchronised quartz does (20-50 ppm).
-  /// Exchanges worse than this are ignored.
+  double drift = 100e-6;  ///< Twice that of an unsynchronised quartz (20-50 ppm).
+  /// Exchanges with a larger uncertainty are ignored.
   Duration max_uncertainty = std::chrono::milliseconds(250);
-  /// This many exchanges in a row that contradict the estimate mean that the clock was set.
+  /// This many contradictory exchanges in a row mean that a clock was set.
   int steps_to_restart = 3;
 };
 
-/// "<t1_ns> <t2_ns>", the value of the Chorus-Clock header; empty when it is anything else.
+/// Reads "<t1_ns> <t2_ns>", the value of the Chorus-Clock header; none for anything else.
 struct ServerStamps {
   Timestamp receipt;
   Timestamp sending;
@@ -53,7 +53,7 @@ class ClockFilter {
 
   [[nodiscard]] std::optional<ClockEstimate> at(Timestamp now) const;
 
-  /// The last exchange contradicts the estimate; the next ones tell whether a clock was set.
+  /// The last exchange contradicts the estimate; the next ones show whether a clock was set.
   [[nodiscard]] bool doubtful() const noexcept { return contradictions_ > 0; }
 
  private:
@@ -66,12 +66,12 @@ class ClockFilter {
   [[nodiscard]] const Sample* best(Timestamp now) const;
 
   ClockFilterLimits limits_;
-  std::deque<Sample> samples_;  ///< Oldest first; uncertainty rises, so the front is the best.
+  std::deque<Sample> samples_;  ///< Oldest first; uncertainty rises, so the first is the best.
   int contradictions_ = 0;
 };
 
 /// What to add to the sensor's capture times: the estimate, if it is larger than its own
-/// uncertainty.
+/// uncertainty; otherwise zero.
 [[nodiscard]] Duration correction(const std::optional<ClockEstimate>& estimate);
 
 }  // namespace chorus

@@ -18,7 +18,7 @@ std::int64_t floor_div(std::int64_t a, std::int64_t b) {
   return a / b - ((a % b != 0 && (a % b < 0) != (b < 0)) ? 1 : 0);
 }
 
-/// Reads exactly `digits` decimal digits at `at` and moves past them; -1 when they are not there.
+/// Reads exactly `digits` decimal digits at `at` and moves past them; -1 when they are missing.
 int read_digits(std::string_view text, std::size_t& at, std::size_t digits) {
   if (text.size() < at + digits) return -1;
   int value = 0;
@@ -37,7 +37,7 @@ bool skip(std::string_view text, std::size_t& at, char expected) {
   return true;
 }
 
-/// ".123" as nanoseconds; no dot gives 0; -1 when malformed.
+/// Reads ".123" as nanoseconds; 0 without a dot; -1 when malformed.
 std::int64_t read_fraction(std::string_view text, std::size_t& at) {
   if (!skip(text, at, '.')) return 0;
   std::int64_t ns = 0;
@@ -52,7 +52,7 @@ std::int64_t read_fraction(std::string_view text, std::size_t& at) {
   return ns;
 }
 
-/// "Z" or "+hh:mm" as seconds east of UTC; false when malformed.
+/// Reads "Z" or "+hh:mm" as seconds east of UTC; false when malformed.
 bool read_zone(std::string_view text, std::size_t& at, std::int64_t& east) {
   east = 0;
   if (skip(text, at, 'Z')) return true;

@@ -1,7 +1,7 @@
-// One time: UTC nanoseconds since the Unix epoch.  Capture time unless a name says otherwise.
+// One time type: UTC nanoseconds since the Unix epoch.  Capture time unless a name says otherwise.
 //
-// Timestamp lives on its own clock type, so UTC can never be subtracted from steady time.  UTC may
-// step (NTP), so NtpClock is not steady: use std::chrono::steady_clock for time-outs, never this.
+// Timestamp has its own clock type, so UTC can never be subtracted from steady time.  UTC may step
+// (NTP), so NtpClock is not steady: use std::chrono::steady_clock for time-outs, never this one.
 #pragma once
 
 #include <chrono>
@@ -31,10 +31,10 @@ using Timestamp = NtpClock::time_point;
   return t.time_since_epoch().count();
 }
 
-/// "2026-11-21T07:30:00.123456789Z"; xsd:dateTime, always nine fractional digits, always Z.
+/// "2026-11-21T07:30:00.123456789Z": xsd:dateTime, always with nine fractional digits and Z.
 [[nodiscard]] std::string to_iso8601(Timestamp t);
 
-/// Reads xsd:dateTime with Z or an offset and 0-9 fractional digits; years 1970-2261.
+/// Reads xsd:dateTime with Z or an offset and with 0-9 fractional digits; years 1970-2261.
 [[nodiscard]] Result<Timestamp> parse_iso8601(std::string_view text);
 
 }  // namespace chorus

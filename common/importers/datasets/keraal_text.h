@@ -1,9 +1,9 @@
-// KERAAL Kinect text: one Kinect v2, one body a row, 25 x (x y z qw qx qy qz), 30 Hz, no times, no
-// states.
+// KERAAL Kinect text: one Kinect v2, one body per row, 25 x (x y z qw qx qy qz), 30 Hz; neither
+// times nor states.
 //
 // The format's notes say x y z w, but the numbers are w x y z: only then does the y axis lie along
-// the bone that ends at the joint (median 0.0 deg against 51-179 deg).  Every joint counts as
-// tracked.
+// the bone that ends at the joint (median angle 0.0 deg, against 51-179 deg).  Every joint counts
+// as tracked.
 #pragma once
 
 #include <filesystem>

@@ -16,7 +16,7 @@ constexpr std::size_t kFields = 1 + kFieldsPerJoint * kJointCount;
 constexpr std::int64_t kNanosecondsPerTick = 100;
 constexpr BodyId kOnlyBody{1};
 
-/// What a tick counter may count from, and the ticks there of 1970, 2010 and 2100.
+/// An epoch that ticks may count from, with its ticks at 1970, 2010 and 2100.
 struct TickEpoch {
   std::string_view name;
   std::int64_t unix_epoch;
@@ -37,12 +37,12 @@ const TickEpoch* plausible_epoch(std::int64_t ticks) {
   return nullptr;
 }
 
-/// Turns ticks into capture times, decided by the first row.
+/// Turns ticks into capture times; the first row decides how.
 struct TickClock {
   std::int64_t origin_ticks = 0;
   Timestamp origin;
 
-  /// Rows days away from the first are refused before they can overflow.
+  /// Refuses rows that are days away from the first, before they can overflow.
   [[nodiscard]] std::optional<Timestamp> at(std::int64_t ticks) const {
     constexpr std::int64_t kMaxSpanTicks = 7 * 24 * 3600 * 10'000'000LL;
     if (ticks < origin_ticks || ticks - origin_ticks > kMaxSpanTicks) return std::nullopt;

@@ -2,7 +2,7 @@
 //
 // {"file_name", "skeletons": [frames][20][x, y, z], "label"}, metres in camera space.  The Kinect
 // v1 has no Neck, hand tips and thumbs: those stay NotTracked.  Views of one take are named
-// aAA_sSS_eEE_vVV; in some takes the dataset holds v02 a second time as v03.
+// aAA_sSS_eEE_vVV; for some takes the dataset has a copy of v02 as v03.
 #pragma once
 
 #include <filesystem>
@@ -17,8 +17,8 @@ namespace chorus::importers {
 [[nodiscard]] Result<record::FrameRecording> read_nw_ucla_json(const std::filesystem::path& file,
                                                                const ImportOptions& options = {});
 
-/// Refuses sets in which two recordings hold the same joint positions throughout: two cameras
-/// cannot.
+/// Refuses sets in which two recordings hold the same positions throughout, which is impossible for
+/// two cameras.
 [[nodiscard]] Result<void> refuse_copies(const std::vector<record::FrameRecording>& views);
 
 }  // namespace chorus::importers
