@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/geometry/rigid_fit.h"
+#include "fusion-server/core/world.h"
 
 namespace chorus::core {
 namespace {
@@ -90,15 +91,6 @@ void lead_from_master(const Registration& current, Extrinsics& place) {
   chain.insert(chain.end(), std::next(place.chain.begin()), place.chain.end());
   place.chain = std::move(chain);
   place.error += known->second.error;
-}
-
-Extrinsics moved(Extrinsics place, const Eigen::Isometry3d& world_from_candidate) {
-  place.world_from_sensor = world_from_candidate * place.world_from_sensor;
-  Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
-  turn.topLeftCorner<3, 3>() = world_from_candidate.linear();
-  turn.bottomRightCorner<3, 3>() = world_from_candidate.linear();
-  place.covariance = turn * place.covariance * turn.transpose();
-  return place;
 }
 
 void add_once(std::vector<std::string>& reasons, const std::vector<std::string>& more) {
@@ -205,7 +197,8 @@ Result<Registration> adopted(const Registration& current, const Registration& ca
       usable(current) && std::any_of(current.sensors.begin(), current.sensors.end(),
                                      [&](const auto& e) { return stands_well(current, e.first); });
   const bool bound = hold && any_good;
-  if (!bound && should_replace(current, candidate, kind)) return candidate;
+  if (!bound && should_replace(current, candidate, kind))
+    return in_world_of(current.sensors, candidate);
   return extended(current, candidate, kind);
 }
 

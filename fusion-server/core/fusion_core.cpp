@@ -137,6 +137,17 @@ Duration FusionCore::idle(Timestamp now) {
 
 void FusionCore::forget() {
   registrar_.forget();
+  leave_world();
+}
+
+Result<void> FusionCore::move_origin(const Origin& origin) {
+  auto done = registrar_.move_origin(origin);
+  if (done) leave_world();
+  return done;
+}
+
+/// What is remembered of people belongs to the world before.
+void FusionCore::leave_world() {
   memory_.tracks.people.clear();  // ids continue to count
   memory_.sides.people.clear();   // what was learned about each sensor stays
   hindsight_.forget();

@@ -54,6 +54,8 @@ class FusionCore {
   }
   /// Cancels the session and forgets the registration.
   void forget();
+  /// As Registrar::move_origin.
+  [[nodiscard]] Result<void> move_origin(const Origin& origin);
   [[nodiscard]] std::optional<SolveJob> due_job(Timestamp now) { return registrar_.due_job(now); }
   Outcome solved(Solution solution, Timestamp now);
 
@@ -81,6 +83,7 @@ class FusionCore {
     std::string_view why;
   };
 
+  void leave_world();
   void refuse(const SensorFrame& frame, std::string_view why);
   void sift(SensorFrame& frame);
   [[nodiscard]] bool improves(const Answered& answered, Timestamp now) const;

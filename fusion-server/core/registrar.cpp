@@ -100,11 +100,30 @@ void Registrar::end_session(SessionState state) {
 
 void Registrar::forget() {
   end_session(SessionState::Cancelled);
+  if (!registration_.sensors.empty()) forgotten_ = registration_.sensors;
   retries_.clear();
   not_before_ = Timestamp{};
   const std::uint64_t version = registration_.version;
   registration_ = Registration{};
   registration_.version = version;
+}
+
+Result<void> Registrar::move_origin(const Origin& origin) {
+  if (!sessions_.empty() && running(sessions_.front()))
+    return fail(ErrorCode::Conflict, "origin",
+                "a registration session is running; wait for its end or cancel it");
+  auto next = with_origin(registration_, origin);
+  if (!next) return pass(next);
+  replace(std::move(*next));
+  return {};
+}
+
+/// After somebody has made us forget, the world is still the one that everybody works in.
+Result<Registration> Registrar::successor(const Registration& base, const Registration& candidate,
+                                          SolveKind kind) const {
+  auto next = adopted(base, candidate, kind, sessions_.front().automatic);
+  if (!next || !base.sensors.empty()) return next;
+  return in_world_of(forgotten_, std::move(*next));
 }
 
 bool Registrar::waits(const SensorId& sensor, Timestamp now) const {
@@ -191,7 +210,7 @@ Outcome Registrar::solved(Solution solution, Timestamp now) {
 
 Outcome Registrar::settle_provisional(const Registration& candidate) {
   SessionStatus& current = sessions_.front();
-  auto next = adopted(registration_, candidate, SolveKind::Provisional, current.automatic);
+  auto next = successor(registration_, candidate, SolveKind::Provisional);
   if (!next) return Outcome::Nothing;
   if (!before_) before_ = registration_;
   replace(std::move(*next));
@@ -202,8 +221,7 @@ Outcome Registrar::settle_provisional(const Registration& candidate) {
 /// Compares with the registration from before the session: the session's own do not count.
 Outcome Registrar::settle_final(const Registration& candidate, Timestamp now) {
   SessionStatus& current = sessions_.front();
-  auto next =
-      adopted(before_ ? *before_ : registration_, candidate, SolveKind::Final, current.automatic);
+  auto next = successor(before_ ? *before_ : registration_, candidate, SolveKind::Final);
   current.adopted = next.has_value();
   Outcome outcome = Outcome::Adopted;
   if (next) {

@@ -16,6 +16,7 @@
 #include "fusion-server/core/adoption.h"
 #include "fusion-server/core/last_seen.h"
 #include "fusion-server/core/registration_session.h"
+#include "fusion-server/core/world.h"
 #include "fusion-server/status.h"
 
 namespace chorus::core {
@@ -62,8 +63,10 @@ class Registrar {
   [[nodiscard]] Result<std::uint64_t> start(Duration target, Timestamp now);
   /// Cancels this session and all its effects; NotFound when it is not running.
   [[nodiscard]] Result<void> cancel(std::uint64_t session, Timestamp now);
-  /// Cancels the session and forgets the registration.
+  /// Cancels the session and forgets the registration, but not in which world it was.
   void forget();
+  /// Conflict while a session is running; NotFound and InvalidArgument as with_origin().
+  [[nodiscard]] Result<void> move_origin(const Origin& origin);
 
   /// At most one job is out at a time; its solution is returned through solved().
   [[nodiscard]] std::optional<SolveJob> due_job(Timestamp now);
@@ -86,6 +89,8 @@ class Registrar {
   void begin(Duration target, bool automatic, Timestamp now);
   void start_by_itself(Timestamp now);
   void end_session(SessionState state);
+  [[nodiscard]] Result<Registration> successor(const Registration& base,
+                                               const Registration& candidate, SolveKind kind) const;
   void replace(Registration next);
   [[nodiscard]] bool take_back();
   Outcome settle_provisional(const Registration& candidate);
@@ -103,6 +108,7 @@ class Registrar {
   std::uint64_t next_session_;
   std::deque<SessionStatus> sessions_;  ///< Newest first; the running one, if any, is at the front.
   std::optional<Registration> before_;  ///< Set while the session's own registration is in use.
+  Places forgotten_;                    ///< Of the last registration that was forgotten.
   bool solving_ = false;
   std::stop_source stop_solve_;
   SolveKind solving_kind_ = SolveKind::Provisional;

@@ -7,23 +7,36 @@
 
 #include "common/base/json.h"
 #include "common/base/log.h"
+#include "common/base/units.h"
 #include "common/http/status.h"
 #include "fusion-server/wire/registration_nodes.h"
 
 namespace chorus::rest {
-namespace {}  // namespace
+namespace {
+
+/// The members of a small object; `example` shows one that would be right.
+Result<nlohmann::json> object_of(std::string_view body, const char* what, const char* example) {
+  constexpr JsonLimits kLimits{4096, 4};
+  auto json = parse_json(body, kLimits);
+  if (json && json->is_object()) return json;
+  const std::string reason = json ? "" : "; " + to_string(json.error());
+  return fail(ErrorCode::InvalidArgument, what,
+              std::string("send a JSON object, such as ") + example + reason);
+}
+
+bool busy(const RegistrationProgress& progress) {
+  return !progress.sessions.empty() && running(progress.sessions.front());
+}
+
+}  // namespace
 
 Result<Duration> parse_session_request(std::string_view body, Duration fallback) {
   const auto wrong = [](std::string message) {
     return fail(ErrorCode::InvalidArgument, "registration", std::move(message));
   };
   if (body.find_first_not_of(" \t\r\n") == std::string_view::npos) return fallback;
-  constexpr JsonLimits kLimits{4096, 4};
-  const auto json = parse_json(body, kLimits);
-  if (!json || !json->is_object()) {
-    const std::string reason = json ? "" : "; " + to_string(json.error());
-    return wrong("send a JSON object, such as {\"seconds\": 30}" + reason);
-  }
+  const auto json = object_of(body, "registration", R"({"seconds": 30})");
+  if (!json) return pass(json);
   for (const auto& [key, value] : json->items()) {
     if (key != "seconds") return wrong("\"" + key + "\" is not known; only \"seconds\" is");
   }
@@ -35,6 +48,22 @@ Result<Duration> parse_session_request(std::string_view body, Duration fallback)
                  log::number_text(kMaxSession));
   }
   return from_seconds(wanted);
+}
+
+Result<core::Origin> parse_origin_request(std::string_view body) {
+  const auto json = object_of(body, "origin", R"({"x": 1.5, "z": -2, "yawDegrees": 90})");
+  if (!json) return pass(json);
+  core::Origin origin;
+  for (const auto& [key, value] : json->items()) {
+    double* place = key == "x" ? &origin.x : key == "z" ? &origin.z : nullptr;
+    if (key == "yawDegrees") place = &origin.yaw;
+    if (!place || !value.is_number())
+      return fail(ErrorCode::InvalidArgument, "origin",
+                  "\"" + key + "\": known are the numbers \"x\", \"z\" [m] and \"yawDegrees\"");
+    *place = value.get<double>();
+  }
+  origin.yaw = deg(origin.yaw);
+  return origin;
 }
 
 RegistrationResources::RegistrationResources(service::Serving serving, RegistrationControl control)
@@ -66,13 +95,13 @@ Result<http::ActionResult> RegistrationResources::post(const http::Request& requ
     return fail(ErrorCode::Unavailable, "registration", "the server is starting; ask again");
   }
   auto& sessions = progress_.sessions;
-  const bool busy = !sessions.empty() && running(sessions.front());
-  if (busy && !sessions.front().automatic) {
+  const bool runs = busy(progress_);
+  if (runs && !sessions.front().automatic) {
     return fail(ErrorCode::Conflict, "registration",
                 "a session is running already: GET " + wire::session_path(sessions.front().id) +
                     " follows it, DELETE cancels it (chorus register --cancel)");
   }
-  if (!busy) {
+  if (!runs) {
     SessionStatus started;
     started.id = progress_.next_session++;
     started.state = SessionState::Collecting;
@@ -87,9 +116,7 @@ Result<http::ActionResult> RegistrationResources::post(const http::Request& requ
 }
 
 void RegistrationResources::end_newest() {
-  auto& sessions = progress_.sessions;
-  if (!sessions.empty() && running(sessions.front()))
-    sessions.front().state = SessionState::Cancelled;
+  if (busy(progress_)) progress_.sessions.front().state = SessionState::Cancelled;
 }
 
 http::ActionResult RegistrationResources::forget() {
@@ -101,6 +128,22 @@ http::ActionResult RegistrationResources::forget() {
   control_.forget(++asked_);
   show();
   return {http::status::kNoContent, nullptr, {}};
+}
+
+Result<http::ActionResult> RegistrationResources::move_origin(const http::Request& request) {
+  const auto origin = parse_origin_request(request.body);
+  if (!origin) return pass(origin);
+  const std::scoped_lock lock(mutex_);
+  if (busy(progress_))
+    return fail(ErrorCode::Conflict, "origin",
+                "a registration session is running; wait for its end, or DELETE " +
+                    wire::session_path(progress_.sessions.front().id));
+  auto next = core::with_origin(registration_, *origin);
+  if (!next) return pass(next);
+  registration_ = std::move(*next);
+  control_.move_origin(*origin, ++asked_);
+  show();
+  return http::ActionResult{http::status::kOk, live_->current(), {}};
 }
 
 Result<SessionStatus> RegistrationResources::find(const std::string& id) const {
@@ -146,6 +189,8 @@ void RegistrationResources::add_routes(http::Router& router) {
                 [this](const Request& request, const PathParams&) { return post(request); });
   router.action(Method::Delete, "/registration",
                 [this](const Request&, const PathParams&) -> Done { return forget(); });
+  router.action(Method::Post, "/registration/origin",
+                [this](const Request& request, const PathParams&) { return move_origin(request); });
   router.action(Method::Delete, one, [this](const Request&, const PathParams& params) {
     return cancel(params.at("id"));
   });

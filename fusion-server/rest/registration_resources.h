@@ -1,5 +1,5 @@
-// /registration and its sessions over HTTP: GET shows, POST starts a session, DELETE forgets all or
-// cancels one.
+// /registration and its sessions over HTTP: GET shows, POST starts a session or moves the world's
+// origin, DELETE forgets all or cancels a session.
 #pragma once
 
 #include <functional>
@@ -9,6 +9,7 @@
 
 #include "common/http/router.h"
 #include "common/service/serving.h"
+#include "fusion-server/core/world.h"
 #include "fusion-server/status.h"
 
 namespace chorus::rest {
@@ -23,6 +24,7 @@ struct RegistrationControl {
   std::function<void(Duration target, std::uint64_t session, std::uint64_t ticket)> start;
   std::function<void(std::uint64_t session, std::uint64_t ticket)> cancel;
   std::function<void(std::uint64_t ticket)> forget;
+  std::function<void(const core::Origin& origin, std::uint64_t ticket)> move_origin;
   /// How long a session collects unless the request says otherwise.
   std::function<Duration()> default_target = [] { return std::chrono::seconds(30); };
 };
@@ -39,6 +41,7 @@ class RegistrationResources {
  private:
   [[nodiscard]] Result<http::ActionResult> post(const http::Request& request);
   [[nodiscard]] http::ActionResult forget();
+  [[nodiscard]] Result<http::ActionResult> move_origin(const http::Request& request);
   [[nodiscard]] Result<http::ActionResult> cancel(const std::string& id);
   [[nodiscard]] Result<http::DocumentPtr> session(const std::string& id) const;
   [[nodiscard]] Result<SessionStatus> find(const std::string& id) const;
@@ -57,5 +60,9 @@ class RegistrationResources {
 
 /// "{"seconds": 30}" or an empty body -> the target; InvalidArgument for anything else.
 [[nodiscard]] Result<Duration> parse_session_request(std::string_view body, Duration fallback);
+
+/// "{"x": 1.5, "z": -2, "yawDegrees": 90}", in the world as it is; what is left out is 0.
+/// InvalidArgument for anything else.
+[[nodiscard]] Result<core::Origin> parse_origin_request(std::string_view body);
 
 }  // namespace chorus::rest

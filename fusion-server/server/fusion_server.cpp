@@ -198,6 +198,9 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
     loop->ask(CancelSession{session, ticket});
   };
   control.forget = [this](std::uint64_t ticket) { loop->ask(Forget{ticket}); };
+  control.move_origin = [this](const core::Origin& origin, std::uint64_t ticket) {
+    loop->ask(MoveOrigin{origin, ticket});
+  };
   frames.emplace(serving, service::FrameHistory{config.at_start.history});
   frame_sink.emplace(*frames);
   sensors.emplace(serving, ids_of(config.live.sensors));

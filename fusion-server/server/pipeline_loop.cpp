@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/base/units.h"
 #include "fusion-server/server/solver.h"
 #include "fusion-server/wire/registration_nodes.h"
 
@@ -108,6 +109,8 @@ void PipelineLoop::obey(Command command) {
     cancel_session(*cancel);
   } else if (const auto* wish = std::get_if<Forget>(&command)) {
     forget(*wish);
+  } else if (const auto* move = std::get_if<MoveOrigin>(&command)) {
+    move_origin(*move);
   } else {
     core_.reconfigure(std::move(std::get<core::CoreConfig>(command)));
   }
@@ -140,6 +143,19 @@ void PipelineLoop::forget(const Forget& wish) {
   core_.forget();
   log::info("registration forgotten");
   keeper_.forget(worker_);
+}
+
+void PipelineLoop::move_origin(const MoveOrigin& wish) {
+  obeyed_ = wish.ticket;
+  if (const auto moved = core_.move_origin(wish.origin); !moved) {
+    log::warn("origin not moved", {{"reason", to_string(moved.error())}});
+    return;
+  }
+  log::info("origin moved", {{"x", wish.origin.x},
+                             {"z", wish.origin.z},
+                             {"yaw_deg", to_deg(wish.origin.yaw)},
+                             {"version", core_.registration().version}});
+  keeper_.keep(worker_, core_.registration());
 }
 
 void PipelineLoop::publish(Snapshot snapshot) {

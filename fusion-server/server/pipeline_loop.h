@@ -34,7 +34,11 @@ struct CancelSession {
 struct Forget {
   std::uint64_t ticket = 0;
 };
-using Command = std::variant<StartSession, CancelSession, Forget, core::CoreConfig>;
+struct MoveOrigin {
+  core::Origin origin;
+  std::uint64_t ticket = 0;
+};
+using Command = std::variant<StartSession, CancelSession, Forget, MoveOrigin, core::CoreConfig>;
 
 struct LoopOptions {
   core::CoreConfig core;
@@ -71,6 +75,7 @@ class PipelineLoop {
   void start_session(const StartSession& wish);
   void cancel_session(const CancelSession& wish);
   void forget(const Forget& wish);
+  void move_origin(const MoveOrigin& wish);
   void publish(Snapshot snapshot);
   void solve(core::SolveJob job);
   void take_solutions();

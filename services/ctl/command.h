@@ -41,6 +41,7 @@ Run add_init(CLI::App& options);
 Run add_doctor(CLI::App& options);
 Run add_import(CLI::App& options);
 Run add_register(CLI::App& options);
+Run add_origin(CLI::App& options);
 Run add_status(CLI::App& options);
 Run add_record(CLI::App& options);
 Run add_replay(CLI::App& options);

@@ -35,6 +35,13 @@ constexpr std::array kHostCommands{
             "Exit code 0: good or provisional, and in use; 1: refused (the reasons are printed),\n"
             "cancelled, nobody walked, or no server.",
             &add_register},
+    Command{"origin", "Says where the world begins and where its front is",
+            "Examples:\n"
+            "  chorus origin --here                   stand there, face the front\n"
+            "  chorus origin --x 1.5 --z -2           by numbers, in the world as it is\n"
+            "  chorus origin --yaw 90                 turns the world and leaves its origin\n"
+            "The world then stays: over new walks, another master, and restarts.",
+            &add_origin},
     Command{"status", "Shows the sensors, the registration and the fused bodies of a fusion server",
             "Examples:\n"
             "  chorus status\n"

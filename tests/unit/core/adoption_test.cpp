@@ -1,6 +1,8 @@
 // A new solve never spoils what was good, and a new sensor moves none of the others.
 #include "fusion-server/core/adoption.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "tests/support/builders.h"
@@ -125,12 +127,18 @@ TEST(Extending, SaysSoWhenThePlacedSensorsDoNotStandAsTheWalkShowsThem) {
   EXPECT_NE(wider.error().message.find("--fresh"), std::string::npos);
 }
 
-TEST(Extending, AskedForByAPersonAGoodWalkReplacesAll) {
-  const Registration candidate = ring(Verdict::Good, {1, 2, 3}, elsewhere());
-  const auto next = adopted(ring(Verdict::Good, {1, 2}), candidate, SolveKind::Final, false);
+TEST(Extending, AskedForByAPersonAGoodWalkReplacesAllInTheWorldThatThereIs) {
+  const Registration current = ring(Verdict::Good, {1, 2});
+  Registration candidate = ring(Verdict::Good, {1, 2, 3}, elsewhere());
+  candidate.sensors.at(id("s2")).error = 0.007;
+  const auto next = adopted(current, candidate, SolveKind::Final, false);
   ASSERT_TRUE(next);
-  EXPECT_EQ(next->sensors.at(id("s1")).world_from_sensor.matrix(),
-            candidate.sensors.at(id("s1")).world_from_sensor.matrix());
+  EXPECT_EQ(next->sensors.at(id("s2")).error, 0.007) << "nobody is held";
+  EXPECT_EQ(next->sensors.size(), 3u);
+  const Eigen::Vector3d jump = next->sensors.at(id("s1")).world_from_sensor.translation() -
+                               current.sensors.at(id("s1")).world_from_sensor.translation();
+  EXPECT_LT(std::hypot(jump.x(), jump.z()), 1e-9);
+  EXPECT_NEAR(jump.y(), 0.02, 1e-9) << "the floor is the new walk's";
 }
 
 TEST(Refusals, AreToldOfSensorsWithoutAPlaceAndLeaveTheVerdict) {

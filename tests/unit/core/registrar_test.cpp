@@ -233,5 +233,51 @@ TEST_F(Sessions, NobodyWaitsForAProvisionalSolveAtTheEndOfTheWalk) {
   EXPECT_EQ(last->kind, SolveKind::Final);
 }
 
+/// The ring as a walk finds it whose world is another: turned, and 3 m away.
+Registration elsewhere(Verdict verdict = Verdict::Good) {
+  const auto moved_there = with_origin(ring(kSensors, verdict), {3.0, -1.0, 1.2});
+  return *moved_there;
+}
+
+double off(const Registration& registration, const char* sensor, const Registration& expected) {
+  const SensorId id = sensor_id(sensor);
+  return (registration.sensors.at(id).world_from_sensor.matrix() -
+          expected.sensors.at(id).world_from_sensor.matrix())
+      .norm();
+}
+
+TEST_F(Sessions, ANewWalkLeavesTheWorldWhereItWas) {
+  begin_with(ring());
+  ASSERT_TRUE(registrar().start(seconds(8), now_));
+  EXPECT_EQ(registrar().solved({7, SolveKind::Final, elsewhere()}, now_), Outcome::Adopted);
+  EXPECT_LT(off(registrar().registration(), "s2", ring()), 1e-9);
+}
+
+TEST_F(Sessions, TheWorldIsRememberedWhenTheRegistrationIsForgotten) {
+  begin_with(ring());
+  registrar().forget();
+  registrar().forget();
+  ASSERT_TRUE(registrar().start(seconds(8), now_));
+  EXPECT_EQ(registrar().solved({7, SolveKind::Provisional, elsewhere(Verdict::Provisional)}, now_),
+            Outcome::Adopted);
+  EXPECT_LT(off(registrar().registration(), "s2", ring()), 1e-9);
+  EXPECT_EQ(registrar().solved({7, SolveKind::Final, elsewhere()}, now_), Outcome::Adopted);
+  EXPECT_LT(off(registrar().registration(), "s3", ring()), 1e-9);
+}
+
+TEST_F(Sessions, TheOriginIsMovedBetweenSessionsOnly) {
+  begin_with(ring());
+  const Origin origin{3.0, -1.0, 1.2};
+  ASSERT_TRUE(registrar().start(seconds(8), now_));
+  EXPECT_EQ(registrar().move_origin(origin).error().code, ErrorCode::Conflict);
+  ASSERT_TRUE(registrar().cancel(7, now_));
+  ASSERT_TRUE(registrar().move_origin(origin));
+  EXPECT_LT(off(registrar().registration(), "s1", elsewhere()), 1e-9);
+  EXPECT_EQ(registrar().registration().version, 5u);
+  ASSERT_TRUE(registrar().start(seconds(8), now_));
+  EXPECT_EQ(registrar().solved({8, SolveKind::Final, ring()}, now_), Outcome::Adopted);
+  EXPECT_LT(off(registrar().registration(), "s3", elsewhere()), 1e-9) << "it stays there";
+}
+
 }  // namespace
 }  // namespace chorus::core

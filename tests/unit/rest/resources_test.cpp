@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "common/base/log.h"
+#include "common/base/units.h"
 #include "common/http/route_table.h"
 #include "fusion-server/rest/frame_sink.h"
 #include "fusion-server/rest/metrics.h"
@@ -150,6 +151,10 @@ class Registering : public ::testing::Test {
     c.forget = [this](std::uint64_t ticket) {
       asked_ += "forget #" + std::to_string(ticket) + "; ";
     };
+    c.move_origin = [this](const core::Origin& origin, std::uint64_t ticket) {
+      asked_ += "origin " + log::number_text(origin.x) + " " + log::number_text(origin.z) + " " +
+                log::number_text(to_deg(origin.yaw)) + " #" + std::to_string(ticket) + "; ";
+    };
     return c;
   }
   void publish() { resources_.publish(registration_, progress_); }
@@ -231,6 +236,41 @@ TEST_F(Registering, DeleteForgetsAndShowsItFromTheAnswerOn) {
   EXPECT_NE(shown("/registration/sessions/40").find("\"cancelled\""), std::string::npos);
   // The next session is nobody's old one.
   EXPECT_EQ(act(http::Method::Post, "/registration")->location, "/registration/sessions/41");
+}
+
+TEST_F(Registering, TheOriginMovesAndIsShownFromTheAnswerOn) {
+  registration_.sensors[sensor_id("s1")] = Extrinsics{};
+  registration_.verdict = Verdict::Good;
+  publish();
+  const auto moved = act(http::Method::Post, "/registration/origin", R"({"x": 2, "z": -1.5})");
+  ASSERT_TRUE(moved) << to_string(moved.error());
+  EXPECT_EQ(moved->status, 200);
+  EXPECT_EQ(asked_, "origin 2 -1.5 0 #1; ");
+  publish();  // from before it was carried out
+  EXPECT_NE(shown().find("\"x\": -2"), std::string::npos) << shown();
+  EXPECT_NE(shown().find("\"z\": 1.5"), std::string::npos);
+}
+
+TEST_F(Registering, TheOriginNeedsAPlaceAndNoSession) {
+  publish();
+  EXPECT_EQ(act(http::Method::Post, "/registration/origin", "{}").error().code,
+            ErrorCode::NotFound);
+  registration_.sensors[sensor_id("s1")] = Extrinsics{};
+  add_session(40, SessionState::Collecting, true);
+  publish();
+  EXPECT_EQ(act(http::Method::Post, "/registration/origin", "{}").error().code,
+            ErrorCode::Conflict);
+  EXPECT_EQ(asked_, "");
+}
+
+TEST(OriginRequest, IsNumbersByName) {
+  const auto origin = parse_origin_request(R"({"x": 1, "z": 2, "yawDegrees": 180})");
+  ASSERT_TRUE(origin);
+  EXPECT_EQ(origin->x, 1.0);
+  EXPECT_EQ(origin->z, 2.0);
+  EXPECT_NEAR(origin->yaw, deg(180), 1e-12);
+  for (const char* wrong : {"", "[]", "3", R"({"y": 1})", R"({"x": "1"})", R"({"yaw": 1})", "{x"})
+    EXPECT_EQ(parse_origin_request(wrong).error().code, ErrorCode::InvalidArgument) << wrong;
 }
 
 TEST_F(Registering, OnlyASessionThatRunsCanBeCancelled) {

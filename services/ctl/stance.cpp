@@ -1,0 +1,72 @@
+#include "services/ctl/stance.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Core>
+
+#include "common/base/units.h"
+#include "fusion-server/client/service_client.h"
+
+namespace chorus::ctl {
+namespace {
+
+constexpr double kSure = 0.95;       // of left and right
+constexpr double kStill = 0.10;      // [m]
+constexpr double kTurned = 10.0;     // [deg]
+constexpr std::size_t kEnough = 5;   // frames
+constexpr double kNarrowest = 0.05;  // [m] from the right to the left, or the front means nothing
+
+Eigen::Vector2d on_floor(const nlohmann::json& joints, const char* name) {
+  const auto& joint = client::part_at(joints, name);
+  return {client::number_at(joint, "x"), client::number_at(joint, "z")};
+}
+
+double turned(double a, double b) { return std::abs(std::remainder(a - b, 2 * std::numbers::pi)); }
+
+}  // namespace
+
+Result<Stance> stance_in(const nlohmann::json& frame) {
+  const auto& bodies = client::part_at(frame, "bodies");
+  if (bodies.empty())
+    return fail(ErrorCode::NotFound, "origin", "nobody is seen; stand where the world shall begin");
+  if (bodies.size() > 1)
+    return fail(ErrorCode::Conflict, "origin",
+                "more than one person is seen; only the one who shows the origin may be");
+  const auto& body = bodies.front();
+  const double sure = client::number_at(body, "sidesConfidence");
+  if (std::isfinite(sure) && sure < kSure)
+    return fail(ErrorCode::Unavailable, "origin",
+                "which way the person faces is uncertain; walk a few steps and come back");
+  const auto& joints = client::part_at(body, "joints");
+  const Eigen::Vector2d pelvis = on_floor(joints, "SpineBase");
+  const Eigen::Vector2d left = on_floor(joints, "HipLeft") - on_floor(joints, "HipRight") +
+                               on_floor(joints, "ShoulderLeft") - on_floor(joints, "ShoulderRight");
+  if (!pelvis.allFinite() || !(left.norm() > kNarrowest))
+    return fail(ErrorCode::NotFound, "origin",
+                "hips or shoulders are not seen; turn or step aside");
+  // The front is left x up, with +y up: (lx, 0, lz) x (0, 1, 0) = (-lz, 0, lx).
+  return Stance{pelvis.x(), pelvis.y(), std::atan2(-left.y(), left.x())};
+}
+
+Result<Stance> steady(std::span<const Stance> seen) {
+  if (seen.size() < kEnough)
+    return fail(ErrorCode::NotFound, "origin", "too few frames came; is the tracker running?");
+  Stance mean;
+  Eigen::Vector2d front = Eigen::Vector2d::Zero();
+  for (const Stance& each : seen) {
+    mean.x += each.x / static_cast<double>(seen.size());
+    mean.z += each.z / static_cast<double>(seen.size());
+    front += Eigen::Vector2d(std::sin(each.yaw), std::cos(each.yaw));
+  }
+  mean.yaw = std::atan2(front.x(), front.y());
+  for (const Stance& each : seen) {
+    if (std::hypot(each.x - mean.x, each.z - mean.z) > kStill ||
+        turned(each.yaw, mean.yaw) > deg(kTurned))
+      return fail(ErrorCode::Conflict, "origin",
+                  "the person moved or turned; stand still and retry");
+  }
+  return mean;
+}
+
+}  // namespace chorus::ctl
