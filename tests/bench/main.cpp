@@ -1,4 +1,4 @@
-// chorus-bench: every number the project claims, one subcommand per claim.
+// chorus-bench: measures every number that the project claims, one subcommand per claim.
 #include <CLI/CLI.hpp>
 #include <array>
 #include <fstream>
@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kFailed;  // --help is no failure
+    return app.exit(error) == 0 ? 0 : kFailed;  // --help is no error
   }
   return chosen == nullptr ? kFailed : run(*chosen, options, json_path);
 }

@@ -1,4 +1,4 @@
-// Who may read and who may write: proxies, pages of others, guessed tokens.
+// Who may read and who may write: proxies, pages of other origins, guessed tokens.
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -33,7 +33,7 @@ std::string bearer(std::string_view token) {
 
 bool is_refused(int status) { return status == 401 || status == 403; }
 
-/// What the simplest guide to nginx says: proxy_pass, and nothing more.
+/// The configuration of the simplest guides to nginx: proxy_pass, and nothing more.
 Result<ChildProcess> start_proxy(const Cell& cell, std::uint16_t port) {
   const std::string folder = cell.folder().string();
   std::ofstream config(cell.folder() / "nginx.conf");
@@ -151,7 +151,7 @@ Result<void> foreign_websocket(Trial& trial) {
   return {};
 }
 
-/// Ten at once are allowed, then one a second: counted over seconds, not until the first refusal.
+/// Ten guesses at once, then one a second are allowed: counted over seconds, not to a refusal.
 Result<void> guessed_tokens(Trial& trial) {
   constexpr double kGuessing = 4.0;  // [s]
   constexpr double kMaxPerSecond = 50.0;

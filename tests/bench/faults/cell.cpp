@@ -15,7 +15,7 @@
 namespace chorus::bench {
 namespace {
 
-constexpr double kPatience = 15.0;  // to come up, on a busy machine [s]
+constexpr double kPatience = 15.0;  // for start-up on a busy machine [s]
 
 std::string name_of_sensor(int index) { return fmt::format("s{}", index + 1); }
 
@@ -92,7 +92,7 @@ Result<void> Cell::take_ports() {
   return {};
 }
 
-/// Two pumps that only hand on, one at each end of the path.
+/// Two pumps that only forward, one at each end of the lossy path.
 Result<void> Cell::lead_through_path(int index) {
   std::uint16_t port = 0;
   Result<void> listens;

@@ -1,4 +1,4 @@
-// A small tracker of real processes: chorus-sensor before one chorus-fusion, all on loopback.
+// A small tracker of real processes: chorus-sensors feed one chorus-fusion, all on loopback.
 #pragma once
 
 #include <cstdint>
@@ -25,37 +25,37 @@ namespace chorus::bench {
 
 using Settings = std::vector<std::string>;  ///< "key=value"
 
-/// Somebody else who is polled as a sensor.
+/// A sensor played by the test and polled like the others.
 struct Neighbour {
   std::string id;
   std::uint16_t port = 0;
-  int place = -1;      ///< Of the ring, counted with the sensors; -1: none is known.
+  int place = -1;      ///< Place on the ring, counted with the sensors; -1: unknown.
   bool honest = true;  ///< Expected to contribute.
 };
 
 struct CellPlan {
   int sensors = 3;
   std::vector<Neighbour> neighbours = {};
-  int ring = 0;  ///< Places on the ring; 0: as many as sensors and neighbours.
+  int ring = 0;  ///< Number of places on the ring; 0: one per sensor and neighbour.
   std::map<int, Settings> of_sensor = {};
-  std::map<int, LinkModel> links = {};   ///< Before these sensors.
-  std::optional<PacketModel> path = {};  ///< Between all sensors and the server.
+  std::map<int, LinkModel> links = {};   ///< Links in front of these sensors.
+  std::optional<PacketModel> path = {};  ///< Network between all sensors and the server.
   Settings fusion = {};
-  ChildSurroundings surroundings = {};  ///< Of chorus-fusion.
-  bool placed = true;     ///< Extrinsics are given; else nobody knows where the sensors stand.
-  bool stored = false;    ///< By the server's own state folder, not by registration.file.
-  bool start_all = true;  ///< False: nothing is started yet.
+  ChildSurroundings surroundings = {};  ///< Those of chorus-fusion.
+  bool placed = true;     ///< Extrinsics are given; else the sensors' places are unknown.
+  bool stored = false;    ///< Given in the server's own state folder, not as registration.file.
+  bool start_all = true;  ///< False: no sensor is started yet.
   std::string address = "127.0.0.1";  ///< Where chorus-fusion listens.
 };
 
 class Cell {
  public:
-  /// Started; unless told otherwise every placed sensor contributes to the fused person already.
+  /// A started cell; unless the plan says otherwise, every placed sensor contributes already.
   [[nodiscard]] static Result<Cell> start(CellPlan plan);
 
   [[nodiscard]] Result<void> start_sensor(int index);
   [[nodiscard]] Result<void> start_fusion();
-  /// Until every one of these contributes to one body.
+  /// Waits until every placed sensor contributes to one body.
   [[nodiscard]] Result<void> settle() const;
 
   [[nodiscard]] ChildProcess& fusion() { return *fusion_; }
@@ -72,11 +72,11 @@ class Cell {
   /// s1, s2, ... and the honest neighbours that have a place.
   [[nodiscard]] std::vector<std::string> placed() const;
 
-  /// One request to chorus-fusion; status 0: no answer.
+  /// Sends one request to chorus-fusion; status 0: no answer.
   [[nodiscard]] http::ClientResponse ask(http::ClientRequest request) const;
-  /// A GET as JSON; discarded when there is no such answer.
+  /// The answer to a GET as JSON; discarded() when there is no such answer.
   [[nodiscard]] nlohmann::json json(const std::string& path) const;
-  /// What /sensors/ says of one.
+  /// What /sensors/ says about this sensor.
   [[nodiscard]] nlohmann::json told_of(const std::string& sensor) const;
 
  private:
@@ -87,7 +87,7 @@ class Cell {
   [[nodiscard]] std::string polled() const;
 
   CellPlan plan_;
-  ScratchFolder folder_;  // goes last
+  ScratchFolder folder_;  // destroyed last
   std::uint16_t port_ = 0;
   std::vector<std::uint16_t> sensor_ports_;
   std::unique_ptr<LossyPath> path_;
@@ -97,10 +97,10 @@ class Cell {
   std::optional<ChildProcess> fusion_;
 };
 
-/// A GET or another request to any port of this host.
+/// Sends a GET or another request to any port of this host.
 [[nodiscard]] http::ClientResponse ask_port(std::uint16_t port, http::ClientRequest request);
 
-/// Until a condition holds; false: not within so long [s].
+/// Waits until `holds()` is true; false if it does not hold within `patience` [s].
 [[nodiscard]] bool wait_until(double patience, const std::function<bool()>& holds);
 
 void wait_for(double duration);  ///< [s]

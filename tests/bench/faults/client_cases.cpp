@@ -1,4 +1,4 @@
-// Clients that take what they can get and give nothing back.
+// Clients that take all they can get and never give way.
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -22,7 +22,7 @@ constexpr std::string_view kEvents =
 constexpr std::string_view kGet =
     "GET /frame HTTP/1.1\r\nHost: 127.0.0.1\r\nAccept: application/ld+json\r\n\r\n";
 
-/// The cell listens on every address, so that somebody else can come to it.
+/// A cell whose server listens on every address, so that a client of another host can connect.
 CellPlan open_cell() {
   CellPlan plan;
   plan.address = "0.0.0.0";
@@ -30,7 +30,7 @@ CellPlan open_cell() {
   return plan;
 }
 
-/// While somebody does something for so long, everybody else goes on.
+/// While clients misbehave for `duration` [s], all others go on.
 Account watched(const Watch& watch, double duration) {
   const Timestamp begun = now();
   wait_for(duration);
@@ -42,7 +42,7 @@ Result<void> idle_connections(Trial& trial) {
   const auto host = foreign_address();
   if (!host) return trial.leave_out("this host has no address beside loopback"), Result<void>{};
   CellPlan plan = open_cell();
-  plan.surroundings.descriptors = 1024;  // what services get by default
+  plan.surroundings.descriptors = 1024;  // the default of services
   auto cell = Cell::start(plan);
   if (!cell) return pass(cell);
   const Watch watch(cell->port());
@@ -84,7 +84,7 @@ Result<void> slowloris(Trial& trial) {
   return {};
 }
 
-/// Forty clients that ask and never read; nothing piles up for them.
+/// Forty clients send requests and never read; nothing may accumulate for them.
 Result<void> never_reading(Trial& trial, std::string_view request, int times) {
   constexpr int kMany = 40;
   constexpr double kMaxMore = 25.0;  // [MB]
@@ -109,22 +109,22 @@ Result<void> never_reading_polls(Trial& trial) { return never_reading(trial, kGe
 Result<void> never_reading_events(Trial& trial) { return never_reading(trial, kEvents, 1); }
 Result<void> never_reading_sockets(Trial& trial) { return never_reading(trial, kUpgrade, 1); }
 
-constexpr double kWarmedUp = 60.0;  // [s] of churn, from which on memory is judged
+constexpr double kWarmedUp = 60.0;  // [s] of churn; memory is judged after them
 
-/// How long the churn lasts [s]; CHORUS_CHURN_SECONDS=600 for the ten minutes of the docs.
+/// Duration of the churn [s]; CHORUS_CHURN_SECONDS=600 gives the ten minutes of the docs.
 double churn_length() {
   constexpr double kShort = 6.0;
   const char* asked = std::getenv("CHORUS_CHURN_SECONDS");
   return asked == nullptr ? kShort : std::max(kShort, std::strtod(asked, nullptr));
 }
 
-/// Resident memory of the server at times since the beginning.
+/// Resident memory of the server at some time since the beginning.
 struct Memory {
   double time = 0.0;  ///< [s]
   double mb = 0.0;
 };
 
-/// What the straight line through them rises from the first to the last [MB].
+/// Rise of the straight line fitted through the samples, from the first to the last [MB].
 double rise_of(const std::vector<Memory>& samples) {
   const auto count = static_cast<double>(samples.size());
   double time = 0.0;
@@ -142,7 +142,7 @@ double rise_of(const std::vector<Memory>& samples) {
   return square > 0.0 ? product / square * (samples.back().time - samples.front().time) : 0.0;
 }
 
-/// One sensor comes and goes for so long; the server's memory once it has warmed up.
+/// One sensor starts and stops for `length` [s]; returns the server's memory after warm-up.
 Result<std::vector<Memory>> restart_again_and_again(Cell& cell, double length) {
   std::vector<Memory> samples;
   const Timestamp begun = now();
@@ -157,7 +157,7 @@ Result<std::vector<Memory>> restart_again_and_again(Cell& cell, double length) {
   return samples;
 }
 
-/// Clients come, take a frame and go, and one sensor comes and goes; nothing is left behind.
+/// Clients come, take a frame and leave, and one sensor starts and stops; nothing is left over.
 Result<void> churn(Trial& trial) {
   constexpr std::size_t kEnough = 10;
   constexpr double kMaxRise = 1.0;  // [MB]

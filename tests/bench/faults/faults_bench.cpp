@@ -1,5 +1,5 @@
-// What goes wrong in a workshop, done on purpose to a small tracker of real processes: one case
-// after the other, and what must hold in each.
+// Causes in a small tracker of real processes what goes wrong in a workshop: case after case, with
+// what must hold in each.
 #include <algorithm>
 #include <chrono>
 #include <iostream>

@@ -1,4 +1,4 @@
-// Sensors that lie, err or misbehave, played by this process.
+// Sensors that lie, fail or misbehave, played by this process.
 #pragma once
 
 #include <cstdint>
@@ -16,19 +16,19 @@
 
 namespace chorus::bench {
 
-/// What everybody in a cell looks at: one person who walks within half a metre of the middle.
+/// The person that all sensors of a cell see; walks within half a metre of the middle.
 [[nodiscard]] Skeleton<WorldSpace> person_at(Timestamp instant);
 
-/// Place `index` of `count` of the ring of simulated sensors.
+/// Pose of place `index` of `count` on the ring of simulated sensors.
 [[nodiscard]] Eigen::Isometry3d place_of(int index, int count);
 
-/// A sensor that says at 30 Hz whatever its script says.
+/// A sensor that says whatever its script says, at 30 Hz.
 class Guest {
  public:
   struct Said {
     Timestamp captured;
     std::vector<BodyFrame> bodies = {};
-    std::string behind = {};  ///< More Turtle behind the frame; there is then no other form.
+    std::string behind = {};  ///< More Turtle after the frame; then no other format is served.
   };
   using Script = std::function<Said(Timestamp now)>;
 
@@ -52,12 +52,12 @@ class Guest {
   std::jthread thread_;
 };
 
-/// What an honest sensor at this place says of the person.
+/// What an honest sensor at this place says about the person.
 [[nodiscard]] Guest::Said honest(const Eigen::Isometry3d& world_from_sensor, Timestamp now);
 
-/// Accepts connections on a free port and lets a function loose on each, on a thread of its own.
-/// The socket is
-/// shut down and closed when the server goes.
+/// Accepts connections on a free port and runs a function on each of them, in a
+/// thread of its own.  The sockets are shut down and closed when the server is
+/// destroyed.
 class RawServer {
  public:
   using Conversation = std::function<void(int socket)>;

@@ -1,4 +1,4 @@
-// Sensors that say what is not: ghosts, shifted places, crowds, coat stands.
+// Sensors that report what is not there: ghosts, shifted places, crowds, coat stands.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -15,13 +15,13 @@ namespace {
 
 constexpr int kSensors = 3;
 constexpr int kRing = 4;
-constexpr double kNear = 0.3;  // nobody's joint is further from the truth [m]
+constexpr double kNear = 0.3;  // no joint of the person is farther from the truth [m]
 
 Eigen::Vector3d truth_at(Timestamp instant) {
   return person_at(instant)[JointId::SpineBase].position;
 }
 
-/// How far the nearest fused body is from the person [m].
+/// Distance of the nearest fused body from the person [m].
 double error_of(const FusedInstant& frame) {
   double least = std::numeric_limits<double>::infinity();
   for (const Eigen::Vector3d& place : frame.places)
@@ -42,7 +42,7 @@ BodyFrame moved(BodyFrame body, const Eigen::Vector3d& by) {
   return body;
 }
 
-/// Honest until all has settled; then what a lie makes of it.
+/// The truth until all has settled; after that, what a lie makes of it.
 using Lie = std::function<Guest::Said(Timestamp now, Guest::Said truth)>;
 
 struct Liars {
@@ -106,7 +106,7 @@ Result<void> no_second_person(Trial& trial, const Lie& lie) {
   return {};
 }
 
-/// When, within the last minute, the person stood furthest from where it will be now.
+/// The time within the last minute when the person was farthest from where it is at `when`.
 Timestamp furthest_before(Timestamp when) {
   constexpr int kLookedBack = 60;  // [s]
   const Eigen::Vector3d soon = truth_at(when + std::chrono::seconds(2));
@@ -183,12 +183,12 @@ Result<void> crowds(Trial& trial) {
   return {};
 }
 
-/// It never moves: no registration can place the sensor that sees it, however often it is tried.
+/// It never moves: no registration can place the sensor that sees it, however often it tries.
 Result<void> coat_stand(Trial& trial) {
   constexpr std::int64_t kMaxVersions = 3;
   const auto place = place_of(3, kRing);
   Guest guest("x", [&](Timestamp when) {
-    auto said = honest(place, Timestamp(std::chrono::hours(1)));  // as it stood then
+    auto said = honest(place, Timestamp(std::chrono::hours(1)));  // the person as it stood then
     said.captured = when;
     for (BodyFrame& body : said.bodies) body.captured = when;
     return said;

@@ -25,7 +25,7 @@ constexpr auto kFrozenLook = std::chrono::milliseconds(20);
 
 struct Switches {
   std::atomic<bool> frozen{false};
-  std::atomic<std::int64_t> passes{-1};  ///< Bytes of answers that still pass; -1: all.
+  std::atomic<std::int64_t> passes{-1};  ///< Bytes of answers that may still pass; -1: all.
 };
 
 struct Surroundings {
@@ -34,7 +34,7 @@ struct Surroundings {
   std::mt19937* random = nullptr;
 };
 
-/// How long a message is under way.
+/// How long a message takes to arrive.
 Duration time_under_way(const LinkModel& link, std::mt19937& random) {
   double out = link.delay;
   if (link.jitter > 0.0) out += std::uniform_real_distribution<>(0.0, link.jitter)(random);
@@ -80,7 +80,7 @@ class Direction {
   std::size_t waiting_bytes_ = 0;
   bool reading_ = false;
   bool writing_ = false;
-  bool over_ = false;  ///< The one end has hung up; the other hears of it behind the last message.
+  bool over_ = false;  ///< One end has hung up; the other learns it after the last message.
 };
 
 void Direction::read() {

@@ -1,9 +1,9 @@
-// A pump between two ends of TCP connections on loopback that delays what passes, as a network
-// does: a program in user space, since not every kernel has netem.
+// A pump between the two ends of TCP connections on loopback that delays data as a network does: in
+// user space, because not every kernel has netem.
 //
-// What it models: every message (what one read yields, at most 16 kB) is delayed by a draw of its
-// own per direction, and none overtakes another, as TCP has it.  What it does not model: bandwidth,
-// queues and lost packets; those are for lossy_path.h, whose sockets a pump can use.
+// Modelled: each message (the result of one read, at most 16 kB) gets its own random delay per
+// direction, and none overtakes another, as with TCP. Not modelled: bandwidth, queues and lost
+// packets; for those see lossy_path.h, whose sockets a pump can use.
 #pragma once
 
 #include <atomic>
@@ -15,23 +15,23 @@
 
 namespace chorus::bench {
 
-/// One way, both directions alike [s].
+/// Delay of one direction; both directions are alike [s].
 struct LinkModel {
   double delay = 0.0;
-  double jitter = 0.0;  ///< Added, uniform from 0 to this.
+  double jitter = 0.0;  ///< Added: uniform from 0 to this.
 };
 
-/// Where a pump listens and to what it connects.  Made on the pump's io_context.
+/// Where a pump listens and where it connects to.  Made for the pump's io_context.
 struct PumpEnds {
   std::function<net::Acceptor(asio::io_context&)> listen;
   std::function<net::Socket(asio::io_context&)> socket;
   net::tcp::endpoint target;
 };
 
-/// Both on loopback: a port of its own, and 127.0.0.1:`target`.
+/// Both on loopback: listens on a free port, connects to 127.0.0.1:`target`.
 [[nodiscard]] PumpEnds on_loopback(std::uint16_t target);
 
-/// Hands every connection on.
+/// Forwards every connection.
 class Pump {
  public:
   Pump(PumpEnds ends, const LinkModel& model, std::uint32_t seed = 1);
@@ -40,11 +40,11 @@ class Pump {
   Pump& operator=(const Pump&) = delete;
 
   [[nodiscard]] std::uint16_t port() const;
-  /// From the next message on.
+  /// Takes effect with the next message.
   void become(const LinkModel& model);
-  /// From now on nothing passes, and nobody is told: a cable that is out.
+  /// From now on nothing passes, and no end is told: like an unplugged cable.
   void freeze(bool frozen);
-  /// The next answer stops after so many bytes, and everything behind it.
+  /// The next answer stops after `bytes` bytes, and all data after it.
   void freeze_after(std::size_t bytes);
 
  private:

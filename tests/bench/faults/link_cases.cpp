@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kSensors = 4;
 constexpr double kPercent = 100.0;
-constexpr double kMaxLater = 0.030;  // what one bad link may cost everybody, age p90 [s]
+constexpr double kMaxLater = 0.030;  // what one bad link may add to the others' age, p90 [s]
 
 CellPlan with_links(const LinkModel& link, int from, int to) {
   CellPlan plan;
@@ -23,7 +23,7 @@ CellPlan with_links(const LinkModel& link, int from, int to) {
   return plan;
 }
 
-/// The same link before all sensors; every one has to be in nearly all frames.
+/// The same link in front of all sensors; each must be in nearly all frames.
 Result<void> all_alike(Trial& trial, const LinkModel& link) {
   auto cell = Cell::start(with_links(link, 0, kSensors));
   if (!cell) return pass(cell);
@@ -35,7 +35,7 @@ Result<void> all_alike(Trial& trial, const LinkModel& link) {
   return {};
 }
 
-/// Packets are lost on all ways, and every sensor still has to be in nearly all frames.
+/// Packets are lost in all directions, and each sensor must still be in nearly all frames.
 Result<void> lossy(Trial& trial) {
   CellPlan plan;
   plan.sensors = kSensors;
@@ -53,7 +53,7 @@ Result<void> lossy(Trial& trial) {
   return {};
 }
 
-/// Everybody is well connected; then one link turns bad, and the others must hardly notice.
+/// All links are good; then one turns bad, and the others must hardly notice.
 Result<Account> one_turns_bad(Trial& trial, Cell& cell, const LinkModel& link) {
   const Watch watch(cell.port());
   wait_for(1.0);
@@ -79,12 +79,12 @@ Result<void> one_bad(Trial& trial, const LinkModel& link) {
   return after ? Result<void>{} : pass(after);
 }
 
-/// Frames that came too late for the live stream are not lost: asked a second later, the same
-/// instants use them.  And /sensors/ says what part the sensor really has.
+/// Frames too late for the live stream are not lost: when the same instants are asked for a second
+/// later, they use them.  And /sensors/ reports the sensor's real share.
 Result<void> used_later(Trial& trial, Cell& cell) {
   constexpr int kAsked = 60;
   constexpr double kMin = 95.0;
-  constexpr double kNear = 20.0;  // joints are not frames, and both are averages [percent]
+  constexpr double kNear = 20.0;  // joint counts are not frame counts; both are averages [percent]
   const Watch watch(cell.port());
   const Timestamp begun = now();
   int with = 0;
@@ -118,7 +118,7 @@ Result<void> jitter_400(Trial& trial) {
   return used_later(trial, *cell);
 }
 
-/// Keeps every core busy beside the tracker.
+/// Keeps every core busy in addition to the tracker.
 class BusyMachine {
  public:
   BusyMachine() {
@@ -133,7 +133,7 @@ class BusyMachine {
   std::vector<std::jthread> threads_;
 };
 
-/// Where everybody's frames are late now and then, the worst link still costs the others nothing.
+/// With all frames late at times, the worst link must still cost the other sensors nothing.
 Result<void> jitter_busy(Trial& trial) {
   auto cell = Cell::start(with_links({}, 1, 2));
   if (!cell) return pass(cell);

@@ -55,13 +55,13 @@ class Descriptor {
   int fd_ = -1;
 };
 
-/// With the reason that the system gave last.
+/// An error that ends with the system's last error message.
 tl::unexpected<Error> failed(const char* what) {
   const bool missing = errno == EPERM || errno == EACCES || errno == ENOENT;
   return fail(missing ? ErrorCode::Unsupported : ErrorCode::Io, what, std::strerror(errno));
 }
 
-/// Runs in a thread of its own, so that the namespace entered is left with it.
+/// Runs `doing` in a thread of its own, so that only this thread enters the namespace.
 template <class Doing>
 auto in_thread(const Doing& doing) {
   std::optional<std::invoke_result_t<Doing>> out;
@@ -87,7 +87,7 @@ struct Setting {
   const char* address;
 };
 
-/// The device gets its address and its opposite, and is up.
+/// Gives the device its address and its peer's, and brings it up.
 bool configure(const char* mine, const char* opposite) {
   const Descriptor any(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   for (const Setting& each : {Setting{SIOCSIFADDR, mine}, Setting{SIOCSIFDSTADDR, opposite},
@@ -120,7 +120,7 @@ Result<End> make_end(const char* mine, const char* opposite) {
   return end;
 }
 
-/// A TCP socket that lives in the end's namespace, whatever thread uses it.
+/// A TCP socket that stays in the end's namespace, whichever thread uses it.
 Result<int> socket_in(const End& end) {
   return in_thread([&]() -> Result<int> {
     if (::setns(end.space.get(), CLONE_NEWNET) != 0) return failed("setns");
@@ -130,7 +130,7 @@ Result<int> socket_in(const End& end) {
   });
 }
 
-/// Packets of one direction that are under way.
+/// Packets of one direction that are in transit.
 class Way {
  public:
   Way(int from, int to) : from_(from), to_(to) {}
@@ -149,7 +149,7 @@ class Way {
       if (!is_lost()) under_way_.push_back({due, {packet.data(), static_cast<std::size_t>(size)}});
     }
   }
-  /// A device that takes no more loses the packet, as a full queue does.
+  /// If the device accepts no more, the packet is lost, as in a full queue.
   void hand_on(SteadyClock::time_point now) {
     for (; !under_way_.empty() && under_way_.front().due <= now; under_way_.pop_front()) {
       const std::string& bytes = under_way_.front().bytes;
@@ -178,7 +178,7 @@ struct LossyPath::Impl {
   End far;
   std::atomic<bool> losing{false};
   std::array<Way, 2> ways{Way{-1, -1}, Way{-1, -1}};
-  std::jthread thread;  // goes first
+  std::jthread thread;  // destroyed first
 };
 
 int LossyPath::Impl::wait_ms(SteadyClock::time_point now) const {

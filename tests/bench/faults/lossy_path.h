@@ -1,7 +1,7 @@
-// A path that delays and loses packets, under the TCP of this host's kernel: two network
-// namespaces with a TUN device each, and a thread that carries the packets between them.  What loss
-// does to a stream is then the kernel's own doing, not a model's.  Needs root and /dev/net/tun;
-// nothing of it is seen outside of this process.
+// A path that delays and loses packets underneath the TCP of this host's kernel: two network
+// namespaces with a TUN device each, and a thread that carries packets between them.  What loss
+// does to a stream is thus decided by the kernel, not by a model.  Needs root and /dev/net/tun; it
+// is not visible outside of this process.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,9 @@
 
 namespace chorus::bench {
 
-/// Of each packet, both directions alike.
+/// Treatment of each packet, the same in both directions.
 struct PacketModel {
-  double delay = 0.0;  ///< One way [s].
+  double delay = 0.0;  ///< In one direction [s].
   double loss = 0.0;   ///< 0 to 1
 };
 
@@ -28,11 +28,11 @@ class LossyPath {
 
   /// A listening socket at the far end.
   [[nodiscard]] Result<net::Acceptor> listen_far(asio::io_context& io) const;
-  /// A socket at the near end; what it connects to has far_address().
+  /// A socket at the near end, for connecting to far_address().
   [[nodiscard]] Result<net::Socket> near_socket(asio::io_context& io) const;
   [[nodiscard]] static asio::ip::address_v4 far_address();
 
-  /// Nothing is lost before this is set.
+  /// Starts or stops losing packets; at first none is lost.
   void lose(bool losing);
 
  private:

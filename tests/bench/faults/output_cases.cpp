@@ -1,4 +1,4 @@
-// One host that takes every seat of the tracking protocols.
+// One host occupies every client slot of the tracking protocols.
 #include <memory>
 
 #include <fmt/format.h>
@@ -11,9 +11,9 @@
 namespace chorus::bench {
 namespace {
 
-constexpr double kPatience = 3.0;  // for one's first data [s]
+constexpr double kPatience = 3.0;  // until a client's first data [s]
 
-/// A cell with one output that anybody may come to, and somebody else who does.
+/// A cell with one output that any host may use, and another host that uses it.
 struct Crowded {
   std::string host;
   std::uint16_t port = 0;
@@ -86,7 +86,7 @@ constexpr std::string_view kModels("\4\0\0\0", 4);      // message 4
 constexpr std::string_view kKeepAlive("\12\0\0\0", 4);  // message 10
 constexpr char kFrameMessage = 7;
 
-/// A client as the vendor's are: connects, asks what there is, keeps alive; true: frames come.
+/// Acts like the vendor's clients: connects, asks for models, keeps alive; true: frames come.
 bool natnet_serves(const End& end) {
   const auto client = datagrams_to(end);
   (void)client.say(kConnect);
@@ -125,7 +125,7 @@ Result<void> natnet_seats(Trial& trial) {
   return {};
 }
 
-/// Anybody can write a datagram in anybody's name: one must not turn on a flood.
+/// A datagram's sender can be forged: a single one must not start a flood.
 Result<void> natnet_one_datagram(Trial& trial) {
   constexpr std::size_t kMax = 2048;
   auto rig = crowded(trial, natnet_settings(), "outputs.natnet.command_port");

@@ -1,4 +1,4 @@
-// Sensors that die, hang and come back; sensors that say what cannot be.
+// Sensors that die, hang and come back; sensors that report impossible data.
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -17,11 +17,11 @@
 namespace chorus::bench {
 namespace {
 
-constexpr double kReturn = 1.5;    // a sensor that is back contributes again within this [s]
-constexpr double kFollowed = 0.3;  // and one whose clock was set, within this [s]
+constexpr double kReturn = 1.5;    // a sensor that returns contributes again within this time [s]
+constexpr double kFollowed = 0.3;  // and one whose clock was set within this time [s]
 constexpr double kPatience = 8.0;
 
-/// Until all contribute again, for a second; gives up later than any limit.
+/// Waits until all contribute again for a second; gives up later than any limit.
 void wait_for_return(const Watch& watch, const Cell& cell, Timestamp since) {
   (void)wait_until(kPatience,
                    [&] { return std::isfinite(recovery(watch.seen(), since, cell.placed())); });
@@ -79,12 +79,12 @@ Result<void> frozen_mid_answer(Trial& trial) {
   return {};
 }
 
-/// One more sensor beside two good ones; what holds of these, and what is told of the other.
+/// A bad sensor next to two good ones: what must hold for these, and what is reported of it.
 struct Beside {
   Neighbour neighbour;
-  std::atomic<bool>* misbehaves = nullptr;  ///< Set when all has settled; null: it always does.
+  std::atomic<bool>* misbehaves = nullptr;  ///< Set once all has settled; null: it always does.
   double watched = 4.0;                     ///< [s]
-  bool must_tell = true;                    ///< It may not pass as live without a word.
+  bool must_tell = true;                    ///< It must not count as live without a complaint.
 };
 
 Result<void> beside_two(Trial& trial, const Beside& asked) {
@@ -125,7 +125,7 @@ Result<void> never_answers(Trial& trial) {
   return beside_two(trial, {{"x", server.port(), 2, false}});
 }
 
-/// Turtle that is true of nothing here: so many subjects of seven bytes each.
+/// Turtle about unrelated things: `count` subjects of seven bytes each.
 std::string foreign_subjects(std::size_t count) {
   std::string text;
   text.reserve(7 * count);
@@ -157,7 +157,7 @@ Result<void> host_at_1970(Trial& trial) {
 }
 
 Result<void> big_frame(Trial& trial) {
-  constexpr std::size_t kSubjects = 270'000;  // 1.9 MB: what a reader may still take
+  constexpr std::size_t kSubjects = 270'000;  // 1.9 MB: a reader must still accept it
   const std::string foreign = foreign_subjects(kSubjects);
   const auto place = place_of(2, 3);
   std::atomic<bool> big = false;

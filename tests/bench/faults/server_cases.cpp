@@ -1,5 +1,5 @@
-// The server's own host: it is killed, its log is not read, its disk is full, its folders are not
-// there.
+// Trouble on the server's own host: it is killed, its log is not read, its disk is full, its
+// folders are missing.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where every sensor stands, to the bit.
+/// The pose of every sensor, compared bit by bit.
 std::string extrinsics(const Cell& cell) {
   nlohmann::json out;
   const auto told = cell.json("/registration");
@@ -31,7 +31,7 @@ std::string extrinsics(const Cell& cell) {
   return out.dump();
 }
 
-/// SIGKILL, and at once again; what has to be as before.
+/// Kills by SIGKILL, restarts at once, and checks that all is as before.
 Result<void> kill_and_return(Trial& trial, Cell& cell) {
   constexpr double kFirstBody = 0.5;  // after the first answer [s]
   const Watch watch(cell.port());
@@ -70,8 +70,8 @@ Result<void> server_killed(Trial& trial) {
   return kill_and_return(trial, *cell);
 }
 
-/// The state folder of the configuration we ship, in a home of its own; a walk, then the server
-/// dies.
+/// The state folder of the configuration that we ship, under a home folder of its own; the server
+/// dies after a walk.
 Result<void> default_folders(Trial& trial) {
   auto home = ScratchFolder::make();
   if (!home) return pass(home);
@@ -120,7 +120,7 @@ Result<void> folder_not_writable(Trial& trial) {
   return {};
 }
 
-/// A pipe of one page whose reading end nobody reads.
+/// A pipe of one page whose reading end is never read.
 struct UnreadPipe {
   UnreadPipe() {
     if (::pipe2(ends.data(), O_CLOEXEC) == 0) ::fcntl(ends[1], F_SETPIPE_SZ, 4096);
@@ -131,7 +131,7 @@ struct UnreadPipe {
   }
   UnreadPipe(const UnreadPipe&) = delete;
   UnreadPipe& operator=(const UnreadPipe&) = delete;
-  /// By an end of its own, so that the program's does not become one that never blocks.
+  /// Fills it through another end, because O_NONBLOCK must not apply to the program's own end.
   void fill() const {
     const int end = ::open(fmt::format("/proc/self/fd/{}", ends[1]).c_str(), O_WRONLY | O_NONBLOCK);
     while (::write(end, "x", 1) == 1) {
@@ -178,7 +178,7 @@ Result<void> full_disk(Trial& trial) {
   return {};
 }
 
-/// What the program writes before it ends, and how it ends; nothing when it runs.
+/// Exit code and stderr of a program that ended; none while it is running.
 struct Ending {
   int code = 0;
   std::string said;
@@ -211,7 +211,7 @@ Result<std::optional<Ending>> start_with_memory(std::size_t bytes) {
   return std::optional(ending);
 }
 
-/// From far too little to enough, it runs or says why it does not.
+/// With any amount of memory, the program either runs or says why it does not.
 Result<void> little_memory(Trial& trial) {
   constexpr std::size_t kMegabyte = 1U << 20U;
   constexpr int kSignalled = 128;

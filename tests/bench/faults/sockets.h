@@ -1,4 +1,4 @@
-// Sockets of clients that do not behave: what an HTTP client library would never do.
+// Sockets of misbehaving clients, which do what no HTTP client library would do.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +18,13 @@ class RawSocket {
   ~RawSocket();
 
   [[nodiscard]] bool open() const { return descriptor_ >= 0; }
-  /// Without waiting; false when not all of it went.
+  /// Sends without waiting; false when not all of it was sent.
   bool say(std::string_view bytes) const;
-  /// What comes within so long [s], at least one byte; empty: nothing, or it is closed.
+  /// Data that arrives within `patience` [s], at least a byte; empty: nothing, or it is closed.
   [[nodiscard]] std::string hear(double patience) const;
-  /// Everything until the other side has been silent for so long [s], or has closed.
+  /// All data until the other side has been silent for `silence` [s], or has closed.
   [[nodiscard]] std::string hear_all(double silence) const;
-  /// The other side has hung up; throws away what it said before.
+  /// Whether the other side has closed; discards what it sent before.
   [[nodiscard]] bool hung_up() const;
 
  private:
@@ -36,19 +36,19 @@ struct End {
   std::uint16_t port = 0;
 };
 
-/// TCP to there; not open when refused.  A small receive buffer makes a reader that does not read
-/// felt sooner.
+/// Connects by TCP; not open when refused.  A small receive buffer makes the server notice sooner
+/// that this client does not read.
 [[nodiscard]] RawSocket connect_to(const End& end, bool small_buffer = false);
-/// UDP with a port of its own.
+/// A UDP socket with a port of its own, sending to `end`.
 [[nodiscard]] RawSocket datagrams_to(const End& end);
 
-/// The answer to a whole request as it is written, up to the end of its head.
+/// Sends a whole request as given; returns the answer up to the end of its head.
 [[nodiscard]] std::string head_of_answer(const End& end, std::string_view request);
 /// "HTTP/1.1 200 OK" -> 200; 0: none.
 [[nodiscard]] int status_of(std::string_view answer);
 
-/// An address of this host that is not loopback, so that a server sees somebody else; none: this
-/// host has only itself.
+/// An address of this host other than loopback, so that a server sees another host; none: this host
+/// has only loopback.
 [[nodiscard]] std::optional<std::string> foreign_address();
 
 }  // namespace chorus::bench

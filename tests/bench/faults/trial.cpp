@@ -9,9 +9,9 @@ namespace chorus::bench {
 namespace {
 
 constexpr double kRate = 30.0;      // [Hz]
-constexpr double kMaxOff = 3.0;     // frames, of what is due: at the ends of what is counted
+constexpr double kMaxOff = 3.0;     // frames more or less than due, at both ends of the count
 constexpr double kMinShare = 97.0;  // [percent]
-constexpr double kMaxGap = 0.35;    // between two frames: the alignment delay and some [s]
+constexpr double kMaxGap = 0.35;    // between two frames: the alignment delay and a margin [s]
 
 }  // namespace
 

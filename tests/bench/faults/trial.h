@@ -1,5 +1,5 @@
-// One case of `chorus-bench faults`: something is done to a small tracker of real processes, and
-// what must hold is checked.
+// One case of `chorus-bench faults`: does something to a small tracker of real processes and checks
+// what must hold.
 #pragma once
 
 #include <functional>
@@ -21,39 +21,39 @@ inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 class Trial {
  public:
   struct Check {
-    std::string sentence;  ///< What must hold, with what was found.
+    std::string sentence;  ///< What must hold, with what was measured.
     bool holds = false;
   };
 
   void check(bool holds, std::string sentence) { checks.push_back({std::move(sentence), holds}); }
-  /// Leaves the case out: this machine cannot do it.
+  /// Skips the case: this machine cannot run it.
   void leave_out(std::string reason) { left_out = std::move(reason); }
 
-  /// Everybody but the faulty one goes on: the server stands, fused frames with a body come at
-  /// 30 Hz, none is lost, and each of these sensors contributes to nearly all.  Fills in what it
-  /// measures.
+  /// All but the faulty part go on: the server runs, fused frames with a body come at 30 Hz, none
+  /// is lost, and each of these sensors contributes to nearly all of them.  Sets the measured
+  /// values of this trial.
   void check_others(Cell& cell, const Account& account, const std::vector<std::string>& others);
-  /// Fills in how long it took, and checks it against a limit [s].
+  /// Records how long the recovery took, and checks it against a limit [s].
   void check_recovery(double took, double limit);
 
   std::vector<Check> checks;
   std::string left_out;
   double lost = kNotMeasured;       ///< Fused instants without a frame or without a body.
-  double recover_s = kNotMeasured;  ///< From the end of the fault until all contribute again.
-  double rss_mb = kNotMeasured;     ///< Of chorus-fusion at the end.
+  double recover_s = kNotMeasured;  ///< From the fault's end until all contribute again.
+  double rss_mb = kNotMeasured;     ///< Resident memory of chorus-fusion at the end.
   double output_hz = kNotMeasured;
-  double others_percent = kNotMeasured;  ///< Least share of the frames a healthy sensor is in.
+  double others_percent = kNotMeasured;  ///< Fraction of frames for the worst healthy sensor.
   double age_p90_ms = kNotMeasured;
 };
 
-/// A case that cannot be set up says why; that counts as broken.
+/// An error means that the case could not be set up; that counts as failed.
 using RunCase = std::function<Result<void>(Trial&)>;
 
 struct FaultCase {
   std::string_view name;
   std::string_view summary;  ///< What is done, and what must hold.
   RunCase run;
-  bool quick = false;  ///< A few seconds, and belongs to the smoke test.
+  bool quick = false;  ///< Takes a few seconds only; part of the smoke test.
 };
 
 using FaultCases = std::vector<FaultCase>;

@@ -75,7 +75,7 @@ struct Watch::Impl {
     if (seen.empty() || follows(seen.back(), instant)) seen.push_back(std::move(instant));
   }
 
-  /// A frame that the watcher overslept; received as late as the one behind it.
+  /// Fetches a frame that the watcher missed; counts as received together with its successor.
   void fetch(std::int64_t sequence, Timestamp received, std::vector<FusedInstant>& out) const {
     const std::string path = "/frames/" + std::to_string(sequence);
     const auto answer =
@@ -90,7 +90,7 @@ struct Watch::Impl {
   http::AsyncClient client;
   net::Timer timer;
   std::string etag;
-  mutable std::mutex mutex;  ///< Guards what was seen.
+  mutable std::mutex mutex;  ///< Guards the frames seen.
   std::vector<FusedInstant> seen;
   std::jthread thread;
 };
@@ -112,7 +112,7 @@ std::vector<FusedInstant> Watch::seen() const {
     seen = impl_->seen;
   }
   std::vector<FusedInstant> out;
-  constexpr std::int64_t kMax = 60;  // more are gone, or a restart
+  constexpr std::int64_t kMax = 60;  // beyond this they are gone, or the server restarted
   for (const FusedInstant& each : seen) {
     const std::int64_t last = out.empty() ? each.sequence - 1 : out.back().sequence;
     if (each.sequence - last <= kMax) {

@@ -31,7 +31,7 @@ class Watch {
   explicit Watch(std::uint16_t port);
   ~Watch();
 
-  /// All until now.  Frames that the watcher missed because it was slow are asked for afterwards.
+  /// All frames until now.  Frames that the watcher was too slow for are fetched afterwards.
   [[nodiscard]] std::vector<FusedInstant> seen() const;
   /// The newest; sequence 0: none yet.
   [[nodiscard]] FusedInstant newest() const;
@@ -41,25 +41,25 @@ class Watch {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Part of what was seen.
+/// Summary of some of the frames seen.
 struct Account {
   double hz = 0.0;  ///< Frames received, per second.
   std::size_t frames = 0;
   std::size_t lost = 0;                 ///< Instants without a frame, or whose frame has no body.
   double longest_gap = 0.0;             ///< Between two receipts [s]
-  double age_p50 = 0.0;                 ///< Instant to receipt [s]
-  double age_p90 = 0.0;                 ///< [s]
+  double age_p50 = 0.0;                 ///< Median time from instant to receipt [s]
+  double age_p90 = 0.0;                 ///< Its 90th percentile [s]
   double several_percent = 0.0;         ///< Frames with more than one body.
-  std::map<std::string, double> share;  ///< Of the frames each sensor contributed to [percent].
+  std::map<std::string, double> share;  ///< Of frames that each sensor contributed to [percent].
 
   [[nodiscard]] double share_of(const std::string& sensor) const;
 };
 
-/// Frames received from `from` (inclusive) to `to`; the output's rate tells how many are due.
+/// Frames received from `from` (inclusive) to `to`; how many are due follows from 30 Hz.
 [[nodiscard]] Account account_of(std::span<const FusedInstant> seen, Timestamp from, Timestamp to);
 
-/// From `since` to the first receipt after which, for a second, every frame had a body and all of
-/// these contributed [s]; infinite: never.
+/// Time from `since` to the first receipt after which, for a second, every frame had a body and all
+/// of these sensors contributed [s]; infinite: never.
 [[nodiscard]] double recovery(std::span<const FusedInstant> seen, Timestamp since,
                               const std::vector<std::string>& sensors);
 

@@ -33,14 +33,14 @@ void limit(int resource, std::size_t soft) {
   ::setrlimit(static_cast<__rlimit_resource>(resource), &limits);
 }
 
-/// In a mount namespace of its own: nobody else sees it, and it goes with the process.
+/// In a mount namespace of its own: visible to this process alone, and gone when it ends.
 bool mount_small_disk(const std::string& folder) {
   return ::unshare(CLONE_NEWNS) == 0 &&
          ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
          ::mount("none", folder.c_str(), "tmpfs", 0, "size=1m") == 0;
 }
 
-/// In the child, before the program starts.
+/// Runs in the child before the program starts.
 void settle_in(const ChildSurroundings& surroundings) {
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   const int null = ::open("/dev/null", O_RDWR);

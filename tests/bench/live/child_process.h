@@ -1,4 +1,4 @@
-// A program of ours, started by a benchmark and ended with it.
+// One of our programs, started by a benchmark and ended with it.
 #pragma once
 
 #include <sys/types.h>
@@ -10,20 +10,20 @@
 
 namespace chorus::bench {
 
-/// What a program finds when it starts, beside its arguments.
+/// The environment that a program gets when it starts, besides its arguments.
 struct ChildSurroundings {
-  int error_output = -1;          ///< Its stderr goes to this descriptor; -1: to /dev/null.
-  std::size_t descriptors = 0;    ///< The soft limit it is given; 0: ours.
-  std::size_t address_space = 0;  ///< Limit [bytes]; 0: ours.
-  /// "NAME=value", beside what we have.
+  int error_output = -1;          ///< Descriptor that its stderr is sent to; -1: /dev/null.
+  std::size_t descriptors = 0;    ///< Its soft limit; 0: the same as ours.
+  std::size_t address_space = 0;  ///< Its limit [bytes]; 0: the same as ours.
+  /// "NAME=value", in addition to our environment.
   std::vector<std::string> environment = {};
-  /// A folder that is a file system of one megabyte for this program alone.  Needs root.
+  /// A folder on a file system of one megabyte that only this program sees.  Needs root.
   std::string small_disk = {};
 };
 
 class ChildProcess {
  public:
-  /// Starts a program that stands beside this one, or at a path; its output goes to /dev/null.
+  /// Starts a program from this program's folder, or from a path; its output goes to /dev/null.
   [[nodiscard]] static Result<ChildProcess> start(const std::string& program,
                                                   const std::vector<std::string>& arguments,
                                                   const ChildSurroundings& surroundings = {});
@@ -31,17 +31,17 @@ class ChildProcess {
   ChildProcess& operator=(ChildProcess&&) = delete;
   ~ChildProcess();  ///< SIGTERM (also when it is stopped), waits 5 s, then SIGKILL.
 
-  /// User and system time so far [s].
+  /// User and system time used so far [s].
   [[nodiscard]] double cpu_seconds() const;
-  /// Resident memory now [MB]; 0 when it has ended.
+  /// Current resident memory [MB]; 0 when it has ended.
   [[nodiscard]] double resident_mb() const;
-  /// Open file descriptors now.
+  /// Number of open file descriptors.
   [[nodiscard]] std::size_t descriptors() const;
   [[nodiscard]] bool alive() const;
   void send(int signal) const;
   /// Ends it by SIGKILL and waits for it.
   void kill();
-  /// Waits for it to end by itself; its exit code, 128 + signal, or -1: still running.
+  /// Waits until it ends by itself; returns its exit code, 128 + signal, or -1: still running.
   [[nodiscard]] int wait(double patience_s);
 
  private:

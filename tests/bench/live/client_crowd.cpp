@@ -41,10 +41,10 @@ int connect_to(std::uint16_t port) {
   return -1;
 }
 
-/// Length of the whole WebSocket message that `bytes` begin with (RFC 6455, 5.2; a server masks
-/// nothing and ours never splits a document); 0: not all of its head is there.
+/// Length of the WebSocket message at the beginning of `bytes` (RFC 6455, 5.2; a server masks
+/// nothing, and ours never splits a document); 0: its head is not complete yet.
 std::size_t message_length(std::string_view bytes) {
-  constexpr std::size_t kTwoBytes = 126;  // the length stands in two bytes behind this one
+  constexpr std::size_t kTwoBytes = 126;  // this value says that the length follows in two bytes
   constexpr std::size_t kEightBytes = 127;
   if (bytes.size() < 2) return 0;
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
@@ -70,7 +70,7 @@ struct ClientCrowd::Impl {
     int socket = -1;
     std::unique_ptr<testing::VrpnClient> vrpn;
     Reads reads = Reads::LongPolls;
-    bool open = false;  ///< The WebSocket's handshake is behind it.
+    bool open = false;  ///< The WebSocket's handshake is done.
     std::string received;
   };
 
@@ -155,7 +155,7 @@ void ClientCrowd::Impl::on_http(Client& client) {
   }
 }
 
-/// An event ends with an empty line.
+/// An empty line ends an event.
 void ClientCrowd::Impl::take_events(Client& client) {
   std::size_t end = 0;
   while ((end = client.received.find("\n\n")) != std::string::npos) {

@@ -30,7 +30,7 @@ constexpr double kHeight = 1.4;  // [m]
 constexpr std::size_t kKept = 90;
 constexpr auto kPatience = std::chrono::seconds(30);
 
-/// They sway, as people do: coordinates that never change are refused as no measurement.
+/// They sway, as people do: coordinates that never change are refused as implausible.
 std::vector<Skeleton<WorldSpace>> people(int count, Timestamp now) {
   constexpr double kSway = 0.005;                   // [m]
   constexpr std::int64_t kSwaying = 4'000'000'000;  // [ns]
@@ -49,7 +49,7 @@ struct Received {
   Timestamp when;
 };
 
-/// One VRPN client and nothing else on this thread: when each frame came.
+/// Receives frames with one VRPN client, with nothing else on this thread; returns when each came.
 std::vector<Received> receive_frames(testing::VrpnClient& client, double run_seconds) {
   std::vector<Received> out;
   const SystemClock clock;
@@ -62,7 +62,7 @@ std::vector<Received> receive_frames(testing::VrpnClient& client, double run_sec
   return out;
 }
 
-/// How many bodies /frame has just now.
+/// Number of bodies in /frame at present.
 int bodies_now(const LiveCell& cell) {
   const auto answer = http::fetch({"127.0.0.1", cell.port, "/frame"},
                                   {"GET", "/frame", {{"Accept", "application/json"}}, {}});
@@ -101,7 +101,7 @@ struct ExactSensors::Sensor {
 
   std::string id;
   Eigen::Isometry3d world_from_sensor;
-  Duration due;  ///< Since the beginning.
+  Duration due;  ///< Time since the beginning.
   std::uint64_t sequence = 0;
   std::shared_ptr<http::LiveDocument> document = std::make_shared<http::LiveDocument>();
   std::unique_ptr<http::Server> server;
@@ -212,7 +212,7 @@ Result<Lateness> watch(const LiveCell& cell, double run_seconds) {
   }
   Lateness out;
   std::vector<Received> frames;
-  constexpr double kPart = 1.0;  // the sensors remember three seconds
+  constexpr double kPart = 1.0;  // the sensors remember only three seconds of captures
   for (double done = 0.0; done < run_seconds; done += kPart) {
     for (const Received& frame : receive_frames(client, kPart)) {
       frames.push_back(frame);

@@ -1,5 +1,5 @@
-// A real chorus-fusion process that is polled by many clients, fed by sensors whose every capture
-// is known: exact views of standing people, served over HTTP from this process.
+// A real chorus-fusion process polled by many clients, with sensors whose every capture time is
+// known: exact views of standing people, served over HTTP from this process.
 #pragma once
 
 #include <cstdint>
@@ -23,11 +23,11 @@ class ExactSensors {
   ExactSensors(int count, int persons);
   ~ExactSensors();
 
-  /// The fusion server's setting "sensors", and the content of its registration file.
+  /// The fusion server's setting "sensors"; then, the content of its registration file.
   [[nodiscard]] std::string settings() const;
   [[nodiscard]] std::string places() const;
-  /// When the last capture that the instant had to wait for was published: of each sensor the first
-  /// one at or after the instant.  None: not captured yet.
+  /// When the last capture that the instant had to wait for was published, out of each sensor's
+  /// first capture at or after the instant.  None: one of them is not captured yet.
   [[nodiscard]] std::optional<Timestamp> last_needed_capture(Timestamp instant) const;
 
  private:
@@ -42,23 +42,23 @@ class ExactSensors {
 struct LiveCell {
   std::unique_ptr<ExactSensors> sensors;
   ScratchFolder folder;
-  std::vector<ChildProcess> fusion;  ///< One; ends before its folder goes.
+  std::vector<ChildProcess> fusion;  ///< One process; ends before its folder is removed.
   std::uint16_t port = 0;
   std::uint16_t vrpn_port = 0;
 };
 
-/// Started, and so many bodies are fused.
+/// Starts a cell and waits until `persons` bodies are fused.
 [[nodiscard]] Result<LiveCell> start_cell(int sensors, int persons);
 
-/// What one VRPN client of the first person sees.
+/// What one VRPN client that reads the first person sees.
 struct Lateness {
-  std::vector<double> beyond_capture;  ///< Of each frame, since the last capture it needed [s].
+  std::vector<double> beyond_capture;  ///< Per frame: time since the last capture it needed [s].
   double output_hz = 0.0;
   std::size_t lost = 0;
 };
 [[nodiscard]] Result<Lateness> watch(const LiveCell& cell, double run_seconds);
 
-/// What clients at rest in a room do: take what comes.
+/// Typical clients: they only take what comes.
 struct ClientCounts {
   int vrpn = 0;
   int long_polls = 0;
@@ -69,8 +69,8 @@ struct ClientAnswers {
   std::uint64_t vrpn_frames = 0;
   std::uint64_t long_polls = 0;
   std::uint64_t events = 0;
-  std::uint64_t messages = 0;  ///< Of WebSockets.
-  std::uint64_t lost = 0;      ///< Connections that the server ended.
+  std::uint64_t messages = 0;  ///< WebSocket messages.
+  std::uint64_t lost = 0;      ///< Connections closed by the server.
 };
 
 /// All clients on one thread and one epoll set.

@@ -1,5 +1,5 @@
-// What fusing a long recording costs: a cell of six sensors as its recorder writes it, fused by the
-// program that people run.
+// The cost of fusing a long recording: a cell of six sensors as its recorder writes it, fused by
+// the same program that users run.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -38,7 +38,7 @@ constexpr std::size_t kDraws = 1 << 16;
 struct OfflineCase {
   const char* name;
   int people;
-  double share;             ///< Of the length.
+  double share;             ///< Fraction of the length.
   double least_real_times;  ///< The claim.
 };
 constexpr std::array kCases{OfflineCase{"six-sensors", 1, 1.0, 150.0},
@@ -50,7 +50,7 @@ double minutes(const Report& report) {
   return report.quick() ? kQuickMinutes : kLongMinutes;
 }
 
-/// The same for every run of one seed, and long enough that packing finds no repetition.
+/// The same for every run with one seed, and long enough that compression finds no repetition.
 class Noise {
  public:
   explicit Noise(std::uint64_t seed) : draws_(kDraws) {
@@ -65,7 +65,7 @@ class Noise {
   std::size_t at_ = 0;
 };
 
-/// People who walk on circles of their own, as one sensor sees them.
+/// People walking in circles, as one sensor sees them.
 SensorFrame seen(int sensor, int people, int number, Noise& noise) {
   const Timestamp t = testing::kStart + testing::kFrameInterval * number;
   const auto place = testing::ring_sensor(sensor, kSensors);
@@ -97,7 +97,7 @@ record::PlacesChanged places() {
   return wire::places_changed(testing::kStart, registration);
 }
 
-/// A cell's recording without what was fused of it.
+/// Writes the recording of a cell without fused frames.
 Result<void> record_cell(const fs::path& file, int people, int frames, std::uint64_t seed) {
   auto writer = record::CellWriter::create(file, {});
   if (!writer) return pass(writer);
@@ -123,7 +123,7 @@ struct Cost {
   double rss_mb = 0.0;
 };
 
-/// Runs `chorus` beside this program and waits for it.
+/// Runs `chorus` from this program's folder and waits for it.
 Result<Cost> run_chorus(const std::vector<std::string>& arguments) {
   const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "chorus";
   std::vector<std::string> words{program.string()};
@@ -156,7 +156,7 @@ Result<void> measure(Report& report, const OfflineCase& each, double minutes_eac
       !ok)
     return ok;
   for (const bool from_walk : {false, true}) {
-    if (from_walk && each.people > 1) continue;  // nobody walks alone
+    if (from_walk && each.people > 1) continue;  // a walk for registration is walked alone
     const std::string out = (scratch->path() / fmt::format("fused{}.mcap", from_walk)).string();
     std::vector<std::string> words{"fuse", file.string(), "--out", out};
     if (from_walk) words.emplace_back("--from-walk");

@@ -5,7 +5,7 @@
 
 namespace chorus::bench {
 
-/// User and system time of a running process so far [s]; 0 when there is none.
+/// User and system time used by a running process [s]; 0 when there is none.
 [[nodiscard]] double cpu_seconds_of(pid_t pid);
 
 }  // namespace chorus::bench

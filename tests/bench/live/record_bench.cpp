@@ -1,5 +1,5 @@
-// What recording costs: six raw streams and the fused one of real processes, from the service that
-// records and from a client, beside the same service not recording and beside plain JSON lines.
+// The cost of recording: six raw streams and the fused one of real processes, by the recording
+// service and by a client, compared with not recording and with plain JSON lines.
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
@@ -81,7 +81,7 @@ Result<Rig> start_rig(const fs::path& folder) {
   return rig;
 }
 
-/// Until somebody is fused and the session is over, so that what is measured is steady work.
+/// Waits until a person is fused and the session is over, so that the load is steady.
 Result<void> wait_until_steady(const Rig& rig) {
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   while (std::chrono::steady_clock::now() < deadline) {
@@ -99,7 +99,7 @@ void sleep_for(double seconds) {
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
 }
 
-/// Cores a process uses over so many seconds.
+/// Mean number of cores that a process uses during `seconds`.
 double cores_of(const ChildProcess& process, double seconds) {
   const auto begun = std::chrono::steady_clock::now();
   const double before = process.cpu_seconds();
@@ -109,7 +109,7 @@ double cores_of(const ChildProcess& process, double seconds) {
   return (process.cpu_seconds() - before) / elapsed;
 }
 
-/// Gaps within each stream, by the sequence numbers of what is in the file.
+/// Gaps in each stream, found by the sequence numbers of the recorded frames.
 struct Contents {
   std::size_t frames = 0;
   std::uint64_t lost = 0;
@@ -140,8 +140,8 @@ Result<Contents> contents_of(const fs::path& path) {
   return contents;
 }
 
-/// Writing the recorded frames as JSON lines, uncompressed, without index: cores while it would
-/// keep step with the recording.
+/// Writes the recorded frames as JSON lines, uncompressed, without an index; returns the cores
+/// needed to do this at the pace of the recording.
 double json_lines_cores(const fs::path& recording, const fs::path& out, double seconds) {
   const auto session = record::read_cell(recording, {.fused = true});
   if (!session) return kNoRatio;

@@ -1,4 +1,4 @@
-// A temporary folder that goes with whoever holds it.
+// A temporary folder that is removed together with its owner.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,7 @@ class ScratchFolder {
 
  private:
   explicit ScratchFolder(std::filesystem::path path) : path_(std::move(path)) {}
-  std::filesystem::path path_;  ///< Empty: it belongs to somebody else now.
+  std::filesystem::path path_;  ///< Empty: moved to another owner.
 };
 
 }  // namespace chorus::bench

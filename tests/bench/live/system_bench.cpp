@@ -1,6 +1,6 @@
-// The whole tracker as its users run it, judged through the wire: rate, losses, latency, cost, and
-// how far the fused joints are from the truth, with hosts whose clocks agree and whose clocks do
-// not.
+// The whole tracker as users run it, measured over the network: rate, losses, latency, cost, and
+// how far the fused joints are from the truth, with hosts whose clocks agree and hosts whose clocks
+// do not.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,13 +27,13 @@ constexpr double kRate = 30.0;        // [Hz], of sensors and output
 constexpr double kShortRun = 25.0;    // [s]
 constexpr double kQuickRun = 6.0;     // [s]
 constexpr double kMaxToWire = 0.050;  // [s], the claim
-constexpr double kMaxCores = 0.5;     // the claim, simulation aside
+constexpr double kMaxCores = 0.5;     // the claim, without the simulation
 
-/// The last of what the instant had to wait for: of each sensor the first frame at or after it.
-/// Before these the instant cannot be answered, whatever the software does.
+/// The last frame that the instant had to wait for, out of each sensor's first frame at or after
+/// it.  Before that frame the instant cannot be answered, whatever the software does.
 struct Needed {
   Timestamp captured{};
-  Timestamp delivered{};  ///< When a watcher beside the fusion server had the frame.
+  Timestamp delivered{};  ///< When a watcher of the sensor received that frame.
 };
 std::optional<Needed> last_needed(Timestamp instant, const Observed& seen) {
   Needed last;
@@ -51,13 +51,13 @@ struct Frames {
   std::int64_t lost = 0;
   std::int64_t doubled = 0;
   std::vector<double> capture_to_wire;   ///< [s]
-  std::vector<double> delivery_to_wire;  ///< [s], below 0 where fusion was served first.
+  std::vector<double> delivery_to_wire;  ///< [s]; negative where the fused frame was served first.
   std::vector<double> instant_to_wire;   ///< [s]
 };
 
 Frames judge(const Observed& seen) {
   Frames frames;
-  // The watchers start one after the other; instants before all of them saw a frame are not judged.
+  // The watchers start one by one; instants before all of them saw a frame are ignored.
   Timestamp all_here{};
   for (const auto& sensor : seen.sensors) {
     if (!sensor.empty()) all_here = std::max(all_here, sensor.front().captured);
@@ -103,7 +103,7 @@ void report_frames(Report& report, const SystemCase& asked, const Observed& seen
   report.condition(c + ": no frame is lost or doubled", frames.lost == 0 && frames.doubled == 0);
   report.condition(c + ": fused frames come at 30 Hz", std::abs(hz - kRate) < 0.3);
   report.condition(c + ": delivery to wire p99 is below 50 ms", from_delivery < kMaxToWire);
-  // Other simulated devices take their time from capture to delivery, as real ones do.
+  // Other simulated devices need time from capture to delivery, as real ones do.
   if (asked.profile == "gauss") {
     report.condition(c + ": capture to wire p99 is below 50 ms", from_capture < kMaxToWire);
   }
@@ -119,7 +119,7 @@ void report_cpu(Report& report, const std::string& c, const Observed& seen) {
                    fusion + sensors < kMaxCores);
 }
 
-/// The room that every sensor process simulates by default, with its truth.
+/// The room that every sensor process simulates by default, including the truth.
 Workshop room_of(const SystemCase& asked) {
   Workshop room;
   room.setting.profile = asked.profile;
@@ -131,7 +131,7 @@ Workshop room_of(const SystemCase& asked) {
   return room;
 }
 
-/// The first body of each frame, put into the world, beside the truth at the instant it states.
+/// The first body of each frame, moved into the world, with the truth at the frame's instant.
 Answers answers_of(const std::vector<Seen>& frames, const Workshop& room, const SensorId& master,
                    const Eigen::Isometry3d& world_from_frame) {
   Answers answers;
@@ -149,7 +149,7 @@ Answers answers_of(const std::vector<Seen>& frames, const Workshop& room, const 
   return answers;
 }
 
-/// Fused beside the best single sensor, which is told its true place and time.
+/// The fused body compared with the best single sensor, whose true place and time are given.
 void report_accuracy(Report& report, const std::string& c, const Observed& seen,
                      const std::pair<Workshop, SensorId>& truth) {
   const auto& [room, master] = truth;
@@ -176,8 +176,8 @@ Result<SensorId> master_of(const Rig& rig) {
   return SensorId::parse(json["master"].get<std::string>());
 }
 
-/// When a frame was truly captured, by what its host's clock said.  A clock set back says the same
-/// twice; then the later time is meant, unless the frame was here before.
+/// The true capture time of a frame, from its stamp.  A clock that was set back gives the same
+/// stamp twice; then the later time is meant, unless the frame was received before it.
 Timestamp true_capture(const Seen& frame, const synthetic::HostClock& clock) {
   synthetic::HostClock before = clock;
   synthetic::HostClock after = clock;
@@ -193,9 +193,9 @@ void undo_clock_errors(Observed& seen, const std::vector<synthetic::HostClock>& 
   }
 }
 
-/// Hosts whose clocks were set while everybody watched, by their stamps beside our clock.
+/// Number of hosts whose clock was set during the watch, by their stamps compared with our clock.
 std::ptrdiff_t stepped_hosts(const Observed& seen) {
-  constexpr Duration kMin = std::chrono::milliseconds(75);  // delivery varies by less
+  constexpr Duration kMin = std::chrono::milliseconds(75);  // delivery times vary by less
   return std::ranges::count_if(seen.sensors, [&](const std::vector<Seen>& sensor) {
     if (sensor.empty()) return false;
     const Duration before = sensor.front().captured - sensor.front().received;
@@ -204,7 +204,7 @@ std::ptrdiff_t stepped_hosts(const Observed& seen) {
   });
 }
 
-/// A run in which nothing happened to the clocks would say nothing about steps.
+/// If no clock was set during the run, it would say nothing about clock steps.
 void report_steps(Report& report, const SystemCase& asked, const Observed& seen) {
   const auto due =
       std::ranges::count_if(asked.hosts, [](const HostError& h) { return h.step_ms != 0; });
@@ -242,9 +242,9 @@ Result<void> run_case(Report& report, const SystemCase& asked) {
 
 using Hosts = std::array<HostError, kSystemSensors>;
 
-// Hosts behind and ahead of the server, by what a forgotten NTP leaves behind, and drifting.
+// Clocks behind and ahead of the server by amounts typical without NTP, and drifting.
 constexpr Hosts kApart{{{-150, 30}, {400, -50}, {-3000, 20}, {0, 50}, {35, -20}, {1200, 10}}};
-// The same, and while everybody is watched NTP sets one of them and, by less, another.
+// The same; during the watch NTP sets one clock and, by less, another.
 constexpr Hosts kStepped{
     {{-150, 30, 150}, {400, -50, -400}, {-3000, 20}, {0, 50}, {35, -20}, {1200, 10}}};
 

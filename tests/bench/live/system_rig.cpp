@@ -20,13 +20,13 @@ using std::chrono::seconds;
 
 constexpr auto kRegistrationPatience = seconds(60);
 
-/// The integer behind `key` in a Turtle document; lean, so that the watcher costs little.
+/// The integer after `key` in a Turtle document; cheap, so that the watcher costs little.
 std::int64_t number_after(const std::string& text, const std::string& key) {
   const auto at = text.find(key);
   return at == std::string::npos ? 0 : std::strtoll(text.c_str() + at + key.size(), nullptr, 10);
 }
 
-/// Long-polls one /frame until told to stop; notes when each frame came.
+/// Long-polls one /frame until told to stop; records when each frame came.
 class Watcher {
  public:
   Watcher(asio::io_context& io, std::uint16_t port) : client_(io, "127.0.0.1", port), timer_(io) {}
@@ -96,7 +96,7 @@ Result<ChildProcess> start_sensor(const SystemCase& asked, int index, std::uint1
   return ChildProcess::start("chorus-sensor", words);
 }
 
-/// Right to how long a service takes to start: what drifts in that time is nothing.
+/// Exact up to the time a service takes to start: the drift in that time is negligible.
 synthetic::HostClock clock_of(const HostError& error, Timestamp start) {
   constexpr double kMilli = 1e-3;
   constexpr double kMillionth = 1e-6;

@@ -25,7 +25,7 @@ double spread(const std::vector<Eigen::Vector3d>& points, const std::vector<std:
   return sum;
 }
 
-/// Everything that can be reached from `start`; what was reached is taken out of `left`.
+/// All points that can be reached from `start`; they are removed from `left`.
 std::vector<std::size_t> reached_from(std::size_t start, const std::vector<Eigen::Vector3d>& points,
                                       double reach, std::vector<std::size_t>& left) {
   std::vector<std::size_t> members{start};

@@ -8,21 +8,21 @@
 
 namespace chorus::bench::baselines {
 
-/// Two sights of a joint closer than this belong together [m] (10 cm as in Lee 2022).
+/// Sightings of a joint closer than this belong together [m] (10 cm as in Lee 2022).
 inline constexpr double kClusterReach = 0.1;
 
-/// One of the product's own methods, with what it remembers of one person.
+/// One of the product's methods, with its memory of one person.
 [[nodiscard]] Method product(fusion::FusionConfig config);
 [[nodiscard]] Method product(fusion::Method method);
 
-/// D: the mean over the views that track a joint; where none does, over those that guess it.
+/// D: the mean over the views that track a joint; where none does, over those that infer it.
 [[nodiscard]] Method tracked_mean();
 
-/// Groups of points linked by steps of at most `reach`, largest first; of equals the denser one.
+/// Groups of points linked by steps of at most `reach`, largest first; of equals the denser first.
 [[nodiscard]] std::vector<std::vector<std::size_t>> clusters_of(
     const std::vector<Eigen::Vector3d>& points, double reach);
 
-/// Per joint the mean of the largest group of sights that agree.
+/// Per joint the mean of the largest group of sightings that agree.
 [[nodiscard]] Method largest_cluster();
 
 }  // namespace chorus::bench::baselines

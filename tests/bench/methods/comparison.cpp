@@ -11,7 +11,7 @@ namespace {
 constexpr double kLow = 0.05;
 constexpr double kHigh = 0.95;
 
-/// Lower is better; no value is infinitely bad.
+/// A lower result is better; a missing value is infinitely bad.
 double badness(double value, Better better) {
   if (std::isnan(value)) return std::numeric_limits<double>::infinity();
   return better == Better::Lower ? value : -value;

@@ -1,7 +1,7 @@
-// Methods side by side on the same draws: one value per method and draw.
+// Compares methods on the same draws: one value per method and draw.
 //
-// Uniform result: the median of ours with its 5-95 % range, beside each baseline's own, how many
-// draws gave no value, and in how many ours was strictly better.
+// The result is always: the median of ours with its 5-95 % range, the same of each baseline, the
+// number of draws without a value, and the number in which ours was strictly better.
 #pragma once
 
 #include <string>
@@ -21,15 +21,15 @@ class Comparison {
   Comparison(std::string case_name, std::string metric, std::string unit,
              Better better = Better::Lower);
 
-  /// NaN: this draw gave no value.  It counts as infinitely bad and as failed.  Once per method and
-  /// draw.
+  /// NaN: this draw gave no value; it counts as infinitely bad and as failed.  To be called once
+  /// per method and draw.
   void add(const std::string& method, std::size_t draw, double value);
 
   [[nodiscard]] Spread spread_of(const std::string& method) const;
-  /// Share of the draws of both in which ours is strictly better [%]; where both failed, it is not.
+  /// Fraction of the common draws in which ours is strictly better [%]; not if both failed.
   [[nodiscard]] double won_percent(const std::string& baseline) const;
 
-  /// One row per baseline, in the order they were first added; without any, one row of ours.
+  /// One row per baseline, in the order of their addition; without any, one row of ours.
   void report(Report& report) const;
   /// One row "win_percent" per baseline.
   void report_wins(Report& report) const;

@@ -23,8 +23,8 @@ using baselines::Body;
 
 constexpr Duration kStart = std::chrono::milliseconds(500);  // tracks are confirmed by then
 constexpr Duration kTail = std::chrono::milliseconds(200);   // frames still under way at the end
-constexpr double kReach = 0.6;  // [m] horizontally: an answer further away is somebody else
-constexpr Duration kFresh = std::chrono::milliseconds(100);  // of an answer stated at arrival
+constexpr double kReach = 0.6;  // [m] horizontally: a farther answer belongs to another person
+constexpr Duration kFresh = std::chrono::milliseconds(100);  // largest age, if stated at arrival
 constexpr double kPercent = 100.0;
 constexpr double kToMs = 1000.0;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
@@ -67,7 +67,7 @@ struct NamedSighted {
   Sighted which;
 };
 
-/// All joints, and apart by how many saw them and whether they rest.
+/// All joints, then grouped by how many views saw them and by whether they are at rest.
 std::vector<NamedSighted> sighted_apart() {
   using enum Sighted::Motion;
   std::vector<NamedSighted> all{{"", {}}};
@@ -103,7 +103,7 @@ std::vector<Metric> all_metrics() {
   return all;
 }
 
-/// Mean of the seen core joints, of all views; not finite without any.
+/// Mean of the seen core joints of all views; not finite without any.
 Eigen::Vector3d core_of(std::span<const Body* const> bodies) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double count = 0.0;
@@ -129,7 +129,7 @@ double distance_to(const Eigen::Vector3d& core, const Body& exact) {
   return std::hypot(off.x(), off.z());
 }
 
-/// Of several candidates the one nearest to the truth and within reach.
+/// Of several candidates the one nearest to the truth, within reach.
 template <class Candidates, class Core>
 auto nearest(const Candidates& candidates, const Body& exact, const Core& core) {
   auto best = candidates.end();
@@ -151,13 +151,13 @@ Person with_true_labels(Person person, const Body& exact) {
   return person;
 }
 
-/// A draw, its place in the world, and the views of everybody in it.
+/// A draw, its place in the world, and the views of all people in it.
 struct Stage {
   Workshop workshop;
   Registration registration;
   std::vector<Moment> moments;
-  std::vector<Body> exact;       ///< Of the only person, at each moment.
-  std::vector<Moment> confided;  ///< The same moments, joints bringing their true mean squares.
+  std::vector<Body> exact;       ///< The true body of the only person, at each moment.
+  std::vector<Moment> confided;  ///< The same moments; joints carry their true mean squares.
   baselines::SharedErrors shared;
 
   [[nodiscard]] Body truth_at(Timestamp instant) const {
@@ -165,7 +165,7 @@ struct Stage {
   }
 };
 
-/// The same views once more, with what only the judge knows of their errors.
+/// Makes the same views again, with the error covariances that only the judge knows.
 void confide(Stage& stage, const Period& period, const pipeline::PipelineConfig& config) {
   const Confided known = confided(stage.workshop);
   if (known.tracks.empty()) return;
@@ -188,7 +188,7 @@ Stage stage_of(const Contest& contest, bool with_bound) {
   return stage;
 }
 
-/// The person of that moment as the contender gets them; nobody: none.
+/// The person at that moment as the contender gets it; none: there is none.
 std::optional<Person> given_at(const Stage& stage, std::size_t at, const Contender& contender) {
   const Body& exact = stage.exact[at];
   if (contender.bound && stage.confided.empty()) return std::nullopt;
@@ -198,7 +198,7 @@ std::optional<Person> given_at(const Stage& stage, std::size_t at, const Contend
   return contender.true_labels ? with_true_labels(*person, exact) : *person;
 }
 
-/// How many views have each joint.
+/// Number of views that have each joint.
 std::array<std::size_t, kJointCount> views_of(const Person& person) {
   std::array<std::size_t, kJointCount> views{};
   for (const SensorView& view : person.views) {
@@ -231,7 +231,7 @@ Answers answers_of(const Stage& stage, const Contender& contender) {
   return answers;
 }
 
-/// One sensor's views alone.
+/// Answers made from one sensor's views alone.
 Answers answers_of_sensor(const Stage& stage, const SensorId& sensor) {
   const auto only = [&sensor](const Person& person, Timestamp) {
     const auto view = std::ranges::find(person.views, sensor, &SensorView::sensor);
@@ -240,7 +240,7 @@ Answers answers_of_sensor(const Stage& stage, const SensorId& sensor) {
   return answers_of(stage, {"one-sensor", [&] { return baselines::Method(only); }});
 }
 
-/// The sensor of least error, chosen knowing the truth: better than any that one could choose.
+/// The sensor with the least error, chosen by the truth: better than any choice in practice.
 Answers answers_of_best_sensor(const Stage& stage) {
   Answers best;
   double least = std::numeric_limits<double>::infinity();
@@ -254,7 +254,7 @@ Answers answers_of_best_sensor(const Stage& stage) {
   return best;
 }
 
-/// At each instant the newest answer, held against the truth at the time that it states itself.
+/// At each instant the newest answer, compared with the truth at the time that it states.
 Answers answers_at_arrival(const Stage& stage) {
   const auto stated = baselines::arrival_kalman(stage.workshop.tracks, stage.registration);
   Answers answers;
@@ -283,7 +283,7 @@ Scored score(std::string method, const Answers& answers) {
   return scored;
 }
 
-/// Errors once more, over joints that everybody answers who answers anything.
+/// Scores again, only over joints that are in every contender's answers.
 void score_common(std::vector<Scored>& scores, std::vector<Answers>& all) {
   const auto answers_nothing = [](const Answers& answers) { return !(coverage(answers) > 0); };
   const std::size_t count = all.empty() ? 0 : all.front().size();

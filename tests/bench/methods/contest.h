@@ -1,4 +1,4 @@
-// One draw of the workshop with every method of fusion on it, measured alike.
+// One draw of the workshop, with every method of fusion measured in the same way.
 #pragma once
 
 #include <functional>
@@ -16,10 +16,10 @@
 
 namespace chorus::bench {
 
-/// Which way a figure counts.
+/// How a figure is to be read.
 enum class Kind {
   Error,   ///< Lower is better.
-  Stated,  ///< Of covariances: for methods that state one; neither lower nor higher is better.
+  Stated,  ///< Of covariances, for methods that state one; neither direction is better.
 };
 
 /// A figure of a method.
@@ -36,24 +36,24 @@ struct Metric {
 struct Contender {
   std::string name;
   std::function<baselines::Method()> begin;
-  bool true_labels = false;  ///< Gets each view with left and right exchanged where that is true.
-  baselines::Told told = nullptr;  ///< Instead of `begin`: made knowing the truth.
-  bool bound = false;  ///< Instead of `begin`: baselines::linear_bound(), where errors are known.
+  bool true_labels = false;  ///< Gets each view with left and right exchanged if they truly are.
+  baselines::Told told = nullptr;  ///< Used instead of `begin`: knows the truth.
+  bool bound = false;  ///< Used instead of `begin`: baselines::linear_bound() with true errors.
 };
 
-/// The product's default, the method of the tables' first column.
+/// The product's default method; the first column of the tables.
 [[nodiscard]] Contender ours(const fusion::FusionConfig& config = {}, std::string name = "ours");
 
-/// The same, told which views have left and right exchanged: "NAME-true-labels".
+/// The same, told which views have left and right exchanged; named "NAME-true-labels".
 [[nodiscard]] Contender labelled(Contender contender);
 
-/// Ours and everything it is held against.
+/// Ours and all methods that it is compared with.
 [[nodiscard]] std::vector<Contender> all_contenders();
 
 struct Contest {
   Setting setting;
-  bool own_registration = false;  ///< Registered from the frames themselves; else by the truth.
-  /// With the best sensor and the filter at arrival, which are no Method.
+  bool own_registration = false;  ///< Registered from the frames themselves; else the truth.
+  /// Includes the best sensor and the filter at arrival, which are not of type Method.
   bool every_method = true;
   pipeline::PipelineConfig pipeline = {};
 };
@@ -61,10 +61,10 @@ struct Contest {
 struct Scored {
   std::string method;
   std::vector<double> values;  ///< In the order of metrics().
-  double common = 0.0;         ///< Mean error over the joints that every contender answers [m].
+  double common = 0.0;         ///< Mean error over the joints that every contender gives [m].
 };
 
-/// One draw.  A registration that fails gives NaN everywhere.
+/// Runs one draw.  If registration fails, all values are NaN.
 [[nodiscard]] std::vector<Scored> hold(const Contest& contest,
                                        const std::vector<Contender>& contenders);
 

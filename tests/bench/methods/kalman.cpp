@@ -28,7 +28,7 @@ struct BodyFilter {
     joints[joint].update(instant, sight.position, variance);
   }
 
-  /// Joints last seen at or after `since`, as they should be at `instant`.
+  /// Joints last seen at or after `since`, predicted for `instant`.
   [[nodiscard]] Body at(Timestamp instant, Timestamp since) const {
     Body body;
     for (std::size_t i = 0; i < kJointCount; ++i) {
@@ -41,7 +41,7 @@ struct BodyFilter {
   }
 };
 
-/// Frames of all sensors in the order in which they arrive.
+/// The frames of all sensors in their order of arrival.
 std::vector<std::pair<const registration::WalkTrack*, const SensorFrame*>> by_arrival(
     const std::vector<registration::WalkTrack>& sensors) {
   std::vector<std::pair<const registration::WalkTrack*, const SensorFrame*>> frames;
@@ -82,7 +82,7 @@ void update(BodyFilter& filter, const Person& person, Timestamp arrived) {
 std::vector<Stated> arrival_kalman(const std::vector<registration::WalkTrack>& sensors,
                                    const Registration& registration) {
   constexpr Duration kCoast =
-      std::chrono::milliseconds(100);  // a joint not seen for so long is gone
+      std::chrono::milliseconds(100);  // a joint not seen for this long is dropped
   std::map<PersonId, BodyFilter> filters;
   associate::Tracks tracks;
   facing::SidesMemory sides;

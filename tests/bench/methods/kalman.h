@@ -1,6 +1,6 @@
 // A baseline that filters over time with a constant-velocity Kalman filter per joint.
 //
-// The filter of one point is the product's (fusion/point_filter.h); what is made of it differs.
+// The filter of a single point is the product's (fusion/point_filter.h); its use differs.
 #pragma once
 
 #include <vector>
@@ -10,18 +10,18 @@
 
 namespace chorus::bench::baselines {
 
-/// A body as a tracker states it, with the time it states for it.
+/// A body as a tracker states it, with the time stated for it.
 struct Stated {
   Timestamp instant;
   PersonId id;
   Body body;
 };
 
-/// The way of OpenPTrack: each frame updates its person's joints as it arrives, by the time of
-/// arrival, and the answer bears that time (but with the real elapsed time instead of a
-/// fixed one, and noise to fit the sensors: 25 mm, 75 mm where inferred).  One answer per frame and
-/// person, in order; left and right are put right from frame to frame.  `received` of the frames
-/// must be set.
+/// The method of OpenPTrack: each frame updates its person's joints as it arrives, at the time of
+/// arrival, and the answer has that time (but with the real elapsed time instead of a fixed one,
+/// and with noise that fits the sensors: 25 mm, 75 mm where inferred).  One answer per frame and
+/// person, in order; left and right are corrected from frame to frame.  `received` must be set in
+/// all frames.
 [[nodiscard]] std::vector<Stated> arrival_kalman(
     const std::vector<registration::WalkTrack>& sensors, const Registration& registration);
 

@@ -10,7 +10,7 @@ const pipeline::Histories& Arriving::until(Timestamp instant) {
     align::History& history = histories_[tracks_[i].sensor];
     while (next_[i] < frames.size() && (!history.newest() || *history.newest() < instant)) {
       SensorFrame frame = frames[next_[i]++];
-      frame.received = Timestamp{};  // true time; the stamp is another clock's
+      frame.received = Timestamp{};  // true time; the stamp is by another clock
       history.push(std::move(frame));
     }
   }
@@ -19,7 +19,7 @@ const pipeline::Histories& Arriving::until(Timestamp instant) {
 
 namespace {
 
-/// Instant after instant, each when everything for it has come in.
+/// Visits the instants in order, each once all its data has arrived.
 template <class Take>
 void each_instant(const std::vector<registration::WalkTrack>& tracks, const Period& period,
                   const align::AlignConfig& config, const Take& take) {

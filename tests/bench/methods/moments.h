@@ -1,4 +1,4 @@
-// What fusion gets: every person at every instant with all their views, made once for all methods.
+// The input of fusion: every person at every instant with all views, made once for all methods.
 #pragma once
 
 #include <functional>
@@ -21,13 +21,13 @@ struct Period {
   double rate_hz = 30.0;
 };
 
-/// Recorded tracks as they come in: what an instant needs is in the histories, and nothing later.
+/// Feeds recorded tracks as if live: the histories hold what an instant needs, and nothing later.
 class Arriving {
  public:
   explicit Arriving(const std::vector<registration::WalkTrack>& tracks)
       : tracks_(tracks), next_(tracks.size(), 0) {}
 
-  /// Until every sensor has passed the instant.
+  /// Advances until every sensor has passed the instant.
   [[nodiscard]] const pipeline::Histories& until(Timestamp instant);
 
  private:
@@ -36,18 +36,18 @@ class Arriving {
   pipeline::Histories histories_;
 };
 
-/// The pipeline up to fusion, at each instant of the period, one after the other.
+/// Runs the pipeline up to fusion, at each instant of the period in order.
 void visit_moments(const std::vector<registration::WalkTrack>& tracks,
                    const Registration& registration, const Period& period,
                    const std::function<void(Moment)>& visit,
                    const pipeline::PipelineConfig& config = {});
 
-/// What association gets, at each instant of the period.
+/// Visits the input of association at each instant of the period.
 void visit_scenes(const std::vector<registration::WalkTrack>& tracks,
                   const Registration& registration, const Period& period,
                   const std::function<void(const associate::Scene&)>& visit);
 
-/// All of them.
+/// All moments of the period.
 [[nodiscard]] std::vector<Moment> moments_of(const std::vector<registration::WalkTrack>& tracks,
                                              const Registration& registration, const Period& period,
                                              const pipeline::PipelineConfig& config = {});

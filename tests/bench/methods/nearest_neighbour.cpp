@@ -7,7 +7,7 @@
 namespace chorus::bench::baselines {
 namespace {
 
-constexpr double kGate = 0.6;  // [m] the product's own
+constexpr double kGate = 0.6;  // [m] the same as the product's
 constexpr int kConfirm = 3;
 constexpr Duration kCoast = std::chrono::seconds(1);
 

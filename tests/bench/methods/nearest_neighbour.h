@@ -1,5 +1,5 @@
-// Association as a first attempt would have it: every body goes to the nearest person of the last
-// instant, nearest first, without prediction and without correcting itself later.
+// Association as a first attempt would do it: every body goes to the nearest person of the previous
+// instant, nearest pairs first, without prediction and without later correction.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@ namespace chorus::bench::baselines {
 
 class NearestNeighbour {
  public:
-  /// The people of this instant: those seen for three instants or more.  A person unseen for a
-  /// second is forgotten; a body further than 0.6 m from everybody is somebody new.
+  /// The people at this instant who were seen at three instants or more.  A person unseen for a
+  /// second is forgotten; a body farther than 0.6 m from everybody is a new person.
   [[nodiscard]] std::vector<Person> group(const std::vector<SensorView>& views, Timestamp instant);
 
  private:

@@ -10,14 +10,14 @@
 namespace chorus::bench::baselines {
 namespace {
 
-constexpr double kMinError = 0.001;    // [m] nobody is weighted as if exact
-constexpr double kMinVariance = 1e-6;  // [m^2] nor is anybody's mean square that small
+constexpr double kMinError = 0.001;    // [m] limits the weight of a nearly exact sighting
+constexpr double kMinVariance = 1e-6;  // [m^2] limits the mean square, too
 
 /// A sighting with the true mean square of its error.
 struct Sighting {
   Eigen::Vector3d place;
   Eigen::Matrix3d root;  ///< Symmetric root of the mean square [m].
-  double bearing = 0.0;  ///< Of the sensor from the joint, about +y [rad].
+  double bearing = 0.0;  ///< Of the sensor as seen from the joint, about +y [rad].
   JointState state = JointState::Tracked;
 };
 
@@ -43,7 +43,7 @@ double correlation(JointId id, const Sighting& a, const Sighting& b, const Share
          (1.0 - shared.twice + shared.twice * std::cos(2.0 * apart));
 }
 
-/// Mean squares of all sightings' errors, three rows each.
+/// The joint covariance of all sightings' errors, three rows each.
 Eigen::MatrixXd errors_of(JointId id, const std::vector<Sighting>& all,
                           const SharedErrors& shared) {
   const auto count = static_cast<Eigen::Index>(all.size());

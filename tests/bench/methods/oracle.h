@@ -1,33 +1,33 @@
-// Bounds: bodies that only somebody who knows more than a tracker can make of one instant's views.
+// Bounds: bodies made of one instant's views with knowledge that no tracker has.
 //
-// `bound`: per joint the linear combination of the views' sightings of least mean square error,
-// given the true mean square of each sighting's error at that instant and how the sensors' errors
-// hang together (Gauss and Markov; for Gaussian errors the Cramer-Rao bound).  Reachable: it knows
-// how large errors are on average, as a perfect error model would, but not which were made.  No
-// method that combines one instant's sightings of a joint linearly does better on average; only one
-// that does something else can: remember earlier instants, know the bones, take a bias off.
+// `bound`: per joint the linear combination of the views' sightings with the least mean square
+// error, given the true mean square of each sighting's error at that instant and how the sensors'
+// errors correlate (Gauss and Markov; for Gaussian errors the Cramer-Rao bound).  Reachable: it
+// knows how large errors are on average, as a perfect error model would, but not the actual errors.
+// No method that combines one instant's sightings linearly is better on average; others can be:
+// they can remember earlier instants, know the bones or remove a bias.
 //
-// `oracle-weights`: the weighted mean with weights 1 / e^2, where e is how far off each sighting
-// truly is: what a method would give that predicts the size of every error perfectly, but not its
-// direction.  Not reachable.
+// `oracle-weights`: the weighted mean with weights 1 / e^2, where e is the actual distance of each
+// sighting from the truth: the result of a method that predicts the size of every error perfectly,
+// but not its direction.  Not reachable.
 #pragma once
 
 #include "tests/bench/methods/baseline.h"
 
 namespace chorus::bench::baselines {
 
-/// How the errors of two sensors correlate which see the same joint.
+/// How the errors of two sensors that see the same joint correlate.
 struct SharedErrors {
-  double joints = 0.0;  ///< Where both see the same side.
-  double neck = 0.0;    ///< Of neck and chest.
-  double twice = 0.0;   ///< Of it, what comes round twice as the view does once.
+  double joints = 0.0;  ///< Correlation where both see the same side.
+  double neck = 0.0;    ///< The same for neck and chest.
+  double twice = 0.0;   ///< Part of it that varies with twice the angle between the views.
 };
 
-/// The views' joints must bring their true mean square errors (judge.h, confided()); the answer
-/// states its covariance.  Sightings that bring none are left out.
+/// The views' joints must carry their true mean square errors (judge.h, confided()); the answer
+/// states its covariance.  Sightings without one are left out.
 [[nodiscard]] Body linear_bound(const Person& person, const SharedErrors& shared);
 
-/// A body of a person's views and the truth.
+/// Makes a body from a person's views and the truth.
 using Told = Body (*)(const Person& person, const Body& exact);
 
 [[nodiscard]] Body error_weighted_mean(const Person& person, const Body& exact);

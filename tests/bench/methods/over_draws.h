@@ -1,5 +1,5 @@
-// Independent draws on all cores.  The results come back in the order of the draws, so they do not
-// depend on how many threads there were.
+// Runs independent draws on all cores.  The results are returned in the order of the draws, so they
+// do not depend on the number of threads.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace chorus::bench {
 
-/// each(0), each(1), ..., each(count - 1).  `each` must be safe to call from several threads.
+/// Returns each(0), ..., each(count - 1).  `each` must be safe to call from several threads.
 template <class Each>
 [[nodiscard]] auto over_draws(std::size_t count, const Each& each) {
   using Value = std::invoke_result_t<Each, std::size_t>;

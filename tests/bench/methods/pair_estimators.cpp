@@ -15,7 +15,7 @@ namespace {
 
 using namespace registration;
 
-constexpr double kSpeed = 1.0;           // one second counts as so many metres
+constexpr double kSpeed = 1.0;           // one second counts as this many metres
 constexpr int kYawSeeds = 24;            // as the untimed ICP
 constexpr int kIterations = 40;          // as the untimed ICP
 constexpr double kKeptShare = 0.9;       // as the untimed ICP
@@ -23,7 +23,7 @@ constexpr std::size_t kMaxPoints = 300;  // as the untimed ICP
 constexpr std::size_t kMinPoints = 10;
 constexpr double kSettled = 1e-6;  // [m], [rad]
 
-/// Both sides with the floor at y = 0 where both floors are known.
+/// Both skeletons' spaces, levelled where both floors are known.
 struct Levels {
   bool both = false;
   Eigen::Isometry3d level_from_target = Eigen::Isometry3d::Identity();
@@ -51,7 +51,7 @@ struct Stamped {
 };
 using StampedTrail = std::vector<Stamped>;  ///< In order of time.
 
-/// One side's necks while the other side saw somebody too.
+/// The neck positions of one side while the other side saw a body, too.
 StampedTrail necks_of(const Trail& trail, const Trail& other,
                       const Eigen::Isometry3d& level_from_sensor, Duration max_gap) {
   StampedTrail all;
@@ -79,7 +79,7 @@ struct Match {
   std::size_t target = 0;
 };
 
-/// Outward from the same time; stops where time alone is farther than the best so far.
+/// Searches outward from the same time; stops where time alone exceeds the best distance so far.
 Match nearest(const StampedTrail& target, const Stamped& point) {
   Match best;
   const auto here = std::lower_bound(target.begin(), target.end(), point.time,
@@ -152,7 +152,7 @@ IcpState best_of_seeds(const StampedTrail& source, const StampedTrail& target,
     const IcpState state = run_icp(source, target, levels, start);
     if (state.rms < best.rms) best = state;
   }
-  if (levels.both) best.target_from_source.translation().y() = 0;  // the floors say so
+  if (levels.both) best.target_from_source.translation().y() = 0;  // by the floors
   return best;
 }
 
@@ -168,7 +168,7 @@ Error refusal(const Walker& target, const Walker& source, ErrorCode code, std::s
   return {code, target.trail.sensor.str() + " and " + source.trail.sensor.str(), std::move(why)};
 }
 
-/// rms distance from the middle, horizontally [m].
+/// rms distance from the centroid, horizontally [m].
 double spread_of(const std::vector<Eigen::Vector3d>& points) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& x : points) sum += x;
@@ -181,7 +181,7 @@ double spread_of(const std::vector<Eigen::Vector3d>& points) {
   return std::sqrt(squares / static_cast<double>(points.size()));
 }
 
-/// The same refusals as ours.
+/// Refuses under the same conditions as ours.
 Result<PairwiseRegistration> unless_refused(PairwiseRegistration edge, const Walker& target,
                                             const Walker& source,
                                             const RegistrationConfig& config) {

@@ -15,13 +15,13 @@ using registration::PairMethod;
 using registration::RegistrationConfig;
 using registration::WalkTrack;
 
-constexpr double kLost = 0.1;       // a sensor off by more was not registered at all [m]
+constexpr double kLost = 0.1;       // a sensor farther off counts as not registered [m]
 constexpr double kChi2Of2 = 5.991;  // 95 % with two degrees of freedom
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kTypicalInflation = 19.0;  // successive pairs are worth so much less
+constexpr double kTypicalInflation = 19.0;  // variance factor, because successive pairs correlate
 const Eigen::Vector3d kCentreInScene(0, 1, 0);
 
-/// By configuration alone.
+/// A method that differs by its configuration alone.
 RegistrationMethod configured(std::string name, RegistrationConfig config) {
   return {std::move(name),
           [config](const std::vector<WalkTrack>& walk, Timestamp now, const SensorId& master) {
@@ -31,7 +31,7 @@ RegistrationMethod configured(std::string name, RegistrationConfig config) {
           }};
 }
 
-/// With another estimator of pairs.
+/// A method with another estimator of pairs.
 RegistrationMethod estimated(std::string name, RegistrationConfig config, PairEstimator estimate) {
   return {std::move(name), [config, estimate](const std::vector<WalkTrack>& walk, Timestamp now,
                                               const SensorId& master) {
@@ -41,7 +41,7 @@ RegistrationMethod estimated(std::string name, RegistrationConfig config, PairEs
           }};
 }
 
-/// Least squares as the pair stage of our method.
+/// Least squares in place of our method's pair stage.
 PairEstimator plain_pairs(const RegistrationConfig& config) {
   return [plain = closed_form(config)](const registration::Walker& target,
                                        const registration::Walker& source) {

@@ -1,4 +1,4 @@
-// The ways to register that are compared, and how one result is scored against the truth.
+// The registration methods that are compared, and how a result is scored against the truth.
 #pragma once
 
 #include <functional>
@@ -19,11 +19,11 @@ struct RegistrationMethod {
 
 /// The shipped defaults.
 [[nodiscard]] RegistrationMethod our_registration();
-/// "trajectory-icp": time is a coordinate; "closed-form": time-interpolated pairs, least squares.
+/// "trajectory-icp": time as a coordinate; "closed-form": time-interpolated pairs, least squares.
 [[nodiscard]] std::vector<RegistrationMethod> timed_baselines();
-/// Before them "icp": PCL ICP on neck clouds without time (Otto).
+/// The same after "icp": PCL ICP on neck clouds without time (Otto).
 [[nodiscard]] std::vector<RegistrationMethod> all_baselines();
-/// Ours with one part taken out each.
+/// Ours with one part left out in each.
 [[nodiscard]] std::vector<RegistrationMethod> registration_ablations();
 
 /// One registration against the truth; means over the placed sensors other than the master.
@@ -34,14 +34,14 @@ struct Score {
   double vertical = 0.0;        ///< As above [m]
   double yaw = 0.0;             ///< As above [rad]
   double pitch_roll = 0.0;      ///< As above [rad]
-  double centre = 0.0;          ///< As above: of the workspace centre, 1 m above the floor [m]
-  std::size_t asked = 0;        ///< Sensors.
+  double centre = 0.0;          ///< As above; at the workspace centre, 1 m above the floor [m]
+  std::size_t asked = 0;        ///< Number of sensors.
   std::size_t refused = 0;      ///< ... that were left out, with a reason.
   std::size_t lost = 0;         ///< ... that were placed more than 100 mm off.
   std::size_t covered = 0;      ///< ... whose 95 % ellipse on the floor holds the truth.
 };
 
-/// Of these sensors; the master among them is passed over, its place is the world by definition.
+/// Scores these sensors; a master among them is skipped, because it defines the world.
 [[nodiscard]] Score score_of(const Workshop& workshop, const Registration& solved,
                              const std::vector<SensorId>& sensors);
 

@@ -13,7 +13,7 @@ long tracked_joints(const SensorView& view) {
   return std::ranges::count(view.skeleton.joints, JointState::Tracked, &Joint::state);
 }
 
-/// Best first; of equals the least sensor id.
+/// Best first; of equals the smallest sensor id.
 std::vector<const SensorView*> by_score(const Person& person) {
   std::vector<const SensorView*> views;
   for (const SensorView& view : person.views) views.push_back(&view);
@@ -23,7 +23,7 @@ std::vector<const SensorView*> by_score(const Person& person) {
   return views;
 }
 
-/// Which sensor is trusted, and since when another one looked better.
+/// The sensor that is trusted, and since when another one has looked better.
 class Choice {
  public:
   /// Null when there is no view at all.

@@ -17,10 +17,10 @@ constexpr double kTurnRate = deg(4.0);  // slow: at most 0.1 m/s at the hands
 constexpr double kDistance = 2.3;       // Otto Fig. 5 shows the body there [m]
 constexpr double kSensorHeight = 1.0;   // Otto 3.1 [m]
 constexpr double kBendOverStep =
-    std::numbers::sqrt3;       // second over first differences of white noise
+    std::numbers::sqrt3;       // ratio of second to first differences of white noise
 constexpr double kArm = 0.35;  // mount to body axis [m]
 
-/// A sensor at the origin looking along +z; people are placed before it.
+/// A sensor at the origin looking along +z; people are placed in front of it.
 Scene scene_with(Person mannequin) {
   Scene scene;
   scene.epoch = from_unix_ns(0) + std::chrono::hours(1);
@@ -29,7 +29,7 @@ Scene scene_with(Person mannequin) {
   return scene;
 }
 
-/// Nothing but what a mannequin on a robot arm shows: no frame is lost, nothing else is in the
+/// Only what a mannequin on a robot arm shows: no frame is lost, nothing else is in the
 /// room.
 kinect::Profile on_the_arm(kinect::Profile profile) {
   using kinect::Source;

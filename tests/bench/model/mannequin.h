@@ -1,4 +1,4 @@
-// Otto's experiments with a mannequin on a robot arm (Sect. 3), before a simulated sensor.
+// Otto's experiments with a mannequin on a robot arm (Sect. 3), in front of a simulated sensor.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ struct MannequinSample {
   Skeleton<SensorSpace> exact;
 };
 
-/// 360 deg about its own vertical axis at 2.3 m, sensor level at 1 m height (Fig. 4A).
+/// 360 deg about its own vertical axis at 2.3 m, sensor level at a height of 1 m (Fig. 4A).
 [[nodiscard]] std::vector<MannequinSample> turn_full(const synthetic::kinect::Profile& profile,
                                                      std::uint64_t seed);
 
@@ -25,8 +25,8 @@ struct MannequinSample {
 [[nodiscard]] std::vector<MannequinSample> swing_85(const synthetic::kinect::Profile& profile,
                                                     std::uint64_t seed);
 
-/// Mean displacement from frame to frame of one joint where the true yaw is within these bounds
-/// [m]; Otto Fig. 7.  From second differences, so that the slow turn itself does not count.
+/// Mean displacement of one joint from frame to frame at true yaws within these bounds [m]; Otto
+/// Fig. 7.  From second differences, so that the slow turn itself does not count.
 [[nodiscard]] double jitter(const std::vector<MannequinSample>& samples, JointId joint,
                             double least_angle, double most_angle);
 

@@ -1,5 +1,5 @@
-// Is the simulated sensor like a real one?  Acceptance of profile A, beside published and measured
-// figures: medians over several seeds, the worst seed beside them.
+// Is the simulated sensor like a real one?  Acceptance of profile A against published and measured
+// figures: medians over several seeds, and the worst seed.
 //
 // This is the only place where the model may be tuned; its hash is printed with every other result.
 #include <algorithm>
@@ -34,13 +34,13 @@ using enum JointId;
 constexpr auto kTurnedLog = std::chrono::seconds(32);  // 970 frames, as the real one
 constexpr const char* kRealLog = "tests/data/kinect2_labanotation/Ges04_comehere.csv";
 
-/// What each seed gives.
+/// The values that each seed gives.
 template <class Each>
 auto over_seeds(const Report& report, const Each& each) {
   return over_draws(report.quick() ? 3 : 7, [&](std::size_t i) { return each(report.seed() + i); });
 }
 
-/// What one seed gave, farthest from the middle of the range.
+/// The value farthest from the middle of the range.
 double farthest(const std::vector<double>& values, Range range) {
   const double middle = 0.5 * (range.least + range.most);
   return *std::max_element(values.begin(), values.end(), [middle](double a, double b) {
@@ -66,7 +66,7 @@ void check(Report& report, const Claim& claim, const std::vector<double>& values
                    value >= least * (1 - claim.tolerance) && value <= top);
 }
 
-/// Where logs are taken, and how long each is.
+/// Where logs are recorded, and how long each is.
 struct LogKind {
   Scene (*scene)(std::uint64_t seed);
   Duration length;
@@ -93,7 +93,7 @@ void compare_view(Report& report) {
         {to_deg(2 * view.half_height)});
 }
 
-/// The shipped real log beside them: a standing person who gestures, so rows and no conditions.
+/// The shipped real log for comparison: a person standing and gesturing, so without conditions.
 Result<void> show_real_log(Report& report) {
   const auto log = importers::read_labanotation_csv(kRealLog);
   if (!log) return tl::unexpected(log.error());
@@ -134,7 +134,7 @@ void measure_speed(Report& report) {
                    length / spent >= 100);
 }
 
-/// What the two experiments with the mannequin show in one draw.
+/// The results of both experiments with the mannequin in one draw.
 struct MannequinFigures {
   double head = 0, neck_front = 0, neck_rear = 0, base_side = 0;  ///< Jitter [mm]
   double flip = 0, back = 0;                                      ///< [deg]
@@ -171,7 +171,7 @@ MannequinFigures mannequin_figures(std::uint64_t seed) {
   return figures;
 }
 
-/// (b) The mannequin (Otto Figs. 5-8).  A jitter passes from a fifth of Otto's bound to 1.3 of it.
+/// (b) The mannequin (Otto Figs. 5-8).  Jitter passes from 0.2 to 1.3 times Otto's bound.
 void compare_with_mannequin(Report& report) {
   const std::vector<MannequinFigures> all = over_seeds(report, mannequin_figures);
   const auto values_of = [&](double MannequinFigures::*figure) {
@@ -180,7 +180,7 @@ void compare_with_mannequin(Report& report) {
     return values;
   };
   const auto bounded = [&](const char* metric, double MannequinFigures::*figure, double bound) {
-    // The upper end with 30 %, the lower one so that "of the order of" means something.
+    // The upper end allows 30 %; the lower one ensures that the order of magnitude is right.
     check(report, {"mannequin-360", metric, "mm", {0.2 * bound / (1 - kTolerance), bound}},
           values_of(figure));
   };
@@ -207,7 +207,7 @@ struct Pair {
 };
 constexpr Pair kTable1[] = {
     {0, 9.6}, {45, 16.0}, {90, 17.8}, {135, 26.6}, {180, 12.3}};  // Otto Table 1
-constexpr std::uint64_t kSetUps = 11;                             // one is uncertain by a fifth
+constexpr std::uint64_t kSetUps = 11;                             // one alone is uncertain by 20 %
 
 /// (c) The paper's ICP, 10 s, twenty walks per set-up; the condition is on the median set-up.
 std::vector<TableOneBar> compare_with_table1(Report& report) {
@@ -231,7 +231,7 @@ std::vector<TableOneBar> compare_with_table1(Report& report) {
   return bars;
 }
 
-/// (d) One sensor's joints against the truth, labels repaired where they are exchanged as a whole.
+/// (d) One sensor's joint error against the truth; exchanged labels are exchanged back.
 double joint_error_mm(std::uint64_t seed) {
   const Scene scene = one_sensor_scene(seed + 7);
   const Eigen::Isometry3d sensor_from_world = scene.world_from_sensor[0].inverse();

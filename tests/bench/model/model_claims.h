@@ -1,4 +1,4 @@
-// What real Kinect v2 logs are known by: intervals that the simulated sensor is held against.
+// Statistics of real Kinect v2 logs: intervals that the simulated sensor is compared with.
 #pragma once
 
 #include <limits>
@@ -8,8 +8,8 @@
 
 namespace chorus::bench {
 
-/// A published or measured interval; ours passes within a tolerance of its ends, never beyond the
-/// limit.
+/// A published or measured interval; our value passes within a tolerance of its ends, but never
+/// beyond the limit.
 struct Range {
   double least;
   double most;
@@ -21,21 +21,21 @@ struct Claim {
   const char* case_name;
   const char* metric;
   const char* unit;
-  Range range;                    ///< Real or published.
-  double tolerance = kTolerance;  ///< Of its ends.
-  bool needs_long = false;        ///< Not for the minute of a quick run.
+  Range range;                    ///< Of real logs, or published.
+  double tolerance = kTolerance;  ///< Tolerance at its ends.
+  bool needs_long = false;        ///< Not tested in the minute of a quick run.
 };
 
-/// A statistic of a log: of a joint, or of the bone that ends in it.
+/// A statistic of a log: of one joint, or of the bone that ends in it.
 struct LogClaim {
   Claim claim;
   double (*of)(const LogStatistics&);
 };
 
-/// Of two logs of walking people and one of a gesturing person (statistics only); of somebody who
-/// walks before one sensor.
+/// From two logs of walking people and one of a gesturing person (statistics only); for one person
+/// walking in front of one sensor.
 [[nodiscard]] std::span<const LogClaim> walking_claims();
-/// Of a third log, 2 m away, one side turned away from the sensor; of turned_scene().
+/// From a third log: a person at 2 m, one side turned away from the sensor; for turned_scene().
 [[nodiscard]] std::span<const LogClaim> turned_claims();
 
 }  // namespace chorus::bench

@@ -19,11 +19,11 @@ using Samples = std::vector<MannequinSample>;
 
 constexpr std::array kCentre{Neck, SpineShoulder, Head, SpineMid, SpineBase};
 constexpr double kBin = deg(10);
-constexpr std::size_t kMaxPoints = 360;  // a figure stays a small file
+constexpr std::size_t kMaxPoints = 360;  // keeps the file small
 
 std::string name(JointId id) { return std::string(name_of(id)); }
 
-/// At most `kMaxPoints` samples, evenly taken; for single positions, not for differences.
+/// At most `kMaxPoints` samples, evenly chosen; for single positions, not for differences.
 Samples thinned(const Samples& samples) {
   const std::size_t step = samples.size() / kMaxPoints + 1;
   Samples kept;
@@ -103,7 +103,7 @@ Plot jitter_by_angle(const Samples& samples) {
   return plot;
 }
 
-/// Otto Fig. 8: centre joints from above while the body swings about a mount behind its back.
+/// Otto Fig. 8: centre joints seen from above while the body swings about a mount behind its back.
 Plot circle_from_above(const Samples& swing) {
   Plot plot{"Centre joints from above, 0 to 85 deg (Otto Fig. 8)",
             {"lateral [m]"},
@@ -147,7 +147,7 @@ Plot errors_by_angle(const Samples& swing) {
 }
 
 Plot table1_bars(const std::vector<TableOneBar>& table1) {
-  constexpr double kApart = 5.0;  // of the two bars of one scenario from its middle [deg]
+  constexpr double kApart = 5.0;  // offset of a scenario's two bars from its middle [deg]
   Plot plot{"Repeatability of the paper's registration (Otto Table 1)",
             {"angle between the sensors [deg]", -15, 195, 45},
             {"mean distance from the centre [mm]", 0, 40},

@@ -1,4 +1,4 @@
-// Otto's Figs. 5-8 and Table 1 as our sensor shows them, with what the paper states.
+// Otto's Figs. 5-8 and Table 1 reproduced with our sensor, with the paper's values.
 #pragma once
 
 #include <cstdint>
@@ -9,15 +9,15 @@
 
 namespace chorus::bench {
 
-/// One scenario of Table 1: over our set-ups, and the paper's figure.
+/// One scenario of Table 1: the range over our set-ups, and the paper's value.
 struct TableOneBar {
   double angle_deg = 0.0;
   double least = 0.0, median = 0.0, most = 0.0;  ///< [mm]
   double otto = 0.0;                             ///< [mm]
 };
 
-/// mannequin-yaw, -shoulders, -jitter, -circle and -errors as SVG into this folder; table1 where
-/// there is one.
+/// Writes mannequin-yaw, -shoulders, -jitter, -circle and -errors as SVG into this folder; table1
+/// if there are bars.
 [[nodiscard]] Result<void> draw_figures(const std::string& folder, std::uint64_t seed,
                                         const std::vector<TableOneBar>& table1);
 

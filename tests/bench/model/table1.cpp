@@ -14,7 +14,7 @@ using registration::WalkTrack;
 
 constexpr double kDistance = 2.5;   // sensor to the middle of the walk [m]
 constexpr double kSlow = 0.5;       // "the user has to walk slowly" (5.2.4) [m/s]
-constexpr double kWidestGap = 0.1;  // between frames to interpolate over [s]
+constexpr double kWidestGap = 0.1;  // widest gap between frames that is interpolated [s]
 constexpr auto kWalk = std::chrono::seconds(10);
 
 SensorFrame between(const SensorFrame& before, const SensorFrame& after, Timestamp instant) {
@@ -46,11 +46,11 @@ Scene pair_scene(const TableOneSetting& setting, std::uint64_t walk) {
   return scene;
 }
 
-/// Where one walk puts the second sensor, as seen from the first, level [m].
+/// Place of the second sensor according to one walk, seen from the first, levelled [m].
 std::optional<Eigen::Vector2d> place_of(const kinect::Profile& profile,
                                         const TableOneSetting& setting, int run) {
   const Scene scene = pair_scene(setting, setting.seed * 1000 + static_cast<std::uint64_t>(run));
-  // The sensors stay where and what they are; only the walk and the hour differ.
+  // The sensors and their errors stay the same; only the walk and the hour differ.
   const Timestamp begin = kSomeTime + std::chrono::minutes(run);
   std::vector<WalkTrack> tracks;
   for (std::size_t i = 0; i < 2; ++i) {

@@ -8,20 +8,20 @@
 
 namespace chorus::bench {
 
-/// One experiment: two sensors `angle` apart at 2.5 m from the middle of the walk.
+/// One experiment: two sensors, `angle` apart and 2.5 m from the middle of the walk.
 struct TableOneSetting {
   double angle = 0.0;      ///< [rad]
-  int runs = 20;           ///< Walks; the sensors and their errors stay.
-  std::uint64_t seed = 1;  ///< Of the set-up: sensors, person, walks.
-  bool in_step = true;     ///< Otto 5.2.4: frames brought to common instants first.
+  int runs = 20;           ///< Number of walks; the sensors and their errors stay the same.
+  std::uint64_t seed = 1;  ///< Seed of the set-up: sensors, person, walks.
+  bool in_step = true;     ///< Otto 5.2.4: frames are moved to common instants first.
 };
 
-/// Both tracks at the capture times of the first one, the other's joints interpolated between its
-/// frames (Otto 5.2.4); instants that a gap lies over are left out.
+/// Resamples both tracks at the capture times of the first one, by interpolating the other's joints
+/// (Otto 5.2.4); instants within a gap are left out.
 void bring_in_step(registration::WalkTrack& target, registration::WalkTrack& source);
 
-/// Mean distance of the found places from their centre, in the floor plane [m]; NaN when no run
-/// found one.
+/// Mean distance of the estimated places from their centre, in the floor plane [m]; NaN when no run
+/// gave one.
 [[nodiscard]] double repeatability(const synthetic::kinect::Profile& profile,
                                    const TableOneSetting& setting);
 

@@ -17,16 +17,16 @@ namespace {
 constexpr double kWidth = 860;
 constexpr double kHeight = 440;
 constexpr double kLeft = 70;
-constexpr double kRight = 590;  // the legend stands right of it
+constexpr double kRight = 590;  // the legend is right of this
 constexpr double kTop = 40;
 constexpr double kBottom = 385;
 constexpr double kLegendStep = 20;
 constexpr double kAimedTicks = 6;
 constexpr double kBarWidth = 26;
-constexpr double kPadding = 0.05;  // of the data's range, where the axis follows the data
+constexpr double kPadding = 0.05;  // fraction of the data's range, if the axis follows the data
 constexpr int kMaxTicks = 50;
 
-// Okabe and Ito: told apart by colour-blind people too.
+// Okabe and Ito: distinguishable for colour-blind people, too.
 constexpr std::array<std::string_view, 7> kPalette{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                    "#b8860b", "#56b4e9", "#333333"};
 
@@ -38,7 +38,7 @@ double round_step(double range) {
   return power * (share < 1.5 ? 1 : share < 3.5 ? 2 : share < 7.5 ? 5 : 10);
 }
 
-/// The axis itself, or what the data needs.
+/// The axis as given, or fitted to the data.
 Axis fitted(const Axis& axis, const Plot& plot, int dimension) {
   if (axis.least < axis.most) return axis;
   double least = std::numeric_limits<double>::infinity();
@@ -55,7 +55,7 @@ Axis fitted(const Axis& axis, const Plot& plot, int dimension) {
   return {axis.label, least - room, most + room, axis.step};
 }
 
-/// Data to picture.
+/// Maps data to picture coordinates.
 struct Scale {
   Axis x, y;
 
@@ -150,7 +150,7 @@ std::string bar(const Eigen::Vector2d& top, double bottom, double width, std::st
 
 bool is_line(Mark kind) { return kind == Mark::Line || kind == Mark::Dashes; }
 
-/// A line is lifted over points that are not finite or outside.
+/// The line is interrupted at points that are not finite or outside.
 std::string drawn_line(const Series& series, const Scale& scale, std::string_view colour) {
   std::string path;
   bool down = false;

@@ -12,7 +12,7 @@
 namespace chorus::bench {
 namespace {
 
-/// One column of the printed table; an optional one is left out while it is empty everywhere.
+/// One column of the printed table; an optional one is left out if it is empty in all rows.
 struct Column {
   const char* title;
   bool right_aligned;
@@ -37,7 +37,7 @@ std::string failed_of(const std::optional<Spread>& spread) {
   return spread ? fmt::format("{}/{}", spread->failed, spread->draws) : std::string();
 }
 
-/// "icp 10.5": what stands beside, and its own value where it is known.
+/// "icp 10.5": the name of the baseline, and its value where it is known.
 std::string baseline_of(const Row& row) {
   if (row.beside) return row.baseline + " " + number(row.beside->median);
   const double told = row.value / row.ratio;

@@ -22,8 +22,8 @@ inline constexpr double kNoRatio = std::numeric_limits<double>::quiet_NaN();
 /// One method over many draws.  A draw without a value counts as infinitely bad.
 struct Spread {
   double median = kNoRatio;
-  double low = kNoRatio;   ///< 5 %
-  double high = kNoRatio;  ///< 95 %
+  double low = kNoRatio;   ///< 5th percentile
+  double high = kNoRatio;  ///< 95th percentile
   std::size_t failed = 0;  ///< Draws without a value.
   std::size_t draws = 0;
 };
@@ -33,11 +33,11 @@ struct Row {
   std::string metric;     ///< "position_mm"
   double value = 0.0;     ///< Not finite: shown as "-", written as null.
   std::string unit;
-  std::string baseline;     ///< What stands beside it; empty: nothing.
+  std::string baseline;     ///< Name of what `value` is compared with; empty: nothing.
   double ratio = kNoRatio;  ///< Ours / baseline, from the same run; not finite: not given.
-  std::optional<Spread> spread = {};  ///< Of `value`, over draws.
-  std::optional<Spread> beside = {};  ///< Of the baseline, over the same draws.
-  double won_percent = kNoRatio;      ///< Draws in which `value` beats the baseline's.
+  std::optional<Spread> spread = {};  ///< Spread of `value` over draws.
+  std::optional<Spread> beside = {};  ///< Spread of the baseline over the same draws.
+  double won_percent = kNoRatio;      ///< Draws in which `value` is better than the baseline's.
 };
 
 struct Options {
@@ -45,8 +45,8 @@ struct Options {
   std::uint64_t seed = 1;  ///< The first seed; runs use seed, seed + 1, ...
   bool quick = false;      ///< Fewer runs, for a smoke test; the numbers are then only indicative.
   std::string plots = {};  ///< Folder for charts, where a subcommand draws any; empty: none.
-  std::string only = {};   ///< One case of it, where a subcommand can run one alone; empty: all.
-  bool list = false;       ///< Only name the cases, where a subcommand can.
+  std::string only = {};   ///< Name of a single case to run, where a subcommand can; empty: all.
+  bool list = false;       ///< Only print the names of the cases, where a subcommand can.
 };
 
 class Report {
@@ -64,7 +64,7 @@ class Report {
   void row(Row each) { rows_.push_back(std::move(each)); }
   /// The sensor profile that the numbers come from ("gauss"); empty where none is involved.
   void profile(std::string name) { profile_ = std::move(name); }
-  /// A sentence under the table: what the numbers are and are not.
+  /// A sentence below the table about what the numbers mean and do not mean.
   void note(std::string sentence) { notes_.push_back(std::move(sentence)); }
   /// A condition that must hold; a broken one makes chorus-bench exit with 1.
   void condition(std::string sentence, bool holds);
@@ -73,8 +73,8 @@ class Report {
   [[nodiscard]] bool all_conditions_hold() const noexcept { return broken_ == 0; }
 
   void print(std::ostream& out) const;
-  /// {"name", "seed", "profile", "git", "rows": [...], "notes": [...]}; rows over draws carry
-  /// "spread", "beside" and "won_percent" too.
+  /// {"name", "seed", "profile", "git", "rows": [...], "notes": [...]}; rows over draws also have
+  /// "spread", "beside" and "won_percent".
   [[nodiscard]] std::string json() const;
 
  private:
@@ -85,7 +85,7 @@ class Report {
   std::size_t broken_ = 0;
 };
 
-/// The revision this program was built from, "-dirty" when the work tree differed; "unknown"
+/// The revision this program was built from, with "-dirty" if the work tree had changes; "unknown"
 /// without git.
 [[nodiscard]] std::string_view built_from();
 

@@ -1,4 +1,4 @@
-# Writes OUT with the revision of SOURCE, only when it changed, so that nothing is rebuilt in vain.
+# Writes the revision of SOURCE to OUT, only if it changed, so that nothing is rebuilt needlessly.
 execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=12
   OUTPUT_VARIABLE revision OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
 if(failed OR revision STREQUAL "")

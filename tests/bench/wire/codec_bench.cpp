@@ -1,5 +1,5 @@
-// chorus-bench codec: one frame of six bodies to bytes and back, beside raw Serd on the same
-// triples.
+// chorus-bench codec: encodes and decodes one frame of six bodies, compared with plain Serd on the
+// same triples.
 #include <serd/serd.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ constexpr int kRepeats = 40;
 /// Keeps the compiler from dropping work whose result nobody reads.
 volatile std::size_t sink = 0;
 
-/// Best round of several, each the mean of many runs: the machine's other work only ever adds.
+/// The best of several rounds, each the mean of many runs: other load only ever adds time.
 class Stopwatch {
  public:
   explicit Stopwatch(std::function<std::size_t()> work) : work_(std::move(work)) {}
@@ -51,7 +51,7 @@ const std::uint8_t* bytes_of(const std::string& text) {
   return reinterpret_cast<const std::uint8_t*>(text.c_str());
 }
 
-/// The triples of a document with prefixed names, as a program that uses Serd directly would hold
+/// The triples of a document with prefixed names, as a program that uses Serd directly would store
 /// them.
 class SerdGraph {
  public:
@@ -93,7 +93,7 @@ class SerdGraph {
     for (const auto& [name, space] : prefixes_) {
       if (term.kind == rdf::TermKind::Iri && term.value.starts_with(space)) {
         term.value = name + ":" + term.value.substr(space.size());
-        term.language = "curie";  // a mark for node(); IRIs have no language
+        term.language = "curie";  // marks it for node(); IRIs have no language
       }
     }
   }
@@ -109,7 +109,7 @@ class SerdGraph {
       {"ch", "https://w3id.org/chorus-tracking/ns#"}, {"xsd", std::string(rdf::kXsd)}};
 };
 
-/// Serd alone, counting triples: the least any user of it pays.
+/// Parses with Serd alone and counts triples: the least cost for any of its users.
 std::size_t parse_with_serd(const std::string& turtle) {
   std::size_t count = 0;
   const auto on_triple = [](void* handle, SerdStatementFlags, const SerdNode*, const SerdNode*,
@@ -131,7 +131,7 @@ std::size_t bodies_of(const Result<FrameResource>& frame) {
 struct Timed {
   std::string metric;
   Stopwatch ours;
-  std::size_t baseline;  ///< Index of what stands beside it, itself when nothing does.
+  std::size_t baseline;  ///< Index of the row it is compared with; its own index if there is none.
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// chorus-bench growth: what many readers and many sensors cost the fusion server.
+// chorus-bench growth: what many clients and many sensors cost the fusion server.
 #include <chrono>
 #include <thread>
 
@@ -11,13 +11,13 @@ namespace {
 using Steady = std::chrono::steady_clock;
 
 constexpr double kRate = 30.0;       // [Hz]
-constexpr double kMinShare = 0.99;   // of the frames, that every reader gets
-constexpr double kMaxRatio = 1.3;    // the claim: a WebSocket beside an event stream
+constexpr double kMinShare = 0.99;   // fraction of frames that every reader gets
+constexpr double kMaxRatio = 1.3;    // the claim: cost of a WebSocket over that of an event stream
 constexpr double kMaxOfACore = 0.2;  // the claim: 64 sensors, one person
 constexpr int kReaders = 300;
 constexpr auto kWarmUp = std::chrono::seconds(2);
 
-/// Processor time of the server while somebody waits so long, as a part of a core.
+/// Processor time of the server during `run_seconds`, as a fraction of one core.
 double cores_used(const LiveCell& cell, double run_seconds) {
   const auto begun = Steady::now();
   const double before = cell.fusion.front().cpu_seconds();
@@ -27,8 +27,8 @@ double cores_used(const LiveCell& cell, double run_seconds) {
 }
 
 struct Reading {
-  double cores = 0.0;  ///< Of the server.
-  double hz = 0.0;     ///< Of each reader.
+  double cores = 0.0;  ///< Used by the server.
+  double hz = 0.0;     ///< Received by each reader.
   std::uint64_t lost = 0;
 };
 
@@ -55,7 +55,7 @@ void report_reading(Report& report, const std::string& name, const Reading& read
                    reading.hz > kMinShare * kRate && reading.lost == 0);
 }
 
-/// What the readers cost: what the server uses without them is taken off.
+/// The cost of the readers: the server's use without them is subtracted.
 Result<void> readers_300(Report& report, double run_seconds) {
   const auto cell = start_cell(3, 6);
   if (!cell) return pass(cell);

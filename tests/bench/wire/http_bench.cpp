@@ -1,4 +1,4 @@
-// chorus-bench http: /frame beside nginx with the same bytes, and how old a long-polled frame is.
+// chorus-bench http: /frame compared with nginx serving the same bytes; age of long-polled frames.
 #include <chrono>
 #include <cstdio>
 #include <thread>
@@ -15,13 +15,13 @@ namespace {
 using http::DocumentPtr;
 
 constexpr int kConnections = 64;
-constexpr double kMinRatio = 0.85;  // Of nginx's requests per second.
+constexpr double kMinRatio = 0.85;  // Fraction of nginx's requests per second.
 constexpr double kMaxAgeMs = 5.0;   // 99 % of long-polled frames are younger.
 constexpr double kFramesPerSecond = 30;
 constexpr int kJoints = 25;
 
 /// One person in the compact Turtle of proto/README.md, after a comment with the time of
-/// publishing.
+/// publication.
 std::string frame_body(std::uint64_t sequence, std::int64_t steady_ns) {
   std::string text = "# " + std::to_string(steady_ns) +
                      "\n@prefix ch: <https://w3id.org/chorus-tracking/ns#> .\n<frame> a ch:Frame ; "
@@ -49,7 +49,7 @@ DocumentPtr frame_document(std::uint64_t sequence, std::int64_t steady_ns) {
   return std::make_shared<const http::Document>(std::move(variants), std::move(options));
 }
 
-/// Serves /frame; republishes it at `rate_hz` unless that is zero.
+/// Serves /frame; publishes it anew at `rate_hz` unless that is zero.
 ServingProcess::Serve serving(double rate_hz) {
   return [rate_hz](const auto& say_port, const auto& wait_for_end) {
     auto frame = std::make_shared<http::LiveDocument>();
@@ -102,7 +102,7 @@ Result<void> frame_64(Report& report) {
   const int rounds = report.quick() ? 1 : 5;
   const int run_seconds = report.quick() ? 1 : 3;
   for (int round = 0; round < rounds;
-       ++round) {  // Taking turns, so that both see the same machine.
+       ++round) {  // In turns, so that both see the same machine load.
     if (auto run = add_run(*ours, run_seconds, our_load); !run) return run;
     if (auto run = add_run(*nginx, run_seconds, nginx_load); !run) return run;
     ratios.push_back(our_load.requests_per_s.back() / nginx_load.requests_per_s.back());

@@ -44,7 +44,7 @@ bool wait_until_it_answers(std::uint16_t port) {
   return false;
 }
 
-/// Debian's defaults, with what makes nginx fast for one small file.
+/// Debian's defaults, plus settings that make nginx fast for one small file.
 std::string nginx_config(const std::string& folder, std::uint16_t port) {
   std::ostringstream text;
   text << "daemon off; master_process off; worker_processes 1;\n"
@@ -161,7 +161,7 @@ ServingProcess::~ServingProcess() {
 double ServingProcess::cpu_seconds() const { return cpu_seconds_of(pid_); }
 
 Result<WrkResult> run_wrk(std::uint16_t port, int connections, int run_seconds) {
-  // popen() starts its shell with our own affinity: ours is moved and put back.
+  // The shell of popen() inherits our affinity: change ours, and restore it afterwards.
   cpu_set_t before;
   ::sched_getaffinity(0, sizeof before, &before);
   keep_to_side(Side::Load);

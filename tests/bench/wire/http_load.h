@@ -1,4 +1,4 @@
-// Servers under load, each in a process of its own: ours, nginx, and the generators of the load.
+// Servers under load, each in a process of its own: ours, nginx, and the load generators.
 #pragma once
 
 #include <sys/types.h>
@@ -17,7 +17,7 @@ namespace chorus::bench {
 /// A forked process that serves until it is destroyed.
 class ServingProcess {
  public:
-  /// Forks; the child calls `serve`, which says its port and returns when `wait_for_end` returns.
+  /// Forks; the child calls `serve`, which reports its port and returns after `wait_for_end` does.
   using Serve = std::function<void(const std::function<void(std::uint16_t)>& say_port,
                                    const std::function<void()>& wait_for_end)>;
   [[nodiscard]] static Result<ServingProcess> fork(const Serve& serve);
@@ -29,7 +29,7 @@ class ServingProcess {
   ~ServingProcess();
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
-  /// User and system time of the process so far.
+  /// User and system time used by the process.
   [[nodiscard]] double cpu_seconds() const;
 
  private:
@@ -40,8 +40,8 @@ class ServingProcess {
   std::optional<ScratchFolder> folder_ = {};  ///< nginx's.
 };
 
-/// Servers run on one core and the load on another, the same for every server; what runs on one
-/// core only is left alone.  Called in a child before it starts.
+/// Servers run on one core and the load on another, the same for all servers; on a machine with one
+/// core nothing is pinned.  Called in a child before it starts.
 enum class Side { Server, Load };
 void keep_to_side(Side side);
 
@@ -59,15 +59,15 @@ struct LongPollLoad {
   double run_seconds = 5.0;
 };
 
-/// Ages [s] of the document at its receipt, one per answer.  Every body begins with "# <steady
+/// Age [s] of the document at its receipt, one per answer.  Every body begins with "# <steady
 /// ns>".
 struct LongPollAges {
   std::vector<double> ages;
-  std::uint64_t answers = 0;             ///< All, those of the warm-up too.
-  std::uint64_t repeated_or_missed = 0;  ///< Versions that did not follow their predecessor.
+  std::uint64_t answers = 0;             ///< All answers, including the warm-up.
+  std::uint64_t repeated_or_missed = 0;  ///< Versions that did not follow the previous one.
 };
 
-/// Long-polls from a forked process with one epoll loop, as lean as the measured thing.
+/// Long-polls from a forked process with one epoll loop, as efficient as the server measured.
 [[nodiscard]] Result<LongPollAges> run_long_polls(const LongPollLoad& load);
 
 }  // namespace chorus::bench

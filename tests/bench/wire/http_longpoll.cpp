@@ -1,5 +1,5 @@
-// 300 long-polling clients in a process of their own, one epoll loop, no library between socket and
-// stamp.
+// 300 long-polling clients in their own process, in one epoll loop, with no library between the
+// socket and the time stamp.
 #include <netinet/tcp.h>
 #include <sys/epoll.h>
 #include <sys/socket.h>
@@ -27,7 +27,7 @@ struct Client {
   int socket = -1;
   std::string received;
   std::uint64_t version = 0;
-  bool asks = false;  ///< Has its answer and asks for the next one.
+  bool asks = false;  ///< Has its answer and will ask for the next one.
 };
 
 std::uint64_t number_after(std::string_view text, std::string_view name) {
@@ -55,7 +55,7 @@ bool connect(Client& client, std::uint16_t port) {
   return ::connect(client.socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
 }
 
-/// The body of a complete answer; nothing while some of it is missing.
+/// The body of a complete answer; nothing while part of it is missing.
 std::optional<std::string_view> complete_body(const std::string& received) {
   const std::size_t head = received.find("\r\n\r\n");
   if (head == std::string::npos) return {};
@@ -64,7 +64,7 @@ std::optional<std::string_view> complete_body(const std::string& received) {
   return std::string_view(received).substr(head + 4, length);
 }
 
-/// Reads what has come; false when the connection is lost.
+/// Reads what has arrived; false when the connection is lost.
 bool on_readable(Client& client, bool measuring, LongPollAges& out) {
   std::array<char, 16384> bytes;
   const ssize_t size = ::recv(client.socket, bytes.data(), bytes.size(), 0);
@@ -104,8 +104,8 @@ LongPollAges poll_all(const LongPollLoad& load) {
     const double elapsed = 1e-9 * static_cast<double>(steady_ns() - start);
     if (elapsed > kWarmUpSeconds + load.run_seconds) return out;
     const int count = ::epoll_wait(queue, events.data(), static_cast<int>(events.size()), 100);
-    // First everybody's receipts, then the next questions: the clients of a real room do not wait
-    // for one another.
+    // Receive all answers first, then send the next requests: the clients of a real room do not
+    // wait for one another.
     for (int i = 0; i < count; ++i) {
       if (!on_readable(client_of(events[static_cast<std::size_t>(i)]), elapsed > kWarmUpSeconds,
                        out))

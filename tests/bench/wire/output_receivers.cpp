@@ -85,7 +85,7 @@ Result<OpenedOutput> open_vrpn() {
   return OpenedOutput{std::move(receiver), std::move(*sink)};
 }
 
-/// Connects, keeps the connection alive, and counts frames; what else the server says is not one.
+/// Connects, keeps the connection alive, and counts frames; other messages do not count.
 class NatNetReceiver final : public Receiver {
  public:
   NatNetReceiver() = default;
@@ -98,7 +98,7 @@ class NatNetReceiver final : public Receiver {
     constexpr int kPatienceMs = 5000;
     const bool answered = ::poll(sockets.data(), sockets.size(), kPatienceMs) > 0;
     (void)read();
-    say(kKeepAlive);  // frames go to who has written twice
+    say(kKeepAlive);  // frames are sent to clients that have written twice
     return answered;
   }
   void add_sockets(std::vector<pollfd>& out) const override { socket_.add_sockets(out); }

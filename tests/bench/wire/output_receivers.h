@@ -1,4 +1,4 @@
-// Outputs by the names of their configuration, each with a loopback client that counts what comes.
+// Outputs by the names in the configuration, each with a loopback client that counts its data.
 #pragma once
 
 #include <poll.h>
@@ -14,15 +14,15 @@
 
 namespace chorus::bench {
 
-/// A client of one output.  A unit is what the protocol sends a fixed number of per frame: a
-/// datagram, or a message.
+/// A client of one output.  A unit is a datagram or a message: whatever the protocol sends a fixed
+/// number of per frame.
 class Receiver {
  public:
   virtual ~Receiver() = default;
   virtual void add_sockets(std::vector<pollfd>& out) const = 0;
-  /// Units that have come since the last call; does not wait.
+  /// Number of units since the last call; does not wait.
   [[nodiscard]] virtual std::size_t read() = 0;
-  /// Bytes since the beginning.
+  /// Number of bytes since the beginning.
   [[nodiscard]] virtual std::size_t bytes() const = 0;
 };
 
@@ -37,7 +37,7 @@ class DatagramReceiver final : public Receiver {
   void add_sockets(std::vector<pollfd>& out) const override;
   [[nodiscard]] std::size_t read() override;
   [[nodiscard]] std::size_t bytes() const override { return bytes_; }
-  /// Each that has come since the last call, for receivers that look into them; does not wait.
+  /// Calls `each` for every datagram since the last call; does not wait.
   void take(const std::function<void(std::string_view)>& each) const;
   void say(std::string_view bytes, std::uint16_t to) const;
 
@@ -57,11 +57,11 @@ struct OutputRow {
   Result<OpenedOutput> (*open)();
 };
 
-/// Every output that somebody can connect to; one more is one more row.
+/// Every output with connections; each row is one output.
 [[nodiscard]] const std::vector<OutputRow>& output_rows();
 
-/// The least that an output can be: the same hand-over and thread, and so many datagrams of so many
-/// bytes per frame, whatever is in it.
+/// The cheapest possible output: the same hand-over and thread, and `count` datagrams of `bytes`
+/// bytes per frame, whatever the frame contains.
 [[nodiscard]] OpenedOutput bare_datagrams(std::size_t count, std::size_t bytes);
 
 }  // namespace chorus::bench

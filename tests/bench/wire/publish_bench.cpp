@@ -1,5 +1,5 @@
-// chorus-bench publish: how long a fused frame takes to a client of each output, from capture to a
-// VRPN client through the real server, and whether 400 clients delay anybody.
+// chorus-bench publish: how long a fused frame takes to a client of each output, and from capture
+// to a VRPN client of the real server; and whether 400 clients delay anybody.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -41,18 +41,18 @@ std::shared_ptr<const Snapshot> six_people(std::uint64_t sequence) {
   return snapshot;
 }
 
-/// Waits for units on a thread of its own and notes when they came.
+/// Waits for units on a thread of its own and records when they came.
 class Watch {
  public:
   struct Arrival {
     Steady::time_point when;
-    std::size_t units;  ///< All until then.
+    std::size_t units;  ///< Total number up to then.
   };
 
   explicit Watch(Receiver& receiver) : receiver_(receiver) {
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
   }
-  /// No more is read afterwards.
+  /// Ends reading and returns all arrivals.
   std::vector<Arrival> end() {
     thread_.request_stop();
     thread_.join();
@@ -76,13 +76,13 @@ class Watch {
 };
 
 struct Wire {
-  std::vector<double> latencies;  ///< Published to completely received [s].
+  std::vector<double> latencies;  ///< From publication to complete receipt [s].
   std::size_t units_per_frame = 0;
   double bytes_per_frame = 0.0;
-  double output_hz = 0.0;  ///< As received.
+  double output_hz = 0.0;  ///< Rate of receipt.
 };
 
-/// Publishes at 30 Hz; the times of publication, those of the warm-up left out.
+/// Publishes at 30 Hz; returns the times of publication, without those of the warm-up.
 std::vector<Steady::time_point> publish(Sink& sink, std::size_t frames, std::uint64_t first) {
   std::vector<Steady::time_point> times;
   auto next = Steady::now();
@@ -93,7 +93,7 @@ std::vector<Steady::time_point> publish(Sink& sink, std::size_t frames, std::uin
     times.push_back(Steady::now());
     sink.publish(snapshot);
   }
-  std::this_thread::sleep_for(milliseconds(300));  // the last one arrives
+  std::this_thread::sleep_for(milliseconds(300));  // until the last one has arrived
   return times;
 }
 
@@ -127,8 +127,8 @@ Result<Wire> measure(OpenedOutput& output, std::size_t frames) {
   return wire;
 }
 
-/// The same number of bytes through the same hand-over, in full datagrams where it is a stream's or
-/// VRPN's messages.
+/// The same number of bytes through the same hand-over; as full datagrams for streams and for
+/// VRPN.
 Result<Wire> measure_bare(std::string_view name, const Wire& wire, std::size_t frames) {
   const bool packed = name.starts_with("vrpn");
   const auto count = packed
@@ -201,7 +201,7 @@ void report_lateness(Report& report, const std::string& name, const Lateness& se
              baseline, ratio(0.99));
   report.row(name, "capture_to_vrpn_max_ms", kMs * worst(seen.beyond_capture), "ms");
   report.row(name, "late_frames", late_of(seen.beyond_capture), "frames");
-  // Fusing comes after the capture, so this says at most too much.
+  // Fusing starts after the capture, so this is an upper bound.
   report.row(name, "fused_to_wire_p99_ms", kMs * percentile(seen.beyond_capture, 0.99), "ms");
   report.condition(name + ": output at 30 Hz, nothing lost",
                    std::abs(seen.output_hz - kRate) < 0.3 && seen.lost == 0);
@@ -225,7 +225,7 @@ ClientRates rates(const ClientAnswers& before, const ClientAnswers& after,
 
 Result<void> clients_400(Report& report, const LiveCell& cell, const Lateness& alone,
                          double run_seconds) {
-  constexpr ClientCounts kClients{49, 300, 50};  // and the witness
+  constexpr ClientCounts kClients{49, 300, 50};  // plus the witness
   const std::string name = "clients-400";
   const ClientCrowd crowd(cell, kClients);
   std::this_thread::sleep_for(std::chrono::seconds(1));
