@@ -26,7 +26,7 @@ constexpr std::chrono::milliseconds kAskEvery{50};
 constexpr double kFarthest = 1000.0;  // [m], as the server has it
 
 struct OriginArguments {
-  std::string url = client::kDefaultServer;
+  std::string url = client::default_server();
   double x = 0.0;
   double z = 0.0;
   double yaw = 0.0;
