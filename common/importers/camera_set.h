@@ -18,7 +18,7 @@ struct CalibratedCamera {
 };
 
 /// [{"camera", "width", "height", "K": 3x3, "distortion_k1k2p1p2k3": 5,
-/// "camera_from_world": {"R": 3x3, "t_m": 3}}]: OpenCV camera axes, world z up.
+///   "camera_from_world": {"R": 3x3, "t_m": 3}}]: OpenCV camera axes, world z up.
 /// Refuses an R that is no rotation, repeated names, and more than 64 cameras.
 [[nodiscard]] Result<std::vector<CalibratedCamera>> read_cameras(const std::filesystem::path& file,
                                                                  const ImportLimits& limits = {});

@@ -20,7 +20,7 @@ Eigen::Quaterniond fixed_xyz(double x, double y, double z) {
          Eigen::AngleAxisd(x, Eigen::Vector3d::UnitX());
 }
 
-/// A bone as written, before the hierarchy orders the bones.
+/// A bone as the file has it, before the hierarchy puts the bones in order.
 struct WrittenBone {
   AsfBone bone;
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
@@ -46,7 +46,7 @@ class AsfReader {
   bool next();
 
   TextLines lines_;
-  bool held_ = false;  ///< The current line has not been consumed yet.
+  bool held_ = false;  ///< The current line has not yet been consumed.
   AsfSkeleton skeleton_;
   std::vector<WrittenBone> written_;
 };
@@ -223,7 +223,7 @@ Result<void> AsfReader::hang(std::string_view parent, std::string_view child) {
   return {};
 }
 
-/// One line "lfemur 1.0 2.0 3.0" into its channels.
+/// Reads one line such as "lfemur 1.0 2.0 3.0" into the bone's channels.
 Result<void> read_amc_line(const TextLines& lines, const AsfSkeleton& skeleton, AmcFrame& frame,
                            std::vector<bool>& seen) {
   const std::size_t index = bone_named(skeleton, lines.word(0));
@@ -249,7 +249,7 @@ Result<void> read_amc_line(const TextLines& lines, const AsfSkeleton& skeleton, 
   return {};
 }
 
-/// The first bone with channels that this frame does not name.
+/// The first bone with channels that is missing in this frame.
 std::optional<std::string> absent_bone(const AsfSkeleton& skeleton, const std::vector<bool>& seen) {
   for (std::size_t i = 0; i < skeleton.bones.size(); ++i) {
     const auto& turns = skeleton.bones[i].turns;

@@ -1,10 +1,10 @@
 // Acclaim ASF (skeleton) and AMC (motion), as the CMU motion capture library uses them.
 //
-// A bone starts at its parent's end; its own end is the point its name stands for.  With C the
-// rotation of the bone's `axis` and R that of its channels (both about fixed axes, x first: Rz Ry
-// Rx),
-//   world_from_bone = world_from_parent * C * R * C^-1,   end = parent end + length *
-//   world_from_bone * direction
+// A bone starts at its parent's end, and the bone's name stands for its own end.  With C the
+// rotation of the bone's `axis` and R that of its channels (both about fixed axes, x first:
+// Rz Ry Rx),
+//   world_from_bone = world_from_parent * C * R * C^-1,
+//   end = parent end + length * world_from_bone * direction
 // (Lander, "Working with motion capture file formats"; checked against a second reader and by
 // tests: feet on the floor, left on the left).  CMU writes lengths in inches times the unit
 // `length` of the header.
@@ -27,31 +27,31 @@ struct AsfBone {
   std::size_t parent = 0;  ///< Index into AsfSkeleton::bones; parents come first; 0 is the root.
   Eigen::Vector3d reach = Eigen::Vector3d::Zero();           ///< length * direction [m]
   Eigen::Quaterniond axis = Eigen::Quaterniond::Identity();  ///< C
-  std::array<bool, 3> turns{};    ///< Which of rx, ry, rz it has channels for, in this order.
-  std::size_t first_channel = 0;  ///< Its place in AmcFrame.
+  std::array<bool, 3> turns{};    ///< Which of rx, ry, rz have a channel, in this order.
+  std::size_t first_channel = 0;  ///< Index of its first channel in AmcFrame.
 };
 
 struct AsfSkeleton {
-  std::vector<AsfBone> bones;  ///< bones[0] is the root: no reach, channels tx ty tz rx ry rz.
+  std::vector<AsfBone> bones;  ///< bones[0] is the root: reach zero, channels tx ty tz rx ry rz.
   std::size_t channel_count = 0;
   double metres_per_unit = 0.0;
 };
 
-/// All channels of one frame in AsfBone order: root tx ty tz [m], then every angle [rad].
+/// All channels of one frame, in the order of the bones: root tx ty tz [m], then all angles [rad].
 using AmcFrame = std::vector<double>;
 
 [[nodiscard]] Result<AsfSkeleton> parse_asf(std::string_view text, std::string_view origin);
 
-/// Refuses unknown bones, wrong counts, absent bones and frames that are out of order.
+/// Refuses unknown bones, wrong counts, missing bones and frames that are out of order.
 [[nodiscard]] Result<std::vector<AmcFrame>> parse_amc(std::string_view text,
                                                       std::string_view origin,
                                                       const AsfSkeleton& skeleton);
 
-/// The end points of all bones, in bone order, world space of the file (y up) [m].
+/// The end points of all bones, in the order of the bones, world space of the file (y up) [m].
 [[nodiscard]] std::vector<Eigen::Vector3d> bone_ends(const AsfSkeleton& skeleton,
                                                      const AmcFrame& frame);
 
-/// The bone of this name; the skeleton's size when there is none.
+/// The index of the bone with this name; the number of bones when there is none.
 [[nodiscard]] std::size_t bone_named(const AsfSkeleton& skeleton, std::string_view name);
 
 }  // namespace chorus::motion

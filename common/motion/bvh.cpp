@@ -32,7 +32,7 @@ class BvhReader {
   TextLines lines_;
   double scale_;
   Bvh bvh_;
-  std::vector<std::size_t> open_;  ///< Joints whose '{' is not closed, outermost first.
+  std::vector<std::size_t> open_;  ///< Joints whose '{' has not been closed, outermost first.
   bool awaiting_brace_ = false;
 };
 

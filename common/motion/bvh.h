@@ -29,13 +29,13 @@ struct Bvh {
   std::vector<BvhJoint> joints;
   std::size_t channel_count = 0;
   double frame_time = 0.0;                  ///< [s]
-  std::vector<std::vector<double>> frames;  ///< Positions [m], rotations [rad], as `channels` say.
+  std::vector<std::vector<double>> frames;  ///< Positions [m], rotations [rad], as in `channels`.
 };
 
 [[nodiscard]] Result<Bvh> parse_bvh(std::string_view text, std::string_view origin,
                                     double metres_per_unit = 0.01);
 
-/// Where every joint is in one frame, world space of the file [m].
+/// Position of every joint in one frame, world space of the file [m].
 [[nodiscard]] std::vector<Eigen::Vector3d> joint_positions(const Bvh& bvh, std::size_t frame);
 
 }  // namespace chorus::motion

@@ -25,7 +25,7 @@ constexpr double kMaxWordFrames = 65535;
 
 enum Processor : std::uint8_t { kIntel, kDec, kMips };
 
-/// Numbers of one byte order at offsets that have been checked.
+/// Reads numbers of one byte order at offsets that have been checked.
 class Numbers {
  public:
   Numbers(std::string_view bytes, Processor processor) : bytes_(bytes), processor_(processor) {}
@@ -49,7 +49,7 @@ class Numbers {
     const std::uint32_t first = word(at);
     const std::uint32_t second = word(at + 2);
     if (processor_ == kIntel) return std::bit_cast<float>(second << 16 | first);
-    // A VAX F float is an IEEE one with its words swapped and an exponent that is two larger.
+    // A VAX F float is an IEEE float with its words swapped and its exponent larger by two.
     const float value = std::bit_cast<float>(first << 16 | second);
     return processor_ == kDec ? value / 4.0f : value;
   }
@@ -63,10 +63,10 @@ class Numbers {
 };
 
 struct Parameter {
-  int type = 0;  ///< Bytes an element: -1 text, 1, 2, 4 (float).
+  int type = 0;  ///< Bytes per element: -1 (text), 1, 2, 4 (float).
   std::vector<std::size_t> dimensions;
-  std::size_t at = 0;     ///< Of its first element in the file.
-  std::size_t count = 0;  ///< Elements.
+  std::size_t at = 0;     ///< File offset of its first element.
+  std::size_t count = 0;  ///< Number of elements.
 };
 
 std::string upper(std::string_view text) {
@@ -88,15 +88,15 @@ struct Entry {
   Parameter parameter;
 };
 
-/// "POINT:RATE" -> where it lies.
+/// "POINT:RATE" -> where its value is.
 using Parameters = std::map<std::string, Parameter>;
 
 struct Layout {
   std::size_t points = 0;
-  std::size_t analog = 0;  ///< Analog samples in a frame.
+  std::size_t analog = 0;  ///< Analog samples per frame.
   std::size_t frames = 0;
   std::size_t start = 0;
-  double scale = 1.0;  ///< Negative: floats.
+  double scale = 1.0;  ///< Negative: coordinates are floats.
   double metres_per_unit = 0.001;
 
   [[nodiscard]] std::size_t word_bytes() const { return scale < 0 ? 4 : 2; }
@@ -173,7 +173,7 @@ Result<void> C3dReader::read_processor() {
 
 Result<void> C3dReader::read_parameters() {
   const std::size_t blocks = static_cast<std::uint8_t>(bytes_[parameters_at_ + 2]);
-  // Some writers leave the count at 0; then the list ends itself.
+  // Some writers leave the count at 0; then only the list itself says where it ends.
   const std::size_t end =
       std::min(bytes_.size(), parameters_at_ + (blocks == 0 ? 255 : blocks) * kBlock);
   std::size_t at = parameters_at_ + 4;
@@ -189,7 +189,7 @@ Result<void> C3dReader::read_parameters() {
   return {};
 }
 
-/// One group (negative number) or parameter; gives the place of the next, 0 after the last.
+/// Reads one group (negative number) or parameter; returns the next one's offset, 0 after the last.
 Result<std::size_t> C3dReader::read_entry(std::size_t at, std::size_t end) {
   const Numbers numbers(bytes_, processor_);
   // A negative length of the name means "locked".
@@ -237,7 +237,7 @@ std::optional<double> C3dReader::number(const std::string& name, std::size_t i) 
     case 1:
       return numbers.byte(at + i);
     case 2:
-      return numbers.word(at + 2 * i);  // counts are unsigned nowadays
+      return numbers.word(at + 2 * i);  // counts are unsigned today
     case 4:
       return numbers.real(at + 4 * i);
     default:
@@ -267,8 +267,8 @@ std::vector<std::string> C3dReader::labels(std::size_t points) const {
   return all;
 }
 
-/// POINT:FRAMES, unless it is full: then POINT:LONG_FRAMES or the fields of TRIAL (c3d.org,
-/// "Reading the frame count").
+/// POINT:FRAMES unless it has its largest value; then POINT:LONG_FRAMES or the fields of TRIAL
+/// (c3d.org, "Reading the frame count").
 double C3dReader::frame_count() const {
   const Numbers numbers(bytes_, processor_);
   const double of_header = numbers.word(8) - numbers.word(6) + 1.0;
@@ -335,7 +335,7 @@ C3dPoint C3dReader::read_point(const Layout& layout, std::size_t at) const {
   const double metres = (floats ? 1.0 : layout.scale) * layout.metres_per_unit;
   C3dPoint point;
   const Eigen::Vector3d position = metres * Eigen::Vector3d(xyzw.data());
-  // The fourth number: camera bits in the high byte, the residual in units of the scale in the low.
+  // The fourth number: camera bits in the high byte, residual / scale in the low byte.
   if (!(xyzw[3] >= 0 && xyzw[3] < 32768) || !position.allFinite() ||
       position.cwiseAbs().maxCoeff() > kMaxCoordinate)
     return point;

@@ -1,8 +1,8 @@
 // C3D: labelled points over time, binary (https://www.c3d.org, "The C3D File Format: User Guide").
 //
 // Blocks of 512 bytes: a header, parameters in groups, then frames of four numbers per point (x, y,
-// z, residual and camera mask), 16-bit integers times POINT:SCALE or, if that is negative, floats.
-// Intel, DEC (VAX floats) and MIPS byte orders are read; analog samples are skipped.
+// z, residual and camera mask): 16-bit integers times POINT:SCALE or, if that is negative, floats.
+// Reads Intel, DEC (VAX floats) and MIPS byte orders; skips analog samples.
 #pragma once
 
 #include <string>
@@ -17,18 +17,18 @@
 namespace chorus::motion {
 
 struct C3dPoint {
-  Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< Axes of the file [m].
-  float residual = -1.0f;  ///< [m]; 0: interpolated or modelled; below 0: not there.
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< In the file's axes [m].
+  float residual = -1.0f;  ///< [m]; 0: interpolated or modelled; negative: missing.
 
   [[nodiscard]] bool valid() const { return residual >= 0.0f; }
 };
 
 struct C3d {
-  std::vector<std::string> labels;  ///< One a point; "" where the file has no name for it.
+  std::vector<std::string> labels;  ///< One per point; "" if the file has no name for it.
   double rate_hz = 0.0;
   std::vector<std::vector<C3dPoint>> frames;
-  /// Turns the file's axes into ours (+y up), by POINT:X_SCREEN and Y_SCREEN; +z is up when the
-  /// file does not say, as is usual in biomechanics.
+  /// Turns the file's axes into ours (+y up), by POINT:X_SCREEN and Y_SCREEN; if the file does not
+  /// say, +z is up, as is usual in biomechanics.
   Eigen::Matrix3d world_from_file = Eigen::Matrix3d::Identity();
   std::string processor;  ///< "Intel", "DEC" or "MIPS"
 };
@@ -36,25 +36,25 @@ struct C3d {
 /// Larger files are refused.
 inline constexpr std::size_t kMaxC3dBytes = 128u << 20;
 
-/// Refuses headers and parameters that point outside the file or announce more frames than it
-/// holds; coordinates that are not finite, or farther than 10 km, count as missing.
+/// Refuses headers and parameters that point outside the file or announce more frames than it has;
+/// coordinates that are not finite, or beyond 10 km, count as missing.
 [[nodiscard]] Result<C3d> parse_c3d(std::string_view bytes, std::string_view origin);
 
 /// One person of a C3D file.
 struct C3dSubject {
-  std::string name;  ///< Before the colon of the labels ("P1:Head"); "" where there is none.
+  std::string name;  ///< From the labels, before the colon ("P1:Head"); "" if there is none.
   Motion motion;
 };
 
 struct C3dMotion {
   std::vector<C3dSubject> subjects;        ///< In the order in which the file names them.
-  std::vector<std::string> unused_labels;  ///< Points that are no joint of ours.
+  std::vector<std::string> unused_labels;  ///< Points that are none of our joints.
 };
 
-/// Joints by label: our own 25 names, joint centres (LHJC, LKJC, ...), Plug-in Gait's segment
-/// origins (LFEP, LFEO, ...), and last the means of skin markers, which count as inferred.  The
-/// table is in c3d_labels.cpp.  A file in which no subject has two joints is refused, with its
-/// labels.
+/// Finds joints by label: first our own 25 names, then joint centres (LHJC, LKJC, ...), Plug-in
+/// Gait's segment origins (LFEP, LFEO, ...), and last the means of skin markers, which count as
+/// inferred. c3d_labels.cpp has the table.  Refuses a file in which no subject has two joints; the
+/// error names its labels.
 [[nodiscard]] Result<C3dMotion> motion_from_c3d(const C3d& c3d);
 
 }  // namespace chorus::motion

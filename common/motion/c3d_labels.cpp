@@ -1,4 +1,4 @@
-// Which points of a C3D file make a Kinect v2 joint: one table.
+// The table of which points of a C3D file make a Kinect v2 joint.
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -15,15 +15,15 @@ namespace chorus::motion {
 namespace {
 
 struct LabelRow {
-  JointId left;  ///< The centre joint itself when there are no sides.
+  JointId left;  ///< The centre joint itself if there are no sides.
   JointId right;
-  JointState state;                          ///< Inferred: a mean of skin markers, no joint centre.
-  std::array<std::string_view, 4> labels{};  ///< Their mean; '<' stands for L or R.
+  JointState state;                          ///< Inferred if it is a mean of skin markers.
+  std::array<std::string_view, 4> labels{};  ///< The joint is their mean; '<' stands for L or R.
 };
 
-// In order of preference: the first row of a joint whose labels are all present is used.  After our
-// own names come joint centres as OpenSim users write them, the segment origins of Plug-in Gait,
-// then skin markers of the Plug-in Gait set.
+// In order of preference: a joint uses the first of its rows whose labels are all present.  Our own
+// names come first, then joint centres as OpenSim users name them, the segment origins of Plug-in
+// Gait, and the skin markers of the Plug-in Gait set.
 constexpr auto kSure = JointState::Tracked;
 constexpr auto kGuess = JointState::Inferred;
 // clang-format off
@@ -69,11 +69,11 @@ constexpr std::size_t kFewestJoints = 2;
 constexpr std::size_t kShownLabels = 12;
 constexpr std::size_t kMaxSkeletons = 2 * kMaxFrames;  // of all subjects: 800 MB
 
-/// Label without its subject -> the point.
+/// Label without its subject -> index of the point.
 using Labels = std::map<std::string, std::size_t>;
 
 struct Source {
-  std::vector<std::size_t> points;  ///< Empty: none.
+  std::vector<std::size_t> points;  ///< Empty: no such labels.
   JointState state = JointState::NotTracked;
 };
 using Sources = std::array<Source, kJointCount>;
@@ -132,7 +132,7 @@ std::string labels_shown(const C3d& c3d) {
   return c3d.labels.size() > kShownLabels ? text + " ..." : text;
 }
 
-/// Points by subject and label; the subjects in the order in which the file names them.
+/// Points by subject and label; the subjects in the order of the file.
 std::vector<std::pair<std::string, Labels>> subjects_of(const C3d& c3d) {
   std::vector<std::pair<std::string, Labels>> subjects;
   std::map<std::string, std::size_t> known;

@@ -8,7 +8,7 @@
 namespace chorus::motion {
 namespace {
 
-/// A built-in file that does not parse is a broken build, not an input error.
+/// If a built-in file does not parse, the build is broken; the input is not to blame.
 template <class Value>
 Value built_in(Result<Value> parsed) {
   if (parsed) return *std::move(parsed);

@@ -1,4 +1,4 @@
-// Which points of a CMU or BVH skeleton make a Kinect v2 joint: two tables.
+// Two tables of which points of a CMU or BVH skeleton make a Kinect v2 joint.
 #include <algorithm>
 #include <cctype>
 #include <map>
@@ -19,15 +19,15 @@ struct Share {
   double weight;
 };
 
-/// A joint is a weighted sum of bone ends; the weights sum to one, and may leave [0, 1] to extend a
-/// bone.
+/// A joint is a weighted sum of bone ends; the weights sum to one and may lie outside [0, 1] to
+/// extend a bone.
 struct CmuRow {
   JointId joint;
   std::array<Share, 3> shares;
 };
 
-// Placement follows where Kinect v2 reports joints: SpineBase a little above the hip line, Head at
-// the middle of the head, Hand in the palm, HandTip at the finger tips.  The CMU forearm is
+// The places follow where a Kinect v2 reports its joints: SpineBase slightly above the hip line,
+// Head at the middle of the head, Hand in the palm, HandTip at the finger tips.  The CMU forearm is
 // "radius" plus "wrist".
 constexpr Share kNone{"", 0};
 constexpr CmuRow kCmuRows[] = {
@@ -58,10 +58,10 @@ constexpr CmuRow kCmuRows[] = {
     {JointId::FootRight, {{{"rfoot", 1}, kNone, kNone}}},
 };
 
-/// Names a BVH joint may go by, best first, in the form `plain` gives; "<" stands for left or
+/// The names that a BVH joint may have, best first, as plain() returns them; "<" stands for left or
 /// right.
 struct BvhRow {
-  JointId left;  ///< The centre joint itself when there are no sides.
+  JointId left;  ///< The centre joint itself if there are no sides.
   JointId right;
   bool required;
   std::array<std::string_view, 6> names;
@@ -125,11 +125,11 @@ std::optional<std::size_t> find_named(const Names& names, const BvhRow& row,
   return std::nullopt;
 }
 
-/// Kinect joint -> BVH joint; kJointCount entries, empty where the file has none.
+/// Kinect joint -> BVH joint; kJointCount entries, none where the file lacks one.
 using Sources = std::array<std::optional<std::size_t>, kJointCount>;
 
-/// Files with our own joint names (chorus export) are unambiguous; "HandLeft" would be a wrist in
-/// other dialects.
+/// Files with our own joint names (chorus export) come first, because "HandLeft" would be a wrist
+/// in other dialects.
 std::optional<Sources> match_own_names(const Bvh& bvh) {
   Sources sources;
   for (std::size_t i = 0; i < bvh.joints.size(); ++i) {
@@ -159,7 +159,7 @@ void place(Skeleton<WorldSpace>& body, JointId id, const Eigen::Vector3d& where,
   body[id].state = state;
 }
 
-/// Joints that BVH skeletons lack, from those they have; inferred, because they are guesses.
+/// Guesses the joints that BVH skeletons lack from their neighbours; these are inferred.
 void infer_absent(Skeleton<WorldSpace>& body) {
   const auto p = [&](JointId id) { return body[id].position; };
   const Eigen::Vector3d shoulders = 0.5 * (p(JointId::ShoulderLeft) + p(JointId::ShoulderRight));
@@ -170,8 +170,8 @@ void infer_absent(Skeleton<WorldSpace>& body) {
   if (!body[JointId::SpineMid].seen()) {
     place(body, JointId::SpineMid, 0.5 * (shoulders + p(JointId::SpineBase)), JointState::Inferred);
   }
-  constexpr double kHandReach = 0.25;  // wrist to palm, of the forearm's length
-  constexpr double kTipReach = 0.55;   // wrist to finger tips
+  constexpr double kHandReach = 0.25;  // wrist to palm, as a fraction of the forearm's length
+  constexpr double kTipReach = 0.55;   // wrist to finger tips, likewise
   for (const auto& [elbow, wrist, hand, tip] :
        {std::array{JointId::ElbowLeft, JointId::WristLeft, JointId::HandLeft, JointId::HandTipLeft},
         std::array{JointId::ElbowRight, JointId::WristRight, JointId::HandRight,
@@ -234,7 +234,7 @@ Result<Motion> motion_from_bvh(const Bvh& bvh) {
       const auto& source = (*sources)[j];
       if (!source) continue;
       if (!(positions[*source].norm() <=
-            kMaxCoordinate))  // NaN too: numbers that overflow on the way
+            kMaxCoordinate))  // also catches NaN from an overflow
         return fail(ErrorCode::Malformed, "frame " + std::to_string(i + 1),
                     "a joint is farther than 10 km; is the unit of lengths right?");
       place(body, static_cast<JointId>(j), positions[*source], JointState::Tracked);

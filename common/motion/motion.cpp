@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kTiny = 1e-6;
 
-/// Kinect v2 gives these no orientation.
+/// The joints to which Kinect v2 gives no orientation.
 constexpr std::array kLeaves{JointId::Head,         JointId::HandTipLeft, JointId::ThumbLeft,
                              JointId::HandTipRight, JointId::ThumbRight,  JointId::FootLeft,
                              JointId::FootRight};
@@ -26,7 +26,7 @@ Eigen::Vector3d forward_of(const Skeleton<WorldSpace>& body) {
 Eigen::Quaterniond segment_frame(const Eigen::Vector3d& along, const Eigen::Vector3d& forward) {
   const Eigen::Vector3d y = along.stableNormalized();
   Eigen::Vector3d x = y.cross(forward);
-  // A bone that points forward has no forward of its own; its back faces up instead.
+  // For a bone that points forward, forward is undefined; its back faces up instead.
   if (x.norm() < 0.1) x = y.cross(Eigen::Vector3d::UnitY());
   if (x.norm() < kTiny || y.norm() < kTiny) return Eigen::Quaterniond::Identity();
   Eigen::Matrix3d world_from_segment;

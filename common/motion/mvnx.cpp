@@ -14,11 +14,11 @@ namespace chorus::motion {
 namespace {
 
 constexpr std::size_t kMaxDepth = 32;
-constexpr std::size_t kMaxElementText = 1u << 20;  // a frame's positions are some 2 kB
+constexpr std::size_t kMaxElementText = 1u << 20;  // a frame's positions take about 2 kB
 constexpr std::size_t kMaxPointsPerSegment = 256;
 constexpr double kMaxRateHz = 1e4;
 
-/// Numbers of one element, in groups of `width`; none when one is no number or some are over.
+/// Numbers of one element, in groups of `width`; none if a group is incomplete or one is no number.
 std::optional<std::vector<double>> numbers_in(std::string_view text, std::size_t width) {
   constexpr std::string_view kBlanks = " \t\r\n";
   std::vector<double> numbers;
@@ -63,10 +63,10 @@ class MvnxReader {
   std::string origin_;
   std::unique_ptr<XML_ParserStruct, void (*)(XML_Parser)> parser_;
   Mvnx mvnx_;
-  std::vector<std::string> path_;  ///< Open elements.
-  std::string text_;               ///< Of the innermost element.
+  std::vector<std::string> path_;  ///< Names of the open elements.
+  std::string text_;               ///< Text of the innermost element.
   MvnxFrame frame_;
-  bool in_frame_ = false;  ///< One that counts.
+  bool in_frame_ = false;  ///< In a frame that is kept.
   std::optional<Error> wrong_;
 };
 

@@ -1,8 +1,8 @@
 // MVNX: the XML of Xsens MVN Studio, versions 3 and 4 (Xsens MVN User Manual, "MVNX").
 //
-// One subject of named segments with points on them, then frames: position and orientation of every
-// segment in a right-handed space with +x ahead, +y left, +z up; metres; quaternions w x y z.  In
-// the T-pose all segments have the axes of that space.
+// One subject with named segments and points on them, then frames: position and orientation of
+// every segment in a right-handed space with +x ahead, +y left, +z up; metres; quaternions w x y z.
+// In the T-pose all segments have the axes of that space.
 #pragma once
 
 #include <string>
@@ -28,9 +28,9 @@ struct MvnxSegment {
 
 struct MvnxFrame {
   double time = 0.0;                             ///< Since the first frame [s].
-  std::vector<Eigen::Vector3d> positions;        ///< Of the segments' origins [m].
+  std::vector<Eigen::Vector3d> positions;        ///< Origins of the segments [m].
   std::vector<Eigen::Quaterniond> orientations;  ///< world_from_segment, in the file's world.
-  std::vector<Eigen::Quaterniond> sensor_orientations;  ///< One a sensor, where the file has them.
+  std::vector<Eigen::Quaterniond> sensor_orientations;  ///< One per sensor, if the file has them.
 };
 
 struct Mvnx {
@@ -38,19 +38,19 @@ struct Mvnx {
   double rate_hz = 0.0;
   std::vector<MvnxSegment> segments;
   std::vector<std::string> sensors;
-  std::vector<MvnxFrame> frames;  ///< type="normal" only: calibration poses are left out.
+  std::vector<MvnxFrame> frames;  ///< Only type="normal"; calibration poses are left out.
 };
 
 /// Larger files are refused.
 inline constexpr std::size_t kMaxMvnxBytes = 512u << 20;
 
 /// Refuses entity declarations, elements nested deeper than 32, frames whose numbers do not match
-/// the segments, and text that is not a number.  Unknown elements are skipped.
+/// the segments, and text that is not a number.  Skips unknown elements.
 [[nodiscard]] Result<Mvnx> parse_mvnx(std::string_view xml, std::string_view origin);
 
-/// Which point of which segment is which joint is a table in mvnx_joints.cpp; segments' rotations
-/// become joint orientations, twist included.  A joint whose segment or point the file lacks is not
-/// tracked; a file without Pelvis is refused.
+/// mvnx_joints.cpp has the table of which point of which segment is which joint; the segments'
+/// rotations become joint orientations, twist included.  A joint whose segment or point is missing
+/// is not tracked; a file without Pelvis is refused.
 [[nodiscard]] Result<Motion> motion_from_mvnx(const Mvnx& mvnx);
 
 }  // namespace chorus::motion

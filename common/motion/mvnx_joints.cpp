@@ -1,4 +1,4 @@
-// Which points of an Xsens suit's segments make a Kinect v2 joint: one table.
+// The table of which points of an Xsens suit's segments make a Kinect v2 joint.
 #include <algorithm>
 #include <optional>
 
@@ -7,19 +7,19 @@
 namespace chorus::motion {
 namespace {
 
-/// Where in its segment (x ahead, y left, z up in the T-pose) a bone points.
+/// The direction of a bone in its segment's axes (x ahead, y left, z up in the T-pose).
 enum class Along { None, Up, Down, Left, Right };
 
 struct SegmentRow {
   JointId joint;
   std::string_view segment;
-  std::string_view point;     ///< Of the segment; "": its origin.
-  double share;               ///< How far from the origin to the point the joint lies.
-  std::string_view oriented;  ///< The segment of the bone that ends here; "": no orientation.
+  std::string_view point;     ///< A point of the segment; "": its origin.
+  double share;               ///< Place of the joint, 0: the origin, 1: the point.
+  std::string_view oriented;  ///< Segment of the bone that ends here; "": no orientation.
   Along along;
 };
 
-// Kinect v2 places: Head in its middle, Hand in the palm, SpineShoulder at the base of the neck.
+// Places as with Kinect v2: Head in its middle, Hand in the palm, SpineShoulder at the neck's base.
 // clang-format off
 constexpr SegmentRow kSegmentRows[] = {
     {JointId::SpineBase,     "Pelvis",        "", 0, "Pelvis", Along::Up},
@@ -48,14 +48,14 @@ constexpr SegmentRow kSegmentRows[] = {
 };
 // clang-format on
 
-/// x ahead, y left, z up into ours: the person faces +z, has the left at +x, +y is up.
+/// Turns x ahead, y left, z up into ours: the person faces +z, left is +x, up is +y.
 Eigen::Quaterniond world_from_xsens() {
   Eigen::Matrix3d turn;
   turn << 0, 1, 0, 0, 0, 1, 1, 0, 0;
   return Eigen::Quaterniond(turn);
 }
 
-/// Our joint axes in the segment's: +y along the bone, +z ahead.
+/// Our joint axes in those of the segment: +y along the bone, +z ahead.
 Eigen::Quaterniond segment_from_joint(Along along) {
   Eigen::Vector3d y = Eigen::Vector3d::UnitZ();
   if (along == Along::Down) y = -Eigen::Vector3d::UnitZ();

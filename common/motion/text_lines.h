@@ -1,4 +1,4 @@
-// Lines of a motion file as words, with the line number for messages.
+// Lines of a motion file, split into words, with the line number for messages.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace chorus::motion {
 
-/// Limits against hostile files; no motion file that we read comes near them.
+/// Limits against hostile files; real motion files are far below them.
 inline constexpr std::size_t kMaxTextBytes = 64u << 20;
 inline constexpr std::size_t kMaxSegments = 512;
 inline constexpr std::size_t kMaxFrames = 200'000;
@@ -26,16 +26,16 @@ class TextLines {
   bool next();
 
   [[nodiscard]] const std::vector<std::string_view>& words() const noexcept { return words_; }
-  /// Word i, or "" when the line is shorter.
+  /// Word i, or "" if the line is shorter.
   [[nodiscard]] std::string_view word(std::size_t i) const {
     return i < words_.size() ? words_[i] : std::string_view();
   }
   [[nodiscard]] std::size_t number() const noexcept { return number_; }
 
-  /// `count` finite numbers from word `first` on.
+  /// Reads `count` finite numbers from word `first` on.
   [[nodiscard]] Result<std::vector<double>> numbers(std::size_t first, std::size_t count) const;
 
-  /// A Malformed error at this line: "02_01.amc:17".
+  /// A Malformed error for this line: "02_01.amc:17".
   [[nodiscard]] tl::unexpected<Error> wrong(std::string message) const;
   [[nodiscard]] tl::unexpected<Error> too_large(std::string message) const;
 
@@ -46,7 +46,7 @@ class TextLines {
   std::vector<std::string_view> words_;
 };
 
-/// One finite decimal number; false for anything else.
+/// Reads one finite decimal number; false for anything else.
 [[nodiscard]] bool read_finite(std::string_view word, double& out);
 
 }  // namespace chorus::motion

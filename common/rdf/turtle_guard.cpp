@@ -13,7 +13,7 @@ constexpr auto kNotInIri = [] {
   return never;
 }();
 
-/// One pass over the text; every skip_ function starts behind the opening character.
+/// One pass over the text; every skip_ function starts after the opening character.
 class Scan {
  public:
   Scan(std::string_view text, const Limits& limits) : text_(text), limits_(limits) {}
@@ -100,8 +100,8 @@ class Scan {
         return {};
       }
       const char c = text_[at_++];
-      // Serd 0.30 takes the backslash in '"\n' for a character, and so another quote for the
-      // closing one.
+      // For '"\n' Serd 0.30 takes the backslash as a character of its own, and so another quote as
+      // the closing one.
       if (c == quote && at_ < text_.size() && text_[at_] == '\\') {
         return refuse(
             "a quote directly before an escape in a long string is not read; escape the quote");

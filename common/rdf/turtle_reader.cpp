@@ -33,7 +33,7 @@ Env make_env(const std::string& base) {
   return Env(serd_env_new(&node));
 }
 
-/// Turns Serd's events into triples.  Expanded names live in one buffer per position of the triple.
+/// Turns Serd's events into triples.  Expanded names live in one buffer for each place in a triple.
 class Events {
  public:
   Events(const ReadOptions& options, const TripleSink& sink)
@@ -49,13 +49,13 @@ class Events {
     return serd_env_set_prefix(static_cast<Events*>(self)->env_.get(), name, uri);
   }
 
-  // The parameter list is Serd's.
+  // Serd prescribes the parameter list.
   static SerdStatus on_triple(void* self, SerdStatementFlags, const SerdNode*, const SerdNode* s,
                               const SerdNode* p, const SerdNode* o, const SerdNode* datatype,
                               const SerdNode* language) {
     auto& events = *static_cast<Events*>(self);
     if (events.stopped_ || events.failed())
-      return SERD_ERR_UNKNOWN;  // Serd ends a list before it stops
+      return SERD_ERR_UNKNOWN;  // Serd closes its lists before it stops
     TripleView triple;
     if (!events.expand(s, 0, triple.subject) || !events.expand(p, 1, triple.predicate) ||
         !events.expand(o, 2, triple.object)) {
@@ -74,7 +74,7 @@ class Events {
     return SERD_ERR_UNKNOWN;  // SERD_FAILURE would not stop it
   }
 
-  /// Keeps only the first error: the others are consequences.
+  /// Keeps only the first error, because the others follow from it.
   static SerdStatus on_error(void* self, const SerdError* error) {
     auto& events = *static_cast<Events*>(self);
     if (events.message_.empty()) {
@@ -154,12 +154,12 @@ Reader make_reader(const ReadOptions& options, Events& events) {
   Reader reader(serd_reader_new(options.syntax == Syntax::Turtle ? SERD_TURTLE : SERD_NTRIPLES,
                                 &events, nullptr, Events::on_base, Events::on_prefix,
                                 Events::on_triple, nullptr));
-  serd_reader_set_strict(reader.get(), true);  // lax mode would resume after an error
+  serd_reader_set_strict(reader.get(), true);  // lax mode would go on after an error
   serd_reader_set_error_sink(reader.get(), Events::on_error, &events);
   return reader;
 }
 
-/// Hands the text out byte by byte and counts its lines.
+/// Supplies the text byte by byte and counts its lines.
 struct CountedText {
   std::string_view text;
   std::size_t at = 0;
@@ -176,7 +176,7 @@ struct CountedText {
   static int failed(void*) { return 0; }
 };
 
-/// Serd does not say where a statement with an undeclared prefix stood: reads again, counting
+/// Serd does not say on which line an undeclared prefix stood, so this reads again and counts the
 /// lines.
 unsigned line_of_failure(std::string_view text, const ReadOptions& options) {
   const TripleSink ignore = [](const TripleView&) { return true; };
@@ -193,7 +193,7 @@ unsigned line_of_failure(std::string_view text, const ReadOptions& options) {
 Result<void> read_triples(std::string_view text, const ReadOptions& options,
                           const TripleSink& sink) {
   if (auto ok = check_bytes(text, options.limits); !ok) return ok;
-  // Serd 0.30 reads past the end of an empty string, but not past one that ends with a line.
+  // Serd 0.30 reads past the end of an empty string, but not of one that ends with a line feed.
   const std::string terminated = std::string(text) + '\n';
   Events events(options, sink);
   const Reader reader = make_reader(options, events);

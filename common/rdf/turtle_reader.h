@@ -1,5 +1,5 @@
-// Turtle and N-Triples as a stream of triples.  RAII over Serd, strict, guarded; no Serd type
-// escapes.
+// Turtle and N-Triples as a stream of triples.  RAII around Serd: strict, guarded, and without
+// Serd's types in the interface.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@
 
 namespace chorus::rdf {
 
-/// A Term that lives as long as the call it was handed to.
+/// A Term that is valid only during the call that receives it.
 struct TermView {
   TermKind kind = TermKind::Iri;
   std::string_view value;
@@ -28,15 +28,15 @@ struct TripleView {
 
 struct ReadOptions {
   Syntax syntax = Syntax::Turtle;
-  /// Absolute IRI that relative ones are resolved against; empty: left as they are.
+  /// Absolute IRI against which relative ones are resolved; empty: they stay unchanged.
   std::string base = {};
   Limits limits = {};
 };
 
-/// Takes one triple; false stops the reading early, which is not an error.
+/// Receives one triple; false stops the reading early, which is not an error.
 using TripleSink = std::function<bool(const TripleView&)>;
 
-/// Feeds every triple in document order.  An error names the line; triples before it have been fed.
+/// Passes on each triple in document order, up to an error, if any; the error names the line.
 [[nodiscard]] Result<void> read_triples(std::string_view text, const ReadOptions& options,
                                         const TripleSink& sink);
 

@@ -12,8 +12,8 @@
 namespace chorus::rdf {
 namespace {
 
-/// Blank nodes nested deeper than this are written with labels, so that readers with a limit can
-/// follow.
+/// Blank nodes nested deeper than this are written with labels, because readers may limit the
+/// depth.
 constexpr int kMaxInline = 16;
 
 const std::uint8_t* bytes_of(const std::string& text) {
@@ -97,7 +97,7 @@ class Writing {
     for (const Term& subject : order_) {
       if (!inlined(subject)) describe(subject, 0, 0);
     }
-    for (const Term& subject : order_) {  // rings of blank nodes that nothing outside refers to
+    for (const Term& subject : order_) {  // rings of blank nodes that nothing else refers to
       if (!written_.contains(subject)) describe(subject, 0, 0);
     }
     serd_writer_finish(writer_.get());
@@ -153,7 +153,7 @@ class Writing {
     }
     SerdNode literal = serd_node_from_string(SERD_LITERAL, bytes_of(text));
     literal.flags =
-        0;  // no long strings: Serd's own reader misreads a quote before an escape in them
+        0;  // no long strings, because Serd's reader misreads a quote before an escape in them
     return literal;
   }
 

@@ -1,5 +1,5 @@
-// Graphs as Turtle or N-Triples, through Serd.  For documents that are rare; frames have a
-// template.
+// Writes graphs as Turtle or N-Triples, through Serd.  For rare documents; frames use a template.
+//
 #pragma once
 
 #include <cstddef>
@@ -13,25 +13,25 @@
 
 namespace chorus::rdf {
 
-using Prefix = std::pair<std::string, std::string>;  ///< Name without colon, namespace IRI.
+using Prefix = std::pair<std::string, std::string>;  ///< Name without the colon, and namespace IRI.
 
 struct WriteOptions {
   Syntax syntax = Syntax::Turtle;
   std::vector<Prefix> prefixes = {};  ///< Turtle only.
-  std::string base = {};  ///< N-Triples: relative IRIs are resolved against this absolute one.
+  std::string base = {};  ///< N-Triples only: absolute IRI to resolve relative ones.
 };
 
-/// Groups triples by subject in order of first appearance; in Turtle a blank node that is used once
-/// is written in place, as "[ ]".  Refuses what no syntax can express: a literal as subject, broken
+/// Groups triples by subject in order of first appearance; Turtle has a blank node that is used
+/// once in place, as "[ ]".  Refuses what no syntax can express: a literal as a subject, broken
 /// UTF-8, an IRI with a space.
 [[nodiscard]] Result<std::string> write_graph(const Graph& graph, const WriteOptions& options);
 
-/// A Turtle document as N-Triples, one triple at a time; relative IRIs are resolved against `base`.
+/// Turns Turtle into N-Triples, one triple at a time; resolves relative IRIs against `base`.
 [[nodiscard]] Result<std::string> turtle_to_ntriples(std::string_view turtle,
                                                      const std::string& base,
                                                      std::size_t max_bytes);
 
-/// RFC 3986 5.2: `reference` as seen from the absolute IRI `base`.
+/// Resolves `reference` against the absolute IRI `base` (RFC 3986 5.2).
 [[nodiscard]] std::string resolve_iri(const std::string& reference, const std::string& base);
 
 }  // namespace chorus::rdf

@@ -1,4 +1,4 @@
-// Text from elsewhere, made safe to write: UTF-8 or replaced.
+// Makes text from elsewhere safe to write: replaces whatever is not UTF-8.
 #pragma once
 
 #include <cstddef>
@@ -7,13 +7,13 @@
 
 namespace chorus::rdf {
 
-/// Bytes of the well-formed UTF-8 character that starts here (Unicode 15, table 3-7); 0 when none
-/// does.
+/// Number of bytes of the well-formed UTF-8 character at the beginning (Unicode 15, table 3-7); 0
+/// if there is none.
 [[nodiscard]] std::size_t utf8_length(std::string_view text);
 
 [[nodiscard]] bool is_utf8(std::string_view text);
 
-/// Every byte that belongs to no well-formed character becomes U+FFFD.
+/// Replaces every byte that belongs to no well-formed character by U+FFFD.
 [[nodiscard]] std::string clean_utf8(std::string_view text);
 
 }  // namespace chorus::rdf

@@ -11,7 +11,7 @@
 namespace chorus::record {
 namespace {
 
-constexpr std::size_t kAhead = 4096;  // record heads and message indexes, not what lies between
+constexpr std::size_t kAhead = 4096;  // for record heads and message indexes, not for their content
 
 class FileBytes final : public ByteSource {
  public:

@@ -1,4 +1,4 @@
-// Internal to the room: where the bytes of a recording are, read piece by piece.
+// Internal to the room: reads the bytes of a recording piece by piece.
 #pragma once
 
 #include <cstdint>
@@ -11,22 +11,22 @@
 
 namespace chorus::record {
 
-/// A whole recording at rest.
+/// A complete recording on disk or in memory.
 class ByteSource {
  public:
   virtual ~ByteSource() = default;
 
   [[nodiscard]] virtual std::uint64_t size() const = 0;
-  /// Exactly `count` bytes from `offset` on; fewer only at the end, or where the disk fails.
+  /// Exactly `count` bytes from `offset` on; fewer only at the end, or when the disk fails.
   [[nodiscard]] virtual std::string read(std::uint64_t offset, std::size_t count) const = 0;
 };
 
-/// NotFound and Io name the file.
+/// The errors NotFound and Io name the file.
 [[nodiscard]] Result<std::unique_ptr<ByteSource>> open_bytes(const std::filesystem::path& path);
-/// `bytes` must outlive it.
+/// `bytes` must outlive the source.
 [[nodiscard]] std::unique_ptr<ByteSource> bytes_in_memory(std::string_view bytes);
 
-/// Reads forward in small steps without a call to the system for each.
+/// Reads forward in small steps, without a system call for each of them.
 class ByteWalk {
  public:
   ByteWalk(const ByteSource& source, std::uint64_t offset) : source_(source), at_(offset) {}
@@ -34,7 +34,7 @@ class ByteWalk {
   [[nodiscard]] std::uint64_t at() const { return at_; }
   [[nodiscard]] std::uint64_t left() const { return source_.size() - at_; }
   void skip(std::uint64_t count) { at_ += count; }
-  /// The next bytes, without taking them; shorter at the end.  Valid until the next call.
+  /// The next bytes, without consuming them; fewer at the end.  Valid until the next call.
   [[nodiscard]] std::string_view peek(std::size_t count);
 
  private:

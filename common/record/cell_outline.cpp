@@ -14,12 +14,12 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kRegistrationTopic = "/registration";
 
-/// What a file says of itself.
+/// What a file says about itself.
 struct FileHead {
   std::string recording;
   std::string part;
   FrameRecording description;
-  std::set<SensorId> cell;  ///< Its raw streams.
+  std::set<SensorId> cell;  ///< Its raw streams, if it is of a cell.
 };
 
 FileHead head_of(const RecordingStream& stream) {
@@ -51,7 +51,7 @@ void add_file(CellLine& line, const fs::path& file, const FileHead& head,
   if (!alone.str().empty()) line.sensors.insert(alone);
 }
 
-/// A frame's capture time by the recorder's clock.
+/// The capture time of a frame by the recorder's clock.
 Result<Timestamp> captured(const Message& message, const std::optional<Message>& clock,
                            const fs::path& file) {
   const auto frame = resource::read_frame(message.data, resource::Format::Json);
@@ -64,7 +64,7 @@ Result<Timestamp> captured(const Message& message, const std::optional<Message>&
   return t;
 }
 
-/// Extends the time spans of a file's sensors.
+/// Extends the time spans of the sensors in a file.
 class Stays {
  public:
   Result<void> add(const CellLine& line, std::size_t number) {
@@ -102,13 +102,13 @@ class Stays {
   };
   struct Where {
     const FrameRecording& about;
-    std::string prefix;  ///< Of its topics.
+    std::string prefix;  ///< The beginning of its topics.
     const fs::path& file;
     std::size_t line;
     bool cell;
   };
 
-  /// From a file with one stream: what its metadata says, else what its frames say.
+  /// For a file with one stream: the sensor in its metadata, else the one in its frames.
   static Result<SensorId> sensor_of(RecordingStream& stream, const FileHead& head,
                                     const fs::path& file) {
     if (!head.description.sensor.str().empty()) return head.description.sensor;

@@ -1,4 +1,4 @@
-// What recordings hold, found without reading them through: which sensors, when, and where.
+// Which sensors recordings hold, when, and in which files; found without reading them completely.
 #pragma once
 
 #include <filesystem>
@@ -12,12 +12,12 @@
 
 namespace chorus::record {
 
-/// Files that follow each other as one recording.
+/// Files that follow one another as one recording.
 struct CellLine {
-  std::string recording;  ///< The run they are parts of; empty for a file that stands alone.
-  std::vector<std::filesystem::path> files;  ///< In the order they were written.
-  std::set<SensorId> sensors;                ///< As far as the files name them.
-  bool cell = false;                         ///< Of several sensors, with their clocks.
+  std::string recording;  ///< The run that they belong to; empty for a separate file.
+  std::vector<std::filesystem::path> files;  ///< In the order in which they were written.
+  std::set<SensorId> sensors;                ///< Those that the files name.
+  bool cell = false;                         ///< It has several sensors, with their clocks.
   std::vector<std::string> damage;  ///< Damage that shows without unpacking, "FILE: what and why".
 };
 
@@ -26,23 +26,23 @@ struct CellLine {
 [[nodiscard]] Result<std::vector<CellLine>> cell_lines(
     const std::vector<std::filesystem::path>& files);
 
-/// The newest registration, as JSON; nothing when none was recorded.
+/// The newest registration, as JSON; none when none was recorded.
 [[nodiscard]] Result<std::optional<std::string>> last_registration(
     const std::vector<CellLine>& lines);
 
-/// One sensor's stay in a recording.
+/// One sensor's time in a recording.
 struct SensorStay {
   FrameRecording about;  ///< Without its frames.
   std::vector<std::filesystem::path> files;
-  Timestamp first;  ///< Captured, by the recorder's clock.
+  Timestamp first;  ///< First capture time, by the recorder's clock.
   Timestamp last;
-  /// As many as the files state, including those left out; nothing when they do not say.
+  /// The number that the files state, frames left out included; none when they do not state it.
   std::optional<std::uint64_t> frames;
-  bool cell = false;  ///< Recorded together with others, whether or not those are here.
+  bool cell = false;  ///< Recorded together with other sensors, even if those are missing here.
 };
 
-/// For every sensor that delivered a frame, in id order; unpacks only the first and the last
-/// chunks.  Conflict when two lines hold frames of one sensor.
+/// One for each sensor with frames, ordered by id; unpacks only the first and last chunks.
+/// Conflict when two lines hold frames of one sensor.
 [[nodiscard]] Result<std::vector<SensorStay>> sensor_stays(const std::vector<CellLine>& lines);
 
 }  // namespace chorus::record

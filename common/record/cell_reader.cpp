@@ -9,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The items of a cell in memory, as long as they stay below a limit.
+/// Collects the items of a cell in memory, up to a limit.
 class Collected {
  public:
   explicit Collected(std::uintmax_t most) : most_(most) {}

@@ -1,5 +1,5 @@
-// A recording of a cell, read back: every sensor's raw frames by the recorder's clock, the places
-// of the sensors, and what was fused (cell_writer.h).
+// Reads a recording of a cell: every sensor's raw frames by the recorder's clock, the places of the
+// sensors, and the fused frames (cell_writer.h).
 #pragma once
 
 #include <filesystem>
@@ -15,38 +15,38 @@
 namespace chorus::record {
 
 struct CellRecording {
-  /// In id order.  The recorded clock models are applied to capture times, so that the streams fit
-  /// together; a recording of one sensor has one entry.
+  /// Ordered by id.  The recorded clock models have been applied to the capture times, so the
+  /// streams fit together; a recording of one sensor has one entry.
   std::vector<FrameRecording> sensors;
-  /// Where the files of each sensor are.
+  /// The files of each sensor.
   std::map<SensorId, std::vector<std::filesystem::path>> files;
-  std::set<SensorId> cell;  ///< All raw streams of a cell, also those not asked for.
+  std::set<SensorId> cell;  ///< All raw streams of a cell, including those not read.
   /// Every registration of the recording as JSON, oldest first.
   std::vector<std::string> registrations;
-  std::vector<resource::FrameResource> fused;  ///< Only when asked for.
-  std::vector<std::string> damage;             ///< Lost parts, "FILE: what and why".
+  std::vector<resource::FrameResource> fused;  ///< Only on request.
+  std::vector<std::string> damage;             ///< Lost parts, as "FILE: what and why".
 };
 
 struct CellQuery {
   ReadLimits limits = {};
-  SensorId only = {};  ///< Of the raw streams of a cell, read this one; empty: all.
+  SensorId only = {};  ///< Of a cell's raw streams, read only this one; empty: all.
   bool fused = false;  ///< Also read the fused frames.
-  /// Strict: frames that repeat a time or go back are Malformed.  Otherwise they are left out and
-  /// noted, as a fusion server does.
+  /// Strict: a frame that repeats a time or goes back in time is Malformed.  Otherwise such frames
+  /// are left out and noted, as a fusion server does.
   bool strict = false;
-  bool raw = true;  ///< False: of a cell, nothing but the fused frames.
+  bool raw = true;  ///< False: read only the fused frames of a cell.
 };
 
-/// `path`: one file, or a folder with all the files in it, read in the order they were written.
+/// `path`: one file, or a folder, all of whose files are read in the order they were written.
 [[nodiscard]] Result<CellRecording> read_cell(const std::filesystem::path& path,
                                               const CellQuery& query = {});
 /// Several files as one, in any order: those of one recording are read in order of time; files of
-/// different recordings must be of different sensors, and only one recording may hold fused frames
-/// if those are asked for (Conflict).
+/// different recordings must be of different sensors, and if fused frames are read, only one
+/// recording may hold some (Conflict).
 [[nodiscard]] Result<CellRecording> read_cell(const std::vector<std::filesystem::path>& files,
                                               const CellQuery& query = {});
 
-/// The same from a file that has been read already; `name` is for messages.
+/// The same from a file that has already been read; `name` is for messages.
 [[nodiscard]] Result<CellRecording> cell_of(const Recording& recording,
                                             const std::filesystem::path& name,
                                             const CellQuery& query = {});

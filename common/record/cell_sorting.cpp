@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Fused frames are recognised by their space; the documents we write state it at the beginning.
+/// Recognises fused frames by their space, which our own documents state at the beginning.
 bool says_world_space(std::string_view json) {
   constexpr std::size_t kHead = 512;
   constexpr std::string_view kWorld = "\"WorldSpace\"";
@@ -82,9 +82,9 @@ void Sorting::begin_file(const fs::path& file, const std::vector<Channel>& chann
   source_.part = said("part");
 }
 
-/// False: this file belongs to another recording, or is the same part again.
+/// False when this file belongs to another recording, or repeats a part.
 bool Sorting::begins_or_follows(Line& line) const {
-  if (line.newest == files_) return true;  // a file named twice is two files
+  if (line.newest == files_) return true;  // this very file; a file named twice counts as two
   if (line.files.empty()) line.recording = source_.recording;
   const bool follows = !line.recording.empty() && line.recording == source_.recording &&
                        (source_.part.empty() || !line.parts.contains(source_.part));
@@ -95,7 +95,7 @@ bool Sorting::begins_or_follows(Line& line) const {
   return true;
 }
 
-/// The stream, which this file begins or, as the next file of its recording, continues.
+/// The stream that this file begins or, as the next file of its recording, continues.
 Result<Sorting::Stream*> Sorting::stream_of(const SensorId& sensor) {
   const auto [found, fresh] = streams_.try_emplace(sensor);
   Stream& stream = found->second;
@@ -129,7 +129,7 @@ Sorting::Item Sorting::kept(Stream& stream, SensorFrame frame) const {
     ++stream.kept;
     return SessionItem(std::move(frame));
   }
-  if (!query_.strict || stream.shift) {  // a clock that was corrected may step back
+  if (!query_.strict || stream.shift) {  // a corrected clock may step back
     ++stream.left_out;
     stream.newest_out = std::max(stream.newest_out.value_or(frame.captured), frame.captured);
     return std::nullopt;
@@ -171,7 +171,7 @@ Sorting::Item Sorting::take_frame(const MessageView& message, const Topic& topic
   return kept(**stream, resource::to_sensor_frame(*frame, sensor, message.log_time));
 }
 
-/// What applies to the frames after it.
+/// Takes a message that applies to the frames after it.
 Result<void> Sorting::take_state(const MessageView& message, const Topic& topic) {
   const auto stream = stream_of(topic.sensor ? *topic.sensor : source_.description.sensor);
   if (!stream) return pass(stream);
@@ -212,7 +212,7 @@ Result<void> Sorting::end_file(const std::vector<Channel>& channels,
   return {};
 }
 
-/// A file without a usable frame is not accepted as a continuation.
+/// Refuses a continuation that has no usable frame.
 Result<void> Sorting::check_order(const Stream& stream) const {
   const bool unused = stream.line.newest == files_ && stream.line.files.size() > 1 &&
                       stream.kept == stream.kept_before && stream.newest_out;
@@ -224,7 +224,7 @@ Result<void> Sorting::check_order(const Stream& stream) const {
 }
 
 CellRecording Sorting::finish() {
-  // A recording of one sensor that saw nothing.
+  // A recording of one sensor that saw nobody.
   if (streams_.empty() && frames_ == 0 && out_.cell.empty()) {
     streams_[source_.description.sensor].recording = source_.description;
   }

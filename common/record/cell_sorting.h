@@ -1,4 +1,4 @@
-// Internal to the room: messages of a recording in, frames out, each in its own stream and in
+// Internal to the room: turns the messages of a recording into frames, sorted by stream and in
 // order.
 #pragma once
 
@@ -25,10 +25,10 @@ struct Topic {
 };
 [[nodiscard]] std::optional<Topic> topic_of(std::string_view text);
 
-/// What a clock model adds to capture times.
+/// The time that a clock model adds to capture times.
 [[nodiscard]] Result<Duration> read_shift(std::string_view text);
 
-/// False, with `t` unchanged, when the sum is outside the times we can represent.
+/// False, with `t` unchanged, when the sum is beyond the times that we can represent.
 [[nodiscard]] bool moved(Timestamp& t, const std::optional<Duration>& by);
 
 class Sorting {
@@ -40,10 +40,10 @@ class Sorting {
   void begin_file(const std::filesystem::path& file, const std::vector<Channel>& channels,
                   const Metadata& metadata);
   [[nodiscard]] Result<std::optional<SessionItem>> take(const MessageView& message);
-  /// `notes`: what reading it left out.
+  /// `notes`: what reading the file left out.
   [[nodiscard]] Result<void> end_file(const std::vector<Channel>& channels,
                                       const std::vector<std::string>& notes);
-  /// All but the items.
+  /// Everything except the items.
   [[nodiscard]] CellRecording finish();
 
  private:
@@ -52,28 +52,28 @@ class Sorting {
   /// The file being read.
   struct Source {
     std::filesystem::path file;
-    std::string recording;       ///< The run it was recorded in, when that may have several files.
-    std::string part;            ///< Which of them it is.
-    FrameRecording description;  ///< What its metadata says of one sensor.
-    bool single = false;         ///< The metadata names a sensor: /frame is its own.
+    std::string recording;       ///< The run that it belongs to, if a run may have several files.
+    std::string part;            ///< Which part of the run it is.
+    FrameRecording description;  ///< What its metadata says about one sensor.
+    bool single = false;         ///< The metadata names one sensor, whose frames are on /frame.
   };
-  /// Which files may follow each other: those of one recording, each part once.
+  /// Files that may follow one another: the parts of one recording, each once.
   struct Line {
     std::string recording;
     std::set<std::string> parts;
     std::vector<std::filesystem::path> files;
-    std::size_t newest = 0;  ///< Number of the last of them.
+    std::size_t newest = 0;  ///< Number of its last file.
   };
   struct Stream {
-    FrameRecording recording;  ///< Without its frames.
+    FrameRecording recording;  ///< Without frames.
     Line line;
     std::optional<FloorPlane> floor;
-    std::optional<Duration> shift;  ///< None: the times are in our clock already.
+    std::optional<Duration> shift;  ///< None: the times are already in our clock.
     std::size_t kept = 0;
-    std::optional<Timestamp> newest;  ///< Of the frames kept.
+    std::optional<Timestamp> newest;  ///< Of the frames that were kept.
     std::size_t left_out = 0;
-    std::size_t kept_before = 0;          ///< How many frames there were when this file began.
-    std::optional<Timestamp> newest_out;  ///< Of the frames of this file that were left out.
+    std::size_t kept_before = 0;          ///< Number of frames when this file began.
+    std::optional<Timestamp> newest_out;  ///< Of the frames left out in this file.
   };
 
   void note_cell(const std::vector<Channel>& channels);
@@ -88,11 +88,11 @@ class Sorting {
 
   const CellQuery& query_;
   Source source_;
-  std::size_t files_ = 0;   ///< Read so far, this one included.
-  std::size_t frames_ = 0;  ///< Seen so far, on all topics.
+  std::size_t files_ = 0;   ///< Number of files so far, with this one.
+  std::size_t frames_ = 0;  ///< Number of frames so far, on all topics.
   std::map<SensorId, Stream> streams_;
   Line fused_;
-  std::string registration_;  ///< The newest.
+  std::string registration_;  ///< The newest one.
   CellRecording out_;
 };
 

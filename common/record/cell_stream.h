@@ -1,4 +1,4 @@
-// A recording of a cell, or of one sensor, read frame by frame (cell_writer.h).
+// Reads a recording of a cell, or of one sensor, frame by frame (cell_writer.h).
 #pragma once
 
 #include <filesystem>
@@ -15,19 +15,19 @@ namespace chorus::record {
 /// A sensor's frame by the recorder's clock, a fused frame, or a registration as JSON.
 using SessionItem = std::variant<SensorFrame, resource::FrameResource, std::string>;
 
-/// Needs the memory of a few chunks, however long the recording is.
+/// Needs memory for only a few chunks, however long the recording is.
 class CellStream {
  public:
-  /// `files`: as read_cell() takes them; each is opened when its turn comes.
+  /// `files` as for read_cell(); each is opened when it is needed.
   explicit CellStream(std::vector<std::filesystem::path> files, CellQuery query = {});
   CellStream(CellStream&&) noexcept;
   CellStream& operator=(CellStream&&) noexcept;
   ~CellStream();
 
-  /// The next item in log order; none at the end.  The errors of read_cell(), where they occur.
+  /// The next item in log order; none at the end.  Returns the errors of read_cell() as they occur.
   [[nodiscard]] Result<std::optional<SessionItem>> next();
 
-  /// After the end: what the recording holds beside the items.
+  /// To be called after the end: everything in the recording except the items.
   [[nodiscard]] CellRecording finish();
 
  private:
@@ -35,7 +35,7 @@ class CellStream {
   std::unique_ptr<Impl> impl_;
 };
 
-/// What has to be read of a recording for such a query.
+/// The part of a recording that such a query has to read.
 [[nodiscard]] ReadLimits limits_of(const CellQuery& query);
 
 }  // namespace chorus::record

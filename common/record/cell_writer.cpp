@@ -29,7 +29,7 @@ std::string_view schema_text(std::string_view name) {
   return {};
 }
 
-/// The uncertainty grows all the time, so that alone is not a change.
+/// Ignores the uncertainty, because it grows all the time.
 bool same(const ClockModel& a, const ClockModel& b) {
   return a.applied == b.applied && a.ours_minus_theirs == b.ours_minus_theirs &&
          a.uncertainty.has_value() == b.uncertainty.has_value();
@@ -72,7 +72,7 @@ Result<void> CellWriter::put(const std::string& topic, std::string_view schema,
                                          std::move(text)});
 }
 
-/// What the frame does not say itself is written before the frame.
+/// Writes whatever the frame itself does not say, before the frame.
 Result<void> CellWriter::write_state(const RawFrame& raw, const std::string& prefix,
                                      const Stamps& stamps) {
   Stream& stream = streams_[raw.sensor];

@@ -1,5 +1,5 @@
-// One recording of a whole cell: what the sensors sent, what was made of it, and all that is needed
-// to make it again.
+// One recording of a whole cell: what the sensors sent, what was fused from it, and everything that
+// is needed to fuse it again.
 //
 //   /sensors/{id}/frame        chorus.Frame       as the sensor sent it: its own space and clock
 //   /sensors/{id}/floor-plane  chorus.FloorPlane  when it changes
@@ -26,9 +26,9 @@
 
 namespace chorus::record {
 
-/// How a sensor's capture times become ours.
+/// How to turn a sensor's capture times into ours.
 struct ClockModel {
-  Duration applied{0};  ///< Added to its capture times.
+  Duration applied{0};  ///< Is added to its capture times.
   Duration ours_minus_theirs{0};
   std::optional<Duration> uncertainty;  ///< None: its clock is unknown.
 };
@@ -49,7 +49,7 @@ struct FusedFrame {
 
 struct PlacesChanged {
   Timestamp at;
-  std::string registration;  ///< JSON as GET /registration or the registration file has it.
+  std::string registration;  ///< JSON, as in GET /registration or in the registration file.
   std::vector<NamedPlace> places;
 };
 
@@ -66,7 +66,7 @@ class CellWriter {
   [[nodiscard]] Result<void> write(const RawFrame& raw);
   [[nodiscard]] Result<void> write(const FusedFrame& fused);
   [[nodiscard]] Result<void> write(const PlacesChanged& places);
-  /// Hands the open chunk to the operating system.
+  /// Passes the open chunk to the operating system.
   [[nodiscard]] Result<void> flush() { return writer_.flush(); }
   /// Waits until the disk has stored what was flushed.
   [[nodiscard]] Result<void> sync() { return writer_.sync(); }

@@ -14,29 +14,29 @@
 
 namespace chorus::record {
 
-/// Everything about one sensor's part of a recording, in capture order.
+/// One sensor's part of a recording, in capture order.
 struct FrameRecording {
   SensorId sensor;
   std::string device;  ///< "Kinect v2 (LabanotationSuite csv)", "MediaPipe Pose", ...
   std::optional<Intrinsics> intrinsics;
   std::optional<FloorPlane> floor;
-  /// Origin, licence, conversions made; "damage.1": lost parts.
+  /// Origin, licence, conversions applied; "damage.1": lost parts.
   std::map<std::string, std::string> notes;
   std::vector<SensorFrame> frames;
 };
 
-/// Replaces `path` only when the whole file has been written.  A frame without a floor plane of its
-/// own keeps the previous one (at first the recording's).
+/// Replaces `path` only after the whole file has been written.  A frame without a floor plane keeps
+/// the one before it (the first: the recording's).
 [[nodiscard]] Result<void> write_frame_recording(const std::filesystem::path& path,
                                                  const FrameRecording& recording);
 
-/// The one sensor of a recording (a file, or a folder of files); `which` selects among several.
-/// Refuses frames that go back in time or repeat a capture time, and says where.
+/// The only sensor of a recording (a file, or a folder of files); `which` selects one of several.
+/// Refuses frames that go back in time or repeat a capture time; the error says where.
 [[nodiscard]] Result<FrameRecording> read_frame_recording(const std::filesystem::path& path,
                                                           const ReadLimits& limits = {},
                                                           const SensorId& which = {});
 
-/// The metadata record "chorus" of such a recording, and back.
+/// The metadata record "chorus" of such a recording, and the way back.
 [[nodiscard]] std::map<std::string, std::string> metadata_of(const FrameRecording& recording);
 void read_metadata(const std::map<std::string, std::string>& values, FrameRecording& out);
 

@@ -1,4 +1,4 @@
-// The JSON Schemas stored in every recording, so that its messages explain themselves.
+// The JSON Schemas that are stored in every recording, so that its messages are self-describing.
 #pragma once
 
 #include <string_view>

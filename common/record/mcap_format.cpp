@@ -10,10 +10,10 @@ namespace {
 
 constexpr std::uint32_t kPolynomial = 0xEDB88320u;  // CRC-32, bits reversed
 
-constexpr std::size_t kSlices = 8;  // bytes taken in one step: four times faster than one by one
+constexpr std::size_t kSlices = 8;  // bytes per step; four times faster than single bytes
 using CrcTable = std::array<std::uint32_t, 256>;
 
-/// Row n: what a byte does to the sum when n more follow it.
+/// Row n: the effect of a byte on the CRC when n more bytes follow it.
 constexpr std::array<CrcTable, kSlices> crc_tables() {
   std::array<CrcTable, kSlices> tables{};
   for (std::uint32_t i = 0; i < tables[0].size(); ++i) {
@@ -36,7 +36,7 @@ std::uint32_t byte_at(std::string_view bytes, std::size_t i) {
   return static_cast<std::uint8_t>(bytes[i]);
 }
 
-/// Little-endian.
+/// Reads a little-endian word.
 std::uint32_t word_at(std::string_view bytes, std::size_t i) {
   static_assert(std::endian::native == std::endian::little);
   std::uint32_t word = 0;

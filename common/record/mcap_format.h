@@ -1,4 +1,4 @@
-// The bytes of MCAP version 0 (https://mcap.dev/spec): magic, opcodes, little-endian fields, CRC.
+// The byte format of MCAP version 0 (https://mcap.dev/spec): opcodes, little-endian fields, CRC.
 #pragma once
 
 #include <cstddef>
@@ -28,10 +28,10 @@ enum class Op : std::uint8_t {
   DataEnd = 0x0F,
 };
 
-/// CRC-32 (ISO 3309, as in zip); `so_far` continues an earlier one.
+/// CRC-32 (ISO 3309, as in zip); to continue a sum, pass it as `so_far`.
 [[nodiscard]] std::uint32_t crc32(std::string_view bytes, std::uint32_t so_far = 0);
 
-/// Fields of one record, appended in order.
+/// Appends the fields of one record in order.
 class ByteWriter {
  public:
   ByteWriter& u8(std::uint8_t v) { return fixed(v, 1); }
@@ -49,11 +49,11 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// Opcode, length, content.
+/// A record: opcode, length, content.
 [[nodiscard]] std::string record(Op op, std::string_view content);
 
-/// Takes fields off a byte range.  Running over the end yields zeros and empty texts and makes ok()
-/// false, so that a whole record is read first and checked once.
+/// Takes fields off a byte range.  Beyond the end it returns zeros and empty texts, and ok()
+/// becomes false: so a whole record can be read first and checked once.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : rest_(bytes) {}

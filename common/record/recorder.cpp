@@ -19,12 +19,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How long a message may wait in an open chunk when nothing follows it, and how often space, index
-/// and duration are checked.
+/// How long a message may wait in an open chunk if none follows, and how often space, index and
+/// duration are checked.
 constexpr auto kRest = std::chrono::seconds(1);
-/// Events are taken in batches: waking up for each would cost more than encoding it.
+/// Events are taken in batches: waking up for each one would cost more than encoding it.
 constexpr auto kBatch = std::chrono::milliseconds(100);
-constexpr std::size_t kEarly = 4;  // or when the queue is a quarter full
+constexpr std::size_t kEarly = 4;  // wakes up early when the queue is 1/4 full
 
 Result<void> enough_space(const fs::path& folder, std::uintmax_t wanted) {
   std::error_code error;
@@ -45,7 +45,7 @@ std::string file_name(const RecorderOptions& options, std::size_t part, Timestam
   return options.name + "-" + number + "-" + utc_name(now) + ".mcap";
 }
 
-/// "20261121T073000Z-1f0c93ab": two runs that begin in the same second differ, too.
+/// "20261121T073000Z-1f0c93ab": differs even for two runs that begin in the same second.
 std::string run_id(Timestamp now) {
   constexpr std::string_view kDigits = "0123456789abcdef";
   std::random_device random;
@@ -89,14 +89,14 @@ struct Recorder::Impl {
   [[nodiscard]] bool rotates() const { return options.file.empty(); }
 
   const RecorderOptions options;
-  // Used by the recorder's thread only:
+  // Used only by the recorder's thread:
   std::optional<CellWriter> writer;
-  std::optional<PlacesChanged> places;  ///< Each file begins with them.
+  std::optional<PlacesChanged> places;  ///< Written at the beginning of each file.
   Timestamp file_started;
   bool index_lost = false;
   std::chrono::steady_clock::time_point rested = std::chrono::steady_clock::now();
 
-  mutable std::mutex mutex;  ///< Guards what follows.
+  mutable std::mutex mutex;  ///< Guards the members below.
   std::condition_variable arrived;
   std::condition_variable ended;
   std::deque<RecordedEvent> queue;
@@ -124,7 +124,7 @@ Result<void> Recorder::Impl::begin() {
   }
   auto ok = enough_space(place, options.limits.min_free_bytes);
   if (ok) ok = next_file();
-  if (!ok && rotates()) fs::remove(options.folder, error);  // only when it is empty
+  if (!ok && rotates()) fs::remove(options.folder, error);  // removes it only if it is empty
   return ok;
 }
 
@@ -167,9 +167,9 @@ void Recorder::Impl::store_index() {
     const std::scoped_lock lock(mutex);
     now = report;
   }
-  if (now.state != RecordingState::Failed) now.reason.clear();  // what ails the index heals with it
+  if (now.state != RecordingState::Failed) now.reason.clear();  // drops an earlier index problem
   const auto stored = write_index(options.folder, now);
-  // The recording is worth more than its index, so it continues.
+  // The recording is worth more than its index, so it goes on.
   if (!stored && !index_lost) {
     log::error("the recording's index is not written; without it a restart forgets the recording",
                {{"name", options.name}, {"reason", to_string(stored.error())}});
@@ -208,7 +208,7 @@ Result<void> Recorder::Impl::write(const RecordedEvent& event) {
   return {};
 }
 
-/// Once a second: nothing stays in memory longer, the disk has it safely, and is not filled up.
+/// Once a second: limits what is only in memory, makes the disk store it, and checks free space.
 Result<void> Recorder::Impl::rest() {
   const auto now = std::chrono::steady_clock::now();
   if (now - rested < kRest) return {};
@@ -243,7 +243,7 @@ void Recorder::Impl::run() {
   finish(how);
 }
 
-/// A service learns of it here; whoever writes a single file asks for the report.
+/// Tells a service that the recording ended; with a single file, the caller asks for the report.
 void Recorder::Impl::tell_end() const {
   if (!rotates()) return;
   if (report.state == RecordingState::Failed)
@@ -293,7 +293,7 @@ bool Recorder::offer(RecordedEvent event) {
   {
     const std::scoped_lock lock(impl_->mutex);
     if (impl_->stopping) return false;
-    // A registration changes seldom, and the frames after it are meaningless without it.
+    // A registration rarely changes, and the frames after it are meaningless without it.
     if (impl_->queue.size() >= most && !std::holds_alternative<PlacesChanged>(event)) {
       ++impl_->report.dropped;
       return false;

@@ -1,8 +1,8 @@
-// Records what happens while others work: a bounded queue, a thread of its own, files that rotate.
+// Records events in the background: a bounded queue, a separate thread, files that rotate.
 //
-// offer() never waits for the disk, the encoder or the compressor.  Drop policy "drop newest": what
-// arrives while the queue is full is counted but not recorded.  A disk failure ends the recording,
-// never the service; what was written stays readable.
+// offer() never waits for the disk, the encoder or the compressor.  Drop policy "drop newest":
+// events that arrive while the queue is full are counted but not recorded.  A disk failure ends the
+// recording, never the service; what was written stays readable.
 #pragma once
 
 #include <chrono>
@@ -19,24 +19,24 @@
 namespace chorus::record {
 
 struct RecorderLimits {
-  std::uintmax_t max_file_bytes = 1ull << 30;  ///< Then the next file begins.
-  /// Likewise, unpacked: programs that read a file whole must have the memory for it.
+  std::uintmax_t max_file_bytes = 1ull << 30;  ///< The next file begins at this size,
+  /// or at this unpacked size, because some programs need the memory to read a whole file,
   std::uintmax_t max_unpacked_bytes = 2ull << 30;
-  Duration max_file_duration = std::chrono::minutes(10);  ///< Likewise.
-  /// The recording ends before less than this is free.
+  Duration max_file_duration = std::chrono::minutes(10);  ///< or after this time.
+  /// The recording ends before the free space falls below this.
   std::uintmax_t min_free_bytes = 200ull << 20;
-  std::size_t max_queue = 2048;  ///< Some seconds of ten sensors.
+  std::size_t max_queue = 2048;  ///< A few seconds of ten sensors.
 
   bool operator==(const RecorderLimits&) const = default;
 };
 
 struct RecorderOptions {
   std::string name;
-  /// Identifies this run in every file of it, so that no two runs are mixed up.  Empty: generated.
+  /// Identifies this run in all of its files, so that no two runs are mixed up.  Empty: generated.
   std::string id = {};
   /// A new folder for the files and their index.json ...
   std::filesystem::path folder = {};
-  /// ... or one file, which is not rotated and has no index.
+  /// ... or a single file, which is not rotated and has no index.
   std::filesystem::path file = {};
   CellHead head = {};
   RecorderLimits limits = {};
@@ -48,16 +48,16 @@ using RecordedEvent = std::variant<RawFrame, FusedFrame, PlacesChanged>;
 
 class Recorder {
  public:
-  /// Opens the first file; Io, Conflict (it exists) and Unavailable (too little space) say where.
+  /// Opens the first file; Io, Conflict (it exists) and Unavailable (too little space) name it.
   [[nodiscard]] static Result<std::unique_ptr<Recorder>> start(RecorderOptions options);
-  ~Recorder();  ///< Writes what is queued, closes, joins.
+  ~Recorder();  ///< Writes what is queued, closes the file, joins.
 
-  /// Any thread; false: dropped.
+  /// May be called from any thread; false: the event was dropped.
   bool offer(RecordedEvent event);
 
-  /// Accepts no more; what is queued is still written.  Does not wait.
+  /// Accepts no more events; queued ones are still written.  Does not wait.
   void ask_to_stop();
-  /// Waits until the file is closed; false when that took too long.
+  /// Waits until the file is closed; false if that takes longer than `patience`.
   bool wait(std::chrono::milliseconds patience);
 
   [[nodiscard]] RecordingReport report() const;

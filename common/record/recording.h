@@ -1,9 +1,9 @@
-// Recordings: MCAP files (chunked, zstd, indexed), JSON messages.  Append-only, readable after a
-// crash.
+// Recordings: MCAP files (chunked, zstd, indexed) with JSON messages.  Append-only, and readable
+// after a crash.
 //
 // MCAP version 0, https://mcap.dev/spec, written by hand (docs/decisions/0003-mcap-by-hand.md).
-// Bytes in, bytes out: this room knows topics and times, not skeletons.  frame_recording.h adds
-// frames.
+// Bytes in, bytes out: a recording knows topics and times, but no skeletons;
+// frame_recording.h adds frames.
 #pragma once
 
 #include <cstdint>
@@ -32,42 +32,42 @@ struct Channel {
 struct Message {
   std::string topic;
   std::uint32_t sequence = 0;
-  Timestamp log_time;      ///< When it was written down.
+  Timestamp log_time;      ///< When it was recorded.
   Timestamp publish_time;  ///< Capture time.
   std::string data;
 };
 
 struct WriterOptions {
-  std::size_t chunk_bytes = 1u << 20;  ///< A chunk is closed at this size or
-  /// after this span of log time: what a crash can lose.
+  std::size_t chunk_bytes = 1u << 20;  ///< A chunk is closed at this size, or after
+  /// this span of log time; a crash can lose no more than that.
   Duration chunk_duration = std::chrono::seconds(1);
   std::string library = "chorus";
 };
 
 class RecordingWriter {
  public:
-  /// A new file; an existing one is a Conflict, never overwritten.
+  /// Creates a new file; an existing one is a Conflict and is never overwritten.
   [[nodiscard]] static Result<RecordingWriter> create(const std::filesystem::path& path,
                                                       const WriterOptions& options = {});
   RecordingWriter(RecordingWriter&&) noexcept;
   RecordingWriter& operator=(RecordingWriter&&) noexcept;
-  ~RecordingWriter();  ///< close()s; use close() to learn of errors.
+  ~RecordingWriter();  ///< Calls close(); call it yourself to see errors.
 
   [[nodiscard]] Result<std::uint16_t> add_channel(const Channel& channel);
-  /// `message.topic` is ignored; the channel has the topic.  After an IO error every call repeats
-  /// it.
+  /// `message.topic` is ignored, because the channel has the topic.  After an IO error every call
+  /// returns the same error.
   [[nodiscard]] Result<void> write(std::uint16_t channel, const Message& message);
   /// A named set of strings about the whole recording ("chorus": sensor id, device, intrinsics).
   [[nodiscard]] Result<void> write_metadata(const std::string& name,
                                             const std::map<std::string, std::string>& values);
-  /// Closes the open chunk and hands it to the operating system, for whoever falls silent.
+  /// Closes the open chunk and passes it to the operating system; for writers that may fall silent.
   [[nodiscard]] Result<void> flush();
   /// Waits until the disk has stored what was flushed, so that it survives a power cut, not only a
   /// crash.
   [[nodiscard]] Result<void> sync();
-  /// In the file, without the open chunk.
+  /// Bytes in the file, without the open chunk.
   [[nodiscard]] std::uint64_t bytes() const;
-  /// Unpacked size of its closed chunks.
+  /// Unpacked size of the closed chunks.
   [[nodiscard]] std::uint64_t unpacked_bytes() const;
   /// Writes the last chunk, the summary and the footer, and waits for the disk.
   [[nodiscard]] Result<void> close();
@@ -80,7 +80,7 @@ class RecordingWriter {
 
 inline constexpr std::size_t kMaxNotes = 20;
 
-/// A whole recording, read.  A file cut off by a crash is read up to its last complete chunk; a
+/// A whole recording in memory.  A file cut off by a crash is read up to its last complete chunk; a
 /// damaged chunk is left out as a whole and named in the notes; records of unknown kinds are
 /// skipped.
 struct Recording {
@@ -94,7 +94,7 @@ struct Recording {
 struct ReadLimits {
   std::uintmax_t max_file_bytes = 4ull << 30;
   std::size_t max_chunk_bytes = 64u << 20;  ///< Uncompressed; zip bombs are refused.
-  /// Memory of all it holds; beyond it the file is refused.
+  /// Limit for the memory of all that is read; a larger file is refused.
   std::uintmax_t max_total_bytes = 4ull << 30;
   /// Only messages of these topics are read; empty: all.
   std::function<bool(std::string_view topic)> wanted = {};

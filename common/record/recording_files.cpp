@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 using mcap::Op;
 
-/// Takes `count` bytes off the file; shorter at its end.
+/// Reads `count` bytes from the file; fewer at its end.
 std::string taken(std::istream& in, std::size_t count) {
   std::string bytes(count, '\0');
   in.read(bytes.data(), static_cast<std::streamsize>(count));
@@ -26,7 +26,7 @@ std::string taken(std::istream& in, std::size_t count) {
   return bytes;
 }
 
-/// The time at the beginning of the first chunk, or of the first message outside of one.
+/// The log time at which the first chunk, or the first message outside a chunk, begins.
 std::optional<std::uint64_t> first_log_time(const fs::path& file) {
   constexpr std::size_t kBeforeTimeOfMessage = 2 + 4;  // channel and sequence
   constexpr std::size_t kTime = 8;

@@ -1,4 +1,4 @@
-// The files of a recording: which they are, and in which order they were written.
+// Finds the files of a recording, and the order in which they were written.
 #pragma once
 
 #include <filesystem>
@@ -8,11 +8,11 @@
 
 namespace chorus::record {
 
-/// The file itself, or the .mcap files of a folder in order of their names.
+/// The file itself, or the .mcap files of a folder, ordered by name.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> recording_files(
     const std::filesystem::path& path);
 
-/// By the log time of their first message, whatever their names; those without messages come first.
+/// Orders files by the log time of their first message; those without messages come first.
 [[nodiscard]] std::vector<std::filesystem::path> in_log_order(
     std::vector<std::filesystem::path> files);
 

@@ -41,7 +41,7 @@ RecordingState state_named(std::string_view name) {
   return found != kStateNames.end() && ended ? state : RecordingState::Interrupted;
 }
 
-/// The files that are there, whatever the index says: it is written before the last ones grew.
+/// Adds the files on disk, because the index was written before the last of them grew.
 void add_files(const fs::path& folder, const nlohmann::json& json, RecordingReport& report) {
   const auto files = json.find("files");
   if (files == json.end() || !files->is_array()) return;

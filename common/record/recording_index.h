@@ -1,4 +1,4 @@
-// What a recording consists of: kept in memory while it is written, and beside its files as
+// What a recording consists of: kept in memory while it is being written, and next to its files as
 // index.json.
 #pragma once
 
@@ -18,7 +18,7 @@ enum class RecordingState {
   Recording,
   Stopping,  ///< Asked to stop; the last chunk is being written.
   Finished,
-  Failed,       ///< Ended by itself; the reason says why.  The files are readable.
+  Failed,       ///< Ended because of `reason`.  The files are readable.
   Interrupted,  ///< Its process died.  The files are readable up to their last chunk.
 };
 [[nodiscard]] std::string_view name_of(RecordingState state) noexcept;
@@ -44,16 +44,16 @@ struct RecordingReport {
 
 inline constexpr std::string_view kIndexFile = "index.json";
 
-/// 1-64 characters of A-Z a-z 0-9 _ -: safe as folder and in a path.
+/// 1-64 characters of A-Z a-z 0-9 _ -: safe as a folder name and in a path.
 [[nodiscard]] bool is_recording_name(std::string_view name);
 
-/// "20261121T073000Z": UTC to the second, a recording name.
+/// "20261121T073000Z": UTC to the second; valid as a recording name.
 [[nodiscard]] std::string utc_name(Timestamp t);
 
 /// Replaces index.json atomically.
 [[nodiscard]] Result<void> write_index(const std::filesystem::path& folder,
                                        const RecordingReport& report);
-/// A recording that the index calls running is Interrupted.  Sizes are those of the files.
+/// A recording that the index calls running is Interrupted.  Sizes are taken from the files.
 [[nodiscard]] Result<RecordingReport> read_index(const std::filesystem::path& folder);
 
 }  // namespace chorus::record

@@ -1,4 +1,4 @@
-// A whole recording at once: what the stream gives, collected.
+// Reads a whole recording at once: collects everything from the stream.
 #include <algorithm>
 #include <utility>
 
@@ -23,7 +23,7 @@ Result<Recording> collect(RecordingStream stream, const ReadLimits& limits) {
     if (bytes > limits.max_total_bytes) return tl::unexpected<Error>(over_total(limits));
     out.messages.push_back((*message)->copy());
   }
-  // Chunks may lie about when they begin.
+  // Chunks may state a wrong first time.
   std::ranges::stable_sort(out.messages, {}, &Message::log_time);
   out.channels = stream.channels();
   out.metadata = stream.metadata();

@@ -10,7 +10,7 @@ namespace {
 
 using mcap::ByteReader;
 
-/// JSON of people packs to a tenth, of empty rooms to a fiftieth; a thousandth is an attack.
+/// JSON of people packs to a tenth, of empty rooms to a fiftieth; a thousandth must be an attack.
 constexpr std::uint64_t kTightest = 1000;
 constexpr std::uint64_t kSmallAnyway = 1U << 16;
 
@@ -29,7 +29,7 @@ std::uintmax_t size_of(const Channel& channel) {
   return sum;
 }
 
-/// Writers repeat their definitions in every chunk; only new ones take memory.
+/// Writers repeat their definitions in each chunk; only new ones are stored.
 template <class Definition>
 void define(std::map<std::uint16_t, Definition>& known, std::uint16_t id, Definition definition,
             Definitions& into) {
@@ -108,7 +108,7 @@ std::string read_channel(std::string_view content, const ReadLimits& limits, Def
   const std::uint16_t schema = fields.u16();
   Channel channel;
   channel.topic = fields.text();
-  (void)fields.text();  // the encoding: the reader of the topic knows what it expects
+  (void)fields.text();  // the encoding; whoever reads the topic knows it
   channel.metadata = fields.strings();
   if (!fields.ok()) return "a channel record is cut short";
   if (limits.wanted && !limits.wanted(channel.topic)) into.skipped.insert(id);
@@ -145,7 +145,7 @@ std::string read_message(std::string_view content, const Definitions& known,
 
 Result<std::string> unpack_chunk(std::string_view content, const ReadLimits& limits) {
   ByteReader fields(content);
-  (void)fields.u64();  // first and last log time: the messages say it themselves
+  (void)fields.u64();  // first and last log time, which the messages state themselves
   (void)fields.u64();
   ChunkHead head;
   head.size = fields.u64();

@@ -1,6 +1,6 @@
-// Internal to the room: reads single records of a recording, trusting nothing.
+// Internal to the room: reads single records of a recording and trusts none of them.
 //
-// The readers return "" or what is wrong with the record.
+// The readers return "", or what is wrong with the record.
 #pragma once
 
 #include <cstdint>
@@ -22,12 +22,12 @@ struct Schema {
   bool operator==(const Schema&) const = default;
 };
 
-/// What is known of the channels at some point of the file.
+/// The channels and schemas known at some point of the file.
 struct Definitions {
   std::map<std::uint16_t, Schema> schemas;
   std::map<std::uint16_t, Channel> channels;
-  std::set<std::uint16_t> skipped;  ///< Channels nobody wants.
-  /// Memory of all that: a small file can repeat one long schema in 65535 channels.
+  std::set<std::uint16_t> skipped;  ///< Channels that were not asked for.
+  /// Memory of all definitions, because a small file can repeat one long schema in 65535 channels.
   std::uintmax_t bytes = 0;
 };
 
@@ -36,7 +36,7 @@ struct RawRecord {
   std::string_view content;
 };
 
-/// A message within the bytes of its chunk.
+/// A message inside the bytes of its chunk.
 struct RawMessage {
   std::uint16_t channel = 0;
   std::uint32_t sequence = 0;
@@ -45,18 +45,18 @@ struct RawMessage {
   std::string_view data;
 };
 
-/// Next record, or nothing when the bytes end inside it.
+/// The next record; none when the bytes end before it does.
 [[nodiscard]] std::optional<RawRecord> take_record(mcap::ByteReader& bytes);
 
 [[nodiscard]] std::string read_schema(std::string_view content, Definitions& into);
 [[nodiscard]] std::string read_channel(std::string_view content, const ReadLimits& limits,
                                        Definitions& into);
-/// `out` stays empty for a channel that nobody wants.
+/// `out` stays empty for a channel that was not asked for.
 [[nodiscard]] std::string read_message(std::string_view content, const Definitions& known,
                                        std::optional<RawMessage>& out);
 
 /// The records in a chunk.  Refuses chunks that claim to be larger than the limits, or that are
-/// packed tighter than any recording is.
+/// packed more tightly than any real recording.
 [[nodiscard]] Result<std::string> unpack_chunk(std::string_view content, const ReadLimits& limits);
 
 }  // namespace chorus::record

@@ -1,6 +1,6 @@
-// A recording read message by message, in the memory of a chunk or two, however long it is.
+// Reads a recording message by message, with memory for one or two chunks, however long it is.
 //
-// Messages come in log-time order: a chunk is unpacked when its first message is due, and forgotten
+// Messages come in log-time order: a chunk is unpacked when its first message is due, and freed
 // after its last.  A file cut off by a crash is read up to its last complete chunk; a damaged chunk
 // is left out as a whole and named in the notes.
 #pragma once
@@ -18,7 +18,7 @@
 
 namespace chorus::record {
 
-/// A message, still in the memory where it was unpacked: valid until the next call.
+/// A message in the buffer where it was unpacked: valid until the next call.
 struct MessageView {
   std::string_view topic;
   std::uint32_t sequence = 0;
@@ -37,7 +37,7 @@ class RecordingStream {
   /// applies to what is in memory at one time, and `max_file_bytes` does not apply.
   [[nodiscard]] static Result<RecordingStream> open(const std::filesystem::path& path,
                                                     const ReadLimits& limits = {});
-  /// The same from bytes, which must outlive it.
+  /// The same from bytes, which must outlive the stream.
   [[nodiscard]] static Result<RecordingStream> of_bytes(std::string_view bytes,
                                                         const ReadLimits& limits = {});
   RecordingStream(RecordingStream&&) noexcept;
@@ -47,22 +47,22 @@ class RecordingStream {
   /// The next wanted message; none at the end.  TooLarge when its chunks cannot be put in order
   /// within the limit.
   [[nodiscard]] Result<std::optional<MessageView>> next();
-  /// Starts again from the beginning, or from the first chunk that may hold messages from `from`
-  /// on.
+  /// Starts again from the beginning, or from the first chunk that may hold messages at or after
+  /// `from`.
   void rewind(std::optional<Timestamp> from = {});
 
   /// The first and the last message of a topic; chunks without it are not unpacked.
   [[nodiscard]] std::optional<Message> first_of(std::string_view topic);
   [[nodiscard]] std::optional<Message> last_of(std::string_view topic);
-  /// Messages of a topic; nothing when not every chunk says how many it holds.
+  /// Number of messages of a topic; none unless every chunk states its own.
   [[nodiscard]] std::optional<std::uint64_t> count(std::string_view topic) const;
 
-  /// What is known so far: definitions inside chunks are found when those are unpacked.
+  /// The channels known so far: definitions inside chunks are found when those are unpacked.
   [[nodiscard]] std::vector<Channel> channels() const;
   [[nodiscard]] const std::map<std::string, std::map<std::string, std::string>>& metadata() const;
-  /// No footer, or the tail was unreadable.
+  /// True without a footer, or when the tail was unreadable.
   [[nodiscard]] bool truncated() const;
-  /// What was left out so far and why, for people; at most kMaxNotes.
+  /// What has been left out so far and why, for people; at most kMaxNotes.
   [[nodiscard]] const std::vector<std::string>& notes() const;
 
  private:

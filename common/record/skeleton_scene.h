@@ -1,4 +1,4 @@
-// Skeletons as lines between joints, in messages that recording viewers draw by themselves.
+// Skeletons as lines between joints, in messages that recording viewers can draw without plug-ins.
 //
 // JSON of the published Foxglove schemas foxglove.SceneUpdate and foxglove.FrameTransforms. Viewers
 // have +z up, so their root frame `map` is our world (+y up), turned by one transform.
@@ -19,7 +19,7 @@ inline constexpr std::string_view kTransformsSchemaName = "foxglove.FrameTransfo
 [[nodiscard]] std::string_view scene_schema();
 [[nodiscard]] std::string_view transforms_schema();
 
-/// Frame of the fused bodies; each sensor's bodies are in the frame of its id.
+/// Frame of the fused bodies; each sensor's bodies are in the frame named by its id.
 inline constexpr std::string_view kWorldFrame = "world";
 
 /// Where a frame stands in the world [m].
@@ -32,12 +32,12 @@ struct NamedPlace {
   }
 };
 
-/// One entity per body, which disappears by itself when it is not seen again.  Bones with a joint
-/// that is not tracked are left out.
+/// One entity per body; it disappears by itself when the body is no longer seen.  Bones with a
+/// joint that is not tracked are left out.
 [[nodiscard]] std::string scene_update(const resource::FrameResource& frame,
                                        std::string_view frame_id);
 
-/// map -> world -> each place.
+/// The transforms map -> world -> each place.
 [[nodiscard]] std::string frame_transforms(Timestamp at, const std::vector<NamedPlace>& places);
 
 }  // namespace chorus::record

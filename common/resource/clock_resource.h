@@ -1,4 +1,4 @@
-// `/clock`: the service's UTC now and what the kernel knows of its clock.
+// `/clock`: the service's UTC now, and what the kernel knows about its clock.
 #pragma once
 
 #include "common/resource/node.h"

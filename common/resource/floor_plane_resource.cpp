@@ -9,7 +9,7 @@
 namespace chorus::resource {
 
 Node floor_plane_node(const FloorPlane& floor, SpaceKind space) {
-  constexpr int kDigits = 6;  // 0.001 mm at 1 m: the normal is an angle
+  constexpr int kDigits = 6;  // 0.001 mm at 1 m, as the normal acts as an angle
   return {"",
           {"FloorPlane"},
           {{"normalX", Decimal{floor.normal.x(), kDigits}},

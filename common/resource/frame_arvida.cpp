@@ -1,7 +1,7 @@
-// Profile "arvida": the whole ARVIDA pattern, one spatial relationship per joint (proto/README.md).
+// Profile "arvida": the full ARVIDA pattern, one spatial relationship per joint (proto/README.md).
 //
-// Source is the tracker's space, target the joint, translation the joint's position in the source:
-// the direction is documented nowhere, so this follows a published client.
+// The source is the tracker's space, the target the joint, the translation the joint's position in
+// the source.  The direction is documented nowhere, so this follows a published client.
 #include <algorithm>
 #include <array>
 
@@ -22,7 +22,7 @@ constexpr std::string_view kPrefixes =
     "@prefix xsd: <http://www.w3.org/2001/XMLSchema#> .\n";
 
 constexpr std::string_view kDouble = "\"^^xsd:double";
-constexpr std::size_t kJointText = 2048;  // longest joint without its names
+constexpr std::size_t kJointText = 2048;  // longest joint, without its names
 
 class ArvidaFrame {
  public:

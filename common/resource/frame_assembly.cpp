@@ -12,7 +12,7 @@
 namespace chorus::resource {
 namespace {
 
-/// The two forms of one time may differ by rounding, not by more.
+/// The two forms of one time may differ by rounding, but by no more.
 constexpr Duration kTimeTolerance = std::chrono::milliseconds(1);
 
 tl::unexpected<Error> refuse(const SubjectFacts& subject, std::string_view property,
@@ -39,7 +39,7 @@ std::optional<double> number(const SubjectFacts& subject, Number which) {
   return subject.numbers[static_cast<std::size_t>(which)];
 }
 
-/// All of `count` numbers from `first` on, or none; anything between is refused.
+/// True: all `count` numbers from `first` on are given; false: none is.  Refuses anything else.
 Result<bool> has_all(const SubjectFacts& joint, Number first, std::size_t count) {
   std::size_t given = 0;
   std::size_t missing = 0;

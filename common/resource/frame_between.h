@@ -1,4 +1,4 @@
-// An interpolated frame for an instant without one.
+// Interpolates a frame for an instant that has none.
 #pragma once
 
 #include "common/resource/frame_resource.h"
@@ -6,8 +6,8 @@
 namespace chorus::resource {
 
 /// The frame at `instant` between two neighbours, a.captured <= instant <= b.captured: positions
-/// linear (directions of rays normalised), orientations by LERP, the worse state, the larger
-/// variance, contributors of both.  Only bodies and joints that both have.
+/// linear (ray directions normalised), orientations by LERP, the worse state, the larger variance,
+/// the contributors of both.  Contains only the bodies and joints that are in both frames.
 [[nodiscard]] FrameResource between(const FrameResource& a, const FrameResource& b,
                                     Timestamp instant);
 

@@ -1,4 +1,4 @@
-// Frames and bodies as HTTP documents: every format, rendered when the first client asks.
+// Frames and bodies as HTTP documents: each format is rendered when the first client asks for it.
 #pragma once
 
 #include <memory>
@@ -12,14 +12,14 @@ namespace chorus::resource {
 using FramePtr = std::shared_ptr<const FrameResource>;
 
 /// `/frame` (place "frame"), one of `/frames/{seq}` (place "frames/42") or a relayed frame. Turtle,
-/// JSON-LD, JSON, N-Triples; profile "arvida" in Turtle and N-Triples.
+/// JSON-LD, JSON and N-Triples; profile "arvida" in Turtle and N-Triples.
 [[nodiscard]] http::DocumentPtr frame_document(FramePtr frame, const Place& place,
                                                http::DocumentOptions options);
 
-/// What such documents answer with: version = sequence (and `run`, so that a restarted service's
-/// ETags differ).
-/// `/frame` is revalidated and names its immutable twin in Content-Location; `/frames/{seq}` is
-/// cached for a minute.
+/// The options of these documents: version = sequence (and `run`, so that the ETags of a restarted
+/// service differ).
+/// `/frame` is revalidated, with its immutable twin in Content-Location; `/frames/{seq}` is cached
+/// for a minute.
 [[nodiscard]] http::DocumentOptions latest_options(const FrameResource& frame,
                                                    const std::string& run = {});
 [[nodiscard]] http::DocumentOptions kept_options(const FrameResource& frame,

@@ -1,8 +1,8 @@
-// Reads back the bytes that frame_turtle.cpp writes, following its template; 25 times faster than a
+// Reads the bytes that frame_turtle.cpp writes, by following its template; 25 times faster than a
 // parser.
 //
-// Nothing is decided here: at the first unexpected byte, or value that is not plainly right, the
-// answer is nullopt and the parser reads the document from the start, with its messages.
+// Nothing is refused here: at the first unexpected byte, or a value that is not clearly valid, the
+// result is nullopt, and the parser reads the document from the start, with error messages.
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -19,7 +19,7 @@ constexpr std::string_view kHead =
     "@prefix ch: <https://w3id.org/chorus-tracking/ns#> .\n"
     "@prefix xsd: <http://www.w3.org/2001/XMLSchema#> .\n\n<";
 
-/// Each step returns false at anything unexpected; callers then give up.
+/// Each step returns false at anything unexpected; the caller then gives up.
 class Template : TemplateText {
  public:
   using TemplateText::TemplateText;
@@ -107,7 +107,7 @@ class Template : TemplateText {
     return true;
   }
 
-  /// From after "ch:" of the first property to before the final " .".
+  /// Reads from after "ch:" of the first property to before the final " .".
   bool joint(JointResource& joint) {
     if (text("state ch:NotTracked")) return true;
     if (!(text("ray") ? ray(joint) : point(joint)) || !text(" ;\n  ch:")) return false;
@@ -130,7 +130,7 @@ class Template : TemplateText {
            decimal(p.z());
   }
 
-  /// From after "ray".
+  /// Reads from after "ray".
   bool ray(JointResource& joint) {
     auto& p = joint.position;
     joint.measurement = Measurement::Ray;
@@ -138,7 +138,7 @@ class Template : TemplateText {
            text(" ; ch:rayZ ") && decimal(p.z()) && std::abs(p.norm() - 1.0) <= kRayTolerance;
   }
 
-  /// From after the name of the first term.
+  /// Reads from after the name of the first term.
   bool covariance(Covariance& out) {
     std::array<double, Covariance::kTerms> upper{};
     for (std::size_t i = 0; i < upper.size(); ++i) {
@@ -158,7 +158,7 @@ class Template : TemplateText {
   }
 
   std::string_view names_;
-  std::string_view scoped_;  ///< The frame's own name: names_, "frames/" and the sequence.
+  std::string_view scoped_;  ///< The name of the frame itself: names_, "frames/" and the sequence.
   FrameResource frame_;
 };
 

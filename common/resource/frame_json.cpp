@@ -1,4 +1,4 @@
-// The frame in JSON and JSON-LD, from a template.  Linked: @context, decimals as strings.
+// Writes the frame in JSON and JSON-LD from a template.  Linked: @context, decimals as strings.
 #include <algorithm>
 
 #include "common/body/bones.h"
@@ -8,7 +8,7 @@
 namespace chorus::resource {
 namespace {
 
-/// Larger integers do not survive readers that keep numbers as doubles; they are written as
+/// Readers that keep numbers as doubles would change larger integers; so these are written as
 /// strings.
 constexpr std::uint64_t kExactInteger = std::uint64_t{1} << 53;
 
@@ -72,7 +72,7 @@ class JsonFrame {
   }
 
  private:
-  /// `living`: the document is about the living body, and states its type.
+  /// `living`: the document is about the living body and states its type.
   void put_body_head(const BodyResource& body, bool living) {
     pen_.put("\"@id\":\"");
     put_body_name(body);
@@ -136,7 +136,7 @@ class JsonFrame {
     pen_.put("]");
   }
 
-  /// In linked JSON, bodies and joints are named by their frame, so that documents can be merged.
+  /// In linked JSON the names of bodies and joints contain their frame, so documents can be merged.
   void put_frame_name() {
     pen_.put(names_);
     if (!linked_) return pen_.put("frame");

@@ -1,4 +1,4 @@
-// A frame from JSON or JSON-LD, in the shape of our own context only (proto/README.md, section 3).
+// Reads a frame from JSON or JSON-LD, only in our context's shape (proto/README.md, section 3).
 #include <nlohmann/json.hpp>
 
 #include "common/base/json.h"
@@ -11,13 +11,13 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Reads one object of the document into the facts of one subject; keeps the first complaint.
+/// Reads one object of the document into the facts about one subject; keeps the first complaint.
 class Reading {
  public:
   Result<Facts> run(const Json& root) {
     if (!root.is_object()) return fail(ErrorCode::Malformed, {}, "a frame is a JSON object");
     const std::size_t frame = add_subject(root, "frame");
-    // People who write JSON by hand may leave it out: a frame was asked for.
+    // Hand-written JSON may omit the type, because a frame was asked for.
     if (root.contains("@type") && root.at("@type") != "Frame")
       complain(frame, "@type", "is not \"Frame\"");
     facts_[frame].is_frame = true;
@@ -92,7 +92,7 @@ class Reading {
     }
   }
 
-  /// A JSON number, or the same as a string, as JSON-LD and large integers have it.
+  /// Reads a JSON number or its text as a string, which JSON-LD and large integers use.
   template <class T>
   void integer(std::size_t at, const Json& object, std::string_view key, std::optional<T>& out) {
     const auto found = object.find(key);
@@ -135,7 +135,7 @@ class Reading {
 
   void list(std::size_t at, const Json& object, std::string_view key,
             std::vector<std::string>& out) {
-    constexpr std::size_t kMoreThanEnough = 65;  // one above the limit, which assemble() names
+    constexpr std::size_t kMoreThanEnough = 65;  // one above the limit; assemble() reports it
     const auto found = object.find(key);
     if (found == object.end()) return;
     if (!found->is_array()) return complain(at, key, "is no array");

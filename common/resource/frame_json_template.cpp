@@ -1,5 +1,5 @@
-// Reads back the JSON that frame_json.cpp writes, following its template, as frame_fast_reader.cpp
-// does with Turtle: at anything unexpected the answer is nullopt, and the parser decides.
+// Reads the JSON that frame_json.cpp writes, by following its template, as frame_fast_reader.cpp
+// does for Turtle: at anything unexpected the result is nullopt, and the parser decides.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -71,20 +71,20 @@ class JsonTemplate : TemplateText {
           !text("\",\"")) {
         return false;
       }
-      // Recordings of earlier versions do not have the type.
+      // Recordings of earlier versions lack the type.
       if (text("@type\":") && !text("\"Joint\",\"")) return false;
       if (!joint(body.joints[i])) return false;
     }
     return text("}}");
   }
 
-  /// Ids beyond a double's exact integers stand in quotes.
+  /// Ids beyond the exact integers of a double are in quotes.
   bool id_number(std::uint64_t& id) {
     const bool quoted = text("\"");
     return integer(id) && (!quoted || text("\""));
   }
 
-  /// From after the quote of the first property to after the brace.
+  /// Reads from after the quote of the first property to after the brace.
   bool joint(JointResource& joint) {
     if (text("state\":\"NotTracked\"}")) return true;
     if (!(text("ray") ? ray(joint) : point(joint)) || !text(",\"")) return false;
@@ -117,7 +117,7 @@ class JsonTemplate : TemplateText {
            text(",\"rayZ\":") && decimal(p.z()) && std::abs(p.norm() - 1.0) <= kRayTolerance;
   }
 
-  /// From after the name of the first term to after the quote of what follows.
+  /// Reads from after the name of the first term to after the quote of what follows.
   bool covariance(Covariance& out) {
     std::array<double, Covariance::kTerms> upper{};
     for (std::size_t i = 0; i < upper.size(); ++i) {

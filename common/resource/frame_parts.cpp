@@ -9,9 +9,9 @@
 namespace chorus::resource {
 namespace {
 
-/// A quaternion this far from unit length is normalised before it is written.
+/// A quaternion whose length differs from 1 by more than this is normalised before it is written.
 constexpr double kWrittenTolerance = 0.05;
-constexpr double kMinNorm = 1e-6;  // below, a quaternion is "not given"
+constexpr double kMinNorm = 1e-6;  // a shorter quaternion is "not given"
 constexpr double kMaxVariance = 1e4;
 
 bool plausible(const JointResource& joint) {
@@ -21,7 +21,7 @@ bool plausible(const JointResource& joint) {
   return p.cwiseAbs().maxCoeff() <= kMaxCoordinate;
 }
 
-/// Terms whose wire form is still a covariance after rounding.
+/// True when the terms, rounded for the wire, still form a covariance.
 bool writable(const Covariance& covariance) {
   return covariance.known() && covariance.plausible() &&
          covariance.matrix().cwiseAbs().maxCoeff() <= kMaxVariance;
@@ -89,7 +89,7 @@ std::string_view name_of(SpaceKind space) {
 }
 
 std::string to_ntriples(const std::string& turtle, const Place& place) {
-  // Our own text: it has no errors, and its size does not matter.
+  // Our own text has no errors, and its size does not matter.
   return rdf::turtle_to_ntriples(turtle, place.root + place.path, turtle.size()).value_or("");
 }
 

@@ -1,4 +1,4 @@
-// Internal to the room: what the frame writers share.
+// Internal to the room: code that the frame writers share.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ inline constexpr int kRayDecimals = 6;
 inline constexpr std::array<std::string_view, Covariance::kTerms> kCovarianceNames{
     "cxx", "cxy", "cxz", "cyy", "cyz", "czz"};
 
-/// A joint as it may be written: finite and plausible, else not tracked.
+/// A joint ready for writing: finite and plausible, otherwise not tracked.
 struct WritableJoint {
   JointState state = JointState::NotTracked;
   bool has_orientation = false;
@@ -36,16 +36,16 @@ struct WritableJoint {
 };
 [[nodiscard]] WritableJoint writable(const JointResource& joint);
 
-/// Within [0, 1]; what is no number is no confidence.
+/// Clamps to [0, 1]; NaN counts as no confidence.
 [[nodiscard]] double writable_confidence(double value);
 
-/// "text" with the escapes that Turtle and JSON share; broken UTF-8 is replaced.
+/// The text in quotes, with the escapes that Turtle and JSON share; broken UTF-8 is replaced.
 [[nodiscard]] std::string quoted(std::string_view text);
 
-/// Every sensor's name, quoted.
+/// The names of all sensors, in quotes.
 [[nodiscard]] std::vector<std::string> quoted_names(const FrameResource& frame);
 
-/// Appends without checks: need() has reserved the room before.
+/// Appends without checks, because need() has already reserved the room.
 class Pen {
  public:
   explicit Pen(std::size_t expected) : text_(expected, '\0'), at_(text_.data()) {}
@@ -57,7 +57,7 @@ class Pen {
     at_ = text_.data() + used;
   }
   void put(std::string_view text) {
-    if (text.empty()) return;  // memcpy takes no null, not even for nothing
+    if (text.empty()) return;  // memcpy takes no null pointer, not even for 0 bytes
     std::memcpy(at_, text.data(), text.size());
     at_ += text.size();
   }
@@ -77,7 +77,7 @@ class Pen {
   char* at_;
 };
 
-/// The dateTime text of an instant; the last one is kept, because bodies mostly share the frame's.
+/// The dateTime text of an instant; keeps the last one, because most bodies share the frame's time.
 class TimeText {
  public:
   [[nodiscard]] std::string_view of(Timestamp t) {
@@ -96,7 +96,7 @@ class TimeText {
 [[nodiscard]] std::string_view name_of(JointState state);
 [[nodiscard]] std::string_view name_of(SpaceKind space);
 
-/// An upper bound of the bytes that one body takes, and what a joint takes beyond its names.
+/// Upper bounds of the bytes of one body, and of one joint without its names.
 inline constexpr std::size_t kBodyBytes = 16384;
 inline constexpr std::size_t kJointBytes = 1024;
 

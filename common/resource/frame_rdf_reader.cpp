@@ -1,4 +1,4 @@
-// A frame from Turtle or N-Triples in any spelling, through the parser.
+// Reads a frame from Turtle or N-Triples in any spelling, through the parser.
 #include <algorithm>
 #include <functional>
 #include <unordered_map>
@@ -15,7 +15,7 @@ namespace {
 using rdf::TermKind;
 using rdf::TermView;
 
-/// The most subjects a document may have; 64 bodies of 25 joints are 1 665.
+/// Most subjects that a document may have; 64 bodies of 25 joints are 1 665.
 constexpr std::size_t kMaxSubjects = 4096;
 
 enum class Property : std::uint8_t {
@@ -41,7 +41,7 @@ struct Row {
   Number number = Number::X;
 };
 
-/// Sorted by name; the properties a frame is made of.
+/// The properties of a frame, sorted by name.
 constexpr std::array kRows{
     Row{"body", Property::BodyIs},
     Row{"bodyId", Property::BodyId},
@@ -77,7 +77,7 @@ constexpr std::array kRows{
 };
 static_assert(std::ranges::is_sorted(kRows, {}, &Row::name));
 
-/// Compared as views: no text is built while reading.
+/// Compares views, so that reading builds no text.
 bool is_xsd(std::string_view datatype, std::string_view name) {
   return datatype.size() == rdf::kXsd.size() + name.size() && datatype.starts_with(rdf::kXsd) &&
          datatype.ends_with(name);
@@ -99,7 +99,7 @@ std::string_view individual(const TermView& term) {
   return term.value.substr(kChorus.size());
 }
 
-/// Adds to a list in which each value stands once.
+/// Adds a value to a list that holds each value only once.
 template <class T>
 void add(std::vector<T>& list, T value) {
   if (std::ranges::find(list, value) == list.end()) list.push_back(std::move(value));
@@ -113,7 +113,7 @@ class Collector {
     iris_.reserve(kUsual);
   }
 
-  /// False when the document is refused; error() says why.
+  /// False when the document is refused; error() gives the reason.
   bool take(const rdf::TripleView& triple) {
     const std::size_t at = subject_of(triple.subject);
     if (facts_.size() > kMaxSubjects) {
@@ -182,7 +182,7 @@ class Collector {
     if (object.kind == TermKind::Literal) return "is a literal, not a resource";
     const std::size_t to = find_or_add(object);
     std::vector<std::size_t>& links = facts_[at].*list;
-    // Bounded here already, so that a long list costs nothing; assemble() reports the limit.
+    // Limited already here, so that a long list costs nothing; assemble() reports the limit.
     if (links.size() <= std::max(kMaxBodies, kJointCount)) add(links, to);
     return {};
   }
@@ -225,13 +225,13 @@ class Collector {
 
   std::string_view list_text(std::size_t at, bool sensors, const TermView& object) {
     std::vector<std::string>& list = sensors ? facts_[at].sensors : facts_[at].contributors;
-    constexpr std::size_t kMoreThanEnough = 65;  // one above the limit, which assemble() names
+    constexpr std::size_t kMoreThanEnough = 65;  // one above the limit; assemble() reports it
     if (object.kind != TermKind::Literal || !object.datatype.empty()) return "is no string";
     if (list.size() < kMoreThanEnough) add(list, std::string(object.value));
     return {};
   }
 
-  /// Triples of one subject mostly follow each other.
+  /// Most triples of one subject follow one another.
   std::size_t subject_of(const TermView& subject) {
     if (last_ < facts_.size() && facts_[last_].name == subject.value && last_kind_ == subject.kind)
       return last_;

@@ -1,7 +1,7 @@
 // `/frame`: all bodies at one instant, of a sensor or of the fusion server, as one document.
 //
-// The same value on both sides, so that a fusion server can serve as a sensor for another one.
-// Metres, Hamilton quaternions x y z w, UTC capture time.  proto/README.md is the specification.
+// Sensors and the fusion server use the same value, so a fusion server can be another one's sensor.
+// Metres, Hamilton quaternions x y z w, UTC capture time; specified in proto/README.md.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ struct JointResource : Joint {
 
 struct BodyResource {
   std::uint64_t id = 0;
-  std::optional<std::size_t> slot;  ///< Fused: its number in every output, below kMaxBodies.
+  std::optional<std::size_t> slot;  ///< Fused: its slot in every output, below kMaxBodies.
   /// Fused: probability that left and right are not exchanged, [0, 1].
   std::optional<double> sides_confidence;
   Timestamp captured;
@@ -41,16 +41,16 @@ struct FrameResource {
   Timestamp captured;
   std::string source;  ///< Sensor id, or "fusion".
   SpaceKind space = SpaceKind::Sensor;
-  std::vector<std::string> sensors;  ///< Fused: names behind the contributor bits (at most 64).
-  std::vector<BodyResource> bodies;  ///< Distinct ids, at most kMaxBodies.
+  std::vector<std::string> sensors;  ///< Fused: names for the contributor bits (at most 64).
+  std::vector<BodyResource> bodies;  ///< With distinct ids, at most kMaxBodies.
 };
 
-/// How far from length 1 the direction of a ray may be.
+/// How far the length of a ray's direction may be from 1.
 inline constexpr double kRayTolerance = 0.01;
 
-/// Writes the default (compact) profile.  Numbers that are not finite or absurd are never written:
+/// Writes the default (compact) profile.  Never writes numbers that are not finite or are absurd:
 /// such a joint is written as not tracked, without a position.  Turtle and JSON come from
-/// templates, which tests prove isomorphic to the Serd writer.
+/// templates; tests prove these isomorphic to the Serd writer.
 [[nodiscard]] std::string write(const FrameResource& frame, Format format, const Place& place = {});
 
 /// The full ARVIDA pattern (proto/README.md, profile "arvida"), Turtle or N-Triples.
@@ -63,12 +63,12 @@ inline constexpr double kRayTolerance = 0.01;
                                          Format format, const Place& place);
 
 /// Reads Turtle or N-Triples (compact profile, in any equivalent spelling), or JSON and JSON-LD in
-/// the shape written above.  Refuses, naming subject and property: duplicate ids, missing times,
-/// more than kMaxBodies, absurd numbers, wrong types, unknown states and joints.  Bounded in size
-/// and nesting.
+/// the shape written above.  Refuses duplicate ids, missing times, more than kMaxBodies, absurd
+/// numbers, wrong types, unknown states and joints; errors name subject and property.  Limited in
+/// size and nesting.
 [[nodiscard]] Result<FrameResource> read_frame(std::string_view bytes, Format format);
 
-/// A sensor's frame as resource, and back.  `received` is not on the wire; reading sets it.
+/// A sensor's frame as a resource, and back.  `received` is not on the wire; reading sets it.
 [[nodiscard]] FrameResource to_resource(const SensorFrame& frame);
 [[nodiscard]] SensorFrame to_sensor_frame(const FrameResource& frame, SensorId sensor,
                                           Timestamp received);

@@ -1,5 +1,5 @@
-// The compact profile in Turtle, from a template.  frame_fast_reader.cpp follows this layout byte
-// for byte.
+// Writes the compact profile in Turtle, from a template.  frame_fast_reader.cpp follows this layout
+// byte for byte.
 #include <algorithm>
 
 #include "common/body/bones.h"
@@ -66,8 +66,8 @@ class TurtleFrame {
     begun_ = true;
   }
 
-  /// A living body or joint has no place of its own: two documents about it would contradict each
-  /// other.
+  /// A living body or joint is written without a position: two documents about it would contradict
+  /// each other.
   void begin_living(const BodyResource& body) {
     pen_.need(kJointBytes + names_.size());
     pen_.put(kPrefixes);
@@ -139,7 +139,7 @@ class TurtleFrame {
     pen_.put_integer(body.id);
   }
 
-  /// A body at this instant; `ch:of` leads to the living body.
+  /// Names a body at this instant; `ch:of` points to the living body.
   void put_body_name(const BodyResource& body) {
     put_frame_name();
     pen_.put("#");

@@ -1,4 +1,4 @@
-// What one camera image shows and how to measure in it: capture time, size, intrinsics.
+// What a camera image shows and how to measure in it: capture time, size, intrinsics.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace chorus::resource {
 
-/// The description of the image at `iri` ("images/depth").  Pixels; OpenCV's order of distortion;
-/// depth images also say how long one unit is.
+/// The description of the image at `iri` ("images/depth").  Pixels; distortion in OpenCV's order;
+/// for a depth image also the size of its unit.
 [[nodiscard]] Node image_node(const CameraImage& image, std::string iri);
 
 }  // namespace chorus::resource

@@ -1,4 +1,4 @@
-// The formats every resource is written in.
+// The formats in which every resource is written.
 #pragma once
 
 #include <array>

@@ -17,8 +17,8 @@ namespace {
 using rdf::Graph;
 using rdf::Term;
 
-/// Text from a config file or a peer as an IRI that can be written: characters that an IRI cannot
-/// hold are escaped.
+/// Makes a writable IRI of text from a config file or a peer: escapes the characters that an IRI
+/// cannot contain.
 std::string safe_iri(std::string_view text) {
   constexpr std::string_view kNever = "<>\"{}|^`\\";
   constexpr std::string_view kHex = "0123456789ABCDEF";
@@ -34,14 +34,14 @@ std::string safe_iri(std::string_view text) {
   return safe;
 }
 
-/// xsd:string has no zero byte; everything else that is UTF-8 may be written.
+/// xsd:string allows no zero byte; all other UTF-8 may be written.
 std::string safe_text(std::string_view text) {
   std::string safe = rdf::clean_utf8(text);
   std::erase(safe, '\0');
   return safe;
 }
 
-/// Collects the triples of one tree.
+/// Collects the triples of a tree.
 class Building {
  public:
   Graph run(const Node& root) {
@@ -72,7 +72,7 @@ class Building {
     for (const Item& item : items) add_value(subject, use, item);
   }
   void add_value(const Term& subject, const TermUse& use, const Node& node) {
-    // The link first, then what it leads to: that is the order people read.
+    // First the link, then what it points to, which is the order people read in.
     const std::size_t at = graph_.size();
     const Term object = add(node);
     graph_.insert(graph_.begin() + static_cast<std::ptrdiff_t>(at),
@@ -129,7 +129,7 @@ class Building {
   int blanks_ = 0;
 };
 
-/// The prefixes whose names occur in the graph.
+/// The prefixes that occur in the graph's names.
 std::vector<rdf::Prefix> prefixes_for(const Graph& graph) {
   std::vector<rdf::Prefix> used;
   for (const rdf::Prefix& prefix : all_prefixes()) {

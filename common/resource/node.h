@@ -1,13 +1,13 @@
-// Small documents as a tree that is written in every format: /, /clock, /registration, /sensors/
-// ...
+// Small documents as a tree that can be written in every format: /, /clock, /registration,
+// /sensors/ ...
 //
-// Keys are the terms of proto/context.jsonld ("captured", "verdict"); the context maps each to its
-// IRI and datatype.  A key that is not there is written under our own namespace; undeclared_terms()
-// finds those, and every builder has a test that there are none.  Frames do not go through here
-// (frame_resource.h has their template).
+// Keys are the terms of proto/context.jsonld ("captured", "verdict"); the context maps each one to
+// its IRI and datatype.  A key that it lacks is written in our own namespace; undeclared_terms()
+// finds such keys, and every builder has a test that there are none.  Frames do not use this; their
+// template is in frame_resource.h.
 //
-// JSON: keys that end in "Nanoseconds" are strings.  A term with an index ("sensors", keyed by
-// "sensorId") becomes an object, and each node's index property its key.
+// In JSON, keys that end in "Nanoseconds" hold strings.  A term with an index ("sensors", keyed by
+// "sensorId") becomes an object whose keys are the nodes' index property.
 #pragma once
 
 #include <cstdint>
@@ -33,13 +33,13 @@ struct Ref {
   std::string iri;
 };
 
-/// A decimal with this many fractional digits; left out when it is not finite.
+/// A decimal with this many fractional digits; omitted when it is not finite.
 struct Decimal {
   double value = 0.0;
   int digits = 4;
 };
 
-/// A string under a term of type @vocab ("verdict": "Good") names one of our individuals.
+/// A string for a term of type @vocab ("verdict": "Good") names one of our individuals.
 using Value =
     std::variant<bool, std::int64_t, Decimal, std::string, Timestamp, Ref, Node, std::vector<Node>,
                  std::vector<Ref>, std::vector<std::string>, std::vector<Decimal>>;
@@ -52,17 +52,17 @@ struct Node {
   std::vector<std::pair<std::string, Value>> properties;
 };
 
-/// The document as it stands at `place`.  Text that is not UTF-8 is made UTF-8.
+/// The document for its `place`.  Text that is not UTF-8 is made UTF-8.
 [[nodiscard]] std::string write(const Node& node, Format format, const Place& place = {});
 
-/// The document with all four formats, rendered on demand.
+/// The document in all four formats, each rendered on demand.
 [[nodiscard]] http::DocumentPtr document_of(Node node, http::DocumentOptions options,
                                             Place place = {}, Kind kind = Kind::Source);
 
-/// Its triples; relative IRIs stay relative.
+/// The triples of the tree; relative IRIs stay relative.
 [[nodiscard]] rdf::Graph graph_of(const Node& node);
 
-/// Keys that proto/context.jsonld does not declare, in any depth.
+/// Keys at any depth that proto/context.jsonld does not declare.
 [[nodiscard]] std::vector<std::string> undeclared_terms(const Node& node);
 
 }  // namespace chorus::resource

@@ -12,21 +12,21 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Integers beyond this do not survive a double, which is what JSON readers make of them.
+/// JSON readers turn integers into doubles, which would change larger ones.
 constexpr std::int64_t kExactInteger = std::int64_t{1} << 53;
 constexpr int kIndent = 2;
 
 Json object_of(const Node& node, bool linked, std::string_view without = {});
 
-/// A value whose datatype the context does not define: plain JSON writes just the value, JSON-LD
-/// states the type.
+/// A value whose datatype the context does not define: plain JSON has only the value, JSON-LD adds
+/// the type.
 Json typed(std::string text, std::string_view datatype, const TermUse& use, bool linked) {
   const std::string type = rdf::xsd(datatype);
   if (!linked || use.type == type) return text;
   return Json{{"@type", "xsd:" + std::string(datatype)}, {"@value", std::move(text)}};
 }
 
-/// Turns one value into JSON under one term.
+/// Turns one value of a term into JSON.
 struct ToJson {
   const std::string& key;
   const TermUse& use;

@@ -1,4 +1,4 @@
-// Internal to the room: a Node as JSON text.
+// Internal to the room: writes a Node as JSON text.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace chorus::resource {
 
-/// `linked`: JSON-LD, with @context and with decimals as strings (docs/decisions/0005).
+/// `linked`: as JSON-LD, with @context and with decimals as strings (docs/decisions/0005).
 [[nodiscard]] std::string to_json(const Node& node, bool linked, const Place& place);
 
 }  // namespace chorus::resource

@@ -1,7 +1,7 @@
 // Internal to the room: steps over text that is expected byte for byte.
 //
-// Shared by the template readers.  Each step returns false at anything unexpected; the document is
-// then read by the parser from the start.
+// The template readers share it.  Each step returns false at anything unexpected; the parser then
+// reads the document from the start.
 #pragma once
 
 #include <array>
@@ -36,7 +36,7 @@ class TemplateText {
     return true;
   }
 
-  /// Not negative, without leading zeros.
+  /// An integer that is not negative and has no leading zeros.
   template <class Integer>
   bool integer(Integer& out) {
     const char* const begin = at_;
@@ -46,34 +46,34 @@ class TemplateText {
     return true;
   }
 
-  /// A body's slot: below kMaxBodies, and that of none of `others`.
+  /// A body's slot: below kMaxBodies, and different from the slots of `others`.
   bool slot(const std::vector<BodyResource>& others, std::optional<std::size_t>& out);
 
   /// A decimal in [0, 1].
   bool confidence(std::optional<double>& out);
 
-  /// "-1.2345", at most kMaxCoordinate in size: the double nearest to it.
+  /// A decimal such as "-1.2345", at most kMaxCoordinate in size: the nearest double.
   bool decimal(double& out);
 
-  /// [A-Za-z0-9_-] in quotes, as ids are.
+  /// A name of [A-Za-z0-9_-] in quotes, such as an id.
   bool name(std::string_view& out);
 
-  /// What precedes `close` in the name of a document's frame: "", "../", "sensors/s1/".
+  /// What comes before `close` in the name of a document's frame: "", "../", "sensors/s1/".
   bool folder(std::string_view close, std::string_view& out);
 
-  /// An instant in both its forms: ISO 8601, `between`, nanoseconds; both exactly the same.
+  /// An instant as ISO 8601, `between`, and the same instant in nanoseconds.
   bool times(std::string_view between, Timestamp& out);
 
-  /// Distinct names in quotes with `comma` between them, at most kMaxSensors.
+  /// Distinct names in quotes, separated by `comma`, at most kMaxSensors.
   bool names(std::string_view comma, std::vector<std::string>& out);
 
-  /// Bits of those of `names` that follow in quotes, with `comma` between them.
+  /// Bits for those of `names` that follow in quotes, separated by `comma`.
   bool subset(const std::vector<std::string>& names, std::string_view comma, std::uint64_t& bits);
 
  private:
   const char* at_;
   const char* const end_;
-  std::string_view iso_;  ///< The last time read; bodies mostly have the frame's.
+  std::string_view iso_;  ///< Last time read; most bodies have the frame's.
   Timestamp iso_time_;
 };
 

@@ -1,7 +1,7 @@
-// The words of our documents and the IRIs they stand for, as proto/context.jsonld has them.
+// The terms of our documents and their IRIs, as in proto/context.jsonld.
 //
-// There is one table, the context; it is compiled in and read once.  To add a word: one line there,
-// one paragraph in proto/vocab/chorus.ttl (a test compares the two).
+// There is one table, the context; it is compiled in and read once.  To add a term, add one line
+// there and one paragraph in proto/vocab/chorus.ttl (a test compares the two).
 #pragma once
 
 #include <string>
@@ -19,20 +19,20 @@ enum class Container { None, Set, List, Index };
 /// What one key means.
 struct TermUse {
   std::string iri;
-  std::string type = {};  ///< "@id", "@vocab", a datatype IRI, or empty: the value's own type.
+  std::string type = {};  ///< "@id", "@vocab", a datatype IRI, or empty: the type of the value.
   Container container = Container::None;
-  std::string index = {};  ///< Container::Index: IRI of the property whose value is the key.
-  /// False: not in the context; the word stands for itself in our namespace.
+  std::string index = {};  ///< For Container::Index: IRI of the property that becomes the key.
+  /// False: not in the context; the key is then a name in our namespace.
   bool declared = true;
 };
 
-/// The meaning of `key` in a node of these types (a type may give a key a meaning of its own).
+/// The meaning of `key` in a node of these types (a type may give a key its own meaning).
 [[nodiscard]] TermUse term(std::string_view key, const std::vector<std::string>& types = {});
 
 /// The IRI of a class or individual: "Frame", "ldp:BasicContainer" or an absolute IRI.
 [[nodiscard]] std::string class_iri(std::string_view name);
 
-/// Every declared key with its IRI, and every prefix: for the writers and for tests.
+/// Every declared key with its IRI, and every prefix; for the writers and for tests.
 [[nodiscard]] const std::vector<std::pair<std::string, TermUse>>& all_terms();
 [[nodiscard]] const std::vector<rdf::Prefix>& all_prefixes();
 

@@ -1,4 +1,4 @@
-// Camera images as encoded bytes with the intrinsics that make them measurable.
+// Camera images as encoded bytes, with the intrinsics needed to measure in them.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// The device seam: whatever yields SensorFrames.  A simulator, a recording or hardware look the
-// same.
+// The interface of devices: whatever yields SensorFrames.  A simulator, a recording and hardware
+// look alike.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@
 
 namespace chorus {
 
-/// A resource that the service has because of its device.
+/// A resource that the service offers because of its device.
 struct DeviceResource {
   std::string path;  ///< "push"
   std::string what;  ///< For people, half a sentence.
@@ -29,8 +29,8 @@ struct DeviceDescription {
   std::vector<DeviceResource> resources = {};
 };
 
-/// One capture.  Images are encoded only on demand, so they are functions, called at most once,
-/// from another thread; empty when the device has none or privacy settings forbid them.
+/// One capture.  Images are functions, because they are encoded only on demand; each is called at
+/// most once, from another thread.  Empty when the device has none or privacy settings forbid them.
 struct Capture {
   SensorFrame frame;
   std::function<Result<CameraImage>()> color;
@@ -44,11 +44,11 @@ class FrameSource {
   virtual ~FrameSource() = default;
   [[nodiscard]] virtual DeviceDescription describe() const = 0;
 
-  /// Delivers captures in time order from the calling thread until stopped or at its end.  An error
+  /// Delivers captures in time order on the calling thread, until stopped or at its end.  An error
   /// is final; a stop or the end of a recording is success.
   [[nodiscard]] virtual Result<void> run(std::stop_token stop, const Sink& sink) = 0;
 
-  /// Why it delivers nothing just now, for people; empty when it does not know.  Any thread.
+  /// Why it delivers nothing at the moment, for people; empty when unknown.  From any thread.
   [[nodiscard]] virtual std::string trouble() const { return {}; }
 };
 

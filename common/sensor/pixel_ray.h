@@ -1,4 +1,4 @@
-// From a pixel to the direction that it shows.
+// From a pixel to the direction it shows.
 #pragma once
 
 #include <optional>
@@ -10,12 +10,12 @@
 namespace chorus {
 
 /// The unit vector through a pixel (u to the right, v down) in the camera's axes: x right, y down,
-/// z ahead.  Undoes the distortion; nothing where that has no solution, far outside the image.
+/// z ahead.  Undoes the distortion; none where that has no solution, far outside the image.
 [[nodiscard]] std::optional<Eigen::Vector3d> ray_of(const Eigen::Vector2d& pixel,
                                                     const Intrinsics& camera);
 
 /// Covariance of that unit vector [rad^2] if both pixel coordinates have the standard deviation
-/// `sigma` [px].  Distortion affects the direction, but hardly its error.
+/// `sigma` [px].  Distortion changes the direction, but hardly its error.
 [[nodiscard]] Eigen::Matrix3d ray_covariance(const Eigen::Vector3d& ray, const Intrinsics& camera,
                                              double sigma);
 

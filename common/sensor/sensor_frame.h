@@ -1,4 +1,4 @@
-// What one poll of one sensor yields: all bodies it saw at one instant.
+// All bodies that one sensor saw at one instant.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace chorus {
 
-/// Sensor space: unit normal n (up), offset d [m], n.x + d = 0; d is the sensor's height over the
-/// floor.
+/// In sensor space: unit normal n (up) and offset d [m] with n.x + d = 0; d is the sensor's height
+/// above the floor.
 using FloorPlane = Plane;
 
 struct SensorFrame {

@@ -18,7 +18,7 @@ std::string footer(const About& about) {
          "port in use.";
 }
 
-/// Texts are quoted so that `--id 7` stays a text.
+/// Puts a text in quotes, so that `--id 7` stays a text.
 std::string quoted(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

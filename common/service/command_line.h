@@ -1,10 +1,10 @@
-// The command line of a service: the same options, words and exit codes for each of them.
+// The command line of a service: all have the same options, wording and exit codes.
 //
 //   --config FILE   --set PATH=VALUE   --port N   --log-level L   --log-format F   --check
 //   --version   --help   and the service's own shortcuts
 //
-// Every option that sets something is an assignment to a configuration key, so the file and the
-// command line know the same things.  The command line wins over the file, and --set over the other
+// Every option that sets something assigns to a configuration key, so the file and the command line
+// can set the same things.  The command line overrides the file, and --set overrides the other
 // options.
 #pragma once
 
@@ -20,29 +20,29 @@ inline constexpr int kExitStopped = 0;   ///< Stopped on request, or had nothing
 inline constexpr int kExitFailed = 1;    ///< Failed while running.
 inline constexpr int kExitMistaken = 2;  ///< Wrong command line or configuration, or a port in use.
 
-/// An option that is an assignment.
+/// An option that assigns to a configuration key.
 struct Shortcut {
   std::string option;  ///< "--id"
   std::string key;     ///< "id"
   std::string help;
-  bool quoted = true;        ///< Its value is a text, even when it looks like a number.
-  std::string implied = {};  ///< An assignment that is made first: device.kind="replay".
+  bool quoted = true;        ///< The value is a text, even if it looks like a number.
+  std::string implied = {};  ///< An assignment to make first: device.kind="replay".
 };
 
-/// What a program says about itself.
+/// How a program describes itself.
 struct About {
   std::string name;  ///< "chorus-sensor"
   std::string description;
-  std::string examples;  ///< Lines, indented, each with its end.
+  std::string examples;  ///< Indented lines, each with its line end.
   std::vector<Shortcut> shortcuts = {};
   std::string files = {};  ///< For the manual page: lines "NAME meaning".
 };
 
 struct CommandLine {
-  /// Set: do not run (help, or a mistake that has been explained already).
+  /// If set, exit without running (help, or a mistake that has already been explained).
   std::optional<int> exit;
   ConfigSource source;
-  bool check_only = false;  ///< Check the configuration and leave.
+  bool check_only = false;  ///< Check the configuration and exit.
 };
 
 [[nodiscard]] CommandLine read_command_line(const About& about, int argc, const char* const* argv);

@@ -1,4 +1,4 @@
-// What every Chorus service says about itself, the same on each of them:
+// The resources that every Chorus service has in the same form:
 // /clock /healthz /metrics /openapi.json /ns /shapes /context.jsonld /.well-known/void
 #pragma once
 
@@ -14,13 +14,13 @@ namespace chorus::service {
 /// Health for a load balancer: 200 when ready, 503 with the reason when not.
 struct Health {
   bool ready = true;
-  std::string reason;  ///< Why not ready; when ready, a warning for people.
+  std::string reason;  ///< If not ready: why; if ready: a warning for people.
 };
 
 struct CommonResources {
-  std::shared_ptr<const Clock> clock;  ///< Null: the host's.
+  std::shared_ptr<const Clock> clock;  ///< Null: the host's clock.
   std::function<Health()> health;      ///< Empty: always ready.
-  /// Prometheus text (metrics.h), complete; empty: no /metrics.
+  /// Complete Prometheus text (metrics.h); empty: no /metrics.
   std::function<std::string()> metrics;
 };
 

@@ -13,7 +13,7 @@ struct ConfigSource {
   std::vector<std::string> assignments;  ///< "path=value", in order.
 };
 
-/// Reads the file anew; its content is checked by whoever reads the keys.
+/// Reads the file again; the code that reads the keys checks its content.
 [[nodiscard]] Result<ConfigReader> read_config(const ConfigSource& source);
 
 }  // namespace chorus::service

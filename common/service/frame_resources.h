@@ -1,4 +1,4 @@
-// The frames of a service, the same on each of them:
+// The frames of a service, in the same form for all services:
 // /frame, /frames/{seq}, /frame?at=TIME, /skeletons/, /skeletons/{id}
 #pragma once
 
@@ -13,17 +13,17 @@
 
 namespace chorus::service {
 
-/// Rendering happens on the server's thread and only for what somebody asks for.  Thread-safe.
+/// Renders on the server's thread, and only what is asked for.  Thread-safe.
 class FrameResources {
  public:
   FrameResources(Serving serving, const FrameHistory& history);
 
   /// Sequences must increase within one run of the service.
   void publish(const FramePtr& frame);
-  /// A better answer for an instant already published: only ?at= shows it.
+  /// Replaces the frame of an instant already published by a better one: only ?at= shows it.
   void amend(FramePtr frame) { ring_.amend(std::move(frame)); }
 
-  /// The router keeps using this object, which must outlive it.
+  /// The router keeps using this object, so the object must outlive it.
   void add_routes(http::Router& router);
 
  private:

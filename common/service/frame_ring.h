@@ -15,30 +15,30 @@ namespace chorus::service {
 
 using resource::FramePtr;
 
-/// How far /frames/{seq} and ?at= reach back.
+/// How far back /frames/{seq} and ?at= reach.
 struct FrameHistory {
   Duration span = std::chrono::seconds(3);
-  std::size_t most = 10'000;  ///< Frames, whatever their rate.
+  std::size_t most = 10'000;  ///< Most frames, whatever their rate.
 
   bool operator==(const FrameHistory&) const = default;
 };
 
 /// Thread-safe.  Frames are pushed in order of sequence and capture time; an older capture time
-/// (the clock was set back) empties the ring first.
+/// (after the clock was set back) empties the ring first.
 class FrameRing {
  public:
   explicit FrameRing(const FrameHistory& history) : history_(history) {}
 
   void push(FramePtr frame);
 
-  /// A better answer for an instant that is here: ?at= shows it from now on; /frames/{seq} never
-  /// changes.
+  /// A better frame for an instant that is kept here: ?at= shows it from now on, but /frames/{seq}
+  /// never changes.
   void amend(FramePtr frame);
-  /// How often that has happened.
+  /// How often amend() has replaced a frame.
   [[nodiscard]] std::uint64_t amendments() const;
 
-  /// By the number in a path.  Gone when it is older than all that are kept; NotFound when no frame
-  /// has this number: not yet, never (it was lost or left out), or not a number.
+  /// The frame with the number in a path.  Gone when it is older than all frames kept; NotFound
+  /// when no frame has it: not yet, never (it was lost or left out), or it is not a number.
   [[nodiscard]] Result<FramePtr> find(std::string_view sequence) const;
 
   /// The frame for an instant (xsd:dateTime or nanoseconds since the epoch as integer),
@@ -51,8 +51,8 @@ class FrameRing {
   const FrameHistory history_;
   mutable std::mutex mutex_;
   struct Kept {
-    FramePtr first;   ///< As it was published.
-    FramePtr better;  ///< The same, unless it was amended.
+    FramePtr first;   ///< As published.
+    FramePtr better;  ///< The same frame, or the one it was amended to.
   };
   std::deque<Kept> frames_;
   std::uint64_t amendments_ = 0;

@@ -1,7 +1,7 @@
-// From settings to a running service: the part of Program that is the same for all of them.
+// From settings to a running service: the part of Program that is the same for all services.
 //
-// Settings have two parts, each compared by value (defaulted ==): `live`, which a reload takes
-// over, and `at_start`, which needs a restart.  A reload hands the whole live part on and names the
+// Settings have two parts, each compared by value (defaulted ==): a reload applies the part `live`;
+// the part `at_start` needs a restart.  A reload passes on the whole live part and names the
 // changed keys of the other part.  No key is listed by hand, so none can be forgotten.
 #pragma once
 
@@ -15,13 +15,13 @@
 namespace chorus::service {
 
 /// `Settings`: `live` with a LogConfig `log`, and `at_start`.
-/// `Host`: static Result<std::unique_ptr<Host>> make(const Settings&), binds nothing yet;
+/// `Host`: static Result<std::unique_ptr<Host>> make(const Settings&), which binds nothing yet;
 ///         Result<void> start(); void take(const live part&); void stop();
-///         and if it can tell, bool alive(); Concerns concerns().
+///         and, if it has any to offer, bool alive(); Concerns concerns().
 template <class Settings, class Host>
 class HostedProgram final : public Program {
  public:
-  /// Reads all keys; ConfigReader::finish() included.
+  /// Reads all keys and calls ConfigReader::finish().
   using Read = Result<Settings> (*)(ConfigReader);
   explicit HostedProgram(Read read) : read_(read) {}
 
@@ -67,7 +67,7 @@ class HostedProgram final : public Program {
     return !(wanted.at_start == settings_.at_start);
   }
 
-  /// A key that cannot change alone counts as one that needs a restart.
+  /// A key that cannot change on its own counts as one that needs a restart.
   [[nodiscard]] std::string waiting(const std::string& wanted) const {
     return waiting_keys(started_as_, wanted, [this](const std::string& text) {
       const auto probe = ConfigReader::parse(text, "reload").and_then(read_);
@@ -77,11 +77,11 @@ class HostedProgram final : public Program {
 
   Read read_;
   Settings settings_;
-  std::string started_as_;  ///< The configuration at the start, JSON.
+  std::string started_as_;  ///< The configuration at the start, as JSON.
   std::unique_ptr<Host> host_;
 };
 
-/// The whole main() of a service.
+/// The complete main() of a service.
 template <class Settings, class Host>
 [[nodiscard]] int run_service(const About& about, Result<Settings> (*read)(ConfigReader), int argc,
                               const char* const* argv) {

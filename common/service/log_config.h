@@ -13,10 +13,10 @@ struct LogConfig {
   bool operator==(const LogConfig&) const = default;
 };
 
-/// Mistakes are reported by the reader's finish().
+/// The reader's finish() reports mistakes.
 void read_log(ConfigReader config, LogConfig& out);
 
-/// Applies it to the log from now on.
+/// Applies the config to the log from now on.
 void apply(const LogConfig& config);
 
 }  // namespace chorus::service

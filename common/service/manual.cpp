@@ -14,7 +14,7 @@ namespace {
 using Options = std::vector<const CLI::Option*>;
 using Commands = std::vector<const CLI::App*>;
 
-/// Text for roff: no line of it is a request, no minus sign a hyphen.
+/// Escapes text for roff: no line becomes a request, no minus sign a hyphen.
 std::string roff(std::string_view text) {
   std::string out;
   bool begins = true;
@@ -44,7 +44,7 @@ Commands commands_of(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App*) { return true; });
 }
 
-/// "-h,--help" or "--config TEXT" or, without dashes, what an argument is called.
+/// How an option is written: "-h,--help", "--config TEXT" or, for an argument, its name.
 std::string spelling(const CLI::Option& option) {
   std::string out = "\\fB" + roff(option.get_name(option.get_positional(), true)) + "\\fR";
   if (option.get_items_expected_max() > 0 && !option.get_type_name().empty())
@@ -60,7 +60,7 @@ std::string options_of(const CLI::App& app) {
   return out;
 }
 
-/// Lines as they are, since examples lose their meaning when filled.
+/// Keeps the lines, because examples lose their meaning when they are filled.
 std::string as_it_is(std::string_view text) {
   return text.empty() ? "" : ".PP\n.nf\n" + roff(text) + "\n.fi\n";
 }

@@ -1,6 +1,6 @@
-// What a service measures of itself, written for Prometheus (text format 0.0.4).
+// What a service measures about itself, written for Prometheus (text format 0.0.4).
 //
-// Counters end in _total, names carry their unit; no label is ever per body or client.
+// Counters end in _total, names contain their unit; no label is ever for a body or a client.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ namespace chorus::service {
 
 using Labels = std::vector<std::pair<std::string, std::string>>;
 
-/// Collects samples and writes them as one text; a metric's help appears once, before its first
+/// Collects samples and writes them as one text; each metric's help appears once, before its first
 /// sample.
 class MetricsText {
  public:
@@ -29,7 +29,7 @@ class MetricsText {
   void histogram(const Metric& metric, const Histogram::Snapshot& values,
                  const Labels& labels = {});
 
-  /// Samples of one metric stand together, whatever the order of the calls.
+  /// Groups the samples of each metric, whatever the order of the calls was.
   [[nodiscard]] std::string text() const;
 
  private:
@@ -43,7 +43,7 @@ class MetricsText {
   std::vector<Family> families_;
 };
 
-/// chorus_http_*: what every server counts.
+/// chorus_http_*: the counters of every server.
 void add_server(MetricsText& text, const http::ServerCounters& counters);
 
 }  // namespace chorus::service

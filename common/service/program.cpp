@@ -41,8 +41,8 @@ timespec timespec_of(std::chrono::microseconds time) {
   return {time.count() / kPerSecond, time.count() % kPerSecond * 1000};
 }
 
-/// The next signal; tells the supervisor meanwhile, as often as it wants, that the program is
-/// alive.
+/// Waits for the next signal; meanwhile tells the supervisor, as often as required, that the
+/// program is alive.
 int next_signal(const sigset_t& signals, const Supervisor& supervisor, Program& program) {
   if (!supervisor.pulse()) {
     int signal = 0;
@@ -60,7 +60,7 @@ int next_signal(const sigset_t& signals, const Supervisor& supervisor, Program& 
   }
 }
 
-/// From the start to the signal that ends it.
+/// Runs from the start to the signal that ends the program.
 void run(Program& program, const ConfigSource& source, const sigset_t& signals) {
   const Supervisor supervisor(own_environment());
   supervisor.tell("READY=1");

@@ -1,8 +1,8 @@
-// The shell around every service: from its command line to its exit code.
+// The frame around every service: from its command line to its exit code.
 //
-// Signals are taken one by one by the main thread (sigwait), so that no handler interrupts other
-// code: SIGTERM and SIGINT stop, SIGHUP reads the configuration again.  A wrong configuration then
-// changes nothing.
+// The main thread takes signals one by one (sigwait), so that no handler interrupts other code:
+// SIGTERM and SIGINT stop, SIGHUP reads the configuration again.  If that configuration is wrong,
+// nothing changes.
 #pragma once
 
 #include <string>
@@ -14,25 +14,25 @@
 
 namespace chorus::service {
 
-/// One service as its shell sees it.  Every call comes from the main thread.
+/// One service as this frame sees it.  Every call comes from the main thread.
 class Program {
  public:
   virtual ~Program() = default;
 
-  /// Reads the whole configuration, ConfigReader::finish() included, and makes what can be made
-  /// without binding a port.  Called once, first.
+  /// Reads the whole configuration, calls ConfigReader::finish(), and creates everything that needs
+  /// no port.  Called once, first.
   [[nodiscard]] virtual Result<LogConfig> prepare(ConfigReader config) = 0;
-  /// After prepare: what would not work if it started now, each with what to do.  Binds nothing
+  /// Called after prepare: what would not work if it started now, each with advice.  Binds nothing
   /// and changes nothing.
   [[nodiscard]] virtual std::vector<std::string> concerns() { return {}; }
-  /// Binds and runs; returns at once.
+  /// Binds the ports and starts to run; returns at once.
   [[nodiscard]] virtual Result<void> start() = 0;
-  /// Takes over what can change while running and warns of what cannot.  On an Error everything is
+  /// Applies what can change while running and warns of what cannot.  On an Error everything stays
   /// as before.
   [[nodiscard]] virtual Result<LogConfig> reload(ConfigReader config) = 0;
   virtual void stop() = 0;
-  /// While running: false when a thread that everything depends on has not moved for a while.  The
-  /// watchdog of systemd then starts the program again.
+  /// While running: false when a thread that everything depends on has hung for a while.  The
+  /// watchdog of systemd then restarts the program.
   [[nodiscard]] virtual bool alive() { return true; }
 };
 

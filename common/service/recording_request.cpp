@@ -16,7 +16,7 @@ tl::unexpected<Error> wrong(std::string message) {
   return fail(ErrorCode::InvalidArgument, "recordings", std::move(message));
 }
 
-/// One key of the body of a POST.
+/// Takes one key from the body of a POST.
 Result<void> take(const std::string& key, const nlohmann::json& value, RecordingRequest& out) {
   if (key == "name" && value.is_string()) {
     out.name = value.get<std::string>();

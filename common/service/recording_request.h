@@ -1,4 +1,4 @@
-// What POST /recordings/ asks for.
+// What a POST /recordings/ asks for.
 #pragma once
 
 #include <string>
@@ -12,12 +12,12 @@ namespace chorus::service {
 /// The body of POST /recordings/.
 struct RecordingRequest {
   std::string name;      ///< Empty: the UTC time.
-  Duration duration{0};  ///< Zero: until it is stopped.
+  Duration duration{0};  ///< Zero: until stopped.
   bool raw = true;
   bool fused = true;
 };
-/// An empty body asks for everything there is.  Unknown keys, wrong types and names that are no
-/// recording names are InvalidArgument.
+/// An empty body asks for everything.  Unknown keys, wrong types and invalid recording names are
+/// InvalidArgument.
 [[nodiscard]] Result<RecordingRequest> parse_recording_request(std::string_view body,
                                                                bool has_fused);
 

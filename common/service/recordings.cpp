@@ -29,7 +29,7 @@ bool is_running(const RecordingReport& report) {
   return report.state == RecordingState::Recording || report.state == RecordingState::Stopping;
 }
 
-/// The recordings of earlier runs in the folder.
+/// The folder's recordings from earlier runs.
 std::map<std::string, RecordingReport> recordings_in(const fs::path& folder) {
   std::map<std::string, RecordingReport> found;
   std::error_code error;
@@ -48,7 +48,7 @@ std::string version_of(const RecordingReport& report) {
          std::to_string(report.bytes());
 }
 
-/// Why a recording did not start, without the paths of this host.
+/// Why a recording did not start, without revealing this host's paths.
 tl::unexpected<Error> refused(const Error& error, const std::string& name) {
   const std::string where = std::string(kWhere) + "/" + name;
   if (error.code == ErrorCode::Conflict)
@@ -60,9 +60,9 @@ tl::unexpected<Error> refused(const Error& error, const std::string& name) {
   return fail(error.code, where, error.message);
 }
 
-/// The part of the list that a request wants.
+/// The part of the list that a request asks for.
 struct Page {
-  std::string after;  ///< Names up to this one are left out.
+  std::string after;  ///< Names up to and including this one are left out.
   std::size_t limit = 100;
 };
 

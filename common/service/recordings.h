@@ -1,7 +1,7 @@
-// /recordings/: what this service records and has recorded; every service has this interface.
+// /recordings/: what this service is recording and has recorded; all services have it.
 //
-// One recording at a time.  POST /recordings/ starts one, DELETE /recordings/{name} ends it; no
-// request ever deletes a file (docs/decisions/0011-recordings.md).
+// Makes one recording at a time.  POST /recordings/ starts one, DELETE /recordings/{name} ends it;
+// no request ever deletes a file (docs/decisions/0011-recordings.md).
 #pragma once
 
 #include <functional>
@@ -31,13 +31,13 @@ struct RecordingConfig {
 /// The section "recording" of a service's configuration.
 void read_recording(ConfigReader config, RecordingConfig& out);
 
-/// `id` is the IRI the document gives it ("" in /recordings/{name}).
+/// `id` is the IRI of the node in the document ("" in /recordings/{name}).
 [[nodiscard]] resource::Node recording_node(const record::RecordingReport& report, std::string id);
 
 struct RecordingsOptions {
   RecordingConfig config;
-  record::CellHead head;   ///< Of every file.
-  bool has_fused = false;  ///< A fusion server.
+  record::CellHead head;   ///< For every file.
+  bool has_fused = false;  ///< True for a fusion server.
   Serving serving;
   std::shared_ptr<const Clock> clock = std::make_shared<SystemClock>();
 };
@@ -46,21 +46,21 @@ struct RecordingsOptions {
 class Recordings {
  public:
   explicit Recordings(RecordingsOptions options);
-  ~Recordings();  ///< Ends the recording under way and waits for its file.
+  ~Recordings();  ///< Ends the running recording and waits for its file.
 
   enum class Stream { Raw, Fused, Any };
-  /// Where to offer the items of this stream; null while it is not being recorded.
+  /// The recorder to offer this stream's items to; null while the stream is not being recorded.
   [[nodiscard]] std::shared_ptr<record::Recorder> recorder(Stream stream) const;
 
   [[nodiscard]] Result<record::RecordingReport> start(const RecordingRequest& request);
-  /// Ends it without waiting (state `stopping`); does nothing when it has ended.  NotFound when
-  /// there is none of this name.
+  /// Ends a recording without waiting (state `stopping`); does nothing if it has already ended.
+  /// NotFound when none has this name.
   [[nodiscard]] Result<record::RecordingReport> stop(std::string_view name);
 
   /// chorus_recording_*, Prometheus text.
   [[nodiscard]] std::string metrics_text() const;
 
-  /// Must outlive the router.
+  /// This object must outlive the router.
   void add_routes(http::Router& router);
 
  private:
@@ -71,8 +71,8 @@ class Recordings {
   };
 
   [[nodiscard]] record::RecorderOptions options_for(const RecordingRequest& request) const;
-  void settle();  ///< Takes note that a recording has ended.  Called with the mutex held.
-  /// In order of their names, those after `after`, at most `most`.
+  void settle();  ///< Notes that a recording has ended.  Called with the mutex held.
+  /// Those whose names come after `after`, ordered by name, at most `most`.
   [[nodiscard]] std::map<std::string, record::RecordingReport> some(const std::string& after,
                                                                     std::size_t most) const;
   [[nodiscard]] Result<record::RecordingReport> find(std::string_view name) const;
@@ -85,10 +85,10 @@ class Recordings {
 
   const RecordingsOptions options_;
   std::mutex starting_;       ///< One start at a time; never held by threads that offer frames.
-  mutable std::mutex mutex_;  ///< Guards what follows; never held while the disk is used.
+  mutable std::mutex mutex_;  ///< Guards the members below; never held during disk access.
   Running running_;
   std::map<std::string, record::RecordingReport> ended_;
-  std::uint64_t frames_ended_ = 0;  ///< Of this process's recordings that have ended.
+  std::uint64_t frames_ended_ = 0;  ///< Frames of this process's ended recordings.
   std::uint64_t dropped_ended_ = 0;
   std::uint64_t failed_ = 0;
 };

@@ -10,12 +10,12 @@ namespace chorus::service {
 
 struct Serving {
   /// Part of every ETag, so that a validator from an earlier run never matches a document of this
-  /// one.
+  /// run.
   std::string run;
   std::string root = "http://localhost/";  ///< Absolute IRI of `/`, for N-Triples.
 
-  /// Where a document stands: "sensors/s1/frame", and what precedes the names in it
-  /// ("sensors/s1/").
+  /// A document's place: its path, "sensors/s1/frame", and what comes before the names in it,
+  /// "sensors/s1/".
   [[nodiscard]] resource::Place place(std::string path, std::string names = {}) const {
     return {std::move(path), std::move(names), root};
   }

@@ -1,6 +1,6 @@
-// Tells systemd how the service is (the protocol of sd_notify, without its library): one datagram a
-// message to the socket that $NOTIFY_SOCKET names.  Without that variable nothing is told and
-// nobody waits.
+// Tells systemd the state of the service (the sd_notify protocol, without its library): one
+// datagram per message to the socket that $NOTIFY_SOCKET names.  Without that variable nothing is
+// sent, and nothing waits.
 #pragma once
 
 #include <chrono>
@@ -17,14 +17,14 @@ class Supervisor {
   /// Reads NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID.
   explicit Supervisor(const Environment& environment);
 
-  /// "READY=1", "STOPPING=1", "WATCHDOG=1" or "STATUS=..."; false when nobody was told.
+  /// Sends "READY=1", "STOPPING=1", "WATCHDOG=1" or "STATUS=..."; false when it was not sent.
   bool tell(std::string_view message) const;
 
-  /// How often "WATCHDOG=1" is due: half of what the unit's WatchdogSec allows; nothing without it.
+  /// How often "WATCHDOG=1" is due: half of the unit's WatchdogSec; none without it.
   [[nodiscard]] std::optional<std::chrono::microseconds> pulse() const { return pulse_; }
 
  private:
-  std::string socket_;  ///< A path, or a name in the abstract namespace after "@".
+  std::string socket_;  ///< A path, or "@" and a name in the abstract namespace.
   std::optional<std::chrono::microseconds> pulse_;
 };
 

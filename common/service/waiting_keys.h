@@ -1,4 +1,4 @@
-// Which changed keys of a configuration wait for a restart: each changed key is tried alone.
+// Finds the changed configuration keys that need a restart, by trying each changed key alone.
 #pragma once
 
 #include <functional>
@@ -10,8 +10,8 @@ namespace chorus::service {
 /// True when a service would need a restart to run with this configuration (JSON).
 using NeedsRestart = std::function<bool(const std::string& text)>;
 
-/// The keys that differ between two configurations (JSON) and need a restart when they alone
-/// change: "http.port, outputs".  Lists are compared as a whole.  Empty: none.
+/// The keys that differ between two configurations (JSON) and need a restart when changed alone:
+/// "http.port, outputs".  Lists are compared as a whole.  Empty: none.
 [[nodiscard]] std::string waiting_keys(std::string_view running, std::string_view wanted,
                                        const NeedsRestart& needs_restart);
 

@@ -1,12 +1,12 @@
-// A small program on hosts that need no more, and the whole one where its package is installed.
+// A small program for every host runs the whole one instead where that one's package is installed.
 #pragma once
 
 #include <string>
 
 namespace chorus::service {
 
-/// Becomes the program at this path, seen from the folder of this one ("../libexec/chorus/chorus");
-/// returns when it is not there.
+/// Replaces this process by the program at `path`, relative to this program's folder
+/// ("../libexec/chorus/chorus"); returns when it does not exist.
 void become_whole_program(const std::string& path, char** arguments);
 
 }  // namespace chorus::service

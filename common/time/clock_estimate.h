@@ -1,7 +1,7 @@
 // How far another host's clock differs from ours, from the stamps on each answer (Cristian 1989).
 //
 // We stamp sending (t0) and receipt (t3); the other side stamps its receipt (t1) and sending (t2):
-// theirs - ours = ((t1 - t0) + (t2 - t3)) / 2,   |error| <= ((t3 - t0) - (t2 - t1)) / 2.
+//   theirs - ours = ((t1 - t0) + (t2 - t3)) / 2,   |error| <= ((t3 - t0) - (t2 - t1)) / 2.
 // A long poll may wait any time between t1 and t2.  Network delay is one-sided noise, so the
 // exchange with the least delay wins (minimum filter over a sliding window).
 #pragma once
