@@ -2,6 +2,7 @@
 #include "fusion-server/registration/registration.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <set>
@@ -263,7 +264,8 @@ void judge_accuracy(Work& work) {
         fmt::format("sensor {} is placed only to within {:.3f} m; walk longer or further out",
                     sensor.str(), radius));
   }
-  const Duration walked = duration_of(work);
+  // From the first frame to the last it is always a little less than was asked for.
+  const Duration walked = std::chrono::round<std::chrono::seconds>(duration_of(work));
   if (walked < work.config.good_duration) {
     work.doubt(fmt::format("the walk lasted only {:.0f} s; {:.0f} s make a good registration",
                            seconds(walked), seconds(work.config.good_duration)));

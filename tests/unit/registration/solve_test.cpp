@@ -133,6 +133,12 @@ TEST(Solve, ShortWalksStayProvisionalAndSaySo) {
   EXPECT_EQ(registration.sensors.size(), 3u);
 }
 
+TEST(Solve, AWalkOfTwentySecondsIsOne) {
+  // The last frame is taken before the twenty seconds are over.
+  const Registration registration = solve(ring(3, {.length = 20}), kWalkStart, {});
+  EXPECT_THAT(registration.reasons, ::testing::Not(Contains(HasSubstr("lasted only"))));
+}
+
 TEST(Solve, OneSensorIsItsOwnWorld) {
   const Registration registration = solve(ring(1, {}), kWalkStart, {});
   EXPECT_EQ(registration.verdict, Verdict::Good) << testing::PrintToString(registration.reasons);
