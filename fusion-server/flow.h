@@ -1,5 +1,5 @@
-// The values handed from stage to stage of the pipeline.  Values only: no clock, no socket, no
-// lock.
+// The values passed from stage to stage of the pipeline.  They are plain values: no clock, no
+// socket, no lock.
 #pragma once
 
 #include <array>
@@ -21,33 +21,33 @@ namespace chorus {
 
 /// How the answer for an instant was obtained.
 enum class Basis {
-  Exact,         ///< A capture at that very instant.
+  Exact,         ///< There is a capture at exactly that instant.
   Interpolated,  ///< Between two captures.
-  Pending,       ///< Not yet: a later capture may still arrive.  Ask again.
-  Lost,  ///< Never: the sensor passed the instant without seeing it, or the gap is too wide.
+  Pending,       ///< A later capture may still arrive: ask again.
+  Lost,          ///< There will be none: the sensor is past the instant, or the gap is too wide.
 };
 
 /// One sensor's bodies, moved to the common instant.
 struct AlignedSensor {
   SensorId sensor;
   Basis basis = Basis::Lost;
-  /// `captured` is the common instant; empty unless Exact/Interpolated.
+  /// `captured` is the common instant; empty unless Exact or Interpolated.
   std::vector<BodyFrame> bodies;
   std::optional<FloorPlane> floor;
 };
 
-/// Where a sensor stands: points x_in_world = world_from_sensor * x_in_sensor.
+/// The pose of a sensor: x_in_world = world_from_sensor * x_in_sensor.
 struct Extrinsics {
   Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
   std::vector<SensorId> chain;  ///< Master first, this sensor last (Otto 5.2.3).
-  double error = 0.0;           ///< Summed edge error along the chain [m].
-  /// Of (rotation vector, sensor position) in world axes, relative to the master [rad^2, rad m,
-  /// m^2].
+  double error = 0.0;           ///< Sum of the edge errors along the chain [m].
+  /// Covariance of (rotation vector, sensor position) in world axes, relative to the master [rad^2,
+  /// rad m, m^2].
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
-/// One overlapping pair: the client as seen from the master's side.  An edge; never silently
-/// inverted.
+/// An edge: the registration of one overlapping pair, as the client's pose seen from the master's
+/// side.  It is never silently inverted.
 struct PairwiseRegistration {
   SensorId target;
   SensorId source;
@@ -57,8 +57,8 @@ struct PairwiseRegistration {
   std::size_t pairs = 0;  ///< Time-paired correspondences.
   std::size_t inliers = 0;
   double spread = 0.0;     ///< rms radius of the walk about its centroid, horizontally [m].
-  double inflation = 1.0;  ///< Pairs per independent pair.
-  /// Of a small motion exp(omega), tau applied on the target side [rad^2, rad m, m^2].
+  double inflation = 1.0;  ///< Correlation: number of pairs per independent pair.
+  /// Covariance of a small motion exp(omega), tau on the target side [rad^2, rad m, m^2].
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
@@ -66,30 +66,30 @@ enum class Verdict { None, Provisional, Good, Refused };
 
 /// How far one sensor's place may be trusted.
 struct SensorVerdict {
-  Verdict verdict = Verdict::None;   ///< Refused: it has no place.
-  std::vector<std::string> reasons;  ///< Why not good, one sentence for people each.
+  Verdict verdict = Verdict::None;   ///< Refused: the sensor has no place.
+  std::vector<std::string> reasons;  ///< Why it is not good, as sentences for people.
 };
 
-/// The sensors' places, replaced whole, persisted, versioned.
+/// The places of all sensors; replaced as a whole, stored, versioned.
 struct Registration {
   std::uint64_t version = 0;
   Timestamp solved;
-  Verdict verdict = Verdict::None;   ///< Of the sensors that have a place, together.
-  std::vector<std::string> reasons;  ///< Why not good, and why sensors are missing.
+  Verdict verdict = Verdict::None;   ///< Of all sensors that have a place, together.
+  std::vector<std::string> reasons;  ///< Why it is not good, and why sensors are missing.
   SensorId master;
   std::map<SensorId, Extrinsics> sensors;
-  /// For each sensor that took part in a walk, with a place or without.
+  /// For each sensor that took part in a walk, whether it has a place or not.
   std::map<SensorId, SensorVerdict> verdicts;
   std::vector<PairwiseRegistration> edges;
 };
 
-/// One sensor's sight of one person at the common instant, with everything that fusion needs to
-/// know about it.
+/// One sensor's view of one person at the common instant, with everything that fusion needs to know
+/// about it.
 struct SensorView {
   SensorId sensor;
   BodyId body;
   Basis basis = Basis::Exact;
-  /// Sensor to neck [m]; NaN: unknown.
+  /// Distance from sensor to neck [m]; NaN: unknown.
   double distance = std::numeric_limits<double>::quiet_NaN();
   double facing = std::numeric_limits<double>::quiet_NaN();   ///< Otto Eq. (2) phi [rad].
   double bearing = std::numeric_limits<double>::quiet_NaN();  ///< Otto Eq. (3) alpha [rad].
@@ -102,7 +102,7 @@ struct SensorView {
 struct Person {
   PersonId id;
   std::vector<SensorView> views;
-  /// Probability that left and right are not exchanged; none: nobody has asked.
+  /// Probability that left and right are not exchanged; none: the sides were not resolved.
   std::optional<double> sides_confidence = {};
 };
 
@@ -111,23 +111,23 @@ struct FusedBody {
   Skeleton<WorldSpace> skeleton;
   std::array<double, kJointCount> variance{};             ///< Mean per-axis variance [m^2].
   std::array<std::uint64_t, kJointCount> contributors{};  ///< Bit i: Snapshot::sensors[i].
-  std::optional<std::size_t> slot;              ///< Its number in every output; none: not seated.
-  std::optional<double> sides_confidence = {};  ///< As Person has it.
+  std::optional<std::size_t> slot;              ///< Its number in every output; none: no slot.
+  std::optional<double> sides_confidence = {};  ///< Copied from Person.
 };
 
-/// What one sensor did at this instant, for /sensors/ and the viewer.
+/// The state of one sensor at this instant, for /sensors/ and the viewer.
 struct SensorReport {
   SensorId sensor;
   Basis basis = Basis::Lost;
   std::size_t bodies = 0;
-  double weight = 0.0;  ///< Largest view weight of its bodies.
+  double weight = 0.0;  ///< Largest weight of the views that it has.
 };
 
 /// All fused bodies at one instant.  Immutable once published.
 struct Snapshot {
   std::uint64_t sequence = 0;
   Timestamp instant;
-  std::vector<SensorId> sensors;  ///< Registered sensors in id order; at most 64.
+  std::vector<SensorId> sensors;  ///< Registered sensors ordered by id; at most 64.
   std::vector<FusedBody> bodies;
   std::vector<SensorReport> reports;
 };

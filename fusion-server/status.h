@@ -1,7 +1,7 @@
-// What the fusion server knows about itself besides the fused bodies: its sensors and its
+// The state of the fusion server apart from the fused bodies: its sensors and its
 // registration.
 //
-// A value, replaced whole a few times a second; readers hold a shared_ptr to a constant one.
+// A value, replaced as a whole a few times a second; readers hold a shared_ptr to const.
 #pragma once
 
 #include <cstdint>
@@ -18,44 +18,44 @@ struct SensorStatus {
   SensorId id;
   std::string url;
   std::string state;            ///< "live", "connecting", "lost", "refused"
-  std::string last_error;       ///< What is wrong now; empty: nothing.
-  bool streaming = false;       ///< Its frames come by event stream, not by polling.
+  std::string last_error;       ///< What is wrong at present; empty: nothing.
+  bool streaming = false;       ///< Its frames come by event stream instead of polling.
   std::optional<Duration> age;  ///< Since the newest capture, by our clock; none: no frame yet.
   double rate_hz = 0.0;
   std::size_t bodies = 0;         ///< In its newest frame.
   double weight = 0.0;            ///< Largest Otto weight of its views; only "otto" methods use it.
-  double share = 0.0;             ///< Share of all fused joints that it contributed to, lately.
-  double share_afterwards = 0.0;  ///< The same with its late frames, as /frame?at= has it.
-  double awaited = 0.0;           ///< Share of all instants that waited for it to the last.
-  std::optional<Duration> clock_offset;  ///< Ours minus theirs.
+  double share = 0.0;             ///< Fraction of joints it contributed to in the last second.
+  double share_afterwards = 0.0;  ///< The same including its late frames, as /frame?at= has it.
+  double awaited = 0.0;           ///< Fraction of instants that waited for it to the end.
+  std::optional<Duration> clock_offset;  ///< Our clock minus the sensor's.
   std::optional<Duration> clock_uncertainty;
   bool clock_corrected = false;  ///< The offset is larger than its uncertainty, so it is applied.
   std::uint64_t frames = 0;      ///< Delivered since start.
   std::uint64_t missed = 0;      ///< Gaps in the sensor's own sequence that were not filled.
   std::uint64_t refused = 0;     ///< Frames that went back in time or had an implausible time.
-  std::uint64_t failures = 0;    ///< Requests without a usable answer.
+  std::uint64_t failures = 0;    ///< Requests that got no usable answer.
 
   bool operator==(const SensorStatus&) const = default;
 };
 
 enum class SessionState {
-  Collecting,  ///< Watching somebody walk.
-  Solving,     ///< The walk is over; its last solve runs.
+  Collecting,  ///< Waiting for somebody to walk long enough.
+  Solving,     ///< The walk is over; its final solve is running.
   Done,        ///< Verdict and reasons are final.
   Cancelled,
 };
 
 /// One registration session: its progress, then its outcome.
 struct SessionStatus {
-  std::uint64_t id = 0;  ///< Rises; never reused.
+  std::uint64_t id = 0;  ///< Increases; never reused.
   SessionState state = SessionState::Done;
   bool automatic = false;  ///< Started by itself.
   Timestamp started;
-  double elapsed = 0.0;             ///< Walk seen so far [s].
-  double target = 0.0;              ///< [s]
-  Verdict verdict = Verdict::None;  ///< Of its last solve.
-  bool adopted = false;             ///< What it found is in use, or was, and was not withdrawn.
-  /// What the last solve lacked, and what happened to its result.
+  double elapsed = 0.0;             ///< Length of walk collected so far [s].
+  double target = 0.0;              ///< Length of walk wanted [s].
+  Verdict verdict = Verdict::None;  ///< Verdict of its last solve.
+  bool adopted = false;             ///< Its result is in use, or was, and was not withdrawn.
+  /// What was missing for the last solve, and what became of its result.
   std::vector<std::string> reasons;
 
   bool operator==(const SessionStatus&) const = default;
@@ -65,10 +65,10 @@ struct SessionStatus {
   return session.state == SessionState::Collecting || session.state == SessionState::Solving;
 }
 
-/// Where the registration is stored across restarts.
+/// Where the registration is kept across restarts.
 struct StorageStatus {
   std::string folder;   ///< Empty: nowhere.
-  std::string trouble;  ///< Why the last attempt to store failed; empty: it did not.
+  std::string trouble;  ///< Why the last attempt to store failed; empty: it succeeded.
 
   bool operator==(const StorageStatus&) const = default;
 };
@@ -77,13 +77,13 @@ struct StorageStatus {
   return !storage.folder.empty() && storage.trouble.empty();
 }
 
-/// The progress of registering, beside the registration in use.
+/// The progress of registration, in addition to the registration in use.
 struct RegistrationProgress {
   std::vector<SessionStatus> sessions;  ///< The last few, newest first.
   std::uint64_t next_session = 1;       ///< Id of the next one.
-  std::vector<std::string> awaits;      ///< What is missing now, one sentence for people each.
+  std::vector<std::string> awaits;      ///< What is missing at present, as sentences for people.
   StorageStatus storage;
-  std::uint64_t commands = 0;  ///< How many commands of clients have taken effect.
+  std::uint64_t commands = 0;  ///< Number of clients' commands carried out.
 };
 
 struct Counters {
@@ -91,10 +91,10 @@ struct Counters {
   /// Instants left out because the host was suspended or overloaded.
   std::uint64_t ticks_skipped = 0;
   std::uint64_t frames_dropped = 0;  ///< Lost between poller and pipeline.
-  std::uint64_t steps_failed = 0;    ///< Turns of the pipeline that broke.
-  std::uint64_t jobs_failed = 0;     ///< Of the registration worker.
-  double step_seconds = 0.0;         ///< Fusing frames and handing them over, on a steady clock.
-  Histogram::Snapshot age;           ///< Instant to publication [s].
+  std::uint64_t steps_failed = 0;    ///< Pipeline iterations that threw.
+  std::uint64_t jobs_failed = 0;     ///< The same of the registration worker.
+  double step_seconds = 0.0;         ///< Time for fusing and handing over, by a steady clock.
+  Histogram::Snapshot age;           ///< Time from instant to publication [s].
 };
 
 struct Status {

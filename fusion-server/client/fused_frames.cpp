@@ -58,7 +58,7 @@ Result<void> add_frame(FusedSamples& samples, const resource::FrameResource& fra
   return {};
 }
 
-/// Reads as it goes: of a long recording only the samples are kept.
+/// Reads file by file, so that only the samples of a long recording are kept in memory.
 Result<FusedFrames> read_recording_files(const std::string& source) {
   const auto files = find_recordings({source});
   if (!files) return pass(files);
@@ -68,7 +68,7 @@ Result<FusedFrames> read_recording_files(const std::string& source) {
   record::CellStream stream(*files, query);
   FusedFrames out;
   std::size_t frames = 0;
-  std::string raw;  // a sensor whose own frames are there
+  std::string raw;  // a sensor whose raw frames were found
   for (auto item = stream.next(); true; item = stream.next()) {
     if (!item) return pass(item);
     if (!*item) break;
@@ -87,12 +87,12 @@ Result<FusedFrames> read_recording_files(const std::string& source) {
   return out;
 }
 
-/// Lines of any stream, none longer than kMaxLineBytes.
+/// The lines of any stream, none longer than kMaxLineBytes.
 class Lines {
  public:
   explicit Lines(std::istream& in) : in_(in) {}
 
-  /// False at the end, or when a line is too long.
+  /// Reads the next line; false at the end, or when a line is too long.
   bool next(std::string& line) {
     while (true) {
       const std::size_t end = rest_.find('\n', begin_);
@@ -140,7 +140,7 @@ Result<FusedFrames> read_file(const std::string& source) {
   return of_lines(file, source);
 }
 
-/// A server's frames for a while: each one once, by conditional long poll.
+/// Receives a server's frames for some time, each one once, by conditional long polling.
 class Listening {
  public:
   Listening(const http::Url& server, std::string source, tls::Trust trust)
@@ -179,7 +179,7 @@ class Listening {
     count_.take(frame->sequence);
   }
 
-  /// A server that is not there, or refuses from the start, is not waited for.
+  /// Gives up at once on a server that cannot be reached or refuses from the start.
   void failed(const Error& error, int status) {
     count_.fail(error);
     if (count_.frames > 0 || status == http::status::kUnavailable) return;

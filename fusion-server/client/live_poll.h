@@ -1,4 +1,4 @@
-// One resource of a running service, long-polled: each version once, for as long as it is wanted.
+// Long-polls one resource of a running service: each version once, until stopped.
 #pragma once
 
 #include <chrono>
@@ -11,14 +11,14 @@
 
 namespace chorus::client {
 
-/// The counts of a resource whose answers are numbered frames.
+/// Counts for a resource whose answers are numbered frames.
 struct StreamCount {
   std::uint64_t frames = 0;
   std::uint64_t missed = 0;      ///< Gaps in the sequence.
-  std::uint64_t failed = 0;      ///< Requests without an answer, or refused.
+  std::uint64_t failed = 0;      ///< Requests that were refused or got no answer.
   std::uint64_t unreadable = 0;  ///< Answers that are no frame.
   std::uint64_t last = 0;
-  std::string error;  ///< The last one.
+  std::string error;  ///< Text of the last error.
 
   void take(std::uint64_t sequence);
   void fail(const Error& why);
@@ -30,14 +30,14 @@ class LivePoll {
   struct Options {
     std::string target;  ///< "/frame"
     std::string accept = "text/turtle";
-    /// Asked again after each such interval; zero: long poll instead.
+    /// Asks again at this interval; zero: uses long polling instead.
     std::chrono::milliseconds every{0};
-    tls::Trust trust = {};  ///< Of an https:// server.
+    tls::Trust trust = {};  ///< Whom an https:// server must be certified by.
   };
   /// Both are called on the thread of `io`.
   struct Takers {
     std::function<void(const http::ClientResponse&)> answer;  ///< With status 200.
-    /// Status 0: no answer at all.  It is asked again in any case, a moment later.
+    /// Status 0: no answer at all.  In any case the request is repeated a moment later.
     std::function<void(const Error&, int status)> failure;
   };
 

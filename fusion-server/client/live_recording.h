@@ -1,4 +1,4 @@
-// A running service recorded from outside, over HTTP: a sensor, or a fusion server with its
+// Records a running service from outside, over HTTP: a sensor, or a fusion server with its
 // sensors.
 #pragma once
 
@@ -22,22 +22,22 @@ struct LiveRecordingOptions {
   bool fused = true;
 };
 
-/// Everything on the thread of one io_context; the file on the recorder's.
+/// Runs on the thread of one io_context; only the file is written on the recorder's thread.
 class LiveRecording {
  public:
-  /// Asks the service what it is and begins.  Errors: it does not answer, it is no Chorus service,
-  /// or the file cannot be created.
+  /// Asks the service for its description and begins.  Errors: it does not answer, it is no Chorus
+  /// service, or the file cannot be created.
   [[nodiscard]] static Result<std::unique_ptr<LiveRecording>> start(asio::io_context& io,
                                                                     LiveRecordingOptions options);
-  /// Ends polling and waits for the file.
+  /// Ends polling and waits until the file is written.
   [[nodiscard]] record::RecordingReport stop();
 
-  /// By topic: "/frame", "/sensors/s1/frame"; all topics that the service announced, from the
-  /// beginning.
+  /// Counts by topic: "/frame", "/sensors/s1/frame"; all topics that the service announced are
+  /// listed from the beginning.
   [[nodiscard]] const std::map<std::string, StreamCount>& counts() const { return counts_; }
-  /// What went wrong with the states beside the frames (clocks, registration), by path.
+  /// Errors in reading the other states (clocks, registration), by path.
   [[nodiscard]] const std::map<std::string, std::string>& troubles() const { return troubles_; }
-  /// For how long nothing at all has answered.
+  /// Time since anything answered last.
   [[nodiscard]] std::chrono::steady_clock::duration silence() const;
 
  private:

@@ -1,4 +1,4 @@
-// Which recordings a command line names: a folder stands for the .mcap files in it.
+// Finds the recordings that a command line names: a folder stands for its .mcap files.
 #pragma once
 
 #include <filesystem>
@@ -11,16 +11,16 @@
 
 namespace chorus::client {
 
-/// Sorted by name within a folder; each given file as it is.  Nothing found is an error.
+/// Files in a folder are sorted by name; a given file is taken as it is.  None found: an error.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> find_recordings(
     const std::vector<std::filesystem::path>& inputs);
 
-/// Read whole.  Refuses an empty list, and two recordings of the same sensor unless they are parts
-/// of one recording.  Damaged or omitted parts are reported on `notes`, unless that is null.
+/// Reads the recordings whole.  Refuses an empty list, and two recordings of the same sensor unless
+/// they are parts of one recording.  Reports damaged or omitted parts on `notes` unless it is null.
 [[nodiscard]] Result<record::CellRecording> read_recordings(
     const std::vector<std::filesystem::path>& files, std::ostream* notes);
 
-/// What reading had to leave out, one line each: damage once, then by sensor.
+/// What was left out while reading, one line each: first damage, then notes per sensor.
 [[nodiscard]] std::vector<std::string> notes_of(const record::CellRecording& cell);
 
 }  // namespace chorus::client

@@ -1,4 +1,4 @@
-// Asks a fusion server, in JSON.  Problem documents (RFC 9457) become errors with the same words.
+// Sends requests to a fusion server, in JSON. Problem documents (RFC 9457) become errors.
 #pragma once
 
 #include <string>
@@ -14,15 +14,15 @@
 
 namespace chorus::client {
 
-/// The error a problem document states, or the bare status; `where`: what was asked.
+/// The error that a problem document states, or else the bare status; `where`: the request.
 [[nodiscard]] Error refusal_of(const http::ClientResponse& answer, const std::string& where);
 
 /// The header of every request: the bearer token in CHORUS_TOKEN, if one is set.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> authorization();
 
-/// Whom an https:// server has to be vouched for by: the file in CHORUS_CA; else that of the
-/// workshop, where this host has one that the user may read (/etc/chorus/tls/ca.crt); else the
-/// operating system's.
+/// The authorities that must have certified an https:// server: the file in CHORUS_CA; else that of
+/// the workshop, if this host has one that the user may read (/etc/chorus/tls/ca.crt); else those
+/// of the operating system.
 [[nodiscard]] Result<tls::Trust> authorities();
 
 /// http::fetch with these authorities.
@@ -52,11 +52,11 @@ class ServiceClient {
   http::Url base_;
 };
 
-/// Members that may be absent or of another type: the fallback is shown then.
+/// Reads a member that may be absent or of another type; then the fallback is returned.
 [[nodiscard]] std::string text_at(const nlohmann::json& object, const char* key,
                                   std::string fallback = "-");
 [[nodiscard]] double number_at(const nlohmann::json& object, const char* key);  ///< NaN if none.
-/// An object's member that is itself an object or array; else an empty one.
+/// An object's member if that is an object or array; otherwise an empty one.
 [[nodiscard]] const nlohmann::json& part_at(const nlohmann::json& object, const char* key);
 
 }  // namespace chorus::client

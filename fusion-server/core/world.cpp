@@ -11,10 +11,10 @@
 namespace chorus::core {
 namespace {
 
-constexpr double kReach = 2.5;  // [m] sensor to walk: where its rotation matters
-constexpr double kSame = 0.3;   // [m] marks that differ by more are of a sensor that was moved
+constexpr double kReach = 2.5;  // [m] sensor to walk: rotation errors are judged at this range
+constexpr double kSame = 0.3;   // [m] marks differ by more: the sensor was moved
 
-/// A sensor in both worlds, by where it is and a point in front of it.
+/// A sensor that both worlds have: its position and a point in front of it.
 struct Common {
   SensorId sensor;
   std::array<Eigen::Vector3d, 2> before;
@@ -48,7 +48,7 @@ std::optional<Eigen::Isometry3d> fit(const std::vector<Common>& sensors) {
   return fitted->target_from_source;
 }
 
-/// Heights do not count: both worlds have their floor at y = 0.
+/// Heights are ignored: both worlds have their floor at y = 0.
 bool agrees(const Common& each, const Eigen::Isometry3d& before_from_after) {
   for (std::size_t i = 0; i < each.before.size(); ++i) {
     const Eigen::Vector3d apart = before_from_after * each.after[i] - each.before[i];
@@ -65,7 +65,7 @@ std::vector<Common> agreeing(const std::vector<Common>& all, const Eigen::Isomet
   return out;
 }
 
-/// The most sensors that stand to one another as before; of equal numbers those of the master.
+/// The largest group of sensors with unchanged relative places; of equals that with the master.
 std::vector<Common> unmoved(const std::vector<Common>& all, const SensorId& master) {
   std::vector<Common> best;
   bool with_master = false;

@@ -1,9 +1,9 @@
-// Which world the places of a registration are in, and how that world stays.
+// The world in which the places of a registration are given, and how it stays the same.
 //
-// A solve puts its world below its master and turns it the way the master looks.  Everybody who
-// works with the output (a VRED scene, marks on the floor) has the world that was there before, so
-// a new registration is moved into that one: about +y and along the floor only, since each solve
-// knows its own floor.
+// A solve puts the origin of the world below its master, with +z in the master's viewing direction.
+// All users of the output (a VRED scene, marks on the floor) rely on the previous world, so a new
+// registration is moved into that one: only about +y and along the floor, because each solve
+// determines the floor anew.
 #pragma once
 
 #include <map>
@@ -15,24 +15,24 @@ namespace chorus::core {
 
 using Places = std::map<SensorId, Extrinsics>;
 
-/// Where the world is to begin, in the world as it is now.
+/// The origin of a new world, given in the present one.
 struct Origin {
   double x = 0.0;    ///< [m]
   double z = 0.0;    ///< [m]
-  double yaw = 0.0;  ///< Of the new +z, about +y from the +z there is now [rad].
+  double yaw = 0.0;  ///< Of the new +z, about +y from the present +z [rad].
 
   bool operator==(const Origin&) const = default;
 };
 
-/// The place in another world; its covariance is turned along.
+/// The place in another world; its covariance is rotated accordingly.
 [[nodiscard]] Extrinsics moved(Extrinsics place, const Eigen::Isometry3d& new_from_old);
 
-/// The registration with its world moved to where the sensors stand as in `before`.  Most of those
-/// that both place decide (0.3 m), so that one that was moved carries the world with it only where
-/// there is no other.  As it is when they have no sensor in common.
+/// The registration, its world moved so that sensors stand as in `before`.  Of the sensors that
+/// both place the majority decides (within 0.3 m), so a moved sensor moves the world only if there
+/// is no other.  Unchanged if they have no sensor in common.
 [[nodiscard]] Registration in_world_of(const Places& before, Registration candidate);
 
-/// The registration in the world that begins at `origin`.  Errors: NotFound (no sensor has a
+/// The registration in the world whose origin is `origin`.  Errors: NotFound (no sensor has a
 /// place), InvalidArgument (not finite, or beyond kMaxOrigin).
 inline constexpr double kMaxOrigin = 1000.0;  ///< Along x and along z [m].
 [[nodiscard]] Result<Registration> with_origin(Registration registration, const Origin& origin);

@@ -36,8 +36,8 @@ struct Connection {
   CommandReader reader;
   Conversation conversation;
   std::array<char, 1024> incoming{};
-  std::string waiting;  ///< Answers not yet handed to the system.
-  std::string writing;  ///< Those that are.
+  std::string waiting;  ///< Answers not yet handed to the operating system.
+  std::string writing;  ///< Answers being written.
   SteadyTime deadline;
 };
 using ConnectionPtr = std::shared_ptr<Connection>;
@@ -47,10 +47,10 @@ using ConnectionPtr = std::shared_ptr<Connection>;
 struct CommandServer::Impl {
   explicit Impl(CommandServerOptions settings) : options(std::move(settings)) {}
 
-  /// Starts whatever must always be running and is not.
+  /// Starts the asynchronous operations that must always be pending.
   void ensure();
   void welcome(net::Socket socket);
-  /// Why another connection of this host is refused; empty: it is accepted.
+  /// Why another connection from this host is refused; empty: it is accepted.
   [[nodiscard]] std::string objection(const std::string& host) const;
   void read(const ConnectionPtr& connection);
   void obey(const ConnectionPtr& connection);
@@ -68,7 +68,7 @@ struct CommandServer::Impl {
                             [this](net::Socket socket) { welcome(std::move(socket)); }};
   net::Every sweeping{io, kSweep, [this] { sweep(); }};
   RateReport turned_away{"DTrack client turned away"};
-  std::list<ConnectionPtr> connections;  ///< Oldest first: the first one is in control.
+  std::list<ConnectionPtr> connections;  ///< Oldest first; the first one is in control.
   Device device;
   std::uint64_t next_serial = 1;
   std::atomic<std::uint64_t> refused = 0;
@@ -97,7 +97,7 @@ std::string CommandServer::Impl::objection(const std::string& host) const {
 void CommandServer::Impl::welcome(net::Socket socket) {
   error_code error;
   const tcp::endpoint peer = socket.remote_endpoint(error);
-  if (error) return;  // it has left; leaving here closes the socket
+  if (error) return;  // it has left; releasing the socket closes it
   if (const std::string why =
           options.allow.objection(peer.address(), "outputs.dtrack.command.allow");
       !why.empty())
@@ -178,7 +178,7 @@ void CommandServer::Impl::close(const ConnectionPtr& connection) {
   tell_controller();
 }
 
-/// Closes connections whose time is over.
+/// Closes connections that have exceeded a time limit.
 void CommandServer::Impl::sweep() {
   const SteadyTime now = std::chrono::steady_clock::now();
   const std::list<ConnectionPtr> all = connections;

@@ -1,9 +1,9 @@
-// The TCP side of DTrack's command channel: a thread of its own, few connections, no client
-// trusted.
+// The TCP server of DTrack's command channel: on its own thread, for a few connections, trusting no
+// client.
 //
-// Turned away, logged and counted as refused: connections beyond a limit, commands over 200 bytes,
-// and clients that do not read their answers (4 kB are kept at most), send no known command within
-// ten seconds, are silent for longer than `idle`, or send 64 unknown commands.
+// Refused, logged and counted: connections beyond a limit, commands over 200 bytes, and clients
+// that do not read their answers (at most 4 kB are kept), send no known command within ten seconds,
+// are silent for longer than `idle`, or send 64 unknown commands.
 #pragma once
 
 #include <cstdint>
@@ -21,19 +21,19 @@ namespace chorus::dtrack {
 struct CommandServerOptions {
   std::string address = "127.0.0.1";  ///< Numeric.
   int port = 50105;                   ///< 0: any.
-  net::AllowList allow = {};          ///< Who is answered.
+  net::AllowList allow = {};          ///< Hosts that are served.
   int max_connections = 8;
-  int max_connections_per_address = 4;             ///< So that one host cannot take all places.
-  Duration idle = std::chrono::hours(1);           ///< Clients are silent while they receive.
-  Duration first_word = std::chrono::seconds(10);  ///< Until the first known command.
+  int max_connections_per_address = 4;             ///< Prevents that one host takes all places.
+  Duration idle = std::chrono::hours(1);           ///< Clients send nothing while they receive.
+  Duration first_word = std::chrono::seconds(10);  ///< Limit until the first known command.
 
   bool operator==(const CommandServerOptions&) const = default;
 };
 
-/// The connection in control, while it has started tracking.
+/// The connection that is in control, once it has started tracking.
 struct Controller {
   std::string host;          ///< Numeric.
-  std::uint64_t serial = 0;  ///< Of the connection: a new connection is a new controller.
+  std::uint64_t serial = 0;  ///< Number of the connection: a new connection is a new controller.
 
   bool operator==(const Controller&) const = default;
 };
@@ -42,7 +42,7 @@ class CommandServer {
  public:
   [[nodiscard]] static Result<std::unique_ptr<CommandServer>> start(
       const CommandServerOptions& options);
-  ~CommandServer();  ///< Closes all and joins.
+  ~CommandServer();  ///< Closes all connections and joins the thread.
 
   [[nodiscard]] std::uint16_t port() const;
   /// Any thread.

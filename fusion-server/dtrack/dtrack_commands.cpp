@@ -9,8 +9,8 @@ constexpr std::string_view kOk = "dtrack2 ok";
 
 struct Command {
   std::string_view text;
-  bool whole;    ///< This exact text; otherwise every text that begins with it.
-  bool control;  ///< Only for the connection in control.
+  bool whole;    ///< True: the text must match exactly; false: it must begin with this.
+  bool control;  ///< Only allowed for the connection in control.
   std::string_view (*obey)(const Conversation& conversation, Device& device);
 };
 
@@ -66,7 +66,7 @@ std::string_view obey(std::string_view command, Conversation& conversation, Devi
 }  // namespace
 
 bool CommandReader::feed(std::string_view bytes) {
-  // What one read brings may hold many commands; only the last may be unfinished.
+  // One read may bring many commands; only the last may be incomplete.
   bytes_ += bytes;
   std::size_t begin = 0;
   while (true) {

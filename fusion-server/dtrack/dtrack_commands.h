@@ -1,4 +1,4 @@
-// DTrack's command channel (TCP 50105) without the network: bytes in, answers out.
+// DTrack's command channel (TCP 50105) without the network: bytes go in, answers come out.
 //
 // A command and an answer are one ASCII text each, ended by NUL, of at most 200 bytes.  Known:
 //   dtrack2 get system access          -> dtrack2 set system access full | none
@@ -8,8 +8,8 @@
 //   dtrack2 getmsg                     -> dtrack2 ok              (there are never messages)
 //   dtrack2 set ...                    -> dtrack2 ok              (and nothing changes)
 //   anything else                      -> dtrack2 err 1 "..."
-// Only the connection in control may start, stop and set; others get err 2.  No command redirects
-// data: the configuration says where it goes.
+// Only the connection in control may start, stop and set; others get err 2.  No command can
+// redirect data: the targets are configured.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ namespace chorus::dtrack {
 
 inline constexpr std::size_t kMaxCommandBytes = 200;  ///< Without the NUL.
 
-/// Cuts a stream into commands.
+/// Splits a stream into commands.
 class CommandReader {
  public:
   /// Takes bytes; false: a command is too long, and this stream cannot be read any further.
@@ -32,15 +32,15 @@ class CommandReader {
   std::string bytes_;
 };
 
-/// What all connections share.
+/// State shared by all connections.
 struct Device {
   bool measuring = false;  ///< Started and not stopped.
 };
 
 struct Conversation {
   bool in_control = false;   ///< True for the oldest connection.
-  std::size_t answered = 0;  ///< Commands that were known and allowed.
-  std::size_t refused = 0;   ///< Commands that were not.
+  std::size_t answered = 0;  ///< Commands that were known and permitted.
+  std::size_t refused = 0;   ///< All other commands.
 };
 
 /// The answer, with its NUL.

@@ -28,7 +28,7 @@ struct HumanJoint {
   outlet::HumanBone bone;
 };
 
-/// A.R.T.'s numbers; 2 (spine_02) is a vertebra that we have no bone for.
+/// A.R.T.'s joint numbers; 2 (spine_02) is a vertebra for which we have no bone.
 constexpr std::array<HumanJoint, 20> kHumanJoints{{
     {0, Hips},           {1, Spine},          {3, Chest},          {4, UpperChest},
     {5, Neck},           {6, Head},           {7, LeftShoulder},   {8, LeftUpperArm},
@@ -43,9 +43,9 @@ void add(std::string& out, std::uint64_t value) {
   out.append(digits.data(), end);
 }
 
-/// Fixed point; the coordinates are bounded (kMaxCoordinate), so the number of digits is too.
+/// Appends in fixed point; coordinates are bounded (kMaxCoordinate), hence the digits too.
 void add(std::string& out, double value, int digits) {
-  if (std::abs(value) < 0.5 * std::pow(10.0, -digits)) value = 0.0;  // no "-0.000"
+  if (std::abs(value) < 0.5 * std::pow(10.0, -digits)) value = 0.0;  // avoids "-0.000"
   std::array<char, 64> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
                                  std::chars_format::fixed, digits);

@@ -1,4 +1,4 @@
-// A.R.T. DTrack's ASCII format: one datagram a frame, one 6d body per joint.
+// A.R.T. DTrack's ASCII format: one datagram per frame, one 6d body per joint.
 //
 //   fr <number>                          the fused sequence, modulo 2^32
 //   ts <seconds of the UTC day>          ts2 <Unix s> <us> <latency us>
@@ -8,10 +8,10 @@
 //   6dj <slots> <n> [slot joints][joint 1.000][sx .. phi][b0 .. b8] ...   human models, on demand
 //
 // Lines end with CR LF.  Millimetres, degrees; right-handed, +z up in a "normal" room, +y up in a
-// "powerwall" one.  The matrix is written column by column; R = Rx(eta) Ry(theta) Rz(phi). Body id
+// "powerwall" one.  The matrix is written column by column; R = Rx(eta) Ry(theta) Rz(phi).  Body id
 // = 25 * slot + joint.  The 6dj joints are those of A.R.T.'s own Unreal plugin; their rotations are
-// those of humanoid.h's rig, so a person in T-pose who looks along +y of the normal room has unit
-// matrices.
+// relative to humanoid.h's rig, so a person in T-pose who looks along +y of the normal room has
+// identity matrices.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@
 
 namespace chorus::dtrack {
 
-/// Clients read datagrams of up to 32768 bytes; 150 bodies always fit.
+/// Clients read datagrams of up to 32768 bytes; this many bodies always fit.
 inline constexpr std::size_t kMaxDtrackBodies = 150;
 inline constexpr std::size_t kMaxBytes = 32768;
 
@@ -28,7 +28,7 @@ enum class Room { Normal, Powerwall };
 
 struct Content {
   Duration latency{0};       ///< From the instant until now.
-  bool human_model = false;  ///< With 6dj; human models that do not fit are left out.
+  bool human_model = false;  ///< Adds the 6dj line; human models that do not fit are left out.
   Room room = Room::Normal;
 };
 

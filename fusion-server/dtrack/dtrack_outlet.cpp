@@ -11,7 +11,7 @@ namespace {
 
 /// What a client sends to open its firewall (with or without a NUL).
 constexpr std::string_view kFirewallOpener = "fw4dtsdkc";
-constexpr int kMaxArrivals = 64;  ///< Read per frame; the rest waits, and the system drops it.
+constexpr int kMaxArrivals = 64;  ///< Read per frame; the rest waits and may be dropped.
 
 class DtrackOutlet final : public outlet::Outlet {
  public:
@@ -41,7 +41,7 @@ class DtrackOutlet final : public outlet::Outlet {
   }
 
  private:
-  /// Who gets data besides the targets: the host in control, at the port it opened.
+  /// Finds the client that gets data besides the targets: the controller, at the port it opened.
   void listen() {
     const auto controller = commands_ ? commands_->controller() : std::nullopt;
     if (controller != controller_) client_.reset();

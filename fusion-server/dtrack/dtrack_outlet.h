@@ -16,13 +16,13 @@ namespace chorus::dtrack {
 
 struct Settings {
   std::vector<std::string> targets{"127.0.0.1:5000"};
-  int source_port = 50107;  ///< The controller's; clients behind firewalls write to it.  0: any.
+  int source_port = 50107;  ///< Our own; clients behind firewalls write to it.  0: any.
   outlet::Multicast multicast;
   Room room = Room::Normal;
   bool human_model = false;
   bool commands = false;
   CommandServerOptions command;
-  /// Also to the host in control, at the port it wrote to our source port from.
+  /// Sends also to the host in control, to the port from which it wrote to our source port.
   bool send_to_client = false;
 
   bool operator==(const Settings&) const = default;

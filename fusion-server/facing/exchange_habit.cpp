@@ -23,12 +23,12 @@ double Rates::after(double exchanged_before, double elapsed) const {
   return exchanged() + (exchanged_before - exchanged()) * held;
 }
 
-/// Gamma-Poisson: events over time; the prior is time already observed.
+/// Gamma-Poisson estimate: events per time; the prior counts as time already observed.
 double ExchangeHabit::Count::rate(double prior_rate, double prior_time) const {
   return (prior_rate * prior_time + events) / (prior_time + time);
 }
 
-/// One rate for all angles beyond 75 deg together, which is then the prior of each of them.
+/// One rate for all angles beyond 75 deg together; it is the prior of each of them.
 double ExchangeHabit::rear_rate(const Counts& counts, const HabitPrior& prior) {
   Count rear;
   for (std::size_t i = kFacingAngles; i < kAngles; ++i) {

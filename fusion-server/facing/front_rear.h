@@ -1,6 +1,6 @@
-// How a body stands before the sensor that sees it (Otto 5.2.2 and the inputs of Eqs. (1)-(3)).
+// How a body stands relative to the sensor that sees it (Otto 5.2.2; inputs of Eqs. (1)-(3)).
 //
-// common/body/facing.h computes the angles; this stage turns "cannot tell" into NaN, for which
+// common/body/facing.h computes the angles; this stage replaces unknown ones by NaN, for which
 // every quality heuristic gives weight zero.
 #pragma once
 

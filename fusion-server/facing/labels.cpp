@@ -7,10 +7,10 @@
 namespace chorus::facing {
 namespace {
 
-constexpr double kSpanSigma = 0.2;  // [m] of all pairs of a view together, slow error included
-constexpr double kMaxAgree = 4.0;   // limit on one instant's log odds, because its errors persist
+constexpr double kSpanSigma = 0.2;  // [m] of all pairs of a view together, including slow errors
+constexpr double kMaxAgree = 4.0;   // limit on the log odds of one instant, because errors persist
 
-/// A chain of two states after one more observation.
+/// A two-state chain after one more observation.
 struct Chain {
   double likelihood = 0.0;  ///< Of the observation.
   double exchanged = 0.0;   ///< Probability afterwards.
@@ -26,8 +26,8 @@ Chain observe(const std::optional<double>& before, double odds, double elapsed,
   return {for_it + against, for_it / (for_it + against)};
 }
 
-/// The probability that has moved from one state to the other counts as that share of a change:
-/// over the frames until a change is believed, the shares add up to one.
+/// A probability that moves from one state to the other counts as that fraction of a change: over
+/// the frames until a change is certain, the fractions add up to one.
 Passage passage(const Labels& now, double before, double after) {
   const double moved = after - before;
   return {now.facing, now.elapsed, std::max(0.0, moved), std::max(0.0, -moved), after};

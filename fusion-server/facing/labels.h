@@ -1,6 +1,6 @@
-// What the labels of one view say: whether this sensor shows left and right exchanged, and what
-// that means for the sides held, that is, for which side of the person is currently taken to be
-// the left one (docs/papers/sides.md, Labels).
+// What the labels of one view tell: whether this sensor has left and right exchanged, and whether
+// the *held sides*, that is, the current assumption on which side of the person is the left one,
+// are right (docs/papers/sides.md, Labels).
 #pragma once
 
 #include <optional>
@@ -10,29 +10,29 @@
 
 namespace chorus::facing {
 
-/// Probability that a view's labels are exchanged, under either sign of the person.
+/// Probability that a view's labels are exchanged, for either hypothesis about the held sides.
 struct Exchanged {
-  double held = 0.5;      ///< If the sides held are right.
-  double opposite = 0.5;  ///< If they are wrong.
+  double held = 0.5;      ///< If the held sides are right.
+  double opposite = 0.5;  ///< If the held sides are wrong.
 };
 
-/// One view at one instant.
+/// The labels of one view at one instant.
 struct Labels {
-  /// Log likelihood ratio of its spans: agreeing with the sides held against opposing them.
+  /// Log likelihood ratio of its spans: they agree with the held sides, against they oppose them.
   double agree = 0.0;
-  double facing = 0.0;   ///< |phi| if the sides held are right [rad]; pi minus it if not.
-  double elapsed = 0.0;  ///< Since this view was last seen [s].
+  double facing = 0.0;   ///< |phi| if the held sides are right [rad]; else pi minus this.
+  double elapsed = 0.0;  ///< Time since this view was last seen [s].
 };
 
 struct LabelStep {
   Exchanged exchanged;
-  /// Log likelihood ratio of a new view: sides held against opposite.  Zero afterwards: a change of
-  /// labels tells as little as none, because the mirror image of a habit is a habit as well.
+  /// Log likelihood ratio of a new view: held sides against opposite ones.  Zero for later steps: a
+  /// change of labels is as likely under both, because a habit's mirror image is a habit, too.
   double log_ratio = 0.0;
-  Passage passage;  ///< If the sides held are right; nothing for a new view.
+  Passage passage;  ///< If the held sides are right; nothing for a new view.
 };
 
-/// How strongly the spans of a view favour those held over their opposite.
+/// Log odds that the spans of a view agree with the held ones rather than oppose them.
 [[nodiscard]] double agreement_log_odds(const Spans& view, const Spans& held);
 
 /// One step of the forward filter; without `before` the view is new.

@@ -8,13 +8,13 @@
 namespace chorus::facing {
 namespace {
 
-constexpr double kGuessed = 0.3;     // weight of a pair with an inferred end
+constexpr double kGuessed = 0.3;     // weight of a pair with an inferred joint
 constexpr double kMinLength = 0.05;  // [m] shorter spans have no direction
 constexpr std::size_t kTrunkPairs = 2;
-constexpr int kRounds = 3;  // agreement settles in one or two
+constexpr int kRounds = 3;  // agreement converges in one or two
 
 struct Joined {
-  Spans spans;          ///< Mean of the views, each turned to the side it agrees with.
+  Spans spans;          ///< Mean of the views, each with the sign that makes it agree.
   double agreed = 0.0;  ///< [m^2]
 };
 

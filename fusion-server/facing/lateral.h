@@ -1,4 +1,4 @@
-// Left minus right of a body's joint pairs, which change sign when a tracker exchanges sides.
+// Vectors left - right of a body's joint pairs; they change sign when a tracker exchanges sides.
 #pragma once
 
 #include <array>
@@ -8,13 +8,13 @@
 
 namespace chorus::facing {
 
-/// Pairs whose direction shows the sides, trunk first.
+/// Pairs whose direction shows where left is, trunk first.
 inline constexpr std::array<JointId, 6> kSidePairs{JointId::ShoulderLeft, JointId::HipLeft,
                                                    JointId::ElbowLeft,    JointId::KneeLeft,
                                                    JointId::WristLeft,    JointId::AnkleLeft};
 
-/// Left minus right of each pair, world [m]; shortened if one end is a guess, zero if one is not
-/// seen.
+/// The vector left - right of each pair, world [m]; shortened if one of its joints is inferred,
+/// zero if one is not seen.
 using Spans = std::array<Eigen::Vector3d, kSidePairs.size()>;
 
 [[nodiscard]] Spans no_spans();
@@ -24,19 +24,19 @@ using Spans = std::array<Eigen::Vector3d, kSidePairs.size()>;
 /// Total length of all spans [m].
 [[nodiscard]] double size_of(const Spans& spans);
 
-/// Sum of the dot products of equal pairs [m^2]; negative: one of the two has its sides exchanged.
+/// Sum of the dot products of corresponding spans [m^2]; negative: one body has sides exchanged.
 [[nodiscard]] double agreement(const Spans& a, const Spans& b);
 
 /// Unit horizontal vector in the direction that a body with these spans faces; zero when unknown.
 [[nodiscard]] Eigen::Vector3d forward_of(const Spans& spans);
 
-/// Otto's phi: the angle from the direction of the sensor to the direction the body faces, in
-/// (-pi, pi]; nothing when unknown.
+/// Otto's phi: the angle from the direction of the sensor to the direction in which the body faces,
+/// in (-pi, pi]; nothing when unknown.
 [[nodiscard]] std::optional<double> facing_of(const SensorView& view,
                                               const Eigen::Vector3d& forward);
 
-/// The spans that the views agree on when no earlier ones are known: each view is tried as the
-/// start, and the one that the others agree with most wins.
+/// The spans that the views agree on when there are no earlier ones: each view is tried as the
+/// start, and the one with which the others agree best wins.
 [[nodiscard]] Spans agreed_spans(const std::vector<Spans>& views);
 
 }  // namespace chorus::facing

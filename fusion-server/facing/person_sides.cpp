@@ -8,10 +8,10 @@
 namespace chorus::facing {
 namespace {
 
-constexpr double kMinWeight = 1e-12;  // so that no weight is lost for good
+constexpr double kMinWeight = 1e-12;  // so that no hypothesis is excluded for good
 constexpr double kMaxNews = 30.0;     // log odds of one instant; beyond this it is certain anyway
 
-/// Likelihood of evidence with these log odds, over its mean under both signs.
+/// Likelihood of evidence with these log odds, divided by its mean over both signs.
 double likelihood(double log_odds) { return 2.0 / (1.0 + std::exp(-log_odds)); }
 
 double changed(double elapsed, const Spell& spell) {

@@ -10,9 +10,9 @@
 namespace chorus::facing {
 namespace {
 
-constexpr double kGuessed = 0.3;  // weight of an offset that rests on an inferred joint
+constexpr double kGuessed = 0.3;  // weight of an offset that depends on an inferred joint
 
-/// Weighted mean of offsets in the world [m].
+/// Weighted mean of offsets in world space [m].
 struct Offset {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double weight = 0.0;
@@ -26,7 +26,7 @@ struct Offset {
   }
 };
 
-/// Zero when one of the joints has no position.
+/// Mean position; zero when one of the joints has none.
 template <class... Ids>
 double weight_of(const Skeleton<WorldSpace>& body, Ids... ids) {
   const bool seen = (body[ids].seen() && ...);
@@ -34,7 +34,7 @@ double weight_of(const Skeleton<WorldSpace>& body, Ids... ids) {
   return seen ? (tracked ? 1.0 : kGuessed) : 0.0;
 }
 
-/// From the nearest point of the line between `a` and `b`.
+/// Offset of `p` from the nearest point of the line between `a` and `b`.
 Eigen::Vector3d off_line(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
                          const Eigen::Vector3d& b) {
   constexpr double kMinLength = 1e-4;  // [m^2]
@@ -63,7 +63,7 @@ void add_bends(Offset& offset, const Skeleton<WorldSpace>& body, const std::arra
   }
 }
 
-/// Both wrists from the centre of the shoulders: a single wrist would tell how the trunk is turned.
+/// Uses both wrists relative to the centre of the shoulders: one alone would show the trunk's turn.
 void add_wrists(Offset& offset, const Skeleton<WorldSpace>& body) {
   using enum JointId;
   const auto middle = [&](JointId left) {
@@ -79,7 +79,7 @@ void add_lean(Offset& offset, const Skeleton<WorldSpace>& body) {
              weight_of(body, SpineShoulder, SpineBase));
 }
 
-/// Horizontal unit vector from the person to the sensor; zero when it has no neck.
+/// Horizontal unit vector from the person to the sensor; zero when the person has no neck.
 Eigen::Vector3d towards_sensor(const SensorView& view) {
   const Joint& neck = view.skeleton[JointId::Neck];
   if (!neck.seen()) return Eigen::Vector3d::Zero();
@@ -96,8 +96,8 @@ double tracked_share_of_arms(const Skeleton<WorldSpace>& body) {
   return static_cast<double>(tracked) / static_cast<double>(kArmJoints.size());
 }
 
-/// By how much the sensors towards `forward` see a larger share of the arm joints than the others
-/// do.
+/// How much larger a fraction of the arm joints is seen by sensors on the side of `forward` than by
+/// the other sensors.
 double seen_from(const std::vector<SensorView>& views, const Eigen::Vector3d& forward) {
   double mean = 0.0;
   for (const SensorView& view : views) mean += tracked_share_of_arms(view.skeleton);

@@ -1,9 +1,9 @@
-// Where the front of a body is, from its posture alone: exchanging left and right changes nothing
-// here (docs/papers/sides.md, Posture).
+// Where the front of a body is, judged by its posture alone; exchanging left and right does not
+// affect this (docs/papers/sides.md, Posture).
 //
 // Knees bend forwards, elbows backwards, hands work in front of the shoulders, and people bend
-// forwards.  Feet and heads are not used: seen from behind, a body tracker draws them towards
-// itself.
+// forwards.  Feet and heads are not used: if seen from behind, a body tracker places them too close
+// to the sensor.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@
 
 namespace chorus::facing {
 
-/// Log odds for "ahead is the front": proportional up to `at` metres, constant beyond.
+/// Log odds for "this is the front": proportional up to `at` metres, constant beyond.
 struct Cue {
   double log_odds = 0.0;
   double at = 0.05;  ///< [m]
@@ -20,16 +20,16 @@ struct Cue {
   bool operator==(const Cue&) const = default;
 };
 
-/// Learned from recordings of people who face one sensor, by tests/learn/posture_weights.py.
+/// Learned by tests/learn/posture_weights.py from recordings of people who face one sensor.
 struct PostureCues {
-  Cue knees{1.39, 0.05};    ///< Knees ahead of the line from hip to ankle.
-  Cue wrists{1.64, 0.10};   ///< Wrists ahead of the shoulders.
-  Cue elbows{-1.49, 0.05};  ///< Elbows ahead of the line from shoulder to wrist.
-  Cue lean{0.56, 0.15};     ///< Shoulders ahead of the hips.
-  /// Arms that sensors in front of the person see and sensors behind guess; `at` is a share of
-  /// joints.
+  Cue knees{1.39, 0.05};    ///< Knees in front of the line from hip to ankle.
+  Cue wrists{1.64, 0.10};   ///< Wrists in front of the shoulders.
+  Cue elbows{-1.49, 0.05};  ///< Elbows in front of the line from shoulder to wrist.
+  Cue lean{0.56, 0.15};     ///< Shoulders in front of the hips.
+  /// Arm joints that sensors in front of the person see and sensors behind infer; `at` is a
+  /// fraction of the joints.
   Cue hidden{0.5, 0.25};
-  double same = 5.0;  ///< Time constant within which a posture counts as the same one [s].
+  double same = 5.0;  ///< Time constant of the correlation of postures [s].
 
   bool operator==(const PostureCues&) const = default;
 };
@@ -40,8 +40,8 @@ struct PostureCues {
 [[nodiscard]] double posture_log_odds(const std::vector<SensorView>& views,
                                       const Eigen::Vector3d& forward, const PostureCues& cues);
 
-/// What a posture tells that the one `elapsed` seconds before did not, in log odds: the error of a
-/// posture lasts as long as the posture (first-order autoregressive, time constant `same`).
+/// The new evidence of a posture, given the one `elapsed` seconds before, in log odds: the error of
+/// a posture lasts as long as the posture (first-order autoregressive, time constant `same`).
 [[nodiscard]] double posture_news(double now, double before, double elapsed, double same);
 
 }  // namespace chorus::facing

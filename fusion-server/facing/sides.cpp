@@ -12,19 +12,19 @@ namespace chorus::facing {
 namespace {
 
 constexpr double kMinLength = 0.05;  // [m] shorter spans have no direction
-constexpr double kClear = 2.0;  // log odds from which one view is certain which way round it is
-constexpr double kBlind = 1.0;  // log odds of all views together below which they tell nothing
-constexpr double kFrameTime = 0.033;  // [s] labels of one frame are one observation
+constexpr double kClear = 2.0;       // log odds from which one view alone counts as certain
+constexpr double kBlind = 1.0;       // log odds of all views together below which they show nothing
+constexpr double kFrameTime = 0.033;  // [s] the labels of one frame are one observation
 
-/// One instant of one person on the way through the model.
+/// One instant of one person while it passes through the model.
 struct Instant {
   Timestamp at;
-  double elapsed = 0.0;  ///< Since the person was last seen [s].
+  double elapsed = 0.0;  ///< Time since the person was last seen [s].
   bool first = true;
   std::vector<Spans> views;
-  std::vector<double> agree;     ///< Log odds per view, see agreement_log_odds.
-  std::vector<bool> exchanged;   ///< Per view: it opposes the sides held.
-  std::vector<LabelStep> steps;  ///< Per view; exchanged is 0.5 where nothing is known.
+  std::vector<double> agree;     ///< Log odds per view, see agreement_log_odds().
+  std::vector<bool> exchanged;   ///< Per view: it opposes the held sides.
+  std::vector<LabelStep> steps;  ///< Per view; `exchanged` is 0.5 if unknown.
 };
 
 std::vector<Spans> all_spans(const Person& person) {
@@ -33,7 +33,7 @@ std::vector<Spans> all_spans(const Person& person) {
   return views;
 }
 
-/// What is remembered of a person, unless it is too old.
+/// The memory of a person, unless it is too old.
 std::optional<Sides> recall(const SidesMemory& memory, PersonId person, Timestamp instant,
                             const SidesConfig& config) {
   const auto known = memory.people.find(person);
@@ -43,15 +43,15 @@ std::optional<Sides> recall(const SidesMemory& memory, PersonId person, Timestam
   return known->second;
 }
 
-/// A pair that nobody can tell now keeps its direction.
+/// A pair whose direction is unknown at present keeps its previous one.
 void keep_lost(Spans& spans, const Spans& before) {
   for (std::size_t i = 0; i < spans.size(); ++i) {
     if (spans[i].norm() < kMinLength) spans[i] = before[i];
   }
 }
 
-/// Whether the view opposes the sides held.  A view that clearly tells left from right is believed;
-/// a narrow one stays as it was.
+/// Whether the view opposes the held sides.  A view that clearly shows left and right is trusted;
+/// an unclear one keeps its previous answer.
 bool opposes(const SensorView& view, double agree, const Sides& sides) {
   if (std::abs(agree) > kClear) return agree < 0;
   const auto before = sides.views.find(view.sensor);
@@ -65,8 +65,8 @@ void look_at_views(Instant& now, const Person& person, const Sides& sides) {
   }
 }
 
-/// The weighted mean of the views, each reversed if it opposes the sides held.  A view whose sides
-/// are drawn together counts less.
+/// The weighted mean of the views, each reversed if it opposes the held sides.  A view whose spans
+/// have become much shorter counts less.
 Spans joined(const Instant& now) {
   Spans spans = no_spans();
   double weights = 0.0;
@@ -82,10 +82,10 @@ Spans joined(const Instant& now) {
   return spans;
 }
 
-/// A tracker that changes its mind draws the sides together, and they may then point anywhere.  No
-/// real body becomes narrower, so spans much shorter than those held have no direction.
+/// While a tracker changes its labels, it draws the sides together, and spans may point anywhere.
+/// No real body becomes narrower, so spans much shorter than the held ones show no direction.
 double trust_in(const Spans& now, const Spans& before) {
-  constexpr double kNone = 0.5;  // of the length that is held
+  constexpr double kNone = 0.5;  // fraction of the held length
   constexpr double kFull = 0.8;
   const double part = size_of(now) / std::max(size_of(before), kMinLength);
   return std::clamp((part - kNone) / (kFull - kNone), 0.0, 1.0);
@@ -98,7 +98,7 @@ Spans followed(const Spans& before, const Spans& now, double share) {
   return spans;
 }
 
-/// Advances each view's labels by one step.
+/// Advances the labels of a view by one step.
 LabelStep step_of_view(const SensorView& view, double agree, double facing, const Sides& sides,
                        Timestamp at, const SidesMemory& memory, const SidesConfig& config) {
   const auto seen = sides.views.find(view.sensor);
@@ -114,7 +114,7 @@ LabelStep step_of_view(const SensorView& view, double agree, double facing, cons
                      config.habit);
 }
 
-/// A view counts from the instant when it first tells left from right clearly.
+/// A view counts from the instant when it first clearly shows left and right.
 bool counts(const SensorView& view, double agree, const Sides& sides) {
   return std::abs(agree) > kClear || sides.views.contains(view.sensor);
 }
@@ -138,7 +138,7 @@ bool nobody_tells(const Instant& now) {
   return sum < kBlind;
 }
 
-/// A first view counts in full, later ones only as far as they are new.
+/// A view's first evidence counts in full, later evidence only as far as it is new.
 Evidence evidence_of(const Instant& now, const Person& person, Sides& sides, const Spans& spans,
                      const SidesConfig& config) {
   const Eigen::Vector3d forward = forward_of(spans);
@@ -168,7 +168,7 @@ bool must_turn(const PersonFilter& filter, bool first, const SidesConfig& config
   return std::log((1.0 - right) / right) > (first ? 0.0 : config.change_odds);
 }
 
-/// Only while the sides are certain, and only from views whose labels could have changed meanwhile.
+/// Learns habits: only while the sides are certain, and from views whose labels could change.
 void learn(const Instant& now, const Person& person, const Sides& sides, SidesMemory& memory,
            const SidesConfig& config) {
   if (sides.filter.right() < config.learn_from) return;

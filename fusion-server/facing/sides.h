@@ -1,11 +1,11 @@
-// Which side of a person is which, agreed between all sensors and kept over time (Otto 5.2.2).
+// Which side of a person is the left one, agreed among all sensors and over time (Otto 5.2.2).
 //
 // A body tracker assumes that everybody faces it: seen from behind, the skeleton is in place but
 // left and right are exchanged.  So the vectors left - right of two views either agree or oppose
-// each other, which settles the views among themselves.  One common sign remains.  A hidden Markov
-// model tracks it from posture, walking and the habits that each sensor has shown, without assuming
-// an angle at which trackers exchange sides (docs/papers/sides.md).  Causal: no instant uses later
-// ones.
+// each other, which resolves the views relative to one another.  One common sign remains open.  A
+// hidden Markov model estimates it from posture, walking and the learned habits of each sensor,
+// without assuming an angle at which trackers exchange sides (docs/papers/sides.md).  Causal: no
+// instant depends on later ones.
 #pragma once
 
 #include <map>
@@ -19,15 +19,15 @@
 namespace chorus::facing {
 
 struct SidesConfig {
-  bool resolve = true;  ///< false: left and right stay as each sensor says.
+  bool resolve = true;  ///< false: left and right stay as the sensors give them.
   PostureCues posture = {};
   WalkingCue walking = {};
   PersonPrior person = {};
   HabitPrior habit = {};
   LimbLimits limbs = {};
-  double change_odds = 1.0;  ///< Log odds against the sides held that are needed to change them.
-  double smoothing = 0.1;    ///< Time constant with which the sides held follow the views [s].
-  double learn_from = 0.95;  ///< Habits are learned only while the sides are at least this certain.
+  double change_odds = 1.0;  ///< Held sides change if the log odds against them exceed this.
+  double smoothing = 0.1;    ///< Time constant with which the held spans follow the views [s].
+  double learn_from = 0.95;  ///< Habits are learned while the sides are at least this probable.
   Duration forget = std::chrono::seconds(1);  ///< A person unseen for this long starts anew.
 
   bool operator==(const SidesConfig&) const = default;
@@ -42,21 +42,21 @@ struct SeenLabels {
 /// What is remembered of one person.
 struct Sides {
   Timestamp seen;
-  Spans spans{};  ///< The spans agreed on recently.
+  Spans spans{};  ///< The spans on which views agreed recently.
   PersonFilter filter;
   Walk walk;
-  double posture = 0.0;  ///< Its log odds at the last instant.
+  double posture = 0.0;  ///< Log odds of the posture at the last instant.
   std::map<SensorId, SeenLabels> views;
 };
 
 struct SidesMemory {
   std::map<PersonId, Sides> people;
-  std::map<SensorId, ExchangeHabit> habits;  ///< From all people that a sensor has seen.
+  std::map<SensorId, ExchangeHabit> habits;  ///< Learned from all people that a sensor saw.
 };
 
-/// Exchanges left and right in the views that have them the wrong way round, sets every view's
-/// `facing` to that of the agreed body, the person's confidence of sides, and updates `memory`.  An
-/// exchanged view loses its orientations, because they are those of a body that faces the sensor.
+/// Exchanges left and right in the views that have them wrong, sets every view's `facing` to that
+/// of the agreed body, sets the person's confidence of sides, and updates `memory`.  An exchanged
+/// view loses its orientations, because they describe a body that faces the sensor.
 void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
                    const SidesConfig& config);
 

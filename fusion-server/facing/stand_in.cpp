@@ -9,11 +9,11 @@
 namespace chorus::facing {
 namespace {
 
-constexpr double kNearest = 0.3;   // [m] horizontally; a person is not nearer to a camera
-constexpr double kWide = 0.35;     // [m] of all spans together; a person from the front has 0.8
-constexpr double kSteepest = 0.1;  // cosine of a ray to the plane's normal; others meet it far away
+constexpr double kNearest = 0.3;   // [m] horizontal; a person is not nearer to a camera
+constexpr double kWide = 0.35;     // [m] sum of all spans; a person seen from the front has 0.8
+constexpr double kSteepest = 0.1;  // cosine of ray and normal; flatter rays meet the plane far away
 
-/// The joint where its ray meets the plane; left out where it does not.
+/// Moves the joint to where its ray meets the plane; without an intersection it is left out.
 void put_on_plane(Joint& joint, const Eigen::Vector3d& eye, const Eigen::Vector3d& normal,
                   double range) {
   if (!joint.bears()) return;
@@ -23,7 +23,7 @@ void put_on_plane(Joint& joint, const Eigen::Vector3d& eye, const Eigen::Vector3
   joint.position = eye + range / cosine * joint.position;
 }
 
-/// Whether most pairs that have both joints lie where the other side's rays go.
+/// Whether most of the complete pairs lie on the rays of the opposite joints.
 bool is_exchanged(const SensorView& view, const Skeleton<WorldSpace>& rays) {
   int exchanged = 0;
   for (const auto& [left, right] : kMirrorPairs) {

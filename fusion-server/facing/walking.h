@@ -1,5 +1,5 @@
-// Which way a person walks, from how the trunk moves in each view; a view that appears or
-// disappears adds no speed.
+// The direction in which a person walks, from how the trunk moves in each view; a view that appears
+// or disappears adds no speed.
 #pragma once
 
 #include <map>
@@ -9,11 +9,11 @@
 namespace chorus::facing {
 
 struct WalkingCue {
-  double log_odds = 3.0;   ///< For walking forwards against backwards at full speed.
-  double from = 0.3;       ///< Anything slower is standing [m/s].
+  double log_odds = 3.0;   ///< For forwards against backwards, at full speed.
+  double from = 0.3;       ///< Anything slower counts as standing [m/s].
   double full = 1.0;       ///< [m/s]
   double smoothing = 0.2;  ///< Time constant of the speed [s].
-  double same = 0.5;       ///< Walking within this time counts as one piece of evidence [s].
+  double same = 0.5;       ///< Walking within this time is one piece of evidence [s].
 
   bool operator==(const WalkingCue&) const = default;
 };
@@ -21,7 +21,7 @@ struct WalkingCue {
 class Walk {
  public:
   void follow(const std::vector<SensorView>& views, Timestamp instant, const WalkingCue& cue);
-  /// Log odds that the front is where `forward` (unit, horizontal) points.
+  /// Log odds that `forward` (unit, horizontal) points to the person's front.
   [[nodiscard]] double log_odds(const Eigen::Vector3d& forward, const WalkingCue& cue) const;
 
  private:

@@ -12,8 +12,8 @@
 namespace chorus::mxtp {
 namespace {
 
-/// A segment's origin: `share` of the way from one joint to another (beyond it when more than 1);
-/// it turns as a bone of the rig does.
+/// A segment's origin lies at the fraction `share` of the way between two joints (beyond them if
+/// more than 1); its rotation is that of a bone of the rig.
 struct Segment {
   JointId from;
   JointId to;
@@ -23,10 +23,10 @@ struct Segment {
 
 using enum JointId;
 
-// Order and meaning of the ids 1..23: Xsens, MVN real-time network streaming protocol.  Neck and
-// head are the inverse of what importing an MVN file makes of them (common/motion): MVN's neck
-// begins where our SpineShoulder is and ends in the joint that its head begins with, our Neck is
-// half-way.
+// Order and meaning of the ids 1..23: Xsens, MVN real-time network streaming protocol.  Neck
+// and head are the inverse of the import of MVN files (common/motion): MVN's neck begins at
+// our SpineShoulder and ends at the joint where its head begins; our Neck is half-way
+// between.
 constexpr std::array<Segment, kSegments> kTable{{
     {SpineBase, SpineBase, 0.0, outlet::HumanBone::Hips},                   // Pelvis
     {SpineBase, SpineMid, 1.0 / 3.0, outlet::HumanBone::Spine},             // L5
@@ -64,16 +64,16 @@ void add_real(Bytes& out, double value) {
 
 std::uint32_t time_code(const outlet::TrackerFrame& frame) {
   return static_cast<std::uint32_t>(static_cast<std::uint64_t>(to_unix_ns(frame.instant)) /
-                                    1'000'000U);  // modulo 2^32, as the field is
+                                    1'000'000U);  // modulo 2^32, because the field has 32 bits
 }
 
-/// Every datagram carries all segments, so an unseen limb is put at its parent.
+/// Every datagram contains all segments, so an unseen limb is placed at its parent.
 Eigen::Vector3d origin_of(const Segment& segment, const outlet::TrackerBody& body) {
   const auto place = [&body](JointId id) {
     return body[outlet::nearest_tracked(body, id)].position;
   };
   const bool both = body[segment.from].tracked && body[segment.to].tracked;
-  // A segment beyond a joint needs both joints to be seen.
+  // A segment beyond a joint requires that both joints are seen.
   const double share = both ? segment.share : std::min(segment.share, 1.0);
   return (1.0 - share) * place(segment.from) + share * place(segment.to);
 }

@@ -1,11 +1,11 @@
-// Xsens MVN network streaming, datagram type 02: 23 segments as position and quaternion.
+// Xsens MVN network streaming, datagram type 02: position and quaternion of 23 segments.
 //
-// Big-endian, metres, right-handed, +z up, x forward.  760 bytes per body; the character id is the
-// slot.  Segments without a joint of ours lie on the line between those that have one: L5, L3 and
-// T8 along the spine, shoulders beside it, the head as far beyond our Neck as that is from
-// SpineShoulder.  Rotations are those of humanoid.h's rig, as MVN's are: a person in T-pose who
-// looks along +x, our +z, has identities only; a segment whose joints are not tracked turns with
-// its parent.
+// Big-endian, metres, right-handed, +z up, x forward. 760 bytes per body; the character id is the
+// slot.  Segments without a joint of ours are interpolated between those that have one: L5, L3 and
+// T8 along the spine, shoulders at its sides, the head as far beyond our Neck as that is from
+// SpineShoulder.  Rotations are relative to humanoid.h's rig, like MVN's: a person in T-pose who
+// looks along +x, our +z, has only identities; a segment whose joints are not tracked follows its
+// parent.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ inline constexpr std::size_t kSegments = 23;
 inline constexpr std::size_t kDatagramBytes = 24 + 32 * kSegments;
 
 /// One datagram of exactly kDatagramBytes; empty when the pelvis or the head is not tracked, or
-/// nothing says where the body faces.
+/// when it is unknown which way the body faces.
 [[nodiscard]] std::vector<char> encode(const outlet::TrackerFrame& frame,
                                        const outlet::TrackerBody& body);
 

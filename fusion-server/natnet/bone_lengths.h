@@ -1,6 +1,6 @@
-// How long a person's bones are, measured while they move, for the description of their skeleton.
+// Measures the bone lengths of a moving person, for the description of their skeleton.
 //
-// Clients build their rest pose from the description and turn its bones as frames say; with the
+// Clients build their rest pose from the description and rotate its bones as frames say; with the
 // bones of an average adult, the limbs of other people would end in the wrong place.
 #pragma once
 
@@ -12,23 +12,23 @@
 
 namespace chorus::natnet {
 
-/// Of each bone from its parent's origin at rest [m].
+/// Offset of each bone from its parent's origin at rest [m].
 using BoneOffsets = std::array<std::array<double, 3>, kBoneCount>;
 
-/// Those of motive_bones().
+/// The offsets in motive_bones().
 [[nodiscard]] BoneOffsets adult_offsets();
 
-/// Of one slot.
+/// The measurement for one slot.
 class BoneLengths {
  public:
-  /// Lengths are the medians of this many frames of a person: five seconds at 30 Hz.
+  /// Lengths are medians over this many frames of a person: five seconds at 30 Hz.
   static constexpr std::size_t kFrames = 150;
-  /// A description is changed when a bone differs by more than this from what it says [m].
+  /// The description is updated when a bone differs from it by more than this [m].
   static constexpr double kTolerance = 0.005;
 
-  /// False: this person has been measured.
+  /// False: this person has already been measured.
   [[nodiscard]] bool wants(PersonId person) const { return !done_ || person != person_; }
-  /// `local`: Coordinates::Local.  Returns the new description once there is one.
+  /// `local` uses Coordinates::Local.  Returns the new description once it is complete.
   [[nodiscard]] std::optional<BoneOffsets> add(PersonId person, const MotiveSkeleton& local);
 
  private:
@@ -37,7 +37,7 @@ class BoneLengths {
   PersonId person_{};
   bool done_ = false;
   std::size_t frames_ = 0;
-  /// Of frames in which bone and parent are tracked.
+  /// Lengths from frames in which the bone and its parent are tracked.
   std::array<std::vector<double>, kBoneCount> lengths_;
   BoneOffsets described_ = adult_offsets();
 };

@@ -1,14 +1,14 @@
-// NatNet's command channel without a socket: who is a client, and what to answer to whom.
+// NatNet's command channel without a socket: decides who is a client and what to answer.
 //
 // Clients are those that connected or keep alive (in multicast, where connecting only asks for the
-// server's settings, those that keep alive) and then sent something else.  They are limited in
-// number, in total and per host, identified by address and port, and forgotten after
-// `client_timeout` without a message.
-// Anybody can send in anybody's name, and the protocol cannot tell.  Answers are larger than
-// requests, so all together are limited by `answers`.  A single datagram enables nothing and takes
-// no client's place; two in one name still send frames to that host, for `client_timeout` and to at
-// most `max_clients_per_address` ports (docs/decisions/0025).  Messages that only servers send are
-// never answered, so two servers cannot be made to talk to each other.
+// server's settings, those that keep alive) and then sent something else.  They are identified by
+// address and port, limited in number, in total and per host, and forgotten after `client_timeout`
+// without a message.
+// Sender addresses can be forged, and the protocol cannot tell.  Answers are larger than requests,
+// so their total is limited by `answers`.  A single datagram enables nothing and takes no client's
+// place; two with the same forged address still send frames to that host, for `client_timeout` and
+// to at most `max_clients_per_address` ports (docs/decisions/0025).  Messages that only servers
+// send are never answered, so two servers cannot be made to answer each other.
 #pragma once
 
 #include <chrono>
@@ -27,7 +27,7 @@
 
 namespace chorus::natnet {
 
-/// IPv4: the protocol knows nothing else.
+/// IPv4, because the protocol supports nothing else.
 struct Address {
   std::uint32_t host = 0;
   std::uint16_t port = 0;
@@ -51,7 +51,7 @@ struct Now {
 
 struct Reply {
   Bytes bytes;               ///< Empty: no answer.
-  std::string_view refusal;  ///< Why it was turned away; empty: it was not.
+  std::string_view refusal;  ///< Why the request was refused; empty: it was accepted.
 };
 
 class CommandDesk {
@@ -60,19 +60,19 @@ class CommandDesk {
 
   [[nodiscard]] Reply answer(std::span<const char> datagram, const Address& from, const Now& now);
 
-  /// Sets the descriptions: the whole message.
+  /// Sets the descriptions, as a whole message.
   void describe(Bytes models) { options_.models = std::move(models); }
 
-  /// Sets the frame that is sent to those who ask for one.
+  /// Sets the frame that is sent on request.
   void newest(std::shared_ptr<const Bytes> frame, Timestamp instant);
 
-  /// Who gets frames now.
+  /// The clients that get frames at present.
   [[nodiscard]] std::vector<Address> clients(SteadyTime now);
 
  private:
   [[nodiscard]] Reply reply_to(const Incoming& request, const Now& now) const;
   [[nodiscard]] Bytes reply_to_text(std::string_view text) const;
-  /// Why it cannot become a client; empty: it can, or does not want to.
+  /// Why it cannot become a client; empty: it can, or it does not ask to.
   [[nodiscard]] std::string_view admit(const Incoming& request, const Address& from,
                                        SteadyTime now);
   [[nodiscard]] std::string_view objection(const Address& from) const;
@@ -83,11 +83,11 @@ class CommandDesk {
   DeskOptions options_;
   using Heard = std::map<Address, SteadyTime>;
 
-  Heard heard_;   ///< Clients, and when each was last heard.
-  Heard knocks_;  ///< Who has asked for frames once, and when; tidied now and then.
+  Heard heard_;   ///< Clients, with the time of their last message.
+  Heard knocks_;  ///< Hosts that asked for frames once, and when; tidied at times.
   SteadyTime tidied_{};
   std::shared_ptr<const Bytes> frame_;
-  std::deque<Timestamp> instants_;  ///< Of the newest frames.
+  std::deque<Timestamp> instants_;  ///< Instants of the newest frames.
   net::TokenBucket allowance_;
 };
 

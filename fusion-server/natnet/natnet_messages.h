@@ -1,4 +1,4 @@
-// NatNet's messages without the network: requests read, answers written.
+// Reads NatNet's requests and writes its answers, without the network.
 //
 // Every datagram is u16 message, u16 bytes of payload, payload; little-endian.  Clients' requests:
 //    0 connect           {char[256] name, u8[4] version, u8[4] NatNet version}, or less  -> 1
@@ -9,8 +9,8 @@
 //   10 keep-alive        nothing
 //   12 echo              u64 of the client                                               -> 13
 //   14 discovery         as connect                                                      -> 1
-// The vendor's own clients send bytes after the payload they announce, and connect with 264, 271 or
-// no bytes at all: bytes after the payload are ignored, and nothing of connect is read.
+// The vendor's own clients send bytes beyond the payload they announce, and connect with 264, 271
+// or no bytes at all: extra bytes are ignored, and the payload of connect is not read.
 #pragma once
 
 #include <array>
@@ -42,23 +42,23 @@ enum class Message : std::uint16_t {
   Unrecognized = 100,
 };
 
-/// The version of the layout.
+/// The version of the layout used here.
 inline constexpr std::array<std::uint8_t, 4> kNatNetVersion{3, 1, 0, 0};
-/// Longer datagrams are not requests: the longest that clients send has 275 bytes.
+/// Longer datagrams are not requests: the longest that clients send have 275 bytes.
 inline constexpr std::size_t kMaxRequest = 1024;
-/// The unit of all time stamps: nanoseconds of UTC since 1970.
+/// Unit of all time stamps: nanoseconds of UTC since 1970.
 inline constexpr std::uint64_t kTicksPerSecond = 1'000'000'000;
 
 struct Incoming {
-  Message message = Message::Connect;  ///< Also values that have no name.
-  std::string_view text;               ///< Of Request, up to its NUL.
-  std::uint64_t stamp = 0;             ///< Of EchoRequest.
+  Message message = Message::Connect;  ///< May also have values without a name.
+  std::string_view text;               ///< For Request: the text up to its NUL.
+  std::uint64_t stamp = 0;             ///< For EchoRequest.
 };
 
-/// Empty: shorter than its header or than it says, too long, an echo without its number.
+/// Nothing if shorter than its header or stated length, too long, or an echo without its number.
 [[nodiscard]] std::optional<Incoming> read_request(std::span<const char> datagram);
 
-/// Sent by servers and never by clients: answering it could go on forever.
+/// Whether only servers send it: two servers that answer such messages would never stop.
 [[nodiscard]] bool is_an_answer(Message message);
 
 struct ServerInfo {

@@ -21,7 +21,7 @@ std::optional<std::array<std::uint8_t, 4>> group_of(const std::string& text) {
   return address.to_bytes();
 }
 
-/// How many frames say that models have changed: some of them get lost.
+/// Number of frames that announce changed models, because some frames get lost.
 constexpr int kTellChange = 5;
 
 /// Encodes on the caller's thread, once for all clients.
@@ -66,9 +66,9 @@ class NatNetOutlet final : public outlet::Outlet {
   std::unique_ptr<Server> server_;
   std::shared_ptr<const Clock> clock_;
   Timestamp start_;
-  std::vector<BoneLengths> lengths_;  ///< By slot.
-  std::vector<BoneOffsets> bones_;    ///< By slot: as described.
-  int tell_change_ = 0;               ///< Frames that still say so.
+  std::vector<BoneLengths> lengths_;  ///< Measurements by slot.
+  std::vector<BoneOffsets> bones_;    ///< By slot, as last described.
+  int tell_change_ = 0;               ///< Number of frames that still have to announce a change.
 };
 
 void read_models(ConfigReader& reader, Models& out) {

@@ -16,11 +16,11 @@ enum class Transmission { Unicast, Multicast };
 
 struct Settings {
   std::string address = "127.0.0.1";
-  int command_port = 1510;  ///< 0: any.
+  int command_port = 1510;  ///< 0: any free port.
   net::AllowList allow = {};
   Transmission transmission = Transmission::Unicast;
   std::string group = "239.255.42.99";
-  int data_port = 1511;  ///< Of the group.
+  int data_port = 1511;  ///< Port of the multicast group.
   int multicast_hops = 1;
   int max_clients = 16;
   int max_clients_per_address = 4;
@@ -32,7 +32,7 @@ struct Settings {
 
 void read_settings(ConfigReader& reader, Settings& out);
 
-/// All slots are described.
+/// All slots are described to clients.
 [[nodiscard]] Result<std::unique_ptr<outlet::Outlet>> open_outlet(
     const Settings& settings, const outlet::OutletContext& context);
 

@@ -18,7 +18,7 @@ namespace {
 using net::error_code;
 using net::udp;
 
-/// Frames of six persons to all clients at once, in case this thread is not scheduled for a while.
+/// Holds frames of six persons for all clients, in case this thread is not scheduled for a while.
 constexpr int kSendBuffer = 1 << 20;
 
 Address address_of(const udp::endpoint& endpoint) {
@@ -62,7 +62,7 @@ struct Server::Impl {
   std::atomic<std::uint64_t> failed = 0;
   std::atomic<std::uint64_t> refused = 0;
   std::atomic<std::uint64_t> clients = 0;
-  outlet::Newest<Pending> newest;  ///< Not sent yet.
+  outlet::Newest<Pending> newest;  ///< The frame not sent yet.
   std::thread thread;
 };
 
@@ -95,7 +95,7 @@ error_code Server::Impl::open_group(const asio::ip::address_v4& interface) {
   if (!error && !interface.is_unspecified()) {
     group.set_option(asio::ip::multicast::outbound_interface(interface), error);
   }
-  // Not the data port: clients on this host bind that one.
+  // Not the data port, because clients on this host bind to it.
   if (!error) group.bind({interface, 0}, error);
   return error;
 }

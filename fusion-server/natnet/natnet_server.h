@@ -1,5 +1,5 @@
 // The sockets of a NatNet server: one for commands, from which clients also get their frames, and
-// in multicast one for the group.  A thread of its own; nothing here waits for anybody.
+// for multicast one for the group.  It has its own thread and never blocks.
 #pragma once
 
 #include <cstdint>
@@ -15,26 +15,26 @@
 namespace chorus::natnet {
 
 struct ServerOptions {
-  /// Numeric IPv4: where we listen, and the interface that the group is sent from.
+  /// Numeric IPv4: the address that we listen on and whose interface sends to the group.
   std::string address = "127.0.0.1";
   std::uint16_t command_port = 1510;  ///< 0: any.
-  net::AllowList allow = {};  ///< Who is answered; nothing keeps others from the group's frames.
+  net::AllowList allow = {};          ///< Hosts that are answered; others can still join the group.
   int multicast_hops = 1;
-  DeskOptions desk;                    ///< `info` says where frames go.
-  std::shared_ptr<const Clock> clock;  ///< What echo requests are answered with.
+  DeskOptions desk;                    ///< Its `info` tells clients where frames are sent.
+  std::shared_ptr<const Clock> clock;  ///< Source of the time in answers to echo requests.
 };
 
 class Server {
  public:
   [[nodiscard]] static Result<std::unique_ptr<Server>> start(ServerOptions options);
-  ~Server();  ///< Joins.
+  ~Server();  ///< Joins the thread.
 
   [[nodiscard]] std::uint16_t port() const;
-  /// Sends a frame to all; a frame still waiting to be sent is dropped.  Any thread.
+  /// Sends a frame to all clients; drops a frame still waiting.  May be called from any thread.
   void publish(std::shared_ptr<const Bytes> frame, Timestamp instant);
-  /// Sets the description of the models.  Any thread.
+  /// Sets the description of the models.  May be called from any thread.
   void describe(Bytes models);
-  /// Any thread; all but `frames`.
+  /// All counters except `frames`.  May be called from any thread.
   [[nodiscard]] SinkCounters counters() const;
 
  private:

@@ -1,4 +1,4 @@
-// NatNet's byte order and strings: little-endian, texts ended by NUL or filled up with it.
+// NatNet's byte order and strings: little-endian; strings end with NUL or are padded with it.
 #pragma once
 
 #include <bit>
@@ -27,7 +27,7 @@ inline void append(Bytes& out, std::int32_t value) {
 inline void append(Bytes& out, float value) { append(out, std::bit_cast<std::uint32_t>(value)); }
 inline void append(Bytes& out, double value) { append(out, std::bit_cast<std::uint64_t>(value)); }
 
-/// A text and its NUL.
+/// Appends a string and its NUL.
 inline void append_text(Bytes& out, std::string_view text) {
   out.insert(out.end(), text.begin(), text.end());
   out.push_back('\0');

@@ -31,10 +31,10 @@ class Message {
 };
 
 /// Collects messages into bundles ("#bundle", time tag "now") of at most `limit` bytes each; a
-/// message that is longer than that gets a bundle of its own.
+/// longer message gets a bundle of its own.
 class Bundles {
  public:
-  static constexpr std::size_t kLimit = 1400;  ///< Fits an Ethernet frame with IPv6 and UDP heads.
+  static constexpr std::size_t kLimit = 1400;  ///< Fits an Ethernet frame with IPv6, UDP headers.
 
   explicit Bundles(std::size_t limit = kLimit) : limit_(limit) {}
   void add(const Message& message);

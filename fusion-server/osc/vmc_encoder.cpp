@@ -14,7 +14,7 @@ constexpr std::int32_t kLoaded = 1;
 constexpr std::int32_t kCalibrated = 3;
 constexpr std::int32_t kNormalMode = 0;
 
-/// Where full-body trackers are worn.
+/// The bones at which full-body trackers are worn.
 constexpr std::array kWorn{
     outlet::HumanBone::Head,          outlet::HumanBone::Chest,
     outlet::HumanBone::Hips,          outlet::HumanBone::LeftLowerArm,

@@ -4,12 +4,12 @@
 //   /VMC/Ext/OK        i loaded = 1, i calibration = 3 (done), i mode = 0, i tracking = 1 or 0;
 //                      all zero at the end
 //   /VMC/Ext/T         f seconds
-//   /VMC/Ext/Root/Pos  s "root", identity: the world itself
-//   /VMC/Ext/Bone/Pos  s bone, f px py pz qx qy qz qw: in its parent's frame, rotations relative to
-//                      the T-pose; Hips carries the place in the world.  Going down the chain gives
-//                      the joints' places again.
-//   /VMC/Ext/Tra/Pos   s serial, the same: poses in the world, if asked for
-// A bone whose joints are not tracked is left out (the receiver keeps it).  Bones: humanoid.h.
+// /VMC/Ext/Root/Pos  s "root", identity: the world itself
+//   /VMC/Ext/Bone/Pos  s bone, f px py pz qx qy qz qw: relative to its parent, with rotations from
+//                      the T-pose; Hips has its position in the world.  Multiplied along the chain
+//                      they give the joints' positions again.
+//   /VMC/Ext/Tra/Pos   s serial, the same: poses in the world, if enabled
+// A bone whose joints are not tracked is omitted (the receiver keeps its pose).  Bones: humanoid.h.
 #pragma once
 
 #include <vector>
@@ -19,15 +19,15 @@
 namespace chorus::vmc {
 
 struct Content {
-  double seconds = 0.0;   ///< Since the performer started.
-  bool trackers = false;  ///< With /VMC/Ext/Tra/Pos.
+  double seconds = 0.0;   ///< Time since the performer started.
+  bool trackers = false;  ///< Adds /VMC/Ext/Tra/Pos.
 };
 
-/// One datagram each.  Without a body (nullptr): only that nobody is tracked.
+/// Returns datagrams.  Without a body (nullptr) they only say that nobody is tracked.
 [[nodiscard]] std::vector<std::vector<char>> encode(const outlet::TrackerBody* body,
                                                     const Content& content);
 
-/// The last datagram: the model is not loaded any more, nothing is tracked.
+/// The last datagram: the model is no longer loaded, nothing is tracked.
 [[nodiscard]] std::vector<std::vector<char>> encode_end();
 
 }  // namespace chorus::vmc

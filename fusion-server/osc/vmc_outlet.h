@@ -1,4 +1,4 @@
-// Sends persons by VMC over UDP: a performer has one body, so each person has targets of its own.
+// Sends people by VMC over UDP: a performer has one body, so each person has its own targets.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@ struct Settings {
   std::vector<std::string> targets{"127.0.0.1:39539"};
   int slot = 0;                                ///< Slot of the person to send.
   std::vector<outlet::PersonTargets> persons;  ///< Further persons.
-  bool trackers = false;                       ///< Also as /VMC/Ext/Tra/Pos.
+  bool trackers = false;                       ///< Adds poses as /VMC/Ext/Tra/Pos.
 
   bool operator==(const Settings&) const = default;
 };

@@ -20,7 +20,7 @@ struct Worn {
   outlet::HumanBone turns;  ///< ... with the rotation of this bone.
 };
 
-/// VRChat takes the head's place at its root, not at the eyes.
+/// VRChat takes the head's position at the base of the head, not at the eyes.
 constexpr std::string_view kHead = "head";
 
 constexpr std::array<Worn, 9> kTrackers{{

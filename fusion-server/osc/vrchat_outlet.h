@@ -1,4 +1,4 @@
-// Sends persons as VRChat OSC trackers over UDP, each to targets of its own.
+// Sends people as VRChat OSC trackers over UDP, each to targets of its own.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@ struct Settings {
   std::vector<std::string> targets{"127.0.0.1:9000"};
   int slot = 0;                                ///< Slot of the person to send.
   std::vector<outlet::PersonTargets> persons;  ///< Further persons.
-  bool head = true;  ///< Also the head, which VRChat uses to align its space with ours.
+  bool head = true;  ///< Adds the head, which VRChat uses to align its space with ours.
 
   bool operator==(const Settings&) const = default;
 };

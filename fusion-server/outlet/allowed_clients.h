@@ -1,4 +1,4 @@
-// The key "allow" of outputs that clients connect to.
+// The configuration key "allow" of outputs that clients connect to.
 #pragma once
 
 #include "common/base/config_reader.h"
@@ -6,7 +6,7 @@
 
 namespace chorus::outlet {
 
-/// Complains of entries that are no addresses.
+/// Reports entries that are not addresses.
 void read_allow(ConfigReader& reader, net::AllowList& out);
 
 }  // namespace chorus::outlet

@@ -1,7 +1,7 @@
 // Axes and units of every output protocol.  The only file that converts them.
 //
-// Inside: world, right-handed, metres, +y up, +z where the master sensor looks (out of its room's
-// far wall), quaternions Hamilton.  wire-format facts: docs/guide/outputs.md.
+// Ours: world, right-handed, metres, +y up, +z in the master sensor's viewing direction (towards
+// the far wall), quaternions Hamilton.  Facts on the wire formats: docs/guide/outputs.md.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -21,7 +21,7 @@ struct Axes {
   [[nodiscard]] Eigen::Matrix3d rotation(const Eigen::Quaterniond& world_from_joint) const {
     return target_from_world * world_from_joint.toRotationMatrix() * target_from_world.transpose();
   }
-  /// w >= 0.
+  /// With w >= 0.
   [[nodiscard]] Eigen::Quaterniond quaternion(const Eigen::Quaterniond& world_from_joint) const;
 };
 
@@ -40,8 +40,8 @@ struct Axes {
 /// NatNet, as Motive streams it by default: right-handed, +y up, metres.
 [[nodiscard]] const Axes& natnet_axes();
 
-/// Converts from the directions of a rest pose that looks along our +z, as Xsens' and Motive's do,
-/// to those of the rig at rest (humanoid.h: it looks along -z).
+/// Rotates directions of a rest pose that looks along our +z, like that of Xsens and Motive, to
+/// those of the rig at rest (humanoid.h: it looks along -z).
 [[nodiscard]] const Eigen::Quaterniond& rig_from_ahead_rest();
 
 /// R = Rx(eta) Ry(theta) Rz(phi), |theta| <= 90 deg (A.R.T. DTrack2 manual, App. B) [rad].

@@ -1,4 +1,4 @@
-// Network byte order, as OSC, VRPN and MXTP have it: the most significant byte first.
+// Network byte order, as in OSC, VRPN and MXTP: the most significant byte first.
 #pragma once
 
 #include <array>

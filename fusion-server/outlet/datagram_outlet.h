@@ -1,4 +1,4 @@
-// An outlet that encodes each frame and sends the datagrams to its targets, and nothing else.
+// An outlet that only encodes each frame and sends the datagrams to its targets.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@
 namespace chorus::outlet {
 
 using Datagrams = std::vector<std::vector<char>>;
-/// Called with each frame in turn, always on the same thread.
+/// Called for each frame in order, always on the same thread.
 using DatagramEncoder = std::function<Datagrams(const TrackerFrame&)>;
 
 /// The datagrams that one set of targets receives.
@@ -23,7 +23,7 @@ struct DatagramStream {
   Datagrams last_words = {};  ///< Sent when the outlet ends.
 };
 
-/// `name` outlives the outlet; errors about a target are DatagramSender's.
+/// `name` must outlive the outlet; errors about a target are those of DatagramSender.
 [[nodiscard]] Result<std::unique_ptr<Outlet>> open_datagram_outlet(
     std::string_view name, std::vector<DatagramStream> streams);
 

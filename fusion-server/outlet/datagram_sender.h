@@ -21,54 +21,54 @@ struct Target {
   std::uint16_t port = 0;
 };
 
-/// InvalidArgument names what is wrong with it.
+/// An InvalidArgument says what is wrong with the text.
 [[nodiscard]] Result<Target> parse_target(std::string_view text);
 
-/// The key "targets"; each target as above.
+/// Reads the key "targets"; each target has the form above.
 void read_targets(ConfigReader& reader, std::vector<std::string>& out);
 
-/// How datagrams leave for multicast groups.
+/// How datagrams are sent to multicast groups.
 struct Multicast {
   std::string address;  ///< Of the interface, numeric IPv4; empty: that of the default route.
-  int hops = 1;         ///< Routers a datagram may pass, plus one; 0: none leaves this host.
+  int hops = 1;         ///< Number of routers a datagram may pass, plus one; 0: this host only.
 
   bool operator==(const Multicast&) const = default;
 };
 
-/// The keys "multicast_address" and "multicast_hops".
+/// Reads the keys "multicast_address" and "multicast_hops".
 void read_multicast(ConfigReader& reader, Multicast& out);
 
 struct DatagramOptions {
   std::vector<std::string> targets;
-  /// 0: any.  Bound to loopback when all targets and `listen_address` are there.
+  /// 0: any.  The socket is bound to loopback if all targets and `listen_address` are loopback.
   std::uint16_t source_port = 0;
-  /// Not empty: an IPv4 socket is open even without a target, for others to write to.
+  /// If not empty, an IPv4 socket is open even without a target, so that others can write to it.
   std::string listen_address = {};
   Multicast multicast = {};
 };
 
-/// What somebody sent us.
+/// A datagram that was sent to us.
 struct Arrival {
-  Target sender;  ///< A numeric host.
+  Target sender;  ///< Its host is numeric.
   std::string text;
 };
 
-/// Never blocks: datagrams that the operating system does not take at once are lost and counted.
+/// Never blocks: datagrams that the operating system does not accept at once are lost and counted.
 class DatagramSender {
  public:
-  /// Resolves the targets.  Io or InvalidArgument names the target.
+  /// Resolves the targets.  Errors Io and InvalidArgument name the target.
   [[nodiscard]] static Result<std::unique_ptr<DatagramSender>> open(const DatagramOptions& options);
   ~DatagramSender();
 
-  /// One datagram to every target.
+  /// Sends one datagram to every target.
   void send(std::span<const char> datagram);
-  /// One datagram to somebody who is not among the targets; `to` has a numeric host.
+  /// Sends one datagram to a host that need not be a target; `to` has a numeric host.
   void send_to(std::span<const char> datagram, const Target& to);
-  /// The next datagram that came to our source port, its first 64 bytes; none: there is none.
+  /// The next datagram received on our source port, its first 64 bytes; none: there is none.
   [[nodiscard]] std::optional<Arrival> receive();
-  /// The port we send IPv4 datagrams from; 0 before the first.
+  /// The port that we send IPv4 datagrams from; 0 before the first one.
   [[nodiscard]] std::uint16_t source_port() const;
-  /// Datagrams lost on sending.  Any thread.
+  /// Number of datagrams lost on sending.  May be called from any thread.
   [[nodiscard]] std::uint64_t failed() const noexcept { return failed_; }
 
  private:

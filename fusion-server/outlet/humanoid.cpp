@@ -17,10 +17,10 @@ const Eigen::Vector3d kRestLeft = -Eigen::Vector3d::UnitX();
 const Eigen::Vector3d kRestForward = -Eigen::Vector3d::UnitZ();
 
 constexpr double kFootFalls = deg(25);
-constexpr double kStraight = deg(15);     ///< Below: the plane of a joint is noise.
-constexpr double kBent = deg(30);         ///< Above: the plane is the twist.
-constexpr double kNearlyParallel = 0.17;  ///< Sine of 10 deg: two directions that give no plane.
-constexpr double kShortest = 1e-4;        ///< Joints nearer than this have no direction [m].
+constexpr double kStraight = deg(15);     ///< A joint bent less than this has no reliable plane.
+constexpr double kBent = deg(30);         ///< From here on the plane alone defines the twist.
+constexpr double kNearlyParallel = 0.17;  ///< Sine of 10 deg: closer directions define no plane.
+constexpr double kShortest = 1e-4;        ///< Joints closer than this define no direction [m].
 
 constexpr std::array<HumanBone, kHumanBoneCount> kParents{
     Hips,          Hips,          Spine,         Chest,        UpperChest,   Neck,
@@ -28,7 +28,7 @@ constexpr std::array<HumanBone, kHumanBoneCount> kParents{
     RightUpperArm, RightLowerArm, Hips,          LeftUpperLeg, LeftLowerLeg, LeftFoot,
     Hips,          RightUpperLeg, RightLowerLeg, RightFoot};
 
-/// A bone turns about the point `share` of the way between two joints.
+/// The point that a bone turns about: at the fraction `share` of the way between two joints.
 struct Origin {
   JointId from;
   JointId to;
@@ -69,7 +69,7 @@ Direction direction(const TrackerBody& body, JointId from, JointId to) {
   return way.normalized();
 }
 
-/// Two directions of one thing; `along` is the more exact one.
+/// Two directions of the same body part; `along` is the more accurate one.
 struct Cross {
   Eigen::Vector3d along;
   Eigen::Vector3d aside;
@@ -85,14 +85,14 @@ std::optional<Eigen::Matrix3d> frame_of(const Cross& cross) {
   return frame;
 }
 
-/// The shortest further turn of `before` that takes `rest` to `now`.
+/// The shortest rotation added to `before` so that it takes `rest` to `now`.
 Eigen::Quaterniond swung(const Eigen::Quaterniond& before, const Eigen::Vector3d& rest,
                          const Eigen::Vector3d& now) {
   return (Eigen::Quaterniond::FromTwoVectors(before * rest, now) * before).normalized();
 }
 
-/// The rotation from the rest's directions to the present ones: `along` exactly, `aside` as nearly
-/// as that allows; the shortest turn from `parent` when `aside` gives no plane.
+/// The rotation from the directions at rest to the present ones: exact for `along`, as close as
+/// possible for `aside`; the shortest rotation from `parent` when `aside` defines no plane.
 Eigen::Quaterniond turned(const Cross& rest, const Cross& now, const Eigen::Quaterniond& parent) {
   const auto from = frame_of(rest);
   const auto to = frame_of(now);
@@ -104,7 +104,7 @@ struct Limb {
   JointId root, middle, end;
   HumanBone upper, lower, trunk;
   Eigen::Vector3d rest_along;
-  Eigen::Vector3d rest_hinge;  ///< upper x lower when it bends as limbs do
+  Eigen::Vector3d rest_hinge;  ///< Axis upper x lower for the natural bend
 };
 
 const std::array<Limb, 4> kLimbs{{
@@ -127,7 +127,7 @@ struct Tip {
 const Eigen::Vector3d kRestFoot =
     std::cos(kFootFalls) * kRestForward - std::sin(kFootFalls) * kRestUp;
 
-/// Hands; `aside` is the thumb.
+/// Hands; their `aside` is the thumb.
 const std::array<Tip, 2> kHands{{
     {LeftHand, LeftLowerArm, JointId::WristLeft, JointId::HandTipLeft, JointId::HandLeft,
      JointId::ThumbLeft, kRestLeft, kRestForward},
@@ -186,7 +186,7 @@ bool Rig::add_hips() {
   return true;
 }
 
-/// `lateral`: where left is.
+/// `lateral`: the direction to the left.
 void Rig::add_upright(HumanBone bone, const Direction& along, const Eigen::Vector3d& lateral) {
   if (!along) return follow(bone, false);
   set(bone, turned({kRestUp, kRestLeft}, {*along, lateral}, turn(parent_of(bone))));
@@ -211,7 +211,7 @@ Eigen::Vector3d Rig::turned_with(JointId joint, const Eigen::Vector3d& lateral) 
   return body_[joint].orientation * body_[JointId::SpineShoulder].orientation.conjugate() * lateral;
 }
 
-/// 0 for a straight limb, 1 for a bent one, smooth between.
+/// 0 for a straight limb, 1 for a bent one, with a smooth transition.
 double bentness(const Eigen::Vector3d& upper, const Eigen::Vector3d& lower) {
   const double angle = std::atan2(upper.cross(lower).norm(), upper.dot(lower));
   const double s = std::clamp((angle - kStraight) / (kBent - kStraight), 0.0, 1.0);
@@ -242,7 +242,7 @@ void Rig::add_hand(const Tip& hand) {
   if (!along) return follow(hand.bone, false);
   const Eigen::Quaterniond forearm = turn(hand.lower);
   const Direction thumb = direction(body_, hand.root, hand.aside);
-  const Cross now{*along, thumb.value_or(*along)};  // along itself: no plane
+  const Cross now{*along, thumb.value_or(*along)};  // without a thumb, `along` itself: no plane
   set(hand.bone, turned({hand.rest_along, hand.rest_aside}, now, forearm));
 }
 

@@ -1,4 +1,4 @@
-// One value between two threads: the newest replaces one that has not been taken.
+// Passes one value between two threads: a new value replaces one that has not been taken.
 #pragma once
 
 #include <mutex>
@@ -7,13 +7,13 @@
 
 namespace chorus::outlet {
 
-/// For a consumer that is called (asio::post) instead of waiting; compare Handover, whose consumer
-/// waits.
+/// For a consumer that is called (by asio::post) and does not wait; compare Handover, whose
+/// consumer waits.
 template <class T>
 class Newest {
  public:
-  /// True: it was empty, so the consumer has to be called.  False: an older value was replaced, and
-  /// the call already made will take this one.
+  /// True: it was empty, so the consumer must be called.  False: an older value was replaced, and
+  /// the call already posted will take this one.
   [[nodiscard]] bool put(T value) {
     const std::scoped_lock lock(mutex_);
     const bool was_empty = !value_.has_value();

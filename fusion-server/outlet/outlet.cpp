@@ -8,7 +8,7 @@ namespace chorus::outlet {
 namespace {
 
 constexpr std::size_t kWaiting = 2;
-constexpr std::chrono::seconds kPatience{1};  ///< close() wakes earlier.
+constexpr std::chrono::seconds kPatience{1};  ///< close() ends the waiting earlier.
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// A protocol's sending end, and the wrapper that gives it a thread and a bounded queue.
+// The sending end of a protocol, and a wrapper that gives it a thread and a bounded queue.
 #pragma once
 
 #include <atomic>
@@ -14,36 +14,36 @@
 
 namespace chorus::outlet {
 
-/// Encodes and sends, synchronously, always on the same thread; may take its time.
+/// Encodes and sends, synchronously, always on the same thread; it may take its time.
 class Outlet {
  public:
   virtual ~Outlet() = default;
   [[nodiscard]] virtual std::string_view name() const = 0;
   virtual void send(const TrackerFrame& frame) = 0;
-  /// Counters that only the protocol knows: failed, refused, clients.  Any thread.
+  /// Counters known only to the protocol: failed, refused, clients.  May be called from any thread.
   [[nodiscard]] virtual SinkCounters counters() const = 0;
 };
 
-/// Settings that every protocol gets.
+/// Settings that every protocol receives.
 struct OutletContext {
-  std::size_t slots = 6;  ///< Persons at most.
+  std::size_t slots = 6;  ///< Maximum number of people.
   std::shared_ptr<const Clock> clock;
 };
 
 enum class Latency {
-  Exact,      ///< The fused instant as it is, alignment delay included.
-  Predicted,  ///< Moved to the time of sending at constant velocity.
+  Exact,      ///< The fused instant itself, with the alignment delay.
+  Predicted,  ///< Predicted to the time of sending at constant velocity.
 };
 
 struct OutletTiming {
   Latency latency = Latency::Exact;
-  std::size_t slots = 6;  ///< Persons at most.
+  std::size_t slots = 6;  ///< Maximum number of people.
   std::shared_ptr<const Clock> clock;
 };
 
-/// Hands frames to the outlet on a thread of its own.  When the outlet is two frames behind, the
+/// Passes frames to the outlet on a thread of its own.  When the outlet is two frames behind, the
 /// oldest is dropped and counted; the pipeline never waits.  An exception from the outlet is
-/// logged, counted as failed, and costs that frame.
+/// logged, counted as failed, and only loses that frame.
 class OutletSink final : public Sink {
  public:
   OutletSink(std::unique_ptr<Outlet> outlet, OutletTiming timing);

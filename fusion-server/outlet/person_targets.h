@@ -1,4 +1,4 @@
-// For protocols that carry one person per stream: which person goes where.
+// For protocols with one person per stream: which person is sent to which targets.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ struct PersonTargets {
   bool operator==(const PersonTargets&) const = default;
 };
 
-/// The key "persons": a list of objects with the keys "slot" and "targets".
+/// Reads the key "persons": a list of objects with the keys "slot" and "targets".
 void read_persons(ConfigReader& reader, std::vector<PersonTargets>& out);
 
 }  // namespace chorus::outlet

@@ -1,7 +1,7 @@
-// All outputs beside REST, as enabled in the configuration's section "outputs".
+// All outputs other than REST, as enabled in the configuration's section "outputs".
 //
-// One folder per protocol: NAME_encoder.h (pure: bytes from a TrackerFrame) and NAME_outlet.h (the
-// thin sender, its settings, its factory).  outputs.cpp is the only list of them.
+// One folder per protocol: NAME_encoder.h (pure: bytes from a TrackerFrame) and NAME_outlet.h (a
+// thin sender, its settings, its factory). outputs.cpp is the only list of them.
 #pragma once
 
 #include <memory>
@@ -21,7 +21,7 @@
 
 namespace chorus::outputs {
 
-/// The keys that every output has.
+/// The keys that all outputs have in common.
 struct OutputSetting {
   bool enabled = false;
   outlet::Latency latency = outlet::Latency::Exact;
@@ -50,15 +50,15 @@ struct OutputsConfig {
   bool operator==(const OutputsConfig&) const = default;
 };
 
-/// Mistakes are reported by the reader's finish().
+/// Mistakes are reported later, by the reader's finish().
 void read_outputs(ConfigReader reader, OutputsConfig& out);
 
-/// Opens the enabled outputs.  The first that cannot be opened is the error; its context begins
-/// with "outputs.NAME".
+/// Opens the enabled outputs.  Returns the error of the first that cannot be opened; its context
+/// begins with "outputs.NAME".
 [[nodiscard]] Result<std::vector<std::unique_ptr<Sink>>> open_outputs(
     const OutputsConfig& config, const std::shared_ptr<const Clock>& clock);
 
-/// The smallest max_persons of the enabled outputs: the slots that all of them show.
+/// The smallest max_persons of the enabled outputs: slots below this are shown by all of them.
 [[nodiscard]] std::size_t slots_of_all(const OutputsConfig& config);
 
 }  // namespace chorus::outputs

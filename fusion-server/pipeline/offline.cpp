@@ -13,9 +13,9 @@
 namespace chorus::pipeline {
 namespace {
 
-constexpr double kFastest = 1000.0;  // [Hz] output rate beyond which a config is a mistake
+constexpr double kFastest = 1000.0;  // [Hz] a higher output rate is a mistake in the configuration
 
-/// Instants are whole multiples of 1 / rate; long double keeps them exact to the nanosecond until
+/// Instants are integer multiples of 1 / rate; long double keeps them exact to the nanosecond until
 /// 2262.
 class Grid {
  public:
@@ -82,7 +82,7 @@ Result<Registration> judged(Registration found) {
               fmt::format("the walk could not be registered: {}", fmt::join(found.reasons, "; ")));
 }
 
-/// Some registered sensor covers the instant.
+/// Whether some registered sensor covers the instant.
 bool covered(const Snapshot& snapshot) {
   return std::any_of(
       snapshot.reports.begin(), snapshot.reports.end(), [&](const SensorReport& report) {
@@ -91,7 +91,7 @@ bool covered(const Snapshot& snapshot) {
       });
 }
 
-/// All instants of all recordings, one after the other.
+/// Goes through all instants of all recordings in order.
 class Replay {
  public:
   Replay(OfflineInput input, const Registration& registration, const OfflineConfig& config)
@@ -123,7 +123,7 @@ class Replay {
   }
 
  private:
-  /// Nothing if nobody covers the instant.
+  /// The snapshot; nothing if no sensor covers the instant.
   std::optional<Snapshot> answer(Timestamp instant) {
     frames_.advance(instant, histories_);
     const Timestamp late = instant + config_.pipeline.align.patience + Duration(1);
@@ -135,7 +135,7 @@ class Replay {
     return std::move(next.snapshot);
   }
 
-  /// The first instant after `index` that a frame could begin to cover; none at the end.
+  /// The first instant after `index` that a frame could cover; none at the end.
   [[nodiscard]] Result<std::optional<std::int64_t>> after_gap(std::int64_t index) {
     const auto next = frames_.next_after(grid_.at(index));
     if (!next) return pass(next);
@@ -152,7 +152,7 @@ class Replay {
   std::uint64_t answered_ = 0;
 };
 
-/// Reads on until the walk is long enough, or over.
+/// Reads until the walk is long enough, or the recordings end.
 Result<void> read_enough(RecordedFrames& frames, RecordedWalk& walk) {
   Timestamp instant = Timestamp::min();
   while (!walk.enough()) {
@@ -165,7 +165,7 @@ Result<void> read_enough(RecordedFrames& frames, RecordedWalk& walk) {
   return {};
 }
 
-/// A track in memory as a lane; it must outlive the lane.
+/// Wraps a track in memory as a lane; the track must outlive the lane.
 FrameLane lane_of(const registration::WalkTrack& track) {
   return {track.sensor.str(),
           [&frames = track.frames,

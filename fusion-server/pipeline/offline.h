@@ -1,5 +1,5 @@
-// Recordings of several sensors through the same pipeline: offline, deterministic, registration
-// included.
+// Runs recordings of several sensors through the same pipeline: offline, deterministic, with
+// registration.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@ namespace chorus::pipeline {
 struct OfflineConfig {
   PipelineConfig pipeline;
   registration::RegistrationConfig registration;
-  double rate_hz = 30.0;  ///< Output instants: multiples of 1/rate since the epoch.
+  double rate_hz = 30.0;  ///< Output instants are multiples of 1/rate since the epoch.
 };
 
 struct OfflineResult {
@@ -23,25 +23,25 @@ struct OfflineResult {
   std::vector<Snapshot> snapshots;
 };
 
-/// Recordings read while they are fused; reading them again takes new lanes.
+/// Recordings that are read during fusion; to read them again, make new lanes.
 struct OfflineInput {
   std::vector<FrameLane> lanes;
-  std::vector<SensorId> sensors = {};  ///< Sensors known beforehand.
+  std::vector<SensorId> sensors = {};  ///< Sensors known in advance.
 };
 
-/// An error ends the fusion.
+/// An error stops the fusion.
 using TakeSnapshot = std::function<Result<void>(Snapshot)>;
 
-/// From the first minutes in which one person is seen alone; from more of them while sensors are
-/// missing.  Conflict, with the reasons, when there is no registration.
+/// Registers from the first minutes in which one person is seen alone; from more of them while
+/// sensors are missing.  Conflict, with reasons, when no registration is found.
 [[nodiscard]] Result<Registration> register_recordings(OfflineInput input,
                                                        const OfflineConfig& config);
 
-/// Fuses every instant that any sensor covers, in the memory of a few seconds of frames.
+/// Fuses every instant that any sensor covers, with a few seconds of frames in memory.
 [[nodiscard]] Result<void> fuse_recordings(OfflineInput input, const Registration& registration,
                                            const OfflineConfig& config, const TakeSnapshot& take);
 
-/// Everything in memory: registers from the whole walk unless extrinsics are given.
+/// All in memory: registers from the whole walk unless extrinsics are given.
 [[nodiscard]] Result<OfflineResult> fuse_offline(
     const std::vector<registration::WalkTrack>& sensors,
     const std::optional<Registration>& extrinsics, const OfflineConfig& config);

@@ -20,7 +20,7 @@ std::vector<SensorId> registered_sensors(const Registration& registration) {
   return sensors;
 }
 
-/// The sensors that the instant waits for: those with a place.
+/// The patience with the sensors that instants wait for: those with a place.
 align::Patience patience_of(const Histories& histories, const Registration& registration,
                             const PipelineConfig& config) {
   std::map<SensorId, const align::History*> placed;
@@ -30,7 +30,7 @@ align::Patience patience_of(const Histories& histories, const Registration& regi
   return {placed, config.align};
 }
 
-/// 5.2.4: every sensor's bodies at the common instant.
+/// 5.2.4: aligns every sensor's bodies to the common instant.
 std::vector<AlignedSensor> align_all(const Inputs& in, const Histories& histories,
                                      const Registration& registration,
                                      const PipelineConfig& config) {
@@ -42,7 +42,7 @@ std::vector<AlignedSensor> align_all(const Inputs& in, const Histories& historie
   return aligned;
 }
 
-/// 5.2.2: how the body stands before its sensor, still in sensor space.
+/// 5.2.2: how the body stands relative to its sensor, still in sensor space.
 SensorView view_of(const AlignedSensor& from, const BodyFrame& body) {
   const facing::Standing seen = facing::standing_of(body);
   SensorView view;
@@ -55,7 +55,7 @@ SensorView view_of(const AlignedSensor& from, const BodyFrame& body) {
   return view;
 }
 
-/// 5.2.3: into the world; bodies of sensors without a place are left out.
+/// 5.2.3: moves bodies into the world; those of sensors without a place are left out.
 std::vector<SensorView> views_in_world(const std::vector<AlignedSensor>& aligned,
                                        const Registration& registration) {
   std::vector<SensorView> views;
@@ -75,8 +75,8 @@ std::vector<SensorView> views_in_world(const std::vector<AlignedSensor>& aligned
 
 bool has_spoken(Basis basis) { return basis == Basis::Exact || basis == Basis::Interpolated; }
 
-/// Sensors that looked at this instant.  Another fusion server, whose bodies are in world space,
-/// has no eye: its floor is y = 0.
+/// Sensors that delivered for this instant.  Another fusion server, whose bodies are in world space
+/// with the floor at y = 0, is no observer.
 std::vector<associate::Observer> observers_of(const std::vector<AlignedSensor>& aligned,
                                               const Registration& registration) {
   std::vector<associate::Observer> observers;
@@ -94,14 +94,14 @@ associate::Scene scene_of(const Inputs& in, const std::vector<AlignedSensor>& al
   return {in.instant, views_in_world(aligned, registration), observers_of(aligned, registration)};
 }
 
-/// Who is still tracked, seen now or not.
+/// All people still tracked, whether seen now or not.
 std::set<PersonId> ids_of(const associate::Tracks& tracks) {
   std::set<PersonId> ids;
   for (const associate::Track& track : tracks.people) ids.insert(track.id);
   return ids;
 }
 
-/// 5.2.2 again, now that identities are known: sides agreed between the sensors.
+/// 5.2.2 again, now with known identities: the sides that all sensors agree on.
 void resolve_sides(std::vector<Person>& people, Timestamp instant, Memory& memory,
                    const facing::SidesConfig& config) {
   for (Person& person : people) {
@@ -112,7 +112,7 @@ void resolve_sides(std::vector<Person>& people, Timestamp instant, Memory& memor
   }
 }
 
-/// 5.2.5, Eqs. (1)-(3).
+/// 5.2.5, Eqs. (1)-(3): sets the weight of every view.
 void weigh(std::vector<Person>& people, const fusion::QualityLimits& limits) {
   for (Person& person : people) {
     for (SensorView& view : person.views) {
@@ -121,7 +121,7 @@ void weigh(std::vector<Person>& people, const fusion::QualityLimits& limits) {
   }
 }
 
-/// Forgets people who are not tracked any more.
+/// Removes the memory of people who are no longer tracked.
 void forget_the_gone(Memory& memory) {
   const std::set<PersonId> tracked = ids_of(memory.tracks);
   std::erase_if(memory.sides.people,
@@ -129,7 +129,7 @@ void forget_the_gone(Memory& memory) {
   memory.fusion.keep_only(tracked);
 }
 
-/// One report per known sensor: polled, registered, or both.
+/// One report for each sensor that is polled or registered.
 std::vector<SensorReport> report(const std::vector<AlignedSensor>& aligned,
                                  const std::vector<Person>& people,
                                  const Registration& registration) {
@@ -149,7 +149,7 @@ std::vector<SensorReport> report(const std::vector<AlignedSensor>& aligned,
   return listed;
 }
 
-/// A single ray bounds nobody's depth for long: whom only such rays show has no joint any more.
+/// Removes bodies without joints: a person shown only by single rays soon has no joints left.
 void leave_out_the_unplaced(std::vector<FusedBody>& bodies, const std::vector<Person>& people) {
   const auto of_rays = [](const SensorView& view) { return has_rays_alone(view.skeleton.joints); };
   std::erase_if(bodies, [&](const FusedBody& body) {

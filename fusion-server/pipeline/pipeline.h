@@ -29,12 +29,12 @@ struct PipelineConfig {
 using Histories = std::map<SensorId, align::History>;
 
 struct Inputs {
-  Timestamp instant;  ///< The common instant to answer for.
-  Timestamp now;      ///< The server's time at which this is computed.
+  Timestamp instant;  ///< The common instant to fuse.
+  Timestamp now;      ///< The server's time of this computation.
   std::uint64_t sequence = 0;
 };
 
-/// What one instant leaves for the next.
+/// The state that one instant passes to the next.
 struct Memory {
   associate::Tracks tracks;
   facing::SidesMemory sides;
@@ -42,7 +42,7 @@ struct Memory {
   Seating seating;
 };
 
-/// The result of everything before fusion: who is there at an instant, each with all views.
+/// The result of all stages before fusion: the people at an instant, each with all views.
 struct Perceived {
   std::vector<Person> people;
   std::vector<SensorReport> reports;
@@ -54,7 +54,7 @@ struct Step {
   Memory memory;
 };
 
-/// A sensor whose answer for an instant may still come, and how long it is waited for.
+/// A sensor whose frame for an instant may still arrive, and how long it is waited for.
 struct Awaited {
   SensorId sensor;
   align::AlignConfig align;
@@ -62,23 +62,23 @@ struct Awaited {
 
 struct Waiting {
   std::vector<Awaited> sensors;
-  Duration extension{0};  ///< How much longer than usual, because most of them are slow.
+  Duration extension{0};  ///< Additional wait, because most of the sensors are slow.
 };
 
-/// Before an instant: every sensor with a place.
+/// Before any has answered for an instant: every sensor with a place.
 [[nodiscard]] Waiting all_awaited(const Histories& histories, const Registration& registration,
                                   const PipelineConfig& config);
 
-/// Takes out those whose answer is there, or too late.  When none is left, waiting longer cannot
-/// improve the instant.
+/// Removes those that have answered, or that are too late.  When none is left, waiting longer
+/// cannot improve the result.
 void drop_settled(std::vector<Awaited>& awaited, const Inputs& in, const Histories& histories);
 
-/// Everything before association: all bodies of all sensors that have a place, in the world.
+/// The input of association: all bodies of all sensors that have a place, in world space.
 [[nodiscard]] associate::Scene scene_at(const Inputs& in, const Histories& histories,
                                         const Registration& registration,
                                         const PipelineConfig& config);
 
-/// Everything in `step` before fusion: the views it hands to it.
+/// Runs all stages of `step` before fusion; returns the views that are to be fused.
 [[nodiscard]] Perceived perceive(const Inputs& in, const Histories& histories,
                                  const Registration& registration, const Memory& memory,
                                  const PipelineConfig& config);

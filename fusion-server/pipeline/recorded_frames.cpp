@@ -10,9 +10,9 @@
 namespace chorus::pipeline {
 namespace {
 
-/// How much later than its capture a frame may stand in a recording and still be used.
+/// A frame may be recorded this much later than it was captured and is still used.
 constexpr Duration kAhead = std::chrono::seconds(5);
-/// 64 sensors that see 12 people each, for twice as long; some 500 MB.
+/// Twice what 64 sensors that see 12 people each deliver in kAhead; about 500 MB.
 constexpr std::size_t kMaxWaiting = 64 * 12 * 300;
 constexpr std::size_t kNoLane = std::numeric_limits<std::size_t>::max();
 
@@ -66,7 +66,7 @@ std::optional<Timestamp> RecordedFrames::waiting_after(Timestamp instant) const 
     if (captured > instant && (!earliest || captured < *earliest)) earliest = captured;
   };
   for (const auto& [sensor, stream] : streams_) {
-    // The one played last may be later than the instant itself.
+    // The last frame played may be later than the instant itself.
     if (stream.played && *stream.played > instant) {
       consider(*stream.played);
       continue;
@@ -88,7 +88,7 @@ Result<std::optional<Timestamp>> RecordedFrames::next_after(Timestamp instant) {
     found = waiting_after(instant);
   }
   if (!found) return found;
-  // Another sensor's frame may be earlier and stand later.
+  // Another sensor's frame may be captured earlier but recorded later.
   if (auto ok = read_to(*found); !ok) return pass(ok);
   return waiting_after(instant);
 }
@@ -102,7 +102,7 @@ void RecordedFrames::advance(Timestamp instant, Histories& histories) {
       bodies_ -= frame.bodies.size();
       stream.played = frame.captured;
       frame.received =
-          Timestamp{};  // The time at which a recording was read says nothing about its stamps.
+          Timestamp{};  // The time at which a file was read says nothing about its stamps.
       history.push(std::move(frame));
     }
   }

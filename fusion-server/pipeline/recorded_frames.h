@@ -1,4 +1,4 @@
-// Frames of recordings, read just far enough ahead to fuse the next instant.
+// Frames of recordings, read only as far ahead as the next instant requires.
 #pragma once
 
 #include <deque>
@@ -13,30 +13,30 @@
 
 namespace chorus::pipeline {
 
-/// One recording: the frames of its sensors in the order they were recorded.
+/// One recording: the frames of its sensors in the order in which they were recorded.
 struct FrameLane {
-  std::string name;  ///< For messages: "walk/s1.mcap".
+  std::string name;  ///< Shown in messages: "walk/s1.mcap".
   /// The next frame of any of its sensors; none at the end.
   std::function<Result<std::optional<SensorFrame>>()> next;
 };
 
-/// Merges several lanes by sensor.  Holds the frames of a few seconds, not of a recording.
+/// Merges several lanes by sensor.  Keeps a few seconds of frames in memory, not whole recordings.
 class RecordedFrames {
  public:
-  /// `sensors`: known beforehand; others are added with their first frame.
+  /// `sensors`: those known in advance; others are added with their first frame.
   RecordedFrames(std::vector<FrameLane> lanes, const std::vector<SensorId>& sensors);
 
-  /// Reads until every lane has passed `instant` by kAhead, or has ended.  Refuses a sensor that
-  /// two lanes have, and sensors whose clocks are too far apart to be merged.
+  /// Reads until every lane has passed `instant` by kAhead, or has ended.  Refuses a sensor that is
+  /// in two lanes, and sensors whose clocks are too far apart to be merged.
   [[nodiscard]] Result<void> read_to(Timestamp instant);
-  /// Reads until there is a frame captured after `instant`; returns its capture time, none at the
-  /// end.
+  /// Reads until there is a frame captured after `instant`; returns its capture time, or nothing at
+  /// the end.
   [[nodiscard]] Result<std::optional<Timestamp>> next_after(Timestamp instant);
 
-  /// Puts frames into every sensor's history, just far enough to answer for an instant.
+  /// Adds frames to every sensor's history, just as many as the instant requires.
   void advance(Timestamp instant, Histories& histories);
 
-  /// Everything that was read but not played.
+  /// All frames that were read but not played.
   [[nodiscard]] std::vector<SensorFrame> take_waiting();
 
   [[nodiscard]] bool ended() const;
@@ -59,7 +59,7 @@ class RecordedFrames {
 
   std::vector<Lane> lanes_;
   std::map<SensorId, Stream> streams_;
-  std::size_t bodies_ = 0;  ///< Waiting.
+  std::size_t bodies_ = 0;  ///< Number of bodies in waiting frames.
   Timestamp newest_ = Timestamp::min();
 };
 

@@ -7,9 +7,9 @@ namespace chorus::pipeline {
 namespace {
 
 constexpr std::size_t kMaxWalkers = 60'000;  // 100 MB
-constexpr std::size_t kMaxSeveral = 10'000;  // they only tell where feet are
+constexpr std::size_t kMaxSeveral = 10'000;  // they only show where the feet are
 constexpr Duration kNextSight =
-    std::chrono::seconds(1);  // Longer gaps do not count as time in which somebody was seen.
+    std::chrono::seconds(1);  // Longer gaps do not count as time in which a person was seen.
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// The part of a recording that registration needs: the first minutes in which one person was seen
+// The part of a recording that registration needs: the first minutes in which one person is seen
 // alone.
 #pragma once
 
@@ -8,19 +8,19 @@
 
 namespace chorus::pipeline {
 
-/// Collects frames of all sensors, roughly in the order of capture, until there are enough.
+/// Collects frames of all sensors, roughly ordered by capture, until there are enough.
 class RecordedWalk {
  public:
   void take(SensorFrame frame);
 
   /// One person was seen alone for long enough, or the memory limit is reached.
   [[nodiscard]] bool enough() const { return alone_ >= wanted_ || used_up(); }
-  /// A longer walk will not be taken.
+  /// The limit of memory is reached: the walk can get no longer.
   [[nodiscard]] bool used_up() const;
-  /// Asks for as much again.
+  /// Continues collecting until the walk is longer by the same length again.
   void go_on();
 
-  /// Of every sensor that delivered a frame, in id order.
+  /// One track for each sensor that delivered a frame, ordered by id.
   [[nodiscard]] const std::vector<registration::WalkTrack>& tracks() const { return tracks_; }
 
  private:
@@ -30,8 +30,8 @@ class RecordedWalk {
   Duration wanted_ = std::chrono::minutes(2);
   Duration alone_{0};
   Timestamp last_alone_ = Timestamp::min();
-  std::size_t bodies_ = 0;   ///< Kept, of frames with one person.
-  std::size_t several_ = 0;  ///< Kept, of frames with more.
+  std::size_t bodies_ = 0;   ///< Number kept from frames with one person.
+  std::size_t several_ = 0;  ///< Number kept from frames with more people.
 };
 
 }  // namespace chorus::pipeline

@@ -1,6 +1,6 @@
-// Who has which number: persons are seated in slots, instant after instant, once for all outputs.
+// Seats people in numbered slots, instant by instant, once for all outputs.
 //
-// A value without clock, thread or socket: the instants tell how long somebody has been away.
+// A value without clock, thread or socket: the instants show how long a person was absent.
 #pragma once
 
 #include <optional>
@@ -11,16 +11,16 @@
 namespace chorus::pipeline {
 
 struct SeatingConfig {
-  /// Slots that every output shows.  A person in a higher slot moves up when one of these is free.
+  /// Slots that every output shows.  A person in a higher slot moves when one of these gets free.
   std::size_t front = 6;
 
   bool operator==(const SeatingConfig&) const = default;
 };
 
-/// An absent person's slot stays reserved while the person may return.  A newcomer takes a higher
-/// slot and moves to the reserved one if nobody returns: fusion may have given the same person a
-/// new id, and a protocol with one slot would show nobody any more.  When the clock is set back by
-/// more than slots are kept, seating begins anew, as association does.
+/// An absent person's slot stays reserved while the person may return.  A newcomer gets a higher
+/// slot and moves to the reserved one if nobody returns: the newcomer may be the same person with a
+/// new id, and a protocol with one slot would otherwise show nobody any more.  When the clock is
+/// set back by more than slots are reserved for, seating starts anew, as association does.
 class Seating {
  public:
   /// Sets FusedBody::slot of each body; bodies beyond kMaxBodies get none.  `keep`: how long an
@@ -33,7 +33,7 @@ class Seating {
     PersonId person;
     Timestamp seen;
     bool absent = false;
-    /// Its own slot, or a lower one whose person was absent when this person came.
+    /// Its own slot, or a lower one whose person was absent when this one arrived.
     std::size_t waits_for = 0;
   };
 

@@ -1,4 +1,4 @@
-// Which frames a stream has left out, to be fetched from /frames/{seq} one by one.
+// Keeps track of frames that a stream left out, to be fetched from /frames/{seq} one by one.
 #pragma once
 
 #include <cstdint>
@@ -11,18 +11,18 @@ namespace chorus::poll {
 
 class Backfill {
  public:
-  /// A frame that came by stream, in the order of arrival.
+  /// To be called for every frame that came by stream, in order of arrival.
   void saw(std::uint64_t sequence, Duration now);
 
-  /// The oldest gap that is still worth a request; from now on it counts as being fetched.
+  /// The oldest gap still worth a request; it then counts as being fetched.
   [[nodiscard]] std::optional<std::uint64_t> next(Duration now);
 
-  /// The outcome of the request.  A sensor that keeps no frames is soon not asked any more.
+  /// Takes the outcome of the request.  A sensor that keeps no frames is soon asked no more.
   void answered(bool there);
 
   [[nodiscard]] bool empty() const noexcept { return missing_.empty(); }
 
-  /// A new stream, perhaps of another run of the sensor.
+  /// To be called for a new stream, perhaps from another run of the sensor.
   void restart();
 
  private:

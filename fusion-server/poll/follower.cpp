@@ -20,7 +20,7 @@ constexpr std::string_view kAcceptStream =
 
 Duration steady_now() { return std::chrono::steady_clock::now().time_since_epoch(); }
 
-/// Time of this thread: sharing the processor with others is not the sensor's fault.
+/// CPU time of this thread: a busy processor is not the sensor's fault.
 Duration cpu_now() {
   timespec spent{};
   ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &spent);
@@ -95,8 +95,8 @@ PollReport Follower::report(Timestamp now) const {
   return copy;
 }
 
-/// Any exception on the way (out of memory, an unforeseen frame) is a failed poll of this sensor:
-/// it is asked again after its back-off, and the others do not notice.
+/// Any exception (out of memory, an unforeseen frame) counts as a failed poll of this sensor: it is
+/// asked again after its back-off, and other sensors are not affected.
 template <class Doing>
 void Follower::survive(const Doing& doing) {
   try {
@@ -220,7 +220,7 @@ void Follower::take_frame(const http::ClientResponse& response, Resource asked) 
   feed(answer.event);
 }
 
-/// After a rest only the newest event is read: skipping the others is what the rest was for.
+/// After a rest only the newest event is read; skipping the others is the purpose of the rest.
 void Follower::take_events(const std::vector<http::ServerEvent>& events) {
   received_ = from_unix_ns(to_unix_ns(SystemClock().now()));
   const Duration before = cpu_now();
@@ -243,7 +243,7 @@ void Follower::take_event(std::string_view text) {
   const bool odd = ages_.odd(here) && clock_.at(received_);
   if (const auto error = untimely_now(*answered_); error && !odd) {
     answered_.reset();
-    stream_.close();  // the polling will say what is wrong
+    stream_.close();  // polling will find out what is wrong
     return feed(StreamEnded{{ErrorCode::Unsupported, "event stream", to_string(*error)}});
   }
   feed(StreamFrame{here.sequence, answered_->raw->captured, odd});
@@ -255,7 +255,7 @@ SensorFrame Follower::placed(const Arrival& arrival) const {
 }
 
 std::optional<Error> Follower::untimely_now(const Arrival& arrival) const {
-  if (clock_.doubtful()) return std::nullopt;  // judged once it is known which clock was set
+  if (clock_.doubtful()) return std::nullopt;  // decide once it is known which clock was set
   return untimely(placed(arrival));
 }
 

@@ -1,4 +1,4 @@
-// One sensor followed: executes what PollFsm decides, on the poll thread.
+// Follows one sensor: executes the decisions of PollFsm on the poll thread.
 #pragma once
 
 #include <deque>
@@ -18,8 +18,8 @@
 
 namespace chorus::poll {
 
-/// One connection for requests and one for the event stream.  Lives on the poll thread; report()
-/// may be called from any.
+/// Has one connection for requests and one for the event stream.  Lives on the poll thread; only
+/// report() may be called from any thread.
 class Follower : public std::enable_shared_from_this<Follower> {
  public:
   Follower(asio::io_context& io, PolledSensor sensor, http::Url url, const PollerOptions& options);
@@ -30,7 +30,7 @@ class Follower : public std::enable_shared_from_this<Follower> {
 
  private:
   using FramePtr = std::shared_ptr<const resource::FrameResource>;
-  /// A frame read, its time of receipt, and whether a newer one was here before.
+  /// A frame that was read, its time of receipt, and whether a newer one came before it.
   struct Arrival {
     FramePtr raw;
     Timestamp received;
@@ -70,14 +70,14 @@ class Follower : public std::enable_shared_from_this<Follower> {
   std::minstd_rand random_;
   bool stopped_ = false;
   std::uint64_t refused_ = 0;
-  /// The stream was not read for a while: only its newest event is worth reading.
+  /// The stream was not read for some time: only its newest event is worth reading.
   bool rested_ = false;
   Timestamp received_{};
   std::optional<FloorPlane> floor_;
-  std::optional<Arrival> answered_;  ///< The frame that the current event has brought.
+  std::optional<Arrival> answered_;  ///< The frame contained in the current event.
   std::deque<Arrival> held_;         ///< Frames held back until their clock is known.
   mutable std::mutex mutex_;
-  PollReport report_;  ///< Guarded by mutex_, as tally_.
+  PollReport report_;  ///< Guarded by mutex_, like tally_.
   FrameTally tally_;
 };
 

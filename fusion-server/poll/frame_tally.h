@@ -1,4 +1,4 @@
-// Counts what arrives from one sensor; no input can make a count negative or a rate absurd.
+// Counts what one sensor delivers; no input can make a count negative or a rate absurd.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@ namespace chorus::poll {
 class FrameTally {
  public:
   void note(const SensorFrame& frame);
-  /// A frame that came after a newer one: counted as missed until now.
+  /// Takes a frame that arrived after a newer one: until now it was counted as missed.
   void note_late(const SensorFrame& frame);
 
-  /// Frames per second that arrived lately, by our clock.
+  /// Rate at which frames arrived recently [Hz], by our clock.
   [[nodiscard]] double rate_hz(Timestamp now) const;
   [[nodiscard]] std::optional<Timestamp> newest() const noexcept { return newest_; }
   [[nodiscard]] std::uint64_t frames() const noexcept { return frames_; }
@@ -24,26 +24,26 @@ class FrameTally {
  private:
   void arrived(Timestamp received);
 
-  std::deque<Timestamp> arrivals_;  ///< Of the last two seconds.
-  std::optional<Timestamp> first_;  ///< Arrival since the last pause.
+  std::deque<Timestamp> arrivals_;  ///< Times of arrival in the last two seconds.
+  std::optional<Timestamp> first_;  ///< First arrival since the last pause.
   std::optional<Timestamp> newest_;
   std::optional<std::uint64_t> last_sequence_;
   std::uint64_t frames_ = 0;
   std::uint64_t missed_ = 0;
 };
 
-/// Notices a frame whose time does not fit the earlier ones: perhaps a clock was set.
+/// Detects a frame whose time does not fit the earlier ones: perhaps a clock was set.
 class AgeWatch {
  public:
-  /// Its age does not fit, from capture to receipt as the clocks are known; or it was captured
-  /// before the frame that it follows.
+  /// Whether its age (capture to receipt, as far as the clocks are known) does not fit, or it was
+  /// captured before its predecessor.
   [[nodiscard]] bool odd(const SensorFrame& frame);
 
  private:
   [[nodiscard]] bool strange(const SensorFrame& frame) const;
 
   std::deque<Duration> ages_;
-  std::uint64_t sequence_ = 0;  ///< Of the frame before.
+  std::uint64_t sequence_ = 0;  ///< Of the previous frame.
   Timestamp captured_{};
   int odd_in_row_ = 0;
 };

@@ -1,5 +1,5 @@
-// Reading one sensor's frames may take a tenth of the poll thread: after t of reading it rests 10
-// t.
+// Limits the reading of one sensor's frames to a tenth of the poll thread: after reading for t, the
+// sensor rests for 10 t.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace chorus::poll {
 
 class ParseBudget {
  public:
-  /// `cost` has just been spent on reading.  Returns how long to leave the sensor alone: zero while
+  /// Takes the `cost` of reading just done.  Returns how long to leave the sensor alone: zero while
   /// its debt is below one frame interval, so that an ordinary sensor never rests.
   [[nodiscard]] Duration spend(Duration cost, Duration now) {
     debt_ = std::max(Duration{0}, debt_ - (now - at_)) + kTimes * cost;
@@ -22,7 +22,7 @@ class ParseBudget {
   static constexpr int kTimes = 10;
   static constexpr Duration kAllowed = std::chrono::milliseconds(30);
 
-  Duration debt_{0};  ///< Time that has to pass until everything spent is a tenth of it.
+  Duration debt_{0};  ///< Time to wait until all reading so far amounts to a tenth.
   Duration at_{0};
 };
 

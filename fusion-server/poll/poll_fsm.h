@@ -1,12 +1,12 @@
-// How one sensor is followed, as a state machine without IO: events in, the next action out.
+// How one sensor is followed, as a state machine without I/O: events in, the next action out.
 //
-// First by long poll (If-None-Match + Prefer: wait), which every sensor answers, and which tells
-// what is wrong with a service that is no sensor.  Once frames come, an event stream is opened
-// beside it; when that delivers, it takes over, and requests only keep the clock, ask for the floor
-// plane now and then, fetch what the stream left out, and the newest frame where lost packets hold
-// it up.  A stream that ends, falls silent or is refused leaves the polling as it was.  Jittered
-// exponential back-off when nothing answers.  Time and randomness are arguments; the Asio shell
-// (follower.h) executes the actions and feeds the answers back.
+// At first by long polling (If-None-Match + Prefer: wait), which every sensor answers, and which
+// reveals what is wrong with a service that is no sensor.  Once frames come, an event stream is
+// opened in addition; when it delivers, it takes over, and requests are only used for the clock,
+// for the floor plane at times, for frames that the stream left out, and for the newest frame if
+// lost packets hold it up.  When a stream ends, falls silent or is refused, polling goes on.  If
+// nothing answers, a jittered exponential back-off applies.  Time and randomness are arguments; the
+// Asio shell (follower.h) executes the actions and returns the answers.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@
 
 namespace chorus::poll {
 
-/// `now` is a steady time from any origin; `jitter` in [0, 1) scales back-off between half and
-/// whole.
+/// `now` is a steady time from any origin; `jitter` in [0, 1) scales the back-off between half and
+/// full.
 class PollFsm {
  public:
   explicit PollFsm(PollTimings timings = {}) : timings_(timings) {}
@@ -31,13 +31,13 @@ class PollFsm {
   [[nodiscard]] Step resume(const Event& event, Duration now, double jitter);
 
   [[nodiscard]] SensorState state() const noexcept { return state_; }
-  /// What is wrong now; empty while the sensor is live.
+  /// What is wrong at present; empty while the sensor is live.
   [[nodiscard]] const std::string& last_error() const noexcept { return last_error_; }
   [[nodiscard]] std::uint64_t failures() const noexcept { return failures_; }
   /// A request is under way.
   [[nodiscard]] bool asking() const noexcept { return asking_; }
   [[nodiscard]] bool streaming() const noexcept { return streaming_; }
-  /// The clock is being asked for because a frame's time did not fit.
+  /// The clock is being requested because a frame's time did not fit.
   [[nodiscard]] bool checking_clock() const noexcept { return clock_checks_ > 0; }
 
  private:
@@ -76,21 +76,21 @@ class PollFsm {
   Resource asked_ = Resource::Frame;
   bool asking_ = false;
   Duration asked_wait_{0};
-  std::optional<Duration> floor_due_;  ///< Empty: at once.
+  std::optional<Duration> floor_due_;  ///< Empty: immediately.
   bool floor_known_ = false;
-  Duration floor_pause_{0};  ///< After floor requests that failed while frames were good.
+  Duration floor_pause_{0};  ///< Grows when floor requests fail although frames are good.
   int failures_in_row_ = 0;
   std::uint64_t failures_ = 0;
 
-  bool stream_asked_ = false;  ///< Opening or open.
-  bool streaming_ = false;     ///< It has delivered, and replaces polling.
-  Duration stream_due_{0};     ///< Not to be opened before.
-  Duration stream_pause_{0};   ///< After the last one.
+  bool stream_asked_ = false;  ///< A stream is being opened or is open.
+  bool streaming_ = false;     ///< The stream has delivered, and replaces polling.
+  Duration stream_due_{0};     ///< Earliest time to open it.
+  Duration stream_pause_{0};   ///< Pause after the last stream.
   Duration streamed_since_{0};
   Duration streamed_at_{0};
   Backfill backfill_;
   StreamRhythm rhythm_;
-  std::deque<Timestamp> taken_beside_;  ///< Frames that the stream is still to bring.
+  std::deque<Timestamp> taken_beside_;  ///< Requested frames that the stream will still bring.
   Duration clock_due_{0};
   int clock_checks_ = 0;
   std::optional<Duration> clock_checked_at_;

@@ -1,7 +1,7 @@
-// Follows every sensor: executes what PollFsm decides, reads the frames, corrects their clocks.
+// Follows all sensors: executes the decisions of PollFsm, reads frames, corrects their clocks.
 //
-// One thread for all sensors, and one or two connections per sensor; a sensor that is dead, slow or
-// lying costs the others nothing but its bytes, and a tenth of the thread for reading them.
+// One thread for all sensors, one or two connections per sensor; a dead, slow or lying sensor costs
+// the others nothing except its bytes, and a tenth of the thread for reading them.
 #pragma once
 
 #include <functional>
@@ -25,24 +25,24 @@ struct PolledSensor {
   SensorId id;
   std::string url;         ///< Of the service's `/`: "http://127.0.0.1:8081/".
   std::string token = {};  ///< Sent with every request; empty: none.
-  tls::Trust trust = {};   ///< Whom its certificate has to be from, with https.
+  tls::Trust trust = {};   ///< Who must have issued its certificate, with https.
 
   bool operator==(const PolledSensor&) const = default;
 };
 
 struct PolledFrame {
-  SensorFrame frame;  ///< By our clock, with the latest floor plane.
+  SensorFrame frame;  ///< By our clock, including the latest floor plane.
   std::shared_ptr<const resource::FrameResource> raw;  ///< As the sensor sent it.
-  /// What its capture times were corrected by.
+  /// The clock estimate used to correct its capture times.
   std::optional<ClockEstimate> clock;
 };
 
-/// What a poll knows of one sensor; a copy.
+/// The state of one sensor's poll; a copy.
 struct PollReport {
   PolledSensor sensor;
   SensorState state = SensorState::Connecting;
-  std::string last_error;           ///< What is wrong now; empty while it is live.
-  bool streaming = false;           ///< Its frames come by event stream, not by polling.
+  std::string last_error;           ///< What is wrong at present; empty while it is live.
+  bool streaming = false;           ///< Its frames come by event stream instead of polling.
   std::optional<Timestamp> newest;  ///< Capture time of the last frame, by our clock.
   double rate_hz = 0.0;             ///< Frames per second that arrived, over the last two seconds.
   std::optional<ClockEstimate> clock;
@@ -56,20 +56,20 @@ struct PollerOptions {
   PollTimings timings;
   std::size_t max_body_bytes = 512u << 10;  ///< Of one frame; 64 bodies are about 350 kB.
   std::shared_ptr<const Clock> clock;
-  /// Called on the poll thread; must return at once.  If it throws, the poll has failed.
+  /// Called on the poll thread; must return at once.  If it throws, the poll counts as failed.
   std::function<void(PolledFrame)> deliver;
 };
 
 class Poller {
  public:
   explicit Poller(PollerOptions options);
-  ~Poller();  ///< Stops and joins.
+  ~Poller();  ///< Stops all polling and joins the thread.
 
-  /// Polls these from now on and no others; sensors polled already are left alone.  The urls have
-  /// passed http::parse_url.  Thread-safe.
+  /// From now on polls exactly these; sensors already polled continue undisturbed.  The urls must
+  /// be valid for http::parse_url.  Thread-safe.
   void poll(std::vector<PolledSensor> sensors);
 
-  /// Ends all polling; nothing is delivered afterwards.  reports() still answers.
+  /// Ends all polling; nothing is delivered afterwards. reports() can still be called.
   void stop();
 
   [[nodiscard]] std::vector<PollReport> reports() const;

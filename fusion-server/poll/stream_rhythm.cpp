@@ -7,14 +7,14 @@
 namespace chorus::poll {
 namespace {
 
-constexpr Duration kShortest = std::chrono::milliseconds(5);  // less apart came held up together
+constexpr Duration kShortest = std::chrono::milliseconds(5);  // closer frames were held up together
 constexpr Duration kLeastPatience = std::chrono::milliseconds(60);
 constexpr Duration kRemembered = std::chrono::seconds(60);
 constexpr int kMemory = 16;  // frames
 
 }  // namespace
 
-/// Twice as long as usual is overdue; but hosts that are busy are as late as this without a loss.
+/// Twice the usual time is overdue, but not before kLeastPatience: busy hosts are as late as that.
 Duration StreamRhythm::patience() const { return std::max(2 * usual_, kLeastPatience); }
 
 void StreamRhythm::saw(Duration now) {

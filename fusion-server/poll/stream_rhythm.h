@@ -1,5 +1,5 @@
-// When a stream's next frame is overdue, and whether it has been of late: a packet lost twice holds
-// up everything behind it for a fifth of a second and more, while another connection is free.
+// When a stream's next frame is overdue, and whether that happened recently: a packet lost twice
+// holds up all later ones for a fifth of a second or more, while another connection is free.
 #pragma once
 
 #include <optional>
@@ -10,21 +10,21 @@ namespace chorus::poll {
 
 class StreamRhythm {
  public:
-  /// A frame came by stream.
+  /// To be called when a frame came by stream.
   void saw(Duration now);
 
-  /// From when on the next frame is overdue, and worth asking for beside the stream.  None while
-  /// the stream has not been late for a minute: most never are, and nobody has to look.
+  /// The time from which the next frame is overdue, and worth a separate request.  None if the
+  /// stream was not late in the last minute: most never are, and need no such watch.
   [[nodiscard]] std::optional<Duration> overdue_from(Duration now) const;
 
-  /// A new stream, perhaps of a faster sensor.
+  /// To be called for a new stream, perhaps of a faster sensor.
   void restart();
 
  private:
   [[nodiscard]] Duration patience() const;
 
   std::optional<Duration> last_;
-  Duration usual_{0};  ///< From frame to frame; zero: not known yet.
+  Duration usual_{0};  ///< Usual interval of frames; zero: not known yet.
   std::optional<Duration> late_at_;
 };
 
