@@ -1,22 +1,22 @@
 #!/usr/bin/env bash
-# Six simulated sensors, one fusion server, a person who walks.  Ctrl-C stops everything it started.
+# Starts six simulated sensors, one fusion server and a walking person.  Ctrl-C stops everything it started.
 #
-#   deploy/demo.sh                  until Ctrl-C
+#   deploy/demo.sh                  runs until Ctrl-C
 #   deploy/demo.sh --seconds 60     stops by itself; exit code 0 only if the fused tracker delivered
-#   deploy/demo.sh --recording [DIR]  plays recordings instead of simulating: the *.mcap of DIR, with the
-#                                   extrinsics of DIR/registration.json if it is there, else those that were
-#                                   recorded, and the settings of DIR/fusion.json if it is there; a folder of
-#                                   camera landmarks is imported first; without DIR, the four real cameras
-#                                   that travel with the tests
-#   --cameras                       looks at videos of four cameras that travel with the tests: each has a
-#                                   sensor whose runner finds the person in its pictures, and the fusion server
-#                                   makes bodies of their rays, with the published extrinsics
-#   --register                      with --recording: find the extrinsics from the person alone
-#   --port N                        the fusion server's port (8080); the sensors take the ports after it
-#   --set PATH=VALUE                handed to chorus-fusion, any number of times
-#   --bin DIR                       use the programs in DIR; install and build nothing
+#   deploy/demo.sh --recording [DIR]  plays recordings instead of simulating: the *.mcap files of DIR, with the
+#                                   extrinsics of DIR/registration.json if that exists, else the recorded ones,
+#                                   and the settings of DIR/fusion.json if that exists; a folder of camera
+#                                   landmarks is imported first; without DIR, it plays the four real cameras
+#                                   that ship with the tests
+#   --cameras                       uses the videos of four cameras that ship with the tests: each has a sensor
+#                                   whose runner finds the person in its pictures, and the fusion server makes
+#                                   bodies of their rays, with the published extrinsics
+#   --register                      with --recording: finds the extrinsics from the person alone
+#   --port N                        the fusion server's port (8080); the sensors use the ports after it
+#   --set PATH=VALUE                is passed to chorus-fusion; may be repeated
+#   --bin DIR                       uses the programs in DIR; installs and builds nothing
 #
-# Installs what is missing, builds the release preset.  Logs are in var/demo/PORT/.
+# Installs what is missing and builds the release preset.  Logs are in var/demo/PORT/.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -58,10 +58,10 @@ read_arguments() {
 # --- what we started, and stopping it -------------------------------------------------------------
 
 children=() sensor_processes=0
-# start NAME COMMAND...: in the background, logging to NAME.log, and dead when this script is.
+# start NAME COMMAND...: runs it in the background, with its log in NAME.log; it ends with this script.
 start() {
   local name=$1; shift
-  : > "$logs/$name.out"  # there for its readers before the process is
+  : > "$logs/$name.out"  # exists before the process, for those who read it
   setpriv --pdeathsig TERM "$@" > "$logs/$name.out" 2> "$logs/$name.log" &
   children+=($!)
 }
@@ -71,7 +71,7 @@ stop_all() {
   trap '' INT TERM
   (( ${#children[@]} > 0 )) || return 0
   local i
-  # The fusion server came last and goes first: it need not see its sensors vanish.
+  # The fusion server was started last and stops first, so that it need not see its sensors vanish.
   for (( i = ${#children[@]} - 1; i >= 0; --i )); do
     kill -TERM "${children[i]}" 2>/dev/null || true
     (( i != sensor_processes )) || sleep 0.2
@@ -117,7 +117,7 @@ build() {
   cmake --build build/release -j "$(deploy/build-jobs.sh)" --target chorus-sensor chorus-fusion chorus
 }
 
-# install_modules FOLDER: what its package-lock.json names, unless that is there.
+# install_modules FOLDER: installs what its package-lock.json names, unless that is already there.
 install_modules() {
   cmp -s "$1/package-lock.json" "$1/node_modules/.chorus-lock" && return
   npm ci --prefix "$1" --no-progress
@@ -133,7 +133,7 @@ need_free_ports() {
   done
 }
 
-# wait_for URL WHAT: until it answers at all, whatever it says.
+# wait_for URL WHAT: waits until URL answers, whatever the answer is.
 wait_for() {
   local deadline=$(( SECONDS + start_within_s ))
   until curl -s -o /dev/null --max-time 2 "$1"; do
@@ -145,7 +145,7 @@ wait_for() {
 
 # --- sensors --------------------------------------------------------------------------------------
 
-sensors=()  # as JSON objects for the fusion server
+sensors=()  # as JSON objects, for the fusion server
 add_sensor() { sensors+=("{\"id\":\"$1\",\"url\":\"$2\"}"); }
 
 start_simulated() {
@@ -195,7 +195,7 @@ start_fusion() {
   if [[ -n "$recording" ]]; then
     [[ ! -f "$recording/fusion.json" ]] || config=$recording/fusion.json
     local places=$recording/registration.json
-    [[ -f "$places" ]] || places=$logs/registration.json  # as recorded
+    [[ -f "$places" ]] || places=$logs/registration.json  # the recorded ones
     if [[ -z "$register" && -f "$places" ]]; then
       options+=(--set "registration.file=$places" --set registration.auto=false)
     fi
@@ -212,8 +212,8 @@ read_arguments "$@"
 logs=var/demo/$port
 mkdir -p "$logs"
 rm -f "$logs"/*.log "$logs"/*.out "$logs"/registration.json
-rm -rf "$logs/state"  # each demo finds its places anew
-# How many sensors a recording has is known when it is played; they say themselves when a port is taken.
+rm -rf "$logs/state"  # each demo registers its sensors anew
+# How many sensors a recording has is only known when it is played; each of them complains if its port is taken.
 if [[ -n "$recording" ]]; then need_free_ports 1; else need_free_ports $sensor_count; fi
 [[ -z "$build" ]] || build
 
@@ -248,7 +248,7 @@ watcher=(python3 -B deploy/watch_tracker.py --base "$base")
 setpriv --pdeathsig TERM "${watcher[@]}" &
 watch_pid=$!
 children+=("$watch_pid")
-# The watcher decides with its verdict, or the fusion server by ending.  A sensor that dies is only told: the
+# The end comes with the watcher's verdict, or with the fusion server's end.  A sensor that ends is only reported: the
 # tracker lives on without it, as it would in a workshop.
 while true; do
   alive=()

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing: install-packages.sh PURPOSE...  (build, tests, bench, workshop; see packages.txt)
-# As root or through sudo; when nothing is missing it needs neither.  Node.js: any version from 18 on the
-# PATH will do, with npm; otherwise Debian's.
+# Runs as root or through sudo; when nothing is missing it needs neither.  Any Node.js from version 18 on, with npm, in
+# PATH will do; otherwise it installs Debian's.
 set -euo pipefail
 cd "$(dirname "$0")"
 readonly least_node=18

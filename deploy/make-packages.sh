@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Builds the Debian packages and a folder that installs them without internet.
+# Builds the Debian packages, in a folder that can install them without internet.
 #
 #   deploy/make-packages.sh                into var/packages
-#   deploy/make-packages.sh --out DIR      into DIR, which is replaced
-#   deploy/make-packages.sh --no-deps      our packages only, without those that they need
-#   deploy/make-packages.sh --tree DIR     of what this build tree holds already, such as build/dev; builds nothing
-#   deploy/make-packages.sh --version V    the packages' version (default: of the project, and of the commit)
+#   deploy/make-packages.sh --out DIR      into DIR, whose content is replaced
+#   deploy/make-packages.sh --no-deps      only our packages, without those that they depend on
+#   deploy/make-packages.sh --tree DIR     from what this build tree already has, such as build/dev; builds nothing
+#   deploy/make-packages.sh --version V    the packages' version (default: of the project and the commit)
 #
 # On the host: copy the folder there, then sudo DIR/install.sh chorus-sensor (or chorus-fusion, chorus-tools).
 set -euo pipefail
@@ -28,7 +28,7 @@ while (( $# > 0 )); do
   shift
 done
 
-# 0.1.0+20261122.1504.8f4d3d4: a later commit is a later version, and one can go back to an earlier.
+# 0.1.0+20261122.1504.8f4d3d4: a later commit has a higher version, and one can return to an earlier one.
 own_version() {
   local number
   number=$(sed -n 's/^project(chorus VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
@@ -46,7 +46,7 @@ page_files() {
   done
 }
 
-# Everything that our packages need and that not every Debian has, by apt's own reckoning on an empty system.
+# Downloads what our packages depend on and not every Debian has, as apt computes it for an empty system.
 download_dependencies() {
   local scratch; scratch=$(mktemp -d)
   mkdir -p "$scratch/archives/partial"
@@ -85,7 +85,7 @@ cp "$tree"/packages/*.deb "$out/"
 cp "$tree"/packages/*.ddeb "$out/debug/" 2>/dev/null || true
 if [[ -n "$deps" ]]; then
   step "what they need"
-  download_dependencies "$out"/chorus-*.deb chrony  # chrony: workshops without internet keep their own time
+  download_dependencies "$out"/chorus-*.deb chrony  # chrony: without internet a workshop keeps its own time
 fi
 
 . /etc/os-release

@@ -11,9 +11,9 @@ from collections import deque
 
 SAMPLE_EVERY_S = 0.2
 REQUEST_TIMEOUT_S = 5.0
-WINDOW_S = 10.0        # what the final judgement looks back on, or half the run if that is shorter
-RATE_TOLERANCE = 0.1   # of the nominal rate
-LEAST_WITH_BODY = 0.8  # share of samples that hold a body
+WINDOW_S = 10.0        # period that the final verdict covers; half the run if that is shorter
+RATE_TOLERANCE = 0.1   # as a fraction of the nominal rate
+LEAST_WITH_BODY = 0.8  # least fraction of samples with a body
 BAR_WIDTH = 30
 
 

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# Lays out, checks and removes Chorus on the hosts of a workshop, over ssh.
+# Installs, checks and removes Chorus on the hosts of a workshop, over ssh.
 #
-#   deploy/workshop.sh INVENTORY lay-out    packages, time, configurations, services; again: updates what is there
-#   deploy/workshop.sh INVENTORY check      chorus doctor on every host
-#   deploy/workshop.sh INVENTORY renew      new certificates on every host, taken over without a restart
-#   deploy/workshop.sh INVENTORY remove     the packages; configuration and state stay
-#   deploy/workshop.sh INVENTORY purge      everything
+#   deploy/workshop.sh INVENTORY lay-out    installs packages, time, configurations, services; if repeated, updates them
+#   deploy/workshop.sh INVENTORY check      runs chorus doctor on every host
+#   deploy/workshop.sh INVENTORY renew      makes new certificates on every host, used without a restart
+#   deploy/workshop.sh INVENTORY remove     removes the packages; configuration and state stay
+#   deploy/workshop.sh INVENTORY purge      removes everything
 #
-# INVENTORY is JSON: docs/guide/workshop.md shows one.  You need ssh as root to each host, without a password being asked.
-# The fusion host is the authority of the certificates; its ca.crt is put beside INVENTORY, for browsers and programs.
-# CHORUS_SSH replaces `ssh`: it gets the host and a command, as ssh does.
+# INVENTORY is a JSON file, as in docs/guide/workshop.md.  You need ssh as root to each host without a password prompt.
+# The fusion host is the certificate authority; its ca.crt is copied next to INVENTORY, for browsers and programs.
+# CHORUS_SSH replaces `ssh`; like ssh it is called with the host and a command.
 set -euo pipefail
 
 usage() { sed -n '2,/^$/s/^# \{0,1\}//p' "$0"; }
@@ -26,7 +26,7 @@ on() { "${ssh_command[@]}" "$1" "$2"; }
 inventory=$1 task=$2
 [[ -f "$inventory" ]] || fail "there is no file $inventory"
 
-# Lines "ROLE SSH ADDRESS ID DEVICE", with - for what is not there; sensors first.  Then lines "output OUTPUT" and "packages FOLDER".
+# Lines "ROLE SSH ADDRESS ID DEVICE" with - for what is missing, sensors first; then "output OUTPUT" and "packages FOLDER".
 read_inventory() {
   python3 - "$inventory" <<'PYTHON'
 import json, re, sys
@@ -86,7 +86,7 @@ install_on() {  # SSH PACKAGE...
   on "$host" "$there/install.sh $*" </dev/null
 }
 
-# Sensor hosts follow the fusion host, which keeps its own time when it has no server.
+# Sensor hosts follow the fusion host's time; without a server of its own, it serves its own clock.
 keep_time() {  # ROLE SSH
   if [[ $1 == fusion ]]; then
     { echo "# Chorus: the time of the workshop"; echo "local stratum 10"
@@ -98,7 +98,7 @@ keep_time() {  # ROLE SSH
   fi
 }
 
-# How to read the sensor at this address, by its configuration, which comes by standard input: "https://10.0.0.11:8081/,TOKEN".
+# Reads a sensor's configuration on standard input; prints how to poll it: "https://10.0.0.11:8081/,TOKEN".
 way_to() {  # ADDRESS
   python3 -c '
 import json, re, sys
@@ -117,7 +117,7 @@ found_authority() {
   on "$fusion_host" "cat /etc/chorus/ca/ca.crt" </dev/null > "$(dirname "$inventory")/ca.crt"
 }
 
-# A certificate for the name and the address of a host.  Its key goes through our pipe, never into a file of ours.
+# Makes a certificate for a host's name and address.  Its key passes through our pipe, never through a file of ours.
 certify() {  # SSH ADDRESS [--renew]
   local name
   if [[ -z "${3:-}" ]] && on "$1" "test -e /etc/chorus/tls/host.crt" </dev/null; then return; fi
@@ -136,7 +136,7 @@ lay_out_sensor() {  # SSH ADDRESS ID DEVICE
   polled+=("$3=$(on "$1" "cat /etc/chorus/sensor.json" </dev/null | way_to "$2")")
 }
 
-# What the sensor hosts need of it comes first: the time and the certificates.
+# What the sensor hosts need from the fusion host comes first: the time and the certificates.
 lay_out_authority() {  # SSH ADDRESS
   install_on "$1" chorus-fusion chrony
   keep_time fusion "$1"
@@ -147,7 +147,7 @@ lay_out_authority() {  # SSH ADDRESS
 lay_out_fusion() {  # SSH
   local wishes=''
   (( ${#outputs[@]} == 0 )) || wishes=$(printf ' --output %s' "${outputs[@]}")
-  # Tokens travel by standard input: a command line is seen by everybody on that host.
+  # Tokens pass through standard input, because every user of that host can see a command line.
   printf '%s\n' "${polled[@]}" |
     on "$1" "if test -e /etc/chorus/fusion.json; then cat >/dev/null; else chorus init fusion --sensors-from -$wishes 2>/dev/null; fi"
   on "$1" "systemctl restart chorus-fusion" </dev/null

@@ -19,7 +19,7 @@ constexpr std::size_t kMaxFrames = 65535;         // limit of a 16-bit word
 constexpr char kKey = 0x50;
 constexpr char kIntel = 84;
 constexpr float kFloatsInMillimetres = -1.0f;  // POINT:SCALE: negative means floats; 1 mm is
-//  the unit of residuals; as integers, coordinates then reach 32 m
+// the unit of residuals; as integers, coordinates then reach 32 m
 constexpr int kMaxResidual = 255;
 
 void append_word(std::string& bytes, std::size_t value) {

@@ -1,8 +1,8 @@
-// The seam of every simulated body-tracking sensor: frames, one after the other, and the clock that
+// The interface of every simulated body-tracking sensor: its frames in order, and the clock that
 // stamps them.
 //
-// Deterministic: the same scene, choice and start give the same frames.  sensor_choice.h makes one
-// by the name of its profile.
+// Deterministic: the same scene, choice and start give the same frames.  sensor_choice.h makes a
+// sensor by the name of its profile.
 #pragma once
 
 #include <optional>
@@ -18,10 +18,10 @@ class BodySensor {
   virtual ~BodySensor() = default;
 
   /// The next frame by exposure; none when it was dropped.  `captured` is by the host's clock,
-  /// `received` true time.
+  /// `received` is true time.
   [[nodiscard]] virtual std::optional<SensorFrame> next() = 0;
 
-  /// True exposure of the frame that next() will give.
+  /// True time of exposure of the frame that next() will return.
   [[nodiscard]] virtual Timestamp next_exposure() const = 0;
 
   [[nodiscard]] virtual const HostClock& clock() const noexcept = 0;
@@ -32,7 +32,7 @@ class BodySensor {
   BodySensor& operator=(const BodySensor&) = default;
 };
 
-/// All frames from where the sensor stands to `end` (true time).
+/// All frames from the next one to `end` (true time).
 [[nodiscard]] std::vector<SensorFrame> record(BodySensor& sensor, Timestamp end);
 
 }  // namespace chorus::synthetic

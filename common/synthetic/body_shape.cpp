@@ -10,14 +10,14 @@ namespace chorus::synthetic {
 namespace {
 
 constexpr double kHeadRadius = 0.11;   // [m]
-constexpr double kOtherRadius = 0.04;  // bones that the table does not name [m]
+constexpr double kOtherRadius = 0.04;  // for bones that the table does not name [m]
 
 struct Radius {
-  JointId child;  ///< The bone that ends here.
+  JointId child;  ///< The joint where the bone ends.
   double radius;  ///< [m]
 };
 
-// Everyday figures of a clothed adult.
+// Plausible figures for a clothed adult, without a measured source.
 constexpr std::array kRadii{
     Radius{JointId::SpineMid, 0.15},     Radius{JointId::SpineShoulder, 0.15},
     Radius{JointId::Neck, 0.06},         Radius{JointId::Head, 0.06},

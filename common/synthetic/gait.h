@@ -1,8 +1,8 @@
-// One gait cycle of real walking, cut from a CMU take and closed into a seamless loop.
+// One gait cycle of real walking, cut from a CMU take and closed to a seamless loop.
 //
-// The loop lives in joint angles, so bone lengths stay exact.  Its root carries only what is left
-// after the mean forward motion is taken out (sway, bob, surge); where the person goes is a Path's
-// business.
+// The loop consists of joint angles, so bone lengths stay exact.  Its root has only the motion that
+// is left after removing the mean forward motion (sway, bob, surge); a Path says where the person
+// goes.
 #pragma once
 
 #include <vector>
@@ -14,18 +14,18 @@ namespace chorus::synthetic {
 
 class Gait {
  public:
-  /// Cuts the best-closing cycle out of a take of straight walking.
+  /// Cuts the cycle that closes best out of a take of straight walking.
   Gait(const motion::AsfSkeleton& skeleton, const std::vector<motion::AmcFrame>& take);
 
-  /// The built-in takes, cut once; any number is taken modulo their count.
+  /// The built-in takes, cut once; `take` counts modulo their number.
   [[nodiscard]] static const Gait& built_in(std::size_t take);
 
-  /// The body at `phase` (1 = one whole cycle, any real number) with strides of `amplitude` (1 = as
-  /// recorded, 0 = standing): origin on the floor under the mean root, walking towards +z, y = 0
-  /// the floor.
+  /// The body at `phase` (1: one whole cycle; any real number) with strides of `amplitude` (1: as
+  /// recorded, 0: standing).  The origin is on the floor under the mean root; it walks towards +z,
+  /// and the floor is y = 0.
   [[nodiscard]] Skeleton<WorldSpace> pose(double phase, double amplitude) const;
 
-  [[nodiscard]] double stride() const noexcept { return stride_; }  ///< Way per cycle [m].
+  [[nodiscard]] double stride() const noexcept { return stride_; }  ///< Distance per cycle [m].
   [[nodiscard]] double period() const noexcept { return period_; }  ///< Duration of a cycle [s].
   [[nodiscard]] double speed() const noexcept { return stride_ / period_; }  ///< As recorded [m/s].
 
@@ -39,7 +39,7 @@ class Gait {
   motion::AmcFrame standing_;
   double stride_ = 0.0;
   double period_ = 0.0;
-  double heading_ = 0.0;  ///< Of the recorded walk; taken out.
+  double heading_ = 0.0;  ///< Heading of the recorded walk; it is removed.
 };
 
 }  // namespace chorus::synthetic

@@ -1,4 +1,4 @@
-// The plain profile as a sensor: white noise, exact clock (see sensor_model.h).
+// The plain profile as a sensor: white noise and an exact clock (see sensor_model.h).
 #pragma once
 
 #include "common/synthetic/body_sensor.h"

@@ -1,11 +1,11 @@
-// One sensor host's clock against the true one.  Seconds.
+// The clock of a sensor host against true time.  Seconds.
 #pragma once
 
 #include "common/time/timestamp.h"
 
 namespace chorus::synthetic {
 
-/// host = true + offset + drift * (true - origin) + step after step_at.
+/// host = true + offset + drift * (true - origin), plus `step` from `step_at` on.
 struct HostClock {
   double offset = 0.0;  ///< [s]
   double drift = 0.0;   ///< [s/s]

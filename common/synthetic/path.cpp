@@ -12,31 +12,31 @@
 namespace chorus::synthetic {
 namespace {
 
-// Everyday figures, estimates of ours without a measured source; nothing depends on their exact
+// Plausible figures that we estimated without a measured source; nothing depends on their exact
 // values.
 constexpr double kAcceleration = 1.2;   // mean, when starting and stopping [m/s^2]
 constexpr double kTurnRate = deg(110);  // mean, turning on the spot [rad/s]
 constexpr double kTurnSettling = 0.3;   // extra time of every turn [s]
 constexpr double kTurnStep = 0.35;      // stride amplitude while turning on the spot
-constexpr double kPauseShare = 0.35;    // of the way-points of a random walk
+constexpr double kPauseShare = 0.35;    // probability of a pause at a random way-point
 constexpr double kMinPause = 0.5;       // [s]
 constexpr double kMaxPause = 3.0;       // [s]
-constexpr double kRandomLoop = 240.0;   // a random walk repeats after at least so long [s]
+constexpr double kRandomLoop = 240.0;   // shortest loop of a random walk [s]
 constexpr double kStandLoop = 60.0;     // [s]
 constexpr double kLinePause = 0.4;      // before turning at the ends [s]
-constexpr double kMinLegShare = 0.5;    // of the reach; shorter way-points are redrawn
+constexpr double kMinLegShare = 0.5;    // fraction of the reach; shorter legs are redrawn
 constexpr double kMinAmplitude = 0.3;
 constexpr double kMaxAmplitude = 1.4;
 constexpr int kRedraws = 20;
 constexpr double kTurnPause = 1.5;    // between full turns [s]
-constexpr int kStations = 3;          // of a workplace, beside each other
+constexpr int kStations = 3;          // of a workplace, side by side
 constexpr double kStationStep = 0.4;  // from one to the next [m]
 constexpr int kReachesPerStation = 4;
-constexpr double kReachTime = 0.7;                           // a hand's way there, and back [s]
+constexpr double kReachTime = 0.7;                           // of a hand, each way [s]
 constexpr double kMinHold = 0.3;                             // [s]
 constexpr double kMaxHold = 1.2;                             // [s]
 constexpr double kAsideSpeed = 0.35;                         // mean, stepping aside [m/s]
-constexpr double kReachForward = 0.42;                       // of the targets before the body [m]
+constexpr double kReachForward = 0.42;                       // of targets, in front of the body [m]
 constexpr std::array kReachHeights{0.85, 1.10, 1.35, 1.60};  // [m]
 
 constexpr std::uint64_t kDrawWander = 101;
@@ -44,7 +44,7 @@ constexpr std::uint64_t kDrawDirection = 102;
 constexpr std::uint64_t kDrawReach = 103;
 
 double smooth(double x) { return x * x * (3 - 2 * x); }
-/// Integral of smooth from 0.
+/// Integral of smooth() from 0 to x.
 double smooth_way(double x) { return x * x * x * (1 - 0.5 * x); }
 
 double heading_towards(const Eigen::Vector2d& way) { return std::atan2(way.x(), way.y()); }
@@ -54,7 +54,7 @@ double heading_towards(const Eigen::Vector2d& way) { return std::atan2(way.x(), 
 Path::Path(const PathScript& script) : script_(script) {
   script_.speed = std::clamp(script_.speed, 0.1, 2.0);
   const double recorded = script_.stride / script_.period;
-  // Slower people take both shorter and fewer strides.
+  // Slower people take shorter strides, and fewer of them.
   amplitude_ = std::clamp(std::sqrt(script_.speed / recorded), kMinAmplitude, kMaxAmplitude);
   cadence_ = script_.speed / (amplitude_ * script_.stride);
   place_ = script_.centre;
@@ -83,7 +83,7 @@ void Path::pause(double duration) {
 
 void Path::turn_to(double heading) {
   turn_by(wrap_angle(heading - heading_));
-  heading_ = wrap_angle(heading);  // exactly, whatever the sum rounds to
+  heading_ = wrap_angle(heading);  // exactly, without the rounding of the sum
 }
 
 void Path::turn_by(double turn) {
@@ -168,7 +168,7 @@ void Path::circle() {
   leg.turn = 2 * std::numbers::pi;
   leg.speed = script_.speed;
   leg.duration = lap / script_.speed;
-  // A whole number of gait cycles per lap, so that the loop closes.
+  // A whole number of gait cycles per lap closes the loop.
   const double cycles = std::max(1.0, std::round(cadence_ * leg.duration));
   cadence_ = cycles / leg.duration;
   amplitude_ =
@@ -176,7 +176,7 @@ void Path::circle() {
   add(leg);
 }
 
-/// Once round to either side, with pauses in between.
+/// A full turn to either side, with pauses in between.
 void Path::turn_in_place() {
   for (const double turn : {2 * std::numbers::pi, -2 * std::numbers::pi}) {
     turn_by(turn);
@@ -184,8 +184,8 @@ void Path::turn_in_place() {
   }
 }
 
-/// Hands take turns at points of different heights, then one step aside to the next station and at
-/// last back to the first.
+/// The hands reach in turn for points at different heights; then a step aside leads to the next
+/// station, and from the last one back to the first.
 void Path::assemble() {
   Draw draw{script_.seed, kDrawReach};
   const Eigen::Vector2d to_left(std::cos(heading_), -std::sin(heading_));
@@ -197,7 +197,7 @@ void Path::assemble() {
   for (int i = 0; i < kStations; ++i) {
     for (int k = 0; k < kReachesPerStation; ++k) {
       const bool left = k % 2 == 0;
-      const double aside = draw.uniform(-0.05, 0.35);  // across the middle to well outside [m]
+      const double aside = draw.uniform(-0.05, 0.35);  // from across the middle to far outside [m]
       const double height = kReachHeights[static_cast<std::size_t>(i + k) % kReachHeights.size()];
       reach_for(left, {left ? aside : -aside, height, kReachForward},
                 draw.uniform(kMinHold, kMaxHold));

@@ -1,8 +1,8 @@
 // Where a person walks: a scripted, closed loop of legs, turns and pauses, as a pure function of
 // time.
 //
-// The loop repeats for ever, so that the person is somewhere at every UTC instant and every process
-// that knows the script agrees where.
+// The loop repeats for ever, so the person has a place at every UTC instant, and every process with
+// the same script agrees on it.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ namespace chorus::synthetic {
 
 enum class PathKind { Random, Circle, Line, Stand, Turn, Assembly };
 
-/// What configuration calls each kind; the order is that of the enumeration.
+/// The names of the kinds in the configuration, in the order of the enumeration.
 inline constexpr std::array<std::string_view, 6> kPathNames{"random", "circle", "line",
                                                             "stand",  "turn",   "assembly"};
 
@@ -29,16 +29,16 @@ struct PathScript {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< World x, z [m]
   double reach = 1.2;   ///< Radius of the area, or of the circle, or half the line [m]
   double speed = 0.9;   ///< Cruising [m/s]
-  double stride = 1.3;  ///< Way per gait cycle at amplitude 1 [m]
+  double stride = 1.3;  ///< Distance per gait cycle at amplitude 1 [m]
   double period = 1.1;  ///< Duration of a gait cycle as recorded [s]
 };
 
 struct PathPoint {
   Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< World x, z [m]
-  double heading = 0.0;    ///< Walking direction as yaw about +y; 0 is +z [rad]
-  double phase = 0.0;      ///< Of the gait, in cycles.
-  double amplitude = 0.0;  ///< Of the strides: 0 standing, 1 as recorded.
-  Reach reach{};           ///< In the person's walk frame.
+  double heading = 0.0;    ///< Direction of walking, as yaw about +y; 0: +z [rad]
+  double phase = 0.0;      ///< Phase of the gait, in cycles.
+  double amplitude = 0.0;  ///< Amplitude of the strides, 0: standing, 1: as recorded.
+  Reach reach{};           ///< In the person's walk frame (see reach.h).
 };
 
 class Path {
@@ -59,7 +59,7 @@ class Path {
     double heading = 0.0;  ///< At the start.
     double turn = 0.0;     ///< Total turn [rad].
     double speed = 0.0;    ///< Cruising speed of this leg [m/s].
-    double ramp = 0.0;     ///< Time to reach it and to stop; of a hand, each way [s].
+    double ramp = 0.0;     ///< Time to reach that speed, and to stop; for a hand, each way [s].
     synthetic::Reach reach{};
   };
 
@@ -78,10 +78,10 @@ class Path {
   [[nodiscard]] PathPoint along(const Leg& leg, double time) const;
 
   PathScript script_;
-  double amplitude_ = 1.0;                           ///< Of the strides at cruising speed.
+  double amplitude_ = 1.0;                           ///< Of the strides, at cruising speed.
   double cadence_ = 1.0;                             ///< Cycles per second.
   double loop_ = 0.0;                                ///< [s]
-  Eigen::Vector2d place_ = Eigen::Vector2d::Zero();  ///< While building: where the last leg ended.
+  Eigen::Vector2d place_ = Eigen::Vector2d::Zero();  ///< While building: end of the last leg.
   double heading_ = 0.0;
   std::vector<Leg> legs_;
 };

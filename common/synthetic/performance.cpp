@@ -18,15 +18,15 @@ namespace {
 using Body = Skeleton<WorldSpace>;
 using Frames = std::vector<Body>;
 
-constexpr double kToeHeight = 0.03;  // foot joint over the floor when the foot stands [m]
-// Of the frames' lowest feet, the one that stands on the floor; lower ones are noise.
+constexpr double kToeHeight = 0.03;  // height of a standing foot joint over the floor [m]
+// The quantile of the frames' lowest feet that is on the floor; lower feet are noise.
 constexpr double kStandingShare = 0.05;
-// Distance from knee to hip of anybody from an eight-year-old to a giant; narrow enough that inches
-// taken for centimetres do not pass [m].
+// Limits of the distance from knee to hip, from an eight-year-old to a giant; tight enough that
+// inches read as centimetres do not pass [m].
 constexpr double kMinThigh = 0.25;
 constexpr double kMaxThigh = 0.65;
 constexpr double kMaxRate = 1000.0;  // [Hz]
-constexpr double kFastest = 30.0;    // any joint, a thrower's hand included [m/s]
+constexpr double kFastest = 30.0;    // of any joint, even a thrower's hand [m/s]
 
 constexpr std::array kRequired{JointId::HipLeft,       JointId::HipRight,   JointId::KneeLeft,
                                JointId::KneeRight,     JointId::AnkleLeft,  JointId::AnkleRight,
@@ -38,8 +38,8 @@ struct Share {
   double weight;
 };
 
-/// Where an absent joint is set: a weighted sum of two others (weights sum to one, and may leave
-/// [0, 1] to extend a bone), and so much to the body's front [m].
+/// Where a missing joint is put: a weighted sum of two others (the weights sum to one and may lie
+/// outside [0, 1] to extend a bone), and `ahead` metres to the body's front.
 struct Guess {
   JointId joint;
   Share first;
@@ -47,7 +47,7 @@ struct Guess {
   double ahead = 0.0;
 };
 
-// Everyday proportions; each row may use those above it.
+// Usual proportions; a row may use the joints of the rows above it.
 constexpr std::array kGuesses{
     Guess{JointId::SpineBase, {JointId::HipLeft, 0.5}, {JointId::HipRight, 0.5}},
     Guess{JointId::SpineShoulder, {JointId::ShoulderLeft, 0.5}, {JointId::ShoulderRight, 0.5}},
@@ -75,8 +75,8 @@ std::optional<JointId> missing_joint(const Frames& frames) {
   return std::nullopt;
 }
 
-/// Straight from where the joint was seen last to where it is seen next; held before the first and
-/// after the last.
+/// Moves a joint straight from where it was last seen to where it is next seen; constant before the
+/// first and after the last sight of it.
 void fill_gaps(Frames& frames, JointId joint) {
   std::optional<std::size_t> last;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -112,7 +112,7 @@ void guess_absent(Body& body) {
   }
 }
 
-/// Orientations of the file stay (they know the twist); others follow from the bones.
+/// Keeps orientations from the file, which know the twist; the others follow from the bones.
 void orient(Body& body) {
   Body by_bones = body;
   motion::orient_segments(by_bones);
@@ -163,7 +163,7 @@ double standing_height(const std::vector<motion::Motion>& roles) {
   return *standing;
 }
 
-/// Feet to the floor, the middle of all ways to the origin.
+/// Moves the feet to the floor, and the middle of all paths to the origin.
 void to_origin(std::vector<motion::Motion>& roles) {
   Eigen::Vector3d least = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector3d most = -least;
@@ -196,7 +196,7 @@ Result<void> can_be_played(const motion::Motion& role) {
                   role.rate_hz, kMaxRate));
 }
 
-/// Some programs (Xsens MVN) put a T-pose before the motion: nobody can move from there to the
+/// Some programs (Xsens MVN) put a T-pose before the motion; from there nobody could reach the
 /// second frame in time.
 bool starts_with_pose(const motion::Motion& role) {
   if (role.frames.size() < 3) return false;
@@ -219,7 +219,7 @@ void drop_pose(std::vector<motion::Motion>& roles) {
 }  // namespace
 
 Result<Performance> staged(std::vector<motion::Motion> captured) {
-  // Things and half-tracked bystanders of a take play no role, as long as somebody does.
+  // Things and half-tracked bystanders get no role, as long as somebody else has one.
   if (captured.size() > 1) {
     const auto lacks = [](const motion::Motion& role) {
       return missing_joint(role.frames).has_value();

@@ -34,7 +34,7 @@ Result<std::string> text_of(const std::filesystem::path& path) {
   return std::string(std::istreambuf_iterator<char>(file), {});
 }
 
-/// What a conversion refuses is the file's fault.
+/// When a conversion refuses its input, the file is at fault.
 Captured single(Result<motion::Motion> motion, const std::string& origin) {
   if (!motion) return fail(motion.error().code, origin, to_string(motion.error()));
   std::vector<motion::Motion> one;
@@ -48,7 +48,7 @@ Captured from_bvh(const MotionFile& file, const std::string& text) {
   return single(motion::motion_from_bvh(*bvh), file.path.string());
 }
 
-/// "02_01.amc" -> "02_01.asf" when that is there, else "02.asf".
+/// "02_01.amc" -> "02_01.asf" if that exists, else "02.asf".
 std::filesystem::path skeleton_of(const std::filesystem::path& amc) {
   std::filesystem::path own = amc;
   own.replace_extension(".asf");

@@ -1,5 +1,5 @@
-// With libjpeg and zlib rather than an image library: a sensor host without a camera then needs
-// nothing that reads the world's picture formats.
+// Uses libjpeg and zlib instead of an image library: a sensor host without a camera then needs
+// nothing that reads all sorts of picture formats.
 #include "common/synthetic/picture.h"
 
 #include <zlib.h>
@@ -15,9 +15,9 @@ namespace chorus::synthetic {
 namespace {
 
 constexpr int kJpegQuality = 85;
-constexpr int kPngEffort = 1;  // Of nine: a picture is encoded for one look.
+constexpr int kPngEffort = 1;  // Of nine, because each picture is viewed only once.
 
-/// What libjpeg calls instead of returning an error.
+/// libjpeg calls this instead of returning an error.
 struct JpegErrors {
   jpeg_error_mgr base;
   std::jmp_buf back;
@@ -32,7 +32,7 @@ struct JpegBuffer {
   unsigned long size = 0;
 };
 
-/// False when libjpeg gave up.  No object here has a destructor, for longjmp skips them.
+/// False when libjpeg failed.  No object here has a destructor, because longjmp would skip it.
 bool compress_jpeg(const std::uint8_t* pixels, PictureSize size, JpegBuffer& out) {
   jpeg_compress_struct codec;
   JpegErrors errors;
@@ -74,7 +74,7 @@ void append_number(std::string& out, std::uint32_t number) {
   for (int shift = 24; shift >= 0; shift -= 8) out += static_cast<char>(number >> shift & 0xFF);
 }
 
-/// PNG specification 5.3: length, type, content, checksum of the latter two.
+/// PNG specification 5.3: length, type, content, and a checksum of the latter two.
 void append_chunk(std::string& out, const char* type, const std::string& content) {
   append_number(out, static_cast<std::uint32_t>(content.size()));
   const std::string checked = type + content;

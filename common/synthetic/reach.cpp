@@ -8,7 +8,7 @@ namespace chorus::synthetic {
 namespace {
 
 constexpr double kStraightest = 0.98;  // of an arm's length; nobody locks the elbow
-constexpr double kClosest = 0.35;  // a hand comes no closer to its shoulder, share of the length
+constexpr double kClosest = 0.35;  // least hand-shoulder distance, of the length
 
 struct Arm {
   JointId shoulder, elbow, wrist;
@@ -28,7 +28,7 @@ void turn(Joint& joint, const Eigen::Quaterniond& rotation) {
   if (joint.orientation.squaredNorm() > 0) joint.orientation = rotation * joint.orientation;
 }
 
-/// The elbow between shoulder and wrist, on the side of `hint`.
+/// The elbow's place between shoulder and wrist, on the side of `hint`.
 Eigen::Vector3d elbow_at(const Eigen::Vector3d& shoulder, const Eigen::Vector3d& wrist,
                          const std::array<double, 2>& bones, const Eigen::Vector3d& hint) {
   const Eigen::Vector3d way = wrist - shoulder;
@@ -55,7 +55,7 @@ void apply(const Reach& reach, Skeleton<WorldSpace>& body) {
   Eigen::Vector3d way = wrist + std::min(reach.amount, 1.0) * (reach.target - wrist) - shoulder;
   const double far = way.norm();
   way *= std::clamp(far, kClosest * length, kStraightest * length) / std::max(far, 1e-6);
-  // Where the wrist moves little, the elbow stays where it was; otherwise it hangs under the arm.
+  // While the wrist moves little, the elbow stays where it was; otherwise it hangs under the arm.
   const Eigen::Vector3d below = shoulder + 0.5 * way - length * Eigen::Vector3d::UnitY();
   const Eigen::Vector3d hint = elbow + std::min(reach.amount, 1.0) * (below - elbow);
   const Eigen::Vector3d new_elbow = elbow_at(shoulder, shoulder + way, bones, hint);

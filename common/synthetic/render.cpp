@@ -28,18 +28,18 @@ struct RangeImage {
   std::vector<Eigen::Vector3f> rays;  ///< Unit.
 };
 
-/// Sensor x runs to the sensor's left, image columns to its right.
+/// Sensor x points to the sensor's left, but image columns run to its right.
 Eigen::Vector3d ray_of(const Intrinsics& camera, int column, int row) {
   return Eigen::Vector3d(-(column - camera.cx) / camera.fx, -(row - camera.cy) / camera.fy, 1)
       .normalized();
 }
 
 struct Box {
-  int left, right, top, bottom;  ///< Pixels, right and bottom exclusive.
+  int left, right, top, bottom;  ///< In pixels; right and bottom are exclusive.
 };
 
-/// Pixels that may see the capsule: the square around each end's ball, everything when it is too
-/// near.
+/// The pixels that may see the capsule: those of the squares around its two end balls; all pixels
+/// when it is too near.
 Box box_of(const Capsule& capsule, const Intrinsics& camera) {
   Box box{camera.width, 0, camera.height, 0};
   for (const Eigen::Vector3d& end : {capsule.from, capsule.to}) {
@@ -92,7 +92,7 @@ void see_box(RangeImage& image, const Eigen::Isometry3d& box_from_sensor,
   }
 }
 
-/// Every pixel's ray, nothing seen yet.
+/// The ray of every pixel, which sees nothing yet.
 RangeImage open_eyes(const Intrinsics& camera) {
   const auto pixels =
       static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
@@ -131,7 +131,7 @@ Result<RangeImage> look(const Scene& scene, std::size_t sensor, Timestamp instan
   return image;
 }
 
-/// Red, green, blue; a person's colour, a thing's, a chequered floor or the wall.
+/// Red, green, blue of a person, a thing, the chequered floor or the wall.
 std::array<std::uint8_t, 3> shade(const RangeImage& image, std::size_t i,
                                   const Eigen::Isometry3d& world_from_sensor) {
   const double range = static_cast<double>(image.range[i]);

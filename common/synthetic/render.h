@@ -1,8 +1,8 @@
 // Images of a scene as one sensor sees it: capsule bodies and things on a floor.  Rendered on
 // demand.
 //
-// Not mirrored: sensor x runs to the sensor's left, so column = cx - fx x / z and row = cy - fy y /
-// z.
+// Not mirrored: sensor x points to the sensor's left, so column = cx - fx x / z and row = cy - fy y
+// / z.
 #pragma once
 
 #include "common/base/result.h"
@@ -13,7 +13,7 @@ namespace chorus::synthetic {
 
 struct CameraModel {
   Intrinsics intrinsics;       ///< Pinhole; distortion is not rendered.
-  double most_depth = 4.5;     ///< Depth beyond this is 0, as the sensor leaves it [m]
+  double most_depth = 4.5;     ///< Depth beyond this becomes 0, as in the sensor [m]
   double depth_noise = 0.003;  ///< Standard deviation of depth [m]
   std::uint64_t seed = 1;
 };

@@ -9,7 +9,7 @@ namespace chorus::synthetic {
 namespace {
 
 constexpr std::uint64_t kDrawBuild = 201;
-// People are up to so much taller or shorter than the script says.
+// People are up to this much taller or shorter than the script says, as a fraction.
 constexpr double kBuildSpread = 0.08;
 
 }  // namespace

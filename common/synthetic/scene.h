@@ -1,4 +1,4 @@
-// People and sensors in one room: the whole truth of a simulation.
+// People and sensors in one room: the complete truth of a simulation.
 //
 // World space: y up, y = 0 the floor.  Sensor space: +z into the scene, +y up, +x to the sensor's
 // left.
@@ -16,36 +16,36 @@
 
 namespace chorus::synthetic {
 
-/// Where somebody truly is, so long after the scene's epoch.
+/// The true pose of a person at this time after the scene's epoch.
 using Person = std::function<Skeleton<WorldSpace>(Duration since_epoch)>;
 
 struct Scene {
-  Timestamp epoch;  ///< People's time counts from here.
+  Timestamp epoch;  ///< The zero point of people's time.
   std::vector<Person> people;
   std::vector<Eigen::Isometry3d> world_from_sensor;
   std::vector<Occluder> occluders = {};
 };
 
-/// Sensors evenly on a circle, all looking at its centre.
+/// Sensors evenly spaced on a circle, all looking at its centre.
 struct Ring {
   std::size_t count = 6;
   double radius = 3.0;     ///< [m]
   double height = 1.6;     ///< [m]
-  double pitch = deg(13);  ///< Looking down [rad]
+  double pitch = deg(13);  ///< Downwards is positive [rad]
 };
 
-/// A sensor at `eye` that looks along yaw (about +y, 0 = along +z), `pitch` downwards.
+/// A sensor at `eye` that looks along `yaw` (about +y, 0: along +z) and down by `pitch`.
 [[nodiscard]] Eigen::Isometry3d stand_sensor(const Eigen::Vector3d& eye, double yaw, double pitch);
 
-/// Place number `index` of the ring, going around +y from world +z.
+/// Place number `index` of the ring, counted about +y from world +z.
 [[nodiscard]] Eigen::Isometry3d ring_place(const Ring& ring, std::size_t index);
 
 [[nodiscard]] std::vector<Eigen::Isometry3d> ring_places(const Ring& ring);
 
-/// `count` people with different seeds, paths and builds out of one script.
+/// Makes `count` people with different seeds, paths and builds from one script.
 [[nodiscard]] std::vector<Person> make_people(const WalkerScript& script, std::size_t count);
 
-/// Where a person truly is.
+/// The true pose of a person.
 [[nodiscard]] Skeleton<WorldSpace> truth(const Scene& scene, std::size_t person, Timestamp instant);
 
 /// The floor as an exact sensor at this place would report it.

@@ -1,9 +1,9 @@
-// A simulated sensor by the name of its profile: "A", "B" and "D" draw their errors (kinect/), in
-// "C" they emerge from depth images and a body fitter (depth/), "gauss" has white noise only
-// (sensor_model.h).
+// Makes a simulated sensor by the name of its profile: "A", "B" and "D" draw their errors
+// (kinect/); in "C" errors emerge from depth images and a body fitter (depth/); "gauss" has only
+// white noise (sensor_model.h).
 //
-// Parameters are the nominal ones or one draw from their intervals; any source of error can be
-// turned up, down or off on top.
+// Parameters are the nominal ones, or one draw from their intervals; each source of error can also
+// be scaled or switched off.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ namespace chorus::synthetic {
 
 using kinect::Source;
 
-/// One source of error multiplied: 0 switches it off, 1 leaves it.
+/// The factor of one source of error: 0 switches it off, 1 leaves it unchanged.
 struct Stress {
   Source source = Source::White;
   double factor = 1.0;
@@ -33,21 +33,21 @@ struct SensorChoice {
   SensorId id;
   std::size_t place = 0;              ///< Index into Scene::world_from_sensor.
   std::string profile = "A";          ///< "A", "B", "C", "D" or "gauss"
-  std::optional<std::uint64_t> draw;  ///< Parameters drawn by this seed; none: the nominal ones.
+  std::optional<std::uint64_t> draw;  ///< Seed that draws the parameters; none: nominal.
   std::vector<Stress> stress = {};
-  std::uint64_t seed = 1;       ///< The same for all sensors of a room: shared errors are shared.
-  std::uint64_t bias_seed = 1;  ///< SDK and people: the same person errs the same way in every run.
-  bool own_clock = true;        ///< Stamps by the host's erring clock; false: true time.
-  /// The other parameters of "gauss", which has no intervals to draw from, no sources to multiply,
-  /// and an exact clock.
+  std::uint64_t seed = 1;       ///< The same for all sensors of a room, so that they share errors.
+  std::uint64_t bias_seed = 1;  ///< Of SDK and people: a person's error is the same in every run.
+  bool own_clock = true;        ///< Stamps frames by the host's erring clock; false: by true time.
+  /// The parameters of "gauss", which has no intervals to draw from, no sources to scale, and an
+  /// exact clock.
   SensorModel gauss = {};
 };
 
-/// Are the errors of this profile drawn (kinect/)?
+/// True if the errors of this profile are drawn (kinect/).
 [[nodiscard]] bool is_drawn(std::string_view profile);
 
-/// `scene` must outlive the sensor.  First frames at or after `start`.  Refuses an unknown profile
-/// and a place that the scene does not have.
+/// `scene` must outlive the sensor.  The first frames are at or after `start`.  Refuses an unknown
+/// profile, and a place that the scene lacks.
 [[nodiscard]] Result<std::unique_ptr<BodySensor>> make_sensor(const Scene& scene,
                                                               const SensorChoice& choice,
                                                               Timestamp start);

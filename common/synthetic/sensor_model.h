@@ -1,8 +1,8 @@
-// What one simulated sensor reports of a scene: a list of small layers, applied in order.
+// What one simulated sensor reports of a scene: several small layers, applied in order.
 //
-// This is the plain profile, "gauss": limited view, joints behind things, white Gaussian noise,
-// jittered time, frame drops.  A real Kinect's error is coloured and depends on the view, and it
-// swaps left and right from behind; none of that is here, so accuracy figures from this profile
+// This is the plain profile, "gauss": limited view, joints hidden by things, white Gaussian noise,
+// jittered time, dropped frames.  A real Kinect's error is coloured and depends on the view, and it
+// swaps left and right from behind; this model has none of that, so accuracy figures from it
 // flatter every method. Everything is a pure function of (scene, sensor, frame number).
 #pragma once
 
@@ -18,18 +18,18 @@ namespace chorus::synthetic {
 
 inline constexpr std::string_view kGaussProfile = "gauss";
 
-/// When frames are taken.  Source: real logs step 32.6-33.0 ms, a few per cent of frames lost.
+/// When frames are taken.  Source: real logs have steps of 32.6-33.0 ms and lose a few % of frames.
 struct Sampling {
   Duration period{33'333'333};                     ///< 30 Hz
-  Duration jitter = std::chrono::milliseconds(2);  ///< Uniform, +-
-  double drop_share = 0.0;                         ///< Of the frames, lost independently.
+  Duration jitter = std::chrono::milliseconds(2);  ///< Uniform within +- this.
+  double drop_share = 0.0;                         ///< Fraction of frames lost, independently.
 };
 
 /// Which joints are in view.  Source: Kinect v2, 70 x 60 deg, 0.5-4.5 m.
 struct FieldOfView {
   double half_width = deg(35);   ///< [rad]
   double half_height = deg(30);  ///< [rad]
-  double margin = deg(8);    ///< Joints so far outside are guessed (Inferred); beyond, not tracked.
+  double margin = deg(8);    ///< Joints this far outside are Inferred; farther, not tracked.
   double least_range = 0.5;  ///< [m]
   double most_range = 4.5;   ///< [m]
 };
@@ -38,11 +38,11 @@ struct FieldOfView {
 struct GaussianNoise {
   double along = 0.025;          ///< Standard deviation [m]
   double across = 0.010;         ///< Per axis [m]
-  double inferred_factor = 2.5;  ///< Inferred joints are this much worse.
-  double turn = deg(4);          ///< Of orientations, per axis [rad]
+  double inferred_factor = 2.5;  ///< Factor for Inferred joints.
+  double turn = deg(4);          ///< Noise of orientations, per axis [rad]
 };
 
-/// The floor plane the sensor estimates: a fixed error per sensor and a little per frame.
+/// The floor plane as the sensor estimates it: a fixed error per sensor and a small one per frame.
 struct FloorNoise {
   double fixed_tilt = deg(0.15);  ///< Standard deviation per axis [rad]
   double fixed_offset = 0.003;    ///< [m]
@@ -58,14 +58,14 @@ struct SensorModel {
   FloorNoise floor;
 };
 
-/// Sensor `index` of the scene; also the key of its random numbers.
+/// The sensor with this index in the scene; the index is also the key of its random numbers.
 struct SimulatedSensor {
   SensorId id;
   std::size_t index = 0;
   SensorModel model;
 };
 
-/// When frame `number` is captured (phase and jitter included).  Numbers count periods since 1970.
+/// Capture time of frame `number`, with phase and jitter.  Numbers count periods since 1970.
 [[nodiscard]] Timestamp capture_time(const SimulatedSensor& sensor, std::uint64_t number);
 
 /// The first frame captured at or after `instant`.
@@ -76,9 +76,9 @@ struct SimulatedSensor {
 [[nodiscard]] std::optional<SensorFrame> observe(const Scene& scene, const SimulatedSensor& sensor,
                                                  std::uint64_t number);
 
-/// One layer each, for tests and other profiles.
+/// The layers one by one, for tests and other profiles.
 void limit_view(Skeleton<SensorSpace>& body, const FieldOfView& view);
-/// Joints behind the box are guessed (Inferred).
+/// Joints hidden by the box become Inferred.
 void hide_behind(Skeleton<SensorSpace>& body, const Eigen::Isometry3d& box_from_sensor,
                  const Eigen::Vector3d& half);
 void add_noise(Skeleton<SensorSpace>& body, const GaussianNoise& noise, Draw draw);

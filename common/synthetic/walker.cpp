@@ -9,7 +9,7 @@
 namespace chorus::synthetic {
 namespace {
 
-constexpr double kSwayRate = 0.25;    // breathing and balance, about this often [Hz]
+constexpr double kSwayRate = 0.25;    // rate of breathing and balancing, roughly [Hz]
 constexpr double kSwayReach = 0.004;  // [m]
 
 PathScript path_of(const WalkerScript& script, const Gait& gait, double body_scale) {
@@ -34,7 +34,7 @@ Walker::Walker(const WalkerScript& script)
 Skeleton<WorldSpace> Walker::at(Duration since_epoch) const {
   const PathPoint point = path_.at(since_epoch);
   const double loop = seconds(path_.loop());
-  // A whole number of sways per loop, so that the loop closes.
+  // A whole number of sways per loop closes the loop.
   const double sways = std::max(1.0, std::round(kSwayRate * loop));
   const double angle = 2 * std::numbers::pi * sways * seconds(since_epoch % path_.loop()) / loop;
   const double sway = kSwayReach * std::sin(angle);

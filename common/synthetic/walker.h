@@ -1,7 +1,7 @@
-// A person made from real CMU walking: the truth that simulated sensors look at.
+// A person made from real CMU walking: the truth that simulated sensors observe.
 //
-// A pure function of the script and the time since an epoch: every process that has the script sees
-// the same person at the same instant.
+// A pure function of the script and the time since an epoch: every process with the script sees the
+// same person at the same instant.
 #pragma once
 
 #include "common/body/skeleton.h"
@@ -14,16 +14,16 @@ struct WalkerScript {
   std::uint64_t seed = 1;
   PathKind path = PathKind::Random;
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< World x, z [m]
-  double reach = 1.2;                                ///< Of the path, see PathScript [m]
+  double reach = 1.2;                                ///< Reach of the path, see PathScript [m]
   double speed = 0.9;                                ///< [m/s]
-  double body_scale = 1.0;                           ///< 1 = the recorded subject, about 1.7 m tall
+  double body_scale = 1.0;                           ///< 1: the recorded subject, about 1.7 m tall
 };
 
 class Walker {
  public:
   explicit Walker(const WalkerScript& script);
 
-  /// All 25 joints, tracked, world space.
+  /// All 25 joints, tracked, in world space.
   [[nodiscard]] Skeleton<WorldSpace> at(Duration since_epoch) const;
   [[nodiscard]] const Path& path() const& noexcept { return path_; }
   const Path& path() && = delete;  // it would not outlive the walker

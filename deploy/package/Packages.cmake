@@ -1,9 +1,9 @@
-# What is installed where, and the Debian packages made of it (deploy/make-packages.sh).
+# What is installed where, and the Debian packages that are made from it (deploy/make-packages.sh).
 #
 #   common  chorus (small: init, doctor, status, register, record), user, folders
-#   sensor  chorus-sensor and its service; nothing here may link OpenCV or PCL (tests/package measures what it brings)
+#   sensor  chorus-sensor and its service; nothing here may link OpenCV or PCL (tests/package measures its dependencies)
 #   fusion  chorus-fusion, its service and the viewer
-#   camera  the whole chorus-sensor, with the device camera and its runner; the service then runs this one
+#   camera  the whole chorus-sensor, with the device camera and its runner; the service then runs this program
 #   tools   the whole chorus: import, replay, fuse, export
 include(GNUInstallDirs)
 set(docs ${CMAKE_INSTALL_DATADIR}/doc)
@@ -14,7 +14,7 @@ install(FILES LICENSE DESTINATION ${docs}/chorus-common RENAME copyright COMPONE
 install(DIRECTORY docs/guide DESTINATION ${docs}/chorus-common COMPONENT common FILES_MATCHING PATTERN *.md)
 install(FILES LICENSE DESTINATION ${docs}/chorus-tools RENAME copyright COMPONENT tools)
 
-# Manual pages and completions come from the programs themselves.
+# The programs themselves print their manual pages and completions.
 set(pages ${CMAKE_BINARY_DIR}/pages)
 set(made "")
 function(chorus_pages program section component)
@@ -83,7 +83,7 @@ set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_COMPONENTS_ALL common sensor camera fusion tools)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
-set(CPACK_STRIP_FILES OFF)  # Splitting the debug symbols does it, and would find none after it.
+set(CPACK_STRIP_FILES OFF)  # Splitting off the debug symbols also strips; stripping first would leave it none to split.
 set(CPACK_DEBIAN_DEBUGINFO_PACKAGE ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)

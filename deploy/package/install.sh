@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs Chorus from this folder, without internet: ./install.sh chorus-sensor | chorus-fusion | chorus-tools ...
-# The system's own package sources are neither asked nor changed.
+# Neither reads nor changes the system's own package sources.
 set -euo pipefail
 folder=$(cd "$(dirname "$0")" && pwd)
 (( $# > 0 )) || { sed -n '2,3s/^# //p' "$0" >&2; exit 2; }
@@ -23,4 +23,4 @@ apt=(apt-get -q -o "Dir::Etc::SourceList=$scratch/sources.list" -o Dir::Etc::Sou
   -o Dir::Cache::pkgcache= -o Dir::Cache::srcpkgcache= -o APT::Sandbox::User=root)
 "${apt[@]}" update
 DEBIAN_FRONTEND=noninteractive "${apt[@]}" install -y --no-install-recommends --allow-downgrades \
-  -o Dpkg::Options::=--force-confdef -o Dpkg::Options::=--force-confold "$@"  # what the user changed stays
+  -o Dpkg::Options::=--force-confdef -o Dpkg::Options::=--force-confold "$@"  # keeps the user's changes

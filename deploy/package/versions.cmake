@@ -1,4 +1,4 @@
-# Read when the packages are made: all of one version belong together, and the version may be given as late as that.
+# Read when the packages are made, because the version may be given as late as that; all of one version belong together.
 set(same_version "chorus-common (= ${CPACK_PACKAGE_VERSION})")
 set(CPACK_DEBIAN_SENSOR_PACKAGE_DEPENDS "${same_version}, init-system-helpers")
 set(CPACK_DEBIAN_FUSION_PACKAGE_DEPENDS "${same_version}, init-system-helpers")

@@ -1,5 +1,5 @@
-// BlazePose: one person, 33 landmarks of MediaPipe with places in metres.  A detector finds where somebody is; from then
-// on each image says where to look in the next.
+// BlazePose: one person, with MediaPipe's 33 landmarks and their places in metres.  A detector finds the person; from
+// then on, each image shows where to look in the next one.
 import { cropped, toImage, wholeImage } from './crop.js';
 import { People, placeOf } from './people.js';
 
@@ -10,7 +10,7 @@ const VALUES = 5; // x, y, z, visibility, presence
 const DETECTION = 13; // logit, box, four key points
 const LEAST_PERSON = 0.5;
 const MARGIN = 1.25;
-const MIDDLE = 33; // the two auxiliary landmarks: mid hips, and a point on the circle around the person
+const MIDDLE = 33; // the two auxiliary landmarks: middle of the hips, and a point on the circle around the person
 const RIM = 34;
 
 export const FILES = { lite: ['blazepose-detector', 'blazepose-lite'], full: ['blazepose-detector', 'blazepose-full'] };
@@ -19,7 +19,7 @@ export const HELLO = { layout: 'mediapipe_33', pixelSigma: 4, image: { maxSide: 
 const sigmoid = (x) => 1 / (1 + Math.exp(-x));
 const round = (value, digits) => Number(value.toFixed(digits));
 
-/// Where the detector's answers are at home: centres of cells, 0 to 1.
+/// The places that the detector's answers are relative to: centres of cells, 0 to 1.
 export function anchors() {
   const list = [];
   for (const [cells, each] of [[28, 2], [14, 2], [7, 6]]) {
@@ -38,7 +38,7 @@ export function squareAround([x, y], [rimX, rimY]) {
   return { x, y, size: 2 * Math.hypot(dx, dy) * MARGIN, angle: Math.atan2(dx, -dy) };
 }
 
-/// The square around the surest person of the detector's answer, or null.
+/// The square around the most certain person in the detector's answer, or null.
 export function detected(values, homes, square) {
   let best = -1;
   for (let i = 0; i < homes.length; ++i) {
@@ -52,7 +52,7 @@ export function detected(values, homes, square) {
   return squareAround(point(0), point(1));
 }
 
-/// Landmarks in pixels of the image, and in metres around the middle of the hips: right, down, ahead of the camera.
+/// Landmarks in pixels of the image, and in metres from the middle of the hips: right, down, ahead of the camera.
 export function readLandmarks(values, world, square) {
   const [cos, sin] = [Math.cos(square.angle), Math.sin(square.angle)];
   const place = (i) => toImage(square, values[i * VALUES] / SIDE, values[i * VALUES + 1] / SIDE);
@@ -77,7 +77,7 @@ export class BlazePose {
     this.square = null;
   }
 
-  /// The bodies of a frame (proto/bridge.md, section 3).  `time`: of the capture [s].
+  /// The bodies of a frame (proto/bridge.md, section 3).  `time`: its capture time [s].
   async bodies(image, time) {
     const before = this.square;
     let found = before && (await this.#landmarks(image, before));

@@ -1,4 +1,4 @@
-// A square part of an image, turned and scaled to what a model takes.  Outside the image it is black.
+// A square part of an image, rotated and scaled to a model's input size.  It is black outside the image.
 
 /// A square of `size` pixels of the image around (x, y), turned by `angle` [rad, clockwise in the image].
 export const wholeImage = (width, height) => ({ x: width / 2, y: height / 2, size: Math.max(width, height), angle: 0 });

@@ -1,4 +1,4 @@
-// Images out of the byte stream that comes from the sensor (proto/runner.md, section 2).  Pure: bytes in, images out.
+// Takes images from the byte stream that the sensor sends (proto/runner.md, section 2).  Pure: bytes in, images out.
 
 const MAX_HEADER = 4096;
 const MAX_SIDE = 8192;
@@ -6,7 +6,7 @@ const LINE_FEED = 10;
 
 const isSide = (value) => Number.isInteger(value) && value >= 1 && value <= MAX_SIDE;
 
-/// The header of an image, checked; throws what is wrong with it.
+/// Parses and checks the header of an image; throws what is wrong with it.
 export function parseHeader(text) {
   let header;
   try {
@@ -31,7 +31,7 @@ export class ImageReader {
     this.filled = 0;
   }
 
-  /// All images that this chunk completes: {header, pixels}.  Throws where the stream is not as specified; it cannot go on then.
+  /// All images that this chunk completes: {header, pixels}.  Throws when the stream is not as specified; it cannot continue.
   feed(chunk) {
     const images = [];
     let rest = chunk;

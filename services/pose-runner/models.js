@@ -1,4 +1,4 @@
-// The networks' files as the installed package has them, checked before use, and the engine that runs them: WebAssembly.
+// The network files of the installed package, checked before use, and the engine that runs them: WebAssembly.
 import { createHash } from 'node:crypto';
 import { readFile } from 'node:fs/promises';
 import { dirname, join } from 'node:path';
@@ -27,7 +27,7 @@ async function checkedFile(name, known) {
   return bytes;
 }
 
-/// Throws what is missing or not as listed; loads nothing.
+/// Throws what is missing or differs from the list; loads nothing.
 export async function check(names) {
   const known = await knownFiles();
   for (const name of names.flatMap((one) => [`${one}.json`, `${one}.bin`])) await checkedFile(name, known);
@@ -43,7 +43,7 @@ export async function engine() {
     throw new NotInstalled(`the packages are not installed; run "npm ci" in ${HERE}`);
   }
   wasm.setWasmPaths(WASM);
-  tf.env().set('WASM_HAS_MULTITHREAD_SUPPORT', false); // one core: what is measured is what one camera costs
+  tf.env().set('WASM_HAS_MULTITHREAD_SUPPORT', false); // one core: measures what one camera costs
   await tf.setBackend('wasm');
   await tf.ready();
   return tf;

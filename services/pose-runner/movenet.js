@@ -1,4 +1,4 @@
-// MoveNet MultiPose: up to six people, 17 key points of COCO each, from one look at the whole image.
+// MoveNet MultiPose: up to six people with 17 COCO key points each, in one pass over the whole image.
 import { cropped, toImage, wholeImage } from './crop.js';
 import { People, overlap, placeOf } from './people.js';
 
@@ -9,14 +9,14 @@ const ROW = 56; // 17 x (y, x, score), the box, its score
 const LEAST_PERSON = 0.25;
 const LEAST_LANDMARK = 0.2;
 const LEAST_LANDMARKS = 5;
-const SAME_PERSON = 0.65; // overlap of two answers that are one person
+const SAME_PERSON = 0.65; // two answers that overlap more are one person
 
 export const HELLO = {
   name: 'MoveNet MultiPose', layout: 'coco_17', trackedFrom: 0.35, inferredFrom: LEAST_LANDMARK, pixelSigma: 2, image: { maxSide: SIDE },
 };
 export const FILES = ['movenet-multipose'];
 
-/// People out of the network's numbers: [{score, pixels: [[u, v, score], ...]}], the surest first, nobody twice.
+/// People from the network's output: [{score, pixels: [[u, v, score], ...]}], most certain first, nobody twice.
 export function readPeople(values, square) {
   const people = [];
   for (let row = 0; row < PEOPLE; ++row) {
@@ -43,7 +43,7 @@ export class MoveNet {
     this.people = new People();
   }
 
-  /// The bodies of a frame (proto/bridge.md, section 3).  `time`: of the capture [s].
+  /// The bodies of a frame (proto/bridge.md, section 3).  `time`: its capture time [s].
   async bodies(image, time) {
     const square = wholeImage(image.width, image.height);
     const input = this.tf.tensor4d(cropped(image, square, SIDE, Int32Array, 1), [1, SIDE, SIDE, 3], 'int32');

@@ -1,12 +1,12 @@
-// Numbers people from image to image, so that each keeps its own.  Deliberately simple: the nearest
-// in place and size goes on; who is not seen for a second gets a new number when he comes back.
+// Numbers people from image to image, so that each keeps a number.  Deliberately simple: the person nearest
+// in place and size keeps it; a person unseen for a second gets a new one on return.
 
 const FORGET_AFTER_S = 1.0;
-const FARTHEST = 0.6; // in heights of the person
+const FARTHEST = 0.6; // as a multiple of the person's height
 
 const confident = (pixels, least) => pixels.filter((pixel) => pixel && pixel[2] >= least);
 
-/// The middle of what is seen of a person, and how large it is [px].
+/// The middle of the visible part of a person, and its size [px].
 export function placeOf(pixels, least = 0.2) {
   const seen = confident(pixels, least);
   if (seen.length === 0) return null;
@@ -18,7 +18,7 @@ export function placeOf(pixels, least = 0.2) {
 
 const distance = (a, b) => Math.hypot(a.x - b.x, a.y - b.y) / Math.max(a.size, b.size);
 
-/// How much two places overlap, 0 to 1: shared area over joint area.
+/// How much two places overlap, 0 to 1: intersection over union.
 export function overlap(a, b) {
   const width = Math.min(a.right, b.right) - Math.max(a.left, b.left);
   const height = Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
@@ -33,7 +33,7 @@ export class People {
     this.last = 0;
   }
 
-  /// The numbers of the people at these places, seen at this time [s].
+  /// The numbers of the people at these places, as seen at this time [s].
   numbers(places, time) {
     this.known = this.known.filter((person) => Math.abs(time - person.time) <= FORGET_AFTER_S);
     const pairs = this.known.flatMap((person) => places.map((place, index) => ({ person, index, far: distance(person.place, place) })));

@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Finds people in images: images come in on the standard input, landmarks go out on the standard output (proto/runner.md).
+// Finds people in images: images come in on standard input, landmarks go out on standard output (proto/runner.md).
 //   runner.mjs [--model movenet|blazepose-lite|blazepose-full] [--check]
 import { parseArgs } from 'node:util';
 
@@ -32,7 +32,7 @@ function chosen() {
 
 const say = (message) => process.stdout.write(`${JSON.stringify(message)}\n`);
 
-/// The first look takes longer than all others: the engine prepares itself.
+/// The first pass takes longer than all others, because the engine prepares itself.
 async function warmUp(network) {
   const side = 64;
   await network.bodies({ width: side, height: side, pixels: new Uint8Array(side * side * 3) }, 0);
@@ -59,7 +59,7 @@ async function run() {
   }
 }
 
-process.stdout.on('error', () => process.exit(0)); // the sensor has gone
+process.stdout.on('error', () => process.exit(0)); // the sensor has ended
 run().then(() => process.exit(0), (error) => {
   process.stderr.write(`${error.message}\n`);
   process.exit(1);

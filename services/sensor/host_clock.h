@@ -1,4 +1,4 @@
-// A host clock that is badly set, for testing everything that has to cope with such hosts.
+// A wrong host clock, for testing everything that must cope with one.
 #pragma once
 
 #include <memory>
@@ -13,18 +13,18 @@ namespace chorus::sensor_service {
 struct ClockErrors {
   Duration offset{0};
   double drift = 0.0;  ///< [s/s]
-  Duration step{0};    ///< As NTP steps a clock, once.
+  Duration step{0};    ///< One step, as NTP steps a clock.
   Duration step_after = std::chrono::seconds(60);
 
   bool operator==(const ClockErrors&) const = default;
 };
 
-/// The section "clock"; mistakes are reported by the reader's finish().
+/// The section "clock"; the reader's finish() reports mistakes.
 void read_clock_errors(ConfigReader config, ClockErrors& out);
 
 [[nodiscard]] synthetic::HostClock host_clock(const ClockErrors& errors, Timestamp start);
 
-/// What a host's clock shows when the true time is the world's.
+/// The host's clock while the true time is that of `world`.
 class ErringClock final : public Clock {
  public:
   ErringClock(std::shared_ptr<const Clock> world, const synthetic::HostClock& host)

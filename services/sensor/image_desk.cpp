@@ -7,8 +7,8 @@ namespace chorus::sensor_service {
 namespace {
 
 constexpr std::chrono::seconds kDemandLasts{
-    2};                                       // a client that asked may ask again within this time
-constexpr std::chrono::seconds kIdlePace{1};  // how old an image may get while nobody asks
+    2};                                       // how long one request keeps encoding fast
+constexpr std::chrono::seconds kIdlePace{1};  // age of an image that nobody asks for
 
 }  // namespace
 
@@ -62,7 +62,7 @@ bool ImageDesk::encode_next(const std::stop_token& stop) {
     if (latest->depth) (void)latest->depth->get();
   } catch (...) {
     const std::lock_guard lock(mutex_);
-    if (offered_ == latest) offered_ = nullptr;  // not again and again
+    if (offered_ == latest) offered_ = nullptr;  // so that it does not fail again and again
     throw;
   }
   const std::lock_guard lock(mutex_);

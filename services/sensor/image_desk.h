@@ -1,8 +1,8 @@
-// Camera images, encoded off the server's thread: rendering and packing takes tens of milliseconds,
-// and nobody who waits for a frame should have to wait for an image.
+// Encodes camera images off the server's thread: rendering and packing takes tens of milliseconds,
+// and a request for a frame must not wait for an image.
 //
-// While somebody asks, captures are encoded as fast as possible; otherwise one a second, so that
-// the first answer is not old.  Switched off, nothing is encoded and nothing is kept.
+// While clients ask, captures are encoded as fast as possible; otherwise once a second, so that the
+// first answer is not old.  When switched off, nothing is encoded or kept.
 #pragma once
 
 #include <chrono>
@@ -23,26 +23,26 @@ class ImageDesk {
  public:
   ImageDesk(bool on, SteadyNow steady_now) : steady_now_(std::move(steady_now)), on_(on) {}
 
-  /// Switches on or off; off forgets every image.
+  /// Switches encoding on or off; off forgets every image.
   void allow(bool on);
   [[nodiscard]] bool allowed() const;
 
-  /// The latest capture; an earlier one that has not been encoded yet is dropped.
+  /// Offers the latest capture; replaces an earlier one that has not yet been encoded.
   void offer(LatestCapturePtr latest);
 
   /// For a request: the latest capture whose images are encoded.  NotFound when switched off,
-  /// Unavailable before the first.
+  /// Unavailable before the first one.
   [[nodiscard]] Result<LatestCapturePtr> ask();
 
-  /// Blocks until images are due, encodes them, and returns true; false when asked to stop.  An
-  /// encoder's exception ends up in its image; any other costs this capture, not the next.
+  /// Blocks until images are due, encodes them, and returns true; false when told to stop.  An
+  /// encoder's exception becomes the image's Error; any other costs this capture, but not the next.
   bool encode_next(const std::stop_token& stop);
 
  private:
   [[nodiscard]] bool due() const;
 
   const SteadyNow steady_now_;
-  mutable std::mutex mutex_;  ///< Guards what follows.
+  mutable std::mutex mutex_;  ///< Guards the members below.
   std::condition_variable_any changed_;
   bool on_;
   LatestCapturePtr offered_;

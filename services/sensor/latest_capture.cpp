@@ -23,7 +23,7 @@ std::shared_ptr<const LazyImage> lazy(std::function<Result<CameraImage>()> encod
   return encode ? std::make_shared<const LazyImage>(std::move(encode)) : nullptr;
 }
 
-/// Of everything that changes with each frame.
+/// The options of all documents that change with each frame.
 DocumentOptions options_of(const LatestCapture& latest, const service::Serving& serving) {
   DocumentOptions options;
   options.version = std::to_string(latest.frame->sequence) + "." + serving.run;
@@ -31,7 +31,7 @@ DocumentOptions options_of(const LatestCapture& latest, const service::Serving& 
   return options;
 }
 
-/// An image with the camera model behind it; one that cannot be encoded is left out.
+/// Adds an image with its camera model; an image that cannot be encoded is left out.
 void add_image(Node& list, std::vector<Ref>& contains, const char* key, const LazyImage* image) {
   if (image == nullptr || !image->get()) return;
   const std::string name = key == std::string_view("colorImage") ? "color" : "depth";

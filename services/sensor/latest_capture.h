@@ -24,18 +24,18 @@ struct LatestCapture {
 };
 using LatestCapturePtr = std::shared_ptr<const LatestCapture>;
 
-/// What is known after a capture; `before` (may be null) lends its floor plane when the capture has
-/// none.
+/// What is known after a capture; a capture without a floor plane takes that of `before`, which may
+/// be null.
 [[nodiscard]] LatestCapturePtr latest_capture(Capture capture, const LatestCapture* before);
 
 // The documents of one capture.
 
 [[nodiscard]] Result<http::DocumentPtr> floor_plane(const LatestCapture& latest,
                                                     const service::Serving& serving);
-/// `/images/`: which images there are, and the camera model behind each.
+/// `/images/`: the available images, and the camera model of each.
 [[nodiscard]] http::DocumentPtr image_list(const LatestCapture& latest,
                                            const service::Serving& serving);
-/// One image as bytes; an encoder that fails is an Error.
+/// One image as bytes; an Error when its encoder failed.
 [[nodiscard]] Result<http::DocumentPtr> image_document(const LazyImage& image,
                                                        std::uint64_t sequence,
                                                        const service::Serving& serving);

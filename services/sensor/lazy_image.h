@@ -1,4 +1,4 @@
-// An image of one capture, encoded once, ahead of time or by the first client that asks, and then
+// An image of one capture, encoded once, ahead of time or for the first client that asks, and then
 // kept.
 #pragma once
 
@@ -15,12 +15,12 @@ class LazyImage {
  public:
   explicit LazyImage(std::function<Result<CameraImage>()> encode);
 
-  /// Encodes on the first call; exceptions of the encoder become an Error.
+  /// Encodes on the first call; an encoder's exception becomes an Error.
   [[nodiscard]] const Result<CameraImage>& get() const;
 
  private:
   mutable std::once_flag once_;
-  /// Emptied after use: frees what it holds.
+  /// Emptied after use, to free what it holds.
   mutable std::function<Result<CameraImage>()> encode_;
   mutable Result<CameraImage> image_;
 };

@@ -1,4 +1,4 @@
-// chorus-sensor: one device as REST resources.
+// chorus-sensor: serves one device as REST resources.
 #include "common/service/hosted_program.h"
 #include "services/sensor/sensor_host.h"
 

@@ -1,4 +1,4 @@
-// `/metrics` of a sensor, Prometheus text.
+// `/metrics` of a sensor as Prometheus text.
 #pragma once
 
 #include <string>

@@ -17,7 +17,7 @@ namespace chorus::sensor_service {
 
 namespace {
 
-/// Six hexadecimal digits, new with every start.
+/// Six hexadecimal digits, new at every start.
 std::string run_name() {
   std::array<char, 8> text{};
   std::snprintf(text.data(), text.size(), "%06x", std::random_device{}() & 0xFFFFFFu);
@@ -58,7 +58,7 @@ http::ServerConfig server_config(const Setup& setup) {
   return config;
 }
 
-/// Before the device is tried again; false when asked to stop.
+/// The pause before the device is tried again; false when told to stop.
 bool rest(const std::stop_token& stop) {
   constexpr auto kRest = std::chrono::seconds(1);
   std::mutex mutex;
@@ -137,7 +137,7 @@ void SensorHost::record(const LatestCapture& latest) {
       setup_.settings.at_start.id, latest.frame, setup_.clock->now(), latest.floor, {}});
 }
 
-/// How a run of the device ended; nothing when it threw, which a new run may not do again.
+/// How a run of the device ended; none when it threw, because a new run may succeed.
 std::optional<Result<void>> SensorHost::run_once(const std::stop_token& stop,
                                                  const FrameSource::Sink& sink) {
   try {
@@ -151,7 +151,7 @@ std::optional<Result<void>> SensorHost::run_once(const std::stop_token& stop,
 }
 
 void SensorHost::run_device(const std::stop_token& stop) {
-  std::uint64_t before = 0;  // frames of earlier runs: numbers go on
+  std::uint64_t before = 0;  // frames of earlier runs, because the numbers continue
   std::uint64_t latest = 0;
   const auto take = [&](Capture capture) {
     capture.frame.sequence += before;

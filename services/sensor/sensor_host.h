@@ -15,35 +15,35 @@
 
 namespace chorus::sensor_service {
 
-/// What a start needs: the settings, and the device ready to run.
+/// What starting needs: the settings, and the device ready to run.
 struct Setup {
   SensorSettings settings;
-  std::shared_ptr<const Clock> clock;  ///< The host's, errors included.
+  std::shared_ptr<const Clock> clock;  ///< The host's, with its errors.
   std::unique_ptr<FrameSource> device;
-  std::shared_ptr<http::Router> router = std::make_shared<http::Router>();  ///< With its resources.
+  std::shared_ptr<http::Router> router = std::make_shared<http::Router>();  ///< With the device's.
 };
 
 class SensorHost {
  public:
-  /// Makes the device, which may not be there or not be as configured.  Binds nothing yet.
+  /// Makes the device, which may be missing or not as configured.  Binds nothing yet.
   [[nodiscard]] static Result<std::unique_ptr<SensorHost>> make(const SensorSettings& settings);
   explicit SensorHost(Setup setup);
   ~SensorHost();
   SensorHost(const SensorHost&) = delete;
   SensorHost& operator=(const SensorHost&) = delete;
 
-  /// Binds, serves, and starts the device.
+  /// Binds the port, serves, and starts the device.
   [[nodiscard]] Result<void> start();
-  /// Stops device and server; may be repeated.
+  /// Stops device and server; may be called repeatedly.
   void stop();
 
-  /// Everything that can change while running.
+  /// Applies everything that can change while running.
   void take(const LiveSettings& live);
 
-  /// What would not work here and now.
+  /// What would not work if it started here and now.
   [[nodiscard]] service::Concerns concerns() const;
 
-  /// For a watchdog: the network's thread moves.  A device may be silent for as long as it likes.
+  /// For a watchdog: true while the network's thread runs.  A device may be silent for any time.
   [[nodiscard]] bool alive() { return server_.alive(); }
 
   [[nodiscard]] std::uint16_t port() const { return server_.port(); }
@@ -59,10 +59,10 @@ class SensorHost {
   SensorService service_;
   http::Server server_;
   std::jthread device_;
-  std::jthread encoder_;  ///< Idle unless images are switched on.
+  std::jthread encoder_;  ///< Idle unless images are enabled.
 };
 
-/// What chorus-sensor says about itself.
+/// How chorus-sensor describes itself.
 [[nodiscard]] service::About about_sensor();
 
 }  // namespace chorus::sensor_service

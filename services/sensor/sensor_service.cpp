@@ -12,7 +12,7 @@ using http::Request;
 namespace {
 
 // A capture time that goes back by more than this means that the host's clock was set; by less,
-// that the device repeats itself.  The fusion server uses the same limit.
+// that the device repeats itself.  The fusion server has the same limit.
 constexpr Duration kMaxRepeat = std::chrono::seconds(1);
 
 }  // namespace
@@ -22,7 +22,7 @@ SensorService::SensorService(ServiceOptions options)
       frames_(options_.serving, options_.history),
       images_(options_.images, options_.steady_now) {}
 
-/// Why a frame cannot be true; empty when it can.  Called with the mutex held.
+/// Why a frame cannot be true; empty if it can.  Called with the mutex held.
 std::string SensorService::objection(const SensorFrame& frame) const {
   if (frame.bodies.size() > kMaxBodies) return "too many bodies";
   std::unordered_set<std::uint64_t> ids;
@@ -45,7 +45,7 @@ void SensorService::on_failure(std::string_view reason) noexcept {
     failures_.hit(reason);
     const std::lock_guard lock(mutex_);
     ++counters_.failures;
-  } catch (...) {  // not even memory for a line in the log
+  } catch (...) {  // not enough memory even for a log line
   }
 }
 
@@ -103,7 +103,7 @@ void SensorService::on_device_end(const Result<void>& how) {
   ended_ = how ? "the device has come to its end" : "the device failed: " + to_string(how.error());
 }
 
-/// The device's own reason is better than ours.
+/// Prefers the device's own reason to ours.
 std::string SensorService::or_trouble(std::string reason) const {
   std::string known = options_.trouble();
   return known.empty() ? reason : known;

@@ -1,7 +1,7 @@
-// One device as resources.  Captures in, documents out; no socket, no thread of its own.
+// One device as resources.  Captures in, documents out; it has neither socket nor thread.
 //
-// on_capture() runs on the device's thread, the routes on the server's; they meet at one immutable
-// LatestCapture.
+// on_capture() runs on the device's thread, the routes run on the server's; they share one
+// immutable LatestCapture.
 #pragma once
 
 #include <chrono>
@@ -29,9 +29,9 @@ struct ServiceOptions {
   bool images = false;                             ///< They show people: off unless enabled.
   Duration stall_after = std::chrono::seconds(2);  ///< Not ready after this time without a capture.
   service::Serving serving;
-  /// Why the device delivers nothing just now, for people; empty when it does not know.
+  /// Why the device delivers nothing at the moment, for people; empty when it does not know.
   std::function<std::string()> trouble = [] { return std::string(); };
-  /// Told of each capture; must return at once.
+  /// Called for each capture; must return at once.
   std::function<void(const LatestCapture&)> record = {};
   SteadyNow steady_now = [] { return std::chrono::steady_clock::now(); };
 };
@@ -40,37 +40,37 @@ struct ServiceCounters {
   std::uint64_t captured = 0;  ///< Frames published.
   std::uint64_t lost = 0;      ///< Gaps in the device's numbering.
   std::uint64_t refused = 0;   ///< Captures that could not be true (see on_capture).
-  std::uint64_t failures = 0;  ///< Failures of the device, of publishing a capture, of images.
+  std::uint64_t failures = 0;  ///< Of the device, of publishing, and of images.
   std::uint64_t bodies = 0;    ///< In the latest frame.
   double age_s = 0.0;          ///< Since the latest capture arrived; 0 before the first.
 };
 
-/// `/` of a sensor.
+/// The self-description at `/` of a sensor.
 [[nodiscard]] service::Self self_of(const ServiceOptions& options, bool with_images);
 
 class SensorService {
  public:
   explicit SensorService(ServiceOptions options);
 
-  /// Publishes one capture.  Refused and counted: a time or number that does not advance, two
-  /// bodies with one id, too many bodies.  A time that goes back by more than a second means that
-  /// the clock was set; it counts from there.
+  /// Publishes one capture.  Refuses and counts: a time or number that does not advance, two bodies
+  /// with one id, too many bodies.  A time that goes back by more than a second means that the
+  /// clock was set; times count from there.
   /// An exception is logged and counted; the next capture is published as usual.
   void on_capture(Capture capture) noexcept;
   /// Logs and counts an exception from the device or from another thread of this service.
   void on_failure(std::string_view reason) noexcept;
-  /// The device will deliver nothing more; health() says why.
+  /// The device will deliver nothing more; health() gives the reason.
   void on_device_end(const Result<void>& how);
 
   /// Takes effect with the next request.
   void show_images(bool on) { images_.allow(on); }
-  /// Work for a thread of its own: blocks until images are due, encodes them; false when stopped.
+  /// For a separate thread: blocks until images are due and encodes them; false when stopped.
   bool encode_next(const std::stop_token& stop) noexcept;
 
   [[nodiscard]] service::Health health() const;
   [[nodiscard]] ServiceCounters counters() const;
 
-  /// All resources but those of common/service.  The service must outlive the router.
+  /// All resources except those of common/service.  The service must outlive the router.
   void add_routes(http::Router& router);
 
  private:
@@ -90,12 +90,12 @@ class SensorService {
   RateReport failures_{"a capture or its images failed", log::Level::Error};
   ImageDesk images_;
 
-  mutable std::mutex mutex_;  ///< Guards what follows.
+  mutable std::mutex mutex_;  ///< Guards the members below.
   LatestCapturePtr latest_;
-  std::optional<Timestamp> refused_capture_;  ///< Of the capture before, when it was refused.
+  std::optional<Timestamp> refused_capture_;  ///< Of the previous capture, if it was refused.
   ServiceCounters counters_;
   std::chrono::steady_clock::time_point last_capture_{};
-  std::string ended_;  ///< Why the device delivers nothing more; empty while it runs.
+  std::string ended_;  ///< Why the device delivers nothing more; empty while it is running.
 };
 
 }  // namespace chorus::sensor_service

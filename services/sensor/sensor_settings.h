@@ -1,4 +1,4 @@
-// deploy/config/sensor.json as a struct of two parts.
+// deploy/config/sensor.json as a struct with two parts.
 #pragma once
 
 #include <optional>
@@ -15,23 +15,23 @@
 
 namespace chorus::sensor_service {
 
-/// What a reload takes over.
+/// The part that a reload applies.
 struct LiveSettings {
   service::LogConfig log;
-  std::vector<http::Token> tokens;        ///< Of http.
-  std::optional<tls::Identity> identity;  ///< Of http.
+  std::vector<http::Token> tokens;        ///< From the section http.
+  std::optional<tls::Identity> identity;  ///< From the section http.
   bool images = false;
 
   bool operator==(const LiveSettings&) const = default;
 };
 
-/// What needs a restart.
+/// The part that needs a restart.
 struct StartSettings {
   SensorId id;
-  http::ServerConfig http = {.port = 8081};    ///< Without its tokens and identity.
-  bool secure = false;                         ///< There is an identity.
+  http::ServerConfig http = {.port = 8081};    ///< Without tokens and identity.
+  bool secure = false;                         ///< True if there is an identity.
   Duration history = std::chrono::seconds(3);  ///< How long /frames/{seq} and ?at= reach back.
-  ClockErrors clock;  ///< Of a simulated host; a real host's clock is kept by NTP.
+  ClockErrors clock;  ///< For a simulated host; NTP keeps a real host's clock.
   service::RecordingConfig recording;
   DeviceChoice device;
 
@@ -45,7 +45,7 @@ struct SensorSettings {
   bool operator==(const SensorSettings&) const = default;
 };
 
-/// All mistakes come in one Error.
+/// Reports all mistakes in one Error.
 [[nodiscard]] Result<SensorSettings> read_sensor_settings(ConfigReader root);
 
 }  // namespace chorus::sensor_service

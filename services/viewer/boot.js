@@ -1,4 +1,4 @@
-// Says so when the viewer itself cannot start: three.js is installed, not part of the sources.
+// Shows a message when the viewer itself cannot start: three.js is installed, not part of the sources.
 (() => {
   const say = () => {
     if (window.chorusViewer) return;

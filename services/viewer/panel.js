@@ -1,4 +1,4 @@
-// The words beside the picture.
+// The text next to the picture.
 import { sidesOf } from './state.js';
 
 const element = (id) => document.getElementById(id);
@@ -7,7 +7,7 @@ const milliseconds = (value) => (Number.isFinite(value) ? `${value.toFixed(0)} m
 const STATE_CLASS = { live: 'good', connecting: 'warn', lost: 'bad', refused: 'bad' };
 const VERDICT_CLASS = { Good: 'good', Provisional: 'warn', Refused: 'bad', None: 'warn' };
 
-/// Output rate over the last frames, by their own capture times.
+/// Computes the output rate from the capture times of the last frames.
 const recent = [];
 export function rateOf(frame) {
   recent.push(Number(BigInt(frame.capturedNanoseconds) / 1000n) / 1e6);
@@ -24,7 +24,7 @@ export function showFused(frame, rate, age) {
   element('sequence').textContent = frame?.sequence ?? '–';
 }
 
-/// `fresh`: 'live', 'stale' or 'gone'; whatever is not live loses its colours.
+/// `fresh`: 'live', 'stale' or 'gone'; the page loses its colours unless it is 'live'.
 export function showState({ tone, sentence, next }, fresh) {
   const headline = element('headline');
   headline.textContent = sentence;

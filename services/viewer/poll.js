@@ -1,11 +1,11 @@
-// Polling the public JSON resources: a long poll where a frame is wanted at once, plain conditional GETs else.
+// Polls the public JSON resources: long polls for frames that are wanted at once, otherwise conditional GETs.
 
 const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 const MAX_BACKOFF_MS = 2000;
 const ANSWER_WITHIN_MS = 3000;
 
-/// The server's clock as its answers tell it (Chorus-Clock: when the request was complete, when the answer left).
-/// What came through fastest is nearest to the truth; of the browser's own clock only the ticking is used.
+/// The server's clock, from its answers (Chorus-Clock: when the request was complete, when the answer left).
+/// The fastest exchange is nearest to the truth; the browser's own clock is used only for measuring elapsed time.
 export class ServerClock {
   constructor(ticking = () => performance.now()) {
     this.ticking = ticking;
@@ -28,7 +28,7 @@ export class ServerClock {
 }
 export const clock = new ServerClock();
 
-/// Whether the server answers at all.  An error status is an answer too.
+/// Whether the server answers at all.  An error status counts as an answer.
 export class Link {
   constructor(ticking = () => performance.now()) {
     this.ticking = ticking;
@@ -39,14 +39,14 @@ export class Link {
   up() { [this.answered, this.error] = [this.ticking(), null]; }
   down(error) { this.error = String(error?.message ?? error); }
 
-  /// `silent`: milliseconds since the last answer, NaN when there was none.
+  /// `silent`: milliseconds since the last answer, NaN if there has been none.
   state() {
     return { error: this.error, silent: this.answered === null ? NaN : this.ticking() - this.answered };
   }
 }
 export const link = new Link();
 
-/// One resource: `next()` gives its JSON when it changed, null when it did not.
+/// One resource: `next()` returns its JSON if it has changed, else null.
 export class Resource {
   constructor(url, waitSeconds = 0) {
     this.url = url;
@@ -79,7 +79,7 @@ export class Resource {
   }
 }
 
-/// Polls forever; failures back off and are told to `onError`.
+/// Polls for ever; backs off after failures and reports them to `onError`.
 export async function follow(resource, everyMs, onValue, onError) {
   let backoff = 250;
   for (;;) {

@@ -19,7 +19,7 @@ const seen = (joint) =>
   joint !== undefined && joint.state !== 'NotTracked' && Number.isFinite(joint.x);
 const at = (joint) => new THREE.Vector3(joint.x, joint.y, joint.z);
 
-/// Faint lines: one sensor's sight of everybody, in that sensor's space (the group carries the pose).
+/// Faint lines: the bodies that one sensor sees, in that sensor's space (the group holds the pose).
 export class RawView {
   constructor(color) {
     this.geometry = new THREE.BufferGeometry();
@@ -45,7 +45,7 @@ export class RawView {
   }
 }
 
-// Shared by all bodies, so that nothing is left behind when one goes.
+// Shared by all bodies, so that nothing is left over when one disappears.
 const BONE = new THREE.CylinderGeometry(0.022, 0.022, 1, 10);
 const BALL = new THREE.SphereGeometry(0.03, 14, 10);
 
@@ -126,7 +126,7 @@ export class FusedView {
   }
 }
 
-/// The wedge a depth camera sees: 70 x 60 degrees, drawn to 1.2 m.
+/// The frustum of a depth camera: 70 x 60 degrees, drawn to 1.2 m.
 export function frustum(color) {
   const depth = 1.2;
   const x = depth * Math.tan((35 * Math.PI) / 180);

@@ -1,4 +1,4 @@
-// The state of the tracker in one plain sentence, and what to do next.  Pure: what is known goes in.
+// The state of the tracker in one plain sentence, and what to do next.  Pure: known facts in, sentence out.
 
 export const STALE_MS = 1500;
 const GONE_MS = 4000;
@@ -11,7 +11,7 @@ function list(names) {
   return `${names.slice(0, -1).join(', ')} and ${names.at(-1)}`;
 }
 
-/// Whether what is on the screen is current: 'live', 'stale' (old, and shown as old) or 'gone' (not shown any more).
+/// Whether the screen is current: 'live', 'stale' (old, and shown as old) or 'gone' (no longer shown).
 export function freshness(known) {
   if (!known.frame) return 'gone';
   const old = Math.max(known.link.error ? known.link.silent : 0, known.frameAge || 0);
@@ -62,7 +62,7 @@ function ofTheRegistration({ session, sensors = {}, awaits = [], verdict }) {
   return { tone: 'warn', sentence: '', next: '' };
 }
 
-/// {tone: 'good' | 'calm' | 'warn' | 'bad', sentence, next}.
+/// Returns {tone: 'good' | 'calm' | 'warn' | 'bad', sentence, next}.
 export function stateOf(known) {
   const link = ofTheLink(known);
   if (link) return link;
@@ -85,7 +85,7 @@ export function stateOf(known) {
   return { tone: 'good', sentence: `Live: ${many(people, 'person', 'people')}, ${many(Object.keys(sensors).length, 'sensor', 'sensors')}.`, next: '' };
 }
 
-/// How certain left and right are of whom they are least certain of; a dash when nobody has said.
+/// The lowest certainty of left and right over all people; a dash when unknown.
 export function sidesOf(frame) {
   const all = (frame?.bodies ?? []).map((body) => Number(body.sidesConfidence ?? NaN)).filter(Number.isFinite);
   if (all.length === 0) return '–';

@@ -1,4 +1,4 @@
-// The room as the fusion server knows it: raw skeletons per sensor (faint), the fused one (strong), frusta, floor.
+// The room as the fusion server knows it: each sensor's raw skeletons (faint), the fused ones (strong), frusta, floor.
 // Polls only public resources: /frame, /sensors/, /sensors/{id}/frame, /registration.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
@@ -14,7 +14,7 @@ const STATE_EVERY_MS = 200;
 const base = new URL(new URLSearchParams(location.search).get('server') ?? '../', location.href);
 const resource = (path, wait) => new Resource(new URL(path, base).href, wait);
 
-/// What the page has shown so far; tests and curious people read it.
+/// What the page has shown so far, for tests and for curious people.
 const shown = { fusedFrames: 0, fusedJoints: 0, rawBones: {}, sensors: 0, errors: 0 };
 window.chorusViewer = shown;
 
@@ -39,7 +39,7 @@ scene.add(grid, new THREE.AxesHelper(0.4));
 const fused = new FusedView();
 scene.add(fused.object);
 
-/// Looks at the middle of the sensors once they are known; people may turn the view afterwards.
+/// Looks at the centre of the sensors once they are known; people may turn the view afterwards.
 function frameRoom(positions) {
   const centre = new THREE.Vector3();
   positions.forEach((p) => centre.add(p));
@@ -116,7 +116,7 @@ follow(resource('registration'), 1000, (registration) => {
   showRegistration(registration);
 }, failed);
 
-/// Looks at the clock too, because what does not come any more says nothing.
+/// Checks the clock too, because frames that no longer arrive cannot say so themselves.
 setInterval(() => {
   const age = known.frame ? clock.now() - Date.parse(known.frame.captured) : NaN;
   const now = { ...known, link: link.state(), frameAge: age };
@@ -127,7 +127,7 @@ setInterval(() => {
   if (fresh === 'gone' && known.frame) forget();
 }, STATE_EVERY_MS);
 
-/// Nothing is shown of a server that does not answer any more, but that its sensors exist.
+/// Shows nothing of a server that no longer answers, except that its sensors exist.
 function forget() {
   known.frame = null;
   shown.fusedJoints = fused.show([]);
@@ -150,7 +150,7 @@ const switches = {
 function fit() {
   renderer.setSize(window.innerWidth, window.innerHeight, false);
   camera.aspect = window.innerWidth / window.innerHeight;
-  // The panel covers the left edge: shift the picture so that the room stands in what is left of it.
+  // The panel covers the left edge: shift the picture so that the room is in the middle of what remains.
   const covered = window.innerWidth > 900 ? 360 : 0;
   camera.setViewOffset(window.innerWidth, window.innerHeight, -covered / 2, 0, window.innerWidth, window.innerHeight);
   camera.updateProjectionMatrix();

@@ -1,6 +1,6 @@
 // The kinds of devices, one row each: the section "device" of the configuration.
 //
-// A new kind is a folder beside this file and a row in device_kinds.cpp.
+// A new kind is a folder next to this file and a row in device_kinds.cpp.
 #pragma once
 
 #include <memory>
@@ -16,29 +16,29 @@
 
 namespace chorus::sensor_service {
 
-/// What a device is made from beside its own section.
+/// What a device needs in addition to its own section.
 struct DeviceContext {
   SensorId sensor;
   HostTime time;
-  http::Router& router;  ///< Where a device adds resources of its own, while it is made.
+  http::Router& router;  ///< Here a device adds its own resources while it is being made.
 };
 
 struct DeviceKind {
   std::string_view name;  ///< device.kind, and the section device.NAME.
-  /// Complains about every mistake in the section, also when another kind is selected, so that a
-  /// file may describe all of them.
+  /// Complains about every mistake in the section, even if another kind is selected, so that a file
+  /// may describe all kinds.
   void (*read)(ConfigReader& section, const SensorId& sensor);
-  /// The device, ready to run.
+  /// Makes the device, ready to run.
   Result<std::unique_ptr<FrameSource>> (*make)(ConfigReader& section, const DeviceContext& context);
 };
 
-/// The first is the default.
+/// The first one is the default.
 [[nodiscard]] std::span<const DeviceKind> device_kinds();
 
-/// Which device is wanted.  Two are equal when kind and settings are.
+/// The selected device.  Choices are equal when kind and settings are.
 struct DeviceChoice {
   std::string kind;
-  std::string section;  ///< JSON, assignments of the command line included.
+  std::string section;  ///< JSON, with the assignments from the command line.
 
   bool operator==(const DeviceChoice&) const = default;
 };

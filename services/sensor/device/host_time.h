@@ -1,4 +1,4 @@
-// True time, and what this host's clock shows.
+// True time, and the time that this host's clock shows.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace chorus::sensor_service {
 
-/// Devices follow true time; frames are stamped by the host's clock.
+/// Devices follow true time; their frames are stamped by the host's clock.
 struct HostTime {
   std::shared_ptr<const Clock> world;
   synthetic::HostClock host = {};

@@ -1,4 +1,4 @@
-// The device `bridge`: any program in any language pushes frames (proto/bridge.md).
+// The device `bridge`: programs in any language push frames to it (proto/bridge.md).
 #pragma once
 
 #include <memory>

@@ -15,9 +15,9 @@ struct BridgeSettings {
   double max_rate_hz = 120.0;    ///< Frames beyond this rate are dropped.
   std::size_t max_message_bytes = 256 * 1024;
   double max_bytes_per_s = 4e6;  ///< A program that sends more is disconnected.
-  /// Programs connected at once; only one of them pushes.
+  /// Most programs connected at once; only one of them pushes.
   std::size_t max_pushers = 4;
-  /// A pusher silent for this long makes room for another.
+  /// A pusher that is silent for this long makes room for another.
   Duration yields_after = std::chrono::seconds(2);
 };
 

@@ -42,7 +42,7 @@ bool is_name(const std::string& text) {
          std::all_of(text.begin(), text.end(), is_printable);
 }
 
-/// The text of a key; `otherwise` when the key is absent.
+/// The text for a key; `otherwise` when the key is absent.
 Result<std::string> text_at(const Json& message, const char* key, const char* otherwise) {
   const Json* value = find(message, key);
   if (value == nullptr) return std::string(otherwise);
@@ -89,7 +89,7 @@ Result<Intrinsics> read_intrinsics(const Json& value) {
   return camera;
 }
 
-/// Everything that is a number or consists of numbers.
+/// Reads everything that is a number or consists of numbers.
 Result<void> read_measures(const Json& message, Hello& hello) {
   hello.tracked_from = hello.layout->tracked_from;
   hello.inferred_from = hello.layout->inferred_from;

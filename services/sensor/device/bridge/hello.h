@@ -19,16 +19,16 @@ struct Hello {
   /// From the pusher's axes to ours; a reflection when its axes are left-handed.
   Eigen::Matrix3d sensor_from_pusher = Eigen::Matrix3d::Identity();
   std::optional<FloorPlane> floor;    ///< In sensor space.
-  std::optional<Intrinsics> camera;   ///< Of the pixels it sends.
+  std::optional<Intrinsics> camera;   ///< For the pixels that it sends.
   std::optional<double> pixel_sigma;  ///< Standard deviation of a pixel coordinate [px].
   double tracked_from = 0.0;          ///< Confidence, as in Layout.
   double inferred_from = 0.0;
 };
 
-/// "right down ahead": where x, y and z point, for somebody looking in the camera's direction.
+/// "right down ahead": where x, y and z point, as seen by somebody looking the way the camera does.
 [[nodiscard]] Result<Eigen::Matrix3d> read_axes(std::string_view words);
 
-/// nx, ny, nz, d with n.x + d = 0 in the pusher's axes [m]; the normal must point up.
+/// Reads nx, ny, nz, d with n.x + d = 0 in the pusher's axes [m]; the normal must point up.
 [[nodiscard]] Result<FloorPlane> read_floor(const nlohmann::json& value,
                                             const Eigen::Matrix3d& sensor_from_pusher);
 

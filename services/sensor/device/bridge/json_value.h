@@ -16,13 +16,13 @@
 
 namespace chorus::bridge {
 
-/// The place of a value in a message, spelt out only for an error: "bodies[0].points[3]".
+/// The place of a value in a message; spelt out only for an error: "bodies[0].points[3]".
 struct At {
   const At* in = nullptr;
   std::string_view key = {};
   std::optional<std::size_t> index = {};
 
-  /// Only for a named At, because the inner one points to it.  `At{}` itself is the message.
+  /// Only for an At with a name, because the inner one points to it.  `At{}` is the message itself.
   [[nodiscard]] At operator[](std::string_view inner) const { return {outer(), inner, {}}; }
   [[nodiscard]] At operator[](std::size_t inner) const { return {outer(), {}, inner}; }
   [[nodiscard]] std::string text() const;
@@ -43,13 +43,13 @@ struct Bounds {
 [[nodiscard]] const nlohmann::json* find(const nlohmann::json& object, const char* key);
 
 [[nodiscard]] Result<double> read_number(const nlohmann::json& value, Bounds bounds, const At& at);
-/// Exactly out.size() numbers.
+/// Reads exactly out.size() numbers.
 [[nodiscard]] Result<void> read_numbers(const nlohmann::json& value, std::span<double> out,
                                         Bounds bounds, const At& at);
-/// A non-negative integer, also as decimal text, because JavaScript's numbers are exact only to
-/// 2^53.
+/// Reads a non-negative integer, also as decimal text, because JavaScript's numbers are exact only
+/// to 2^53.
 [[nodiscard]] Result<std::uint64_t> read_whole(const nlohmann::json& value, const At& at);
-/// Nanoseconds since 1970, later than 2001: an integer or its text.
+/// Reads nanoseconds since 1970, later than 2001: an integer or its text.
 [[nodiscard]] Result<Timestamp> read_stamp(const nlohmann::json& value, const At& at);
 
 }  // namespace chorus::bridge

@@ -76,9 +76,9 @@ class LineConnection : public std::enable_shared_from_this<LineConnection> {
   std::unique_ptr<http::Dialogue> dialogue_;
   std::array<char, 65536> chunk_{};
   std::string text_;
-  std::deque<std::string> unsent_;  ///< The first is being sent.
+  std::deque<std::string> unsent_;  ///< The first one is being sent.
   std::size_t unsent_bytes_ = 0;
-  bool over_ = false;  ///< Ends when everything unsent has been sent.
+  bool over_ = false;  ///< Ends when everything in unsent_ has been sent.
 };
 
 void LineConnection::on_read(error_code failed, std::size_t size) {
@@ -129,7 +129,7 @@ void LineConnection::send_next() {
                     });
 }
 
-/// True when a program accepts connections at the path.
+/// True when some program accepts connections at the path.
 bool answers(asio::io_context& io, const std::string& path) {
   LocalSocket probe(io.get_executor());
   error_code failed;
@@ -150,7 +150,7 @@ struct LineServer::Impl {
   void accept();
   void look();
 
-  asio::io_context io{1};  // First member: destroyed last, after everything that uses it.
+  asio::io_context io{1};  // First member, so destroyed last, after everything that uses it.
   LineServerOptions options;
   LocalAcceptor acceptor{io.get_executor()};
   net::Every looking{io, kLook, [this] { look(); }};

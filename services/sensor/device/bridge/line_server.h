@@ -1,5 +1,5 @@
-// Dialogues over a local (Unix domain) socket, one message per line.  Whoever may open the socket's
-// file may speak: its mode is 0660.  It has a thread of its own.
+// Dialogues over a local (Unix domain) socket, one message per line.  Every program that may open
+// the socket's file may use it; its mode is 0660.  The server has its own thread.
 #pragma once
 
 #include <cstddef>
@@ -19,8 +19,8 @@ struct LineServerOptions {
 
 class LineServer {
  public:
-  /// Replaces a socket that an ended program left behind; Io when the path is anything else, or
-  /// another program listens there.
+  /// Replaces a socket that an ended program left; Io when the path is something else, or another
+  /// program listens there.
   [[nodiscard]] static Result<std::unique_ptr<LineServer>> start(LineServerOptions options);
   ~LineServer();  ///< Joins the thread and removes the socket.
   LineServer(const LineServer&) = delete;

@@ -94,13 +94,13 @@ void PushDesk::leave(Seat seat, std::string_view why) {
   holder_.reset();
 }
 
-/// By how much our sequence advances: gaps in the pusher's own count are lost frames.
+/// How far our sequence advances: gaps in the pusher's own count are lost frames.
 std::uint64_t PushDesk::step_of(const PushedFrame& frame) const {
   if (!frame.sequence || !holder_->last_count || *frame.sequence <= *holder_->last_count) return 1;
   return std::min(*frame.sequence - *holder_->last_count, kWidestGap);
 }
 
-/// The same rule as in SensorService; here the program is told.
+/// The same rule as in SensorService, except that here the program is told.
 bool PushDesk::advances(Timestamp captured) const {
   if (!last_captured_ || captured > *last_captured_) return true;
   if (*last_captured_ - captured > kMaxRepeat) return true;

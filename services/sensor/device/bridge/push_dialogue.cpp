@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr auto kHelloWithin = std::chrono::seconds(5);
-constexpr auto kSilentFor = std::chrono::seconds(30);  // without any message, even a clock answer
+constexpr auto kSilentFor = std::chrono::seconds(30);  // without any message or clock answer
 constexpr auto kClockEvery = std::chrono::seconds(1);
 constexpr auto kErrorEvery = std::chrono::seconds(1);
 constexpr int kMaxErrorsInARow = 300;
@@ -57,7 +57,7 @@ class PushDialogue final : public http::Dialogue {
   SteadyTime begun_;
   SteadyTime heard_;
   std::optional<SteadyTime> asked_;  ///< When we last asked for its time.
-  /// At most once a second; errors in between are only counted.
+  /// Complaints go out at most once a second; errors in between are only counted.
   std::optional<SteadyTime> complained_;
   std::uint64_t unsaid_ = 0;
   int errors_in_a_row_ = 0;

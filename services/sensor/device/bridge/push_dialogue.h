@@ -1,4 +1,4 @@
-// A PushSession as a dialogue: JSON messages both ways, for a WebSocket or a local socket.
+// A PushSession as a dialogue: JSON messages in both directions, by WebSocket or local socket.
 #pragma once
 
 #include <memory>

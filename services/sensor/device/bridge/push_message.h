@@ -1,4 +1,4 @@
-// Reads one line of what a program pushes (proto/bridge.md).  No IO, no state.
+// Reads one message of a pushing program (proto/bridge.md).  No IO, no state.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace chorus::bridge {
 
-/// The answer to our question what time it is.
+/// The pusher's answer when we asked for its time.
 struct ClockAnswer {
   Timestamp sent;      ///< Our clock, as in the question.
   Timestamp received;  ///< The pusher's clock when the question arrived ...
@@ -19,8 +19,8 @@ struct ClockAnswer {
 };
 
 struct PushedFrame {
-  std::optional<std::uint64_t> sequence;  ///< The pusher's own count.
-  Timestamp captured;                     ///< By the pusher's clock; the same in each body.
+  std::optional<std::uint64_t> sequence;  ///< The pusher's own frame number.
+  Timestamp captured;                     ///< By the pusher's clock; the same for all bodies.
   /// In sensor space; bodies without any joint are left out.
   std::vector<BodyFrame> bodies;
   std::optional<FloorPlane> floor;
@@ -28,8 +28,8 @@ struct PushedFrame {
 
 using PushMessage = std::variant<Hello, ClockAnswer, PushedFrame>;
 
-/// `hello`: that of the pusher, null before it has come.  Unknown keys are ignored.  Errors say
-/// where in the message the mistake is ("bodies[0].points[3]") and what should stand there.
+/// `hello`: that of the pusher; null before it has arrived.  Unknown keys are ignored.  Errors say
+/// where in the message the mistake is ("bodies[0].points[3]") and what is expected there.
 [[nodiscard]] Result<PushMessage> read_push_message(std::string_view text, const Hello* hello);
 
 }  // namespace chorus::bridge

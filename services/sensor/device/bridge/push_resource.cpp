@@ -52,8 +52,8 @@ http::DocumentPtr status_document(const PushDesk& desk) {
   return json_document(json, std::to_string(to_unix_ns(desk.now())));
 }
 
-/// Programs that push by POST.  Remembers the last one, so that its clock and frame count continue
-/// from one request to the next.  Lives on the server's thread.
+/// Serves programs that push by POST.  Remembers the last one, so that its clock and frame count
+/// continue from one request to the next.  Used on the server's thread.
 class PostBox {
  public:
   explicit PostBox(std::shared_ptr<PushDesk> desk) : desk_(std::move(desk)) {}
@@ -85,7 +85,7 @@ std::string_view next_line(std::string_view& text) {
   return {};
 }
 
-/// Handles the first line of each request.  The hello of another program begins a new session.
+/// Handles the first line of each request.  A hello from another program begins a new session.
 Result<void> PostBox::greet(std::string_view line) {
   const auto read = read_push_message(line, nullptr);
   if (!read) return pass(read);

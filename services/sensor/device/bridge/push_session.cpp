@@ -9,9 +9,9 @@ namespace {
 
 constexpr double kMessagesPerFrame = 4.0;  // for clock answers, and for frames beyond the rate
 constexpr int kFewExchanges = 8;
-// Many programs stamp in whole milliseconds; rounding must not look like contradicting exchanges.
+// Many programs stamp in whole milliseconds; this rounding must not look like a contradiction.
 constexpr Duration kCoarseStamps = std::chrono::milliseconds(1);
-// The limits that the fusion server puts on the times of sensors (proto/README.md, section 4).
+// The fusion server's limits for the times of sensors (proto/README.md, section 4).
 constexpr Duration kOldest = std::chrono::seconds(10);
 constexpr Duration kMaxAhead = std::chrono::milliseconds(100);
 constexpr Duration kMaxAheadUnasked = std::chrono::seconds(2);
@@ -39,7 +39,7 @@ void PushSession::expect_clock() {
 
 bool PushSession::wants_clock() const { return exchanges_ < kFewExchanges || clock_.doubtful(); }
 
-/// Comes before a message is parsed, so that refusing a flood costs next to nothing.
+/// Comes before a message is parsed, so that refusing a flood costs almost nothing.
 Result<void> PushSession::admit(std::size_t bytes) {
   const BridgeSettings& settings = desk_->options().settings;
   if (bytes > settings.max_message_bytes) {

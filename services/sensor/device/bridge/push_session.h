@@ -1,5 +1,5 @@
-// One program that pushes, from its hello on: reads its messages, estimates its clock, and hands
-// its frames to the desk.  No IO; not thread-safe.
+// One pushing program, from its hello on: reads its messages, estimates its clock, and passes its
+// frames to the desk.  No IO; not thread-safe.
 #pragma once
 
 #include <memory>
@@ -12,34 +12,34 @@
 
 namespace chorus::bridge {
 
-/// What happened to one message.
+/// What became of a message.
 enum class Heard {
   Hello,
   Clock,
   Frame,
-  LeftOut,  ///< A frame beyond the rate, or from before its clock is known.
+  LeftOut,  ///< A frame beyond the rate, or sent before its clock is known.
 };
 
 class PushSession {
  public:
-  /// `via` and `address` are those of Pusher.
+  /// `via` and `address`: see Pusher.
   PushSession(std::shared_ptr<PushDesk> desk, std::string via, std::string address);
   ~PushSession();  ///< Leaves the desk.
   PushSession(const PushSession&) = delete;
   PushSession& operator=(const PushSession&) = delete;
 
-  /// Errors are for the program; `lost()` says whether it may continue after one.
+  /// An error is meant for the program; lost() says whether it may continue after one.
   [[nodiscard]] Result<Heard> hear(std::string_view message);
-  /// The program floods, has been replaced, or never sent a valid hello.
+  /// True when the program floods, has been replaced, or never sent a valid hello.
   [[nodiscard]] bool lost() const { return lost_; }
   /// Why the program leaves, for people.
   void leave_because(std::string why) { why_ = std::move(why); }
 
   [[nodiscard]] const std::optional<Hello>& hello() const { return hello_; }
-  /// We have asked for its time: for a second, frames that come before the answer are left out.
+  /// Call after asking for its time: for a second, frames before the answer are left out.
   void expect_clock();
-  /// More exchanges with its clock are needed soon: there are too few, or they contradict each
-  /// other.
+  /// True when more exchanges with its clock are needed soon: there are too few, or they contradict
+  /// each other.
   [[nodiscard]] bool wants_clock() const;
   [[nodiscard]] bool holds_sensor() const { return seat_ != 0 && desk_->sits(seat_); }
 
@@ -58,7 +58,7 @@ class PushSession {
   PushDesk::Seat seat_ = 0;
   ClockFilter clock_;
   int exchanges_ = 0;
-  SteadyTime unknown_until_{};  ///< While there has been no exchange.
+  SteadyTime unknown_until_{};  ///< Applies while there has been no exchange.
   net::TokenBucket messages_;
   net::TokenBucket bytes_;
   net::TokenBucket frames_;

@@ -13,18 +13,18 @@ namespace {
 constexpr std::size_t kFewest = 8;
 constexpr double kNearest = 0.3;       // [m]
 constexpr double kFarthest = 50.0;     // [m]
-constexpr double kOutlier = 0.04;      // [m] across the ray: beyond it a landmark counts less
-constexpr double kUseless = 0.15;      // [m], median: this is no body of that shape
-constexpr double kSizeSigma = 0.10;    // of the distance: how people differ from the model
-constexpr double kShapeSigma = 0.15;   // [m] along the ray, of one landmark against the others
-constexpr double kLeastSpread = 1e-3;  // of the fit's matrix: all rays the same say nothing
+constexpr double kOutlier = 0.04;      // [m] across the ray; beyond it a landmark's weight falls
+constexpr double kUseless = 0.15;      // [m], median; beyond it this is not a body of that shape
+constexpr double kSizeSigma = 0.10;    // of the distance: how people differ from the model's size
+constexpr double kShapeSigma = 0.15;   // [m] along the ray, of one landmark relative to the others
+constexpr double kLeastSpread = 1e-3;  // of the fit's matrix; less means that all rays are alike
 
-/// What of a vector lies across the ray.
+/// Projector onto the plane perpendicular to the ray.
 Eigen::Matrix3d across(const Eigen::Vector3d& ray) {
   return Eigen::Matrix3d::Identity() - ray * ray.transpose();
 }
 
-/// The shift that brings the shape closest to the rays.
+/// The translation that brings the shape closest to the rays.
 std::optional<Eigen::Vector3d> shift_to_rays(std::span<const SizedLandmark> landmarks,
                                              const std::vector<double>& weights) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
@@ -43,7 +43,7 @@ double off_the_ray(const SizedLandmark& landmark, const Eigen::Vector3d& shift) 
   return (across(landmark.ray) * (landmark.shape + shift)).norm();
 }
 
-/// Huber's weights, a few times over.
+/// Reweights with Huber's weights for a few rounds.
 std::optional<Eigen::Vector3d> robust_shift(std::span<const SizedLandmark> landmarks) {
   constexpr int kRounds = 8;
   std::vector<double> weights;

@@ -32,7 +32,7 @@ struct Parts {
   std::shared_ptr<CameraState> state = std::make_shared<CameraState>();
 };
 
-/// The newest picture, from a thread of its own that lives as long as this.
+/// Supplies the newest picture; its thread lives as long as the object.
 class Pictures {
  public:
   explicit Pictures(const Parts& parts)
@@ -114,7 +114,7 @@ void widen_all(std::vector<BodyFrame>& bodies, double focal_sigma) {
   }
 }
 
-/// One picture to the runner, and its answer.
+/// Sends one picture to the runner and returns its answer.
 Result<Capture> Camera::ask(Runner& runner, const Shot& shot, const std::stop_token& stop) {
   const auto lens = lens_for(parts_.settings, shot.picture.size);
   if (!lens) return pass(lens);
@@ -139,7 +139,7 @@ Result<Capture> Camera::ask(Runner& runner, const Shot& shot, const std::stop_to
   return capture_of(std::move(frame), shot.picture, *lens);
 }
 
-/// As long as one runner lives: success at the end of the pictures.
+/// Runs for as long as one runner lives; success at the end of the pictures.
 Result<void> Camera::look(Pictures& pictures, const std::stop_token& stop, const Sink& sink) {
   auto runner = start_runner(stop);
   if (!runner) return pass(runner);
@@ -160,7 +160,7 @@ Result<void> Camera::look(Pictures& pictures, const std::stop_token& stop, const
 Result<void> Camera::run(std::stop_token stop, const Sink& sink) {
   Pictures pictures(parts_);
   const bool once = kind_of(parts_.settings.source) == SourceKind::File && !parts_.settings.loop;
-  if (!once) pictures.begin();  // a file that is shown once waits for who looks at it
+  if (!once) pictures.begin();  // a file that plays once waits for the runner
   RestartPause pause(kShortestPause, kLongestPause);
   while (!stop.stop_requested()) {
     const auto began = std::chrono::steady_clock::now();
@@ -172,7 +172,7 @@ Result<void> Camera::run(std::stop_token stop, const Sink& sink) {
   return {};
 }
 
-/// A file that is not there will not come; a camera may.
+/// A missing file will not turn up later, but a camera may.
 Result<void> check_source(const CameraSettings& settings) {
   std::error_code failed;
   if (kind_of(settings.source) == SourceKind::Stream ||

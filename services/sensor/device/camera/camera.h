@@ -10,8 +10,8 @@
 
 namespace chorus::camera {
 
-/// The reader's finish() reports mistakes.  An Error says what is not there: the file, the runner,
-/// its models.  A webcam or a stream may come later.  Adds `/camera` to the context's router.
+/// The reader's finish() reports mistakes.  An Error says what is missing: the file, the runner or
+/// its models.  A webcam or a stream may turn up later.  Adds `/camera` to the context's router.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> make_camera(
     ConfigReader& section, const sensor_service::DeviceContext& context);
 

@@ -9,7 +9,7 @@
 
 namespace chorus::camera {
 
-/// `source`: as people may read it.  The router keeps the state alive.
+/// `source`: in the form that people may read.  The router keeps the state alive.
 void add_camera_route(http::Router& router, std::string source,
                       std::shared_ptr<const CameraState> state);
 

@@ -12,7 +12,7 @@
 
 namespace chorus::camera {
 
-/// What stands behind device.camera.source.
+/// The kind of source that device.camera.source names.
 enum class SourceKind {
   Device,  ///< A webcam: /dev/video0.
   Stream,  ///< rtsp://..., http://...: anything with a scheme.
@@ -22,24 +22,24 @@ enum class SourceKind {
 struct CameraSettings {
   std::string source = "/dev/video0";
   std::string label = {};  ///< For people; empty: the source.
-  int width = 0;           ///< Wanted of a webcam [px]; 0: its own choice, as for height and rate.
+  int width = 0;           ///< For a webcam [px]; 0: its own choice (also height and rate).
   int height = 0;
   double rate_hz = 0.0;
   bool loop = true;  ///< A file starts again at its end.
-  /// From light to arrival, where no clock of the camera tells.
+  /// From light to arrival, if no clock of the camera tells.
   Duration latency = std::chrono::milliseconds(60);
-  double max_rate_hz = 30.0;             ///< Images a second that are looked at, at most.
+  double max_rate_hz = 30.0;             ///< Most images per second that the runner gets.
   std::vector<std::string> runner{};     ///< The command; empty: the runner that comes with Chorus.
-  std::string model = "movenet";         ///< Handed to the runner as --model; empty: not handed.
-  bool depth_from_size = false;          ///< Points instead of rays, where the runner allows it.
-  std::optional<FloorPlane> floor = {};  ///< From height and pitch, where they are stated.
+  std::string model = "movenet";         ///< Passed to the runner as --model; empty: not passed.
+  bool depth_from_size = false;          ///< Points instead of rays, if the runner supports it.
+  std::optional<FloorPlane> floor = {};  ///< From height and pitch, if they are configured.
   std::optional<Intrinsics> intrinsics = {};
-  double fov = 1.13;  ///< Across the image's longer side [rad], when nothing better is known.
-  double fov_sigma = 0.105;  ///< Standard deviation of that statement [rad].
+  double fov = 1.13;  ///< Across the image's longer side [rad], if nothing better is known.
+  double fov_sigma = 0.105;  ///< Standard deviation of that value [rad].
 };
 
 [[nodiscard]] SourceKind kind_of(const std::string& source);
-/// The source as people may read it: without the password of an address.
+/// The source in the form that people may read: without the password in a URL.
 [[nodiscard]] std::string told_source(const std::string& source);
 
 /// The reader's finish() reports mistakes.

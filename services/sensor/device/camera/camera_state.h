@@ -1,4 +1,4 @@
-// How the camera and its runner are doing, for people.  Thread-safe.
+// The state of the camera and its runner, for people.  Thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,17 @@
 namespace chorus::camera {
 
 struct CameraReport {
-  std::string source_trouble;  ///< Why no pictures come; empty while they do.
-  std::string runner_trouble;  ///< Why nobody looks at them; empty while somebody does.
-  std::string runner;          ///< Its name, from its hello.
+  std::string source_trouble;  ///< Why no pictures arrive; empty while they do.
+  std::string runner_trouble;  ///< Why no runner works; empty while one does.
+  std::string runner;          ///< Its name, taken from its hello.
   std::string layout;
-  Size picture;                 ///< As the source gives them.
-  Size sent;                    ///< As the runner gets them.
+  Size picture;                 ///< Size of the source's pictures.
+  Size sent;                    ///< Size at which the runner gets them.
   std::uint64_t pictures = 0;   ///< From the source.
   std::uint64_t looked_at = 0;  ///< By the runner.
   std::uint64_t connects = 0;   ///< How often the source was opened.
   std::uint64_t starts = 0;     ///< How often the runner was started.
-  double answer_ms = 0.0;       ///< What the runner takes for an image, smoothed.
+  double answer_ms = 0.0;       ///< Time of the runner per image, smoothed.
   double latency_ms = 0.0;      ///< From light to landmarks, smoothed.
 };
 
@@ -35,7 +35,7 @@ class CameraState {
   void answered(Size sent, Duration answer, Duration latency);
 
   [[nodiscard]] CameraReport report() const;
-  /// Both troubles in one sentence; empty when there are none.
+  /// Both troubles in one sentence; empty if there are none.
   [[nodiscard]] std::string trouble() const;
 
  private:

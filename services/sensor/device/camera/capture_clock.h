@@ -1,4 +1,4 @@
-// When light hit the sensor, from when a picture arrived and what the camera's own clock says.
+// When light hit the sensor, derived from when a picture arrived and from the camera's own clock.
 // Pure: times in, times out.
 #pragma once
 
@@ -9,20 +9,20 @@
 
 namespace chorus::camera {
 
-/// A webcam's driver stamps each picture by the clock that has counted since the start of the host.
-/// `age`: that clock's now minus the stamp.  The latency counts instead when there is no stamp, or
-/// one that cannot be true.
+/// A webcam's driver stamps each picture by the clock that has run since the host started.  `age`:
+/// that clock's present time minus the stamp.  Without a stamp, or with one that cannot be true,
+/// the latency is used instead.
 [[nodiscard]] Timestamp captured_by_driver(Timestamp arrived, std::optional<Duration> age,
                                            Duration latency);
 
-/// For a stream, whose pictures carry the time since its beginning by a clock of its own: the
-/// picture that came through fastest tells how the two clocks stand to each other, and of the rest
-/// only the stream's steps count.  So capture times do not jitter as arrival does.
+/// For a stream, whose pictures carry the time since its beginning by its own clock: the picture
+/// with the least delay determines the offset between the two clocks; for all others only the
+/// stream's steps count.  So capture times do not jitter as arrival times do.
 class StreamClock {
  public:
   explicit StreamClock(Duration latency) : latency_(latency) {}
 
-  /// `position`: of the picture in the stream; none, or one that does not advance: arrival counts.
+  /// `position`: of the picture in the stream; if none, or if it does not advance, arrival counts.
   [[nodiscard]] Timestamp captured(Timestamp arrived, std::optional<Duration> position);
 
  private:
@@ -30,7 +30,7 @@ class StreamClock {
 
   Duration latency_;
   bool known_ = false;
-  Timestamp origin_{};  ///< When position zero would have arrived, by the fastest picture.
+  Timestamp origin_{};  ///< Arrival of position zero, by the picture with the least delay.
   Timestamp arrived_{};
   Duration position_{0};
 };

@@ -1,7 +1,7 @@
 // When each picture of a video file is due, at the file's own rate.  Pure.
 //
-// A file that loops begins its rounds at whole multiples of its length since 1970, so that several
-// sensors that loop videos of one length show them in step, without knowing of each other.
+// A looping file begins its rounds at whole multiples of its length since 1970, so that several
+// sensors that loop videos of one length show them in step without knowing of one another.
 #pragma once
 
 #include <optional>
@@ -12,26 +12,26 @@
 namespace chorus::camera {
 
 struct FileTiming {
-  Duration step{0};                  ///< Between two pictures.
-  std::optional<Duration> length{};  ///< Of the whole file; none: not known.
+  Duration step{0};                  ///< Time between two pictures.
+  std::optional<Duration> length{};  ///< Length of the whole file; none: unknown.
 };
 
 class FilePace {
  public:
   explicit FilePace(bool loop) : loop_(loop) {}
 
-  /// The file has been opened, for the first time or again.  Returns which part of it is over.
+  /// Called when the file has been opened, even again.  Returns how much of it is already over.
   [[nodiscard]] Duration begin(const FileTiming& timing, Timestamp now);
-  /// When the next picture is due.  `position`: in the file, where the file tells.
+  /// When the next picture is due.  `position`: its time in the file, if the file has one.
   [[nodiscard]] Timestamp due(std::optional<Duration> position);
-  /// The next picture comes that much later, because reading it took too long.
+  /// Delays the next picture by this much, because reading it took too long.
   void fall_behind(Duration by) { epoch_ += by; }
 
  private:
   bool loop_;
   FileTiming timing_;
   bool begun_ = false;
-  bool first_ = true;  ///< Of a round.
+  bool first_ = true;  ///< At the beginning of a round.
   Timestamp epoch_{};  ///< When the round began.
   Duration position_{0};
 };

@@ -37,7 +37,7 @@ Grabber::Grabber(const CameraSettings& settings, const Clock& clock, CameraState
       stream_(settings.latency),
       pace_(settings.loop) {}
 
-/// In steps, because a clock may be set meanwhile.
+/// Waits in steps, because a clock may be set meanwhile.
 void Grabber::wait_for(Timestamp due, const std::stop_token& stop) {
   constexpr Duration kStep = std::chrono::milliseconds(100);
   constexpr Duration kNever = std::chrono::seconds(10);
@@ -54,7 +54,7 @@ Timestamp Grabber::captured(const VideoMoment& taken) {
   if (kind_ == SourceKind::Stream) return stream_.captured(arrived, taken.time);
   const Timestamp due = pace_.due(taken.time);
   late_ = arrived - due;
-  if (settings_.loop || late_ <= kLost) return due;  // others may play in step
+  if (settings_.loop || late_ <= kLost) return due;  // looping files play in step with others
   pace_.fall_behind(late_);
   late_ = Duration{0};
   return arrived;
@@ -65,14 +65,14 @@ void Grabber::begin_file(Video& video) {
   if (over_ > kWorthSkipping) video.skip_to(over_);
 }
 
-/// The file was begun in the middle, and this picture's turn has been before that.
+/// True when the file was begun in the middle and this picture was due before that.
 bool Grabber::is_over(const VideoMoment& taken) const {
   return kind_ == SourceKind::File && taken.time && *taken.time < over_;
 }
 
-/// No more than are looked at; of a file that is read too slowly one a second, to catch up.
+/// Limits the rate to what the runner gets; a file that is read too slowly gives only one a second.
 bool Grabber::is_wanted(Timestamp captured) const {
-  constexpr double kNearly = 0.9;  // of a step: pictures do not come evenly
+  constexpr double kNearly = 0.9;  // of a step, because pictures are not evenly spaced
   if (!given_ || captured < *given_) return true;
   const Duration since = captured - *given_;
   if (late_ > kTooLate) return since >= kSlowest;
@@ -95,13 +95,13 @@ Result<bool> Grabber::play(Video& video, const std::stop_token& stop) {
     any = true;
     if (is_over(**taken)) continue;
     const Timestamp when = captured(**taken);
-    if (late_ > kLost) return true;  // begins again where it should be
+    if (late_ > kLost) return true;  // opens the file again, at the right place
     if (kind_ == SourceKind::File) wait_for(when, stop);
     if (!is_wanted(when)) continue;
     given_ = when;
     auto picture = video.picture();
     if (!picture && ++damaged > kMostDamaged) return pass(picture);
-    if (!picture) continue;  // webcams lose one now and then
+    if (!picture) continue;  // webcams lose one occasionally
     damaged = 0;
     state_.picture(picture->size);
     newest_.give({std::move(*picture), when});
@@ -119,7 +119,7 @@ void Grabber::run(const std::stop_token& stop) {
     if (ended && *ended && !settings_.loop) break;
     if (ended) continue;
     state_.source_failed(to_string(ended.error()));
-    video = pass(ended);  // a webcam that comes back needs its device free
+    video = pass(ended);  // destroys the video: a webcam that returns needs its device free
     if (!rest(stop, pause.after(std::chrono::steady_clock::now() - began))) break;
   }
   newest_.close();

@@ -1,5 +1,5 @@
-// Takes pictures from the source as long as there are any, and tries again when there are none.
-// Only the newest one waits: who is slower than the camera misses pictures, never falls behind.
+// Takes pictures from the source while there are any, and tries again when there are none.  Only
+// the newest one waits: a consumer slower than the camera misses pictures, but never falls behind.
 #pragma once
 
 #include <optional>
@@ -20,11 +20,11 @@ struct Shot {
 
 class Grabber {
  public:
-  /// Refers to its arguments.
+  /// Keeps references to its arguments.
   Grabber(const CameraSettings& settings, const Clock& clock, CameraState& state,
           Handover<Shot>& newest);
 
-  /// Until stopped, or at the end of a file that does not loop; closes `newest` then.
+  /// Runs until stopped, or to the end of a file that does not loop; closes `newest` at the end.
   void run(const std::stop_token& stop);
 
  private:
@@ -43,12 +43,12 @@ class Grabber {
   SourceKind kind_;
   StreamClock stream_;
   FilePace pace_;
-  std::optional<Timestamp> given_;  ///< When the last picture was captured that was given.
-  Duration late_{0};                ///< How long the last picture of a file came after its turn.
-  Duration over_{0};                ///< Which part of a file was over when it was begun.
+  std::optional<Timestamp> given_;  ///< Capture time of the last picture passed on.
+  Duration late_{0};                ///< By how much a file's last picture was late.
+  Duration over_{0};                ///< How much of a file was over when it was opened.
 };
 
-/// Sleeps, unless it is stopped; false then.
+/// Sleeps; returns false if it is stopped.
 bool rest(const std::stop_token& stop, Duration pause);
 
 }  // namespace chorus::camera

@@ -8,8 +8,8 @@
 namespace chorus::camera {
 namespace {
 
-constexpr double kSameShape = 0.01;  // of the ratio of the sides
-constexpr double kMiddle = 0.5;      // from a pixel's corner to its middle
+constexpr double kSameShape = 0.01;  // tolerance for the ratio of the sides
+constexpr double kMiddle = 0.5;      // from a pixel's corner to its centre
 
 Intrinsics scaled(const Intrinsics& camera, Size size) {
   const double x = static_cast<double>(size.width) / camera.width;
@@ -70,7 +70,7 @@ Intrinsics sent_camera(const Intrinsics& camera, Size sent) {
 }
 
 Eigen::Vector3d turn_of_focal(const Eigen::Vector3d& ray) {
-  // At the angle a from the axis: tan a = r / f, so da = -sin a cos a df / f.
+  // At angle a from the axis: tan a = r / f, so da = -sin a cos a df / f.
   const Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
   const double cosine = ray.dot(axis);
   return cosine * (axis - cosine * ray);

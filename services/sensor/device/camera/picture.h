@@ -1,4 +1,4 @@
-// One picture of a camera, and what is made of it.  OpenCV's own type stays in .cpp files.
+// One picture of a camera, and its conversion.  OpenCV's own type stays in .cpp files.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ struct Picture {
   Size size;
 };
 
-/// Red, green, blue of the picture at that size, row by row.
+/// Red, green and blue of the picture scaled to that size, row by row.
 [[nodiscard]] std::string rgb_bytes(const Picture& picture, Size size);
 
 [[nodiscard]] Result<std::string> jpeg_of(const Picture& picture);

@@ -1,4 +1,4 @@
-// How long to wait before trying again: doubled each time, short again after what went well.  Pure.
+// How long to wait before trying again: doubles each time, short again after a good run.  Pure.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ class RestartPause {
   RestartPause(Duration shortest, Duration longest)
       : shortest_(shortest), longest_(longest), next_(shortest) {}
 
-  /// `lived`: how long it went well before it failed.
+  /// `lived`: how long it worked before it failed.
   [[nodiscard]] Duration after(Duration lived) {
     if (lived >= kWell) next_ = shortest_;
     const Duration pause = next_;

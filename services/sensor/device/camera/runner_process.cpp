@@ -29,9 +29,9 @@ void close_if_open(int& descriptor) {
   descriptor = -1;
 }
 
-/// Both ends of the child's three streams; closes what is left.
+/// Both ends of the child's three streams; the destructor closes those that are still open.
 struct Streams {
-  // [0] stays here, [1] goes to the child.
+  // [0] stays in this process, [1] goes to the child.
   std::array<int, 2> input{-1, -1};
   std::array<int, 2> output{-1, -1};
   std::array<int, 2> errors{-1, -1};
@@ -43,14 +43,14 @@ struct Streams {
     for (auto* pair : {&input, &output, &errors})
       for (int& end : *pair) close_if_open(end);
   }
-  /// A socket as its input: writing to a runner that has ended is an error there, no signal.
+  /// Its input is a socket: there, writing to an ended runner is an error instead of a signal.
   [[nodiscard]] bool open() {
     return socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, input.data()) == 0 &&
            pipe2(output.data(), O_CLOEXEC) == 0 && pipe2(errors.data(), O_CLOEXEC) == 0;
   }
 };
 
-/// A group of its own, no signal blocked or ignored: as if a shell had started it.
+/// Starts it in its own process group, with no signal blocked or ignored, as a shell would.
 int spawn(const std::vector<std::string>& command, const Streams& streams, pid_t& pid) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
@@ -68,7 +68,7 @@ int spawn(const std::vector<std::string>& command, const Streams& streams, pid_t
                            POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
   std::vector<char*> arguments;
   for (const std::string& argument : command)
-    arguments.push_back(const_cast<char*>(argument.c_str()));  // the old signature of exec
+    arguments.push_back(const_cast<char*>(argument.c_str()));  // exec takes no const
   arguments.push_back(nullptr);
   const int failed =
       posix_spawnp(&pid, arguments[0], &actions, &attributes, arguments.data(), environ);
@@ -77,7 +77,7 @@ int spawn(const std::vector<std::string>& command, const Streams& streams, pid_t
   return failed;
 }
 
-/// What can be read now; false at the end.
+/// Reads what is available now; false at the end.
 template <class Take>
 bool read_all(int descriptor, const Take& take) {
   std::array<char, 16 * 1024> bytes{};
@@ -155,7 +155,7 @@ bool RunnerProcess::take_output() {
   return output_ >= 0 && read_all(output_, [this](std::string_view bytes) { heard_ += bytes; });
 }
 
-/// The end of its output comes a moment before the end of the process.
+/// Its output ends slightly before the process itself.
 Error RunnerProcess::obituary() {
   constexpr int kLooks = 20;
   for (int look = 0; look < kLooks && !reap(); ++look)

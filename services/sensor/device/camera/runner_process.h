@@ -1,8 +1,8 @@
-// A runner as a child process: images into its standard input, lines out of its standard output.
-// What it writes to its standard error goes to the log; the last line is remembered, because it
-// usually says why the process ended.
+// A runner as a child process: images go into its standard input, lines come out of its standard
+// output. Its standard error goes to the log; the last line is remembered, because it usually says
+// why the process ended.
 //
-// Not thread-safe.  Every wait ends when `stop` is requested, as a Timeout.
+// Not thread-safe.  Every wait ends with Timeout when `stop` is requested.
 #pragma once
 
 #include <sys/types.h>
@@ -23,30 +23,30 @@ namespace chorus::camera {
 
 class RunnerProcess {
  public:
-  /// NotFound when there is no such program.
+  /// NotFound when the program does not exist.
   [[nodiscard]] static Result<std::unique_ptr<RunnerProcess>> start(
       const std::vector<std::string>& command);
-  /// Closes its input, which tells it to end, and kills it if it has not within a second.
+  /// Closes its input, which tells it to end, and kills it if it has not ended within a second.
   ~RunnerProcess();
   RunnerProcess(const RunnerProcess&) = delete;
   RunnerProcess& operator=(const RunnerProcess&) = delete;
 
-  /// Unavailable when it has ended: the message says how, and its last words.  Timeout when it
-  /// does not read.
+  /// Unavailable when it has ended; the message has its exit status and last words.  Timeout when
+  /// it does not read.
   [[nodiscard]] Result<void> send(std::string_view bytes, Duration within,
                                   const std::stop_token& stop);
-  /// The next line of its output, without the line feed; errors as above.
+  /// The next line of its output, without the line feed; errors as for send().
   [[nodiscard]] Result<std::string> read_line(Duration within, const std::stop_token& stop);
-  /// Reads what it has to say to people; Unavailable when it has ended.
+  /// Reads its standard error; Unavailable when it has ended.
   [[nodiscard]] Result<void> listen();
-  /// Closes its input and waits for its end; an exit code that is not 0 is an error.
+  /// Closes its input and waits until it ends; an exit code other than 0 is an error.
   [[nodiscard]] Result<void> finish(Duration within);
 
  private:
   enum class Want { Read, Write };
 
   RunnerProcess() = default;
-  /// One wait of a tenth of a second at most.  Takes everything that can be read.
+  /// Waits once, for a tenth of a second at most.  Takes everything that can be read.
   [[nodiscard]] Result<void> wait_a_moment(Want want, SteadyTime until,
                                            const std::stop_token& stop);
   void take_words();
@@ -57,13 +57,13 @@ class RunnerProcess {
 
   std::string name_;  ///< For messages.
   pid_t pid_ = -1;
-  int input_ = -1;  ///< Its standard input, and so on.
+  int input_ = -1;  ///< Our end of its standard input; likewise below.
   int output_ = -1;
   int errors_ = -1;
   bool ended_ = false;
   int status_ = 0;
   std::string heard_;  ///< Output that has not been returned yet.
-  std::string word_;   ///< A line of its standard error, as far as it has come.
+  std::string word_;   ///< The incomplete last line of its standard error.
   std::string last_words_;
   RateReport says_{"the runner says", log::Level::Info};
 };

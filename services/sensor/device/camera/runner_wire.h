@@ -1,4 +1,4 @@
-// What is said between the sensor and a runner (proto/runner.md).  No IO.
+// The messages between the sensor and a runner (proto/runner.md).  No IO.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace chorus::camera {
 
 /// What a runner says about itself.
 struct RunnerHello {
-  bridge::Hello hello;  ///< Without a camera: that is the sensor's affair.
+  bridge::Hello hello;  ///< Without a camera, which only the sensor knows.
   int max_side = 640;   ///< Of an image, in either direction [px].
 };
 
@@ -21,21 +21,21 @@ struct RunnerHello {
 struct Question {
   std::uint64_t sequence = 0;
   Timestamp captured;
-  Size size;  ///< As it is sent.
+  Size size;  ///< The size at which it is sent.
 };
 
 [[nodiscard]] Result<RunnerHello> read_runner_hello(std::string_view line);
 
-/// The line that stands before an image's bytes, its line feed included.
+/// The line that precedes an image's bytes, with its line feed.
 [[nodiscard]] std::string image_header(const Question& question);
 
-/// What landmarks become.
+/// What landmarks are turned into.
 enum class Depth {
   None,      ///< Rays.
-  FromSize,  ///< Points, of people whose shape the runner tells in metres; else rays.
+  FromSize,  ///< Points, if the runner gives people's shape in metres; else rays.
 };
 
-/// The people in that image.  `hello.camera` is the camera of the image as it was sent.
+/// The people in that image.  `hello.camera` is the camera of the image as sent.
 [[nodiscard]] Result<std::vector<BodyFrame>> read_runner_answer(std::string_view line,
                                                                 const Question& question,
                                                                 const bridge::Hello& hello,

@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Beside the sources, installed, or below the working directory.
+/// Looks next to the sources, among the installed files, and in the working directory.
 Result<std::string> shipped_runner() {
   std::error_code failed;
   const fs::path here = fs::read_symlink("/proc/self/exe", failed).parent_path();

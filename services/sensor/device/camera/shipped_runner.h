@@ -1,4 +1,4 @@
-// The runner that comes with Chorus: where it is, and whether it can run.
+// The runner that ships with Chorus: where it is, and whether it can run.
 #pragma once
 
 #include "common/base/result.h"
@@ -6,11 +6,11 @@
 
 namespace chorus::camera {
 
-/// What is started: device.camera.runner, or the runner that comes with Chorus; with the model.
-/// NotFound when the latter is nowhere.
+/// The command to start: device.camera.runner, or the runner that ships with Chorus; with the
+/// model. NotFound when the latter does not exist.
 [[nodiscard]] Result<std::vector<std::string>> runner_command(const CameraSettings& settings);
 
-/// Asks the runner that comes with Chorus whether it has what it needs; others are not asked.
+/// Asks the shipped runner whether it has everything it needs; does not ask other runners.
 [[nodiscard]] Result<void> check_runner(const CameraSettings& settings);
 
 }  // namespace chorus::camera

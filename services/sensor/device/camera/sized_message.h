@@ -1,4 +1,4 @@
-// An answer of a runner with "world" landmarks, turned into one with "points".  No IO.
+// Turns a runner's answer with "world" landmarks into one with "points".  No IO.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace chorus::camera {
 
-/// The same frame; bodies with "pixels" and "world" that fit each other have "points" in the
-/// hello's axes instead, with covariances.  Everything else stays as it is.  Needs hello.camera and
-/// pixel_sigma.  Malformed when "world" is not as proto/runner.md says.
+/// The same frame, except that bodies whose "pixels" and "world" fit each other get "points" in the
+/// hello's axes instead, with covariances.  Needs hello.camera and pixel_sigma.  Malformed when
+/// "world" is not as proto/runner.md specifies.
 [[nodiscard]] Result<std::string> points_by_size(std::string_view line, const bridge::Hello& hello);
 
 }  // namespace chorus::camera

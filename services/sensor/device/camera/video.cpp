@@ -15,9 +15,9 @@
 namespace chorus::camera {
 namespace {
 
-constexpr int kPatienceMs = 5000;  // to open a stream, and for its next picture
+constexpr int kPatienceMs = 5000;  // for opening a stream, and for its next picture
 constexpr double kUsualRate = 30.0;
-constexpr int kSmallWebcam = 640;  // wider pictures come fast enough only when compressed
+constexpr int kSmallWebcam = 640;  // wider pictures are fast enough only if compressed
 
 Duration since_boot() {
   timespec now{};
@@ -25,7 +25,7 @@ Duration since_boot() {
   return std::chrono::seconds(now.tv_sec) + Duration(now.tv_nsec);
 }
 
-/// Why the file or device cannot even be opened for reading; empty when it can.
+/// Why the file or device cannot be opened for reading; empty if it can.
 std::string why_closed(const CameraSettings& settings) {
   const bool device = kind_of(settings.source) == SourceKind::Device;
   const int descriptor = open(settings.source.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
@@ -42,7 +42,7 @@ std::string why_closed(const CameraSettings& settings) {
   return std::strerror(reason);
 }
 
-/// Best effort: a webcam takes the nearest that it has.
+/// Best effort: a webcam uses the nearest mode that it has.
 void ask_webcam(cv::VideoCapture& capture, const CameraSettings& settings) {
   if (settings.width > kSmallWebcam)
     capture.set(cv::CAP_PROP_FOURCC, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'));

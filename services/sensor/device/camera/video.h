@@ -1,4 +1,4 @@
-// Pictures out of a webcam, a stream or a file: the only code that uses OpenCV's videoio.
+// Reads pictures from a webcam, a stream or a file: the only code that uses OpenCV's videoio.
 #pragma once
 
 #include <memory>
@@ -10,20 +10,20 @@
 namespace chorus::camera {
 
 struct VideoMoment {
-  /// Of a webcam: how long ago the driver stamped it.  Of streams and files: since their beginning.
+  /// For a webcam: time since the driver's stamp.  For streams and files: time since the beginning.
   std::optional<Duration> time;
 };
 
 class Video {
  public:
   virtual ~Video() = default;
-  /// Blocks for the next picture, some seconds at most; nothing at the end of a file.
+  /// Waits for the next picture, a few seconds at most; none at the end of a file.
   [[nodiscard]] virtual Result<std::optional<VideoMoment>> next() = 0;
-  /// That picture: turning it into pixels costs about half as much as decoding it.
+  /// The picture found by next(); converting it to pixels costs about half as much as decoding it.
   [[nodiscard]] virtual Result<Picture> picture() = 0;
-  /// Of a file.
+  /// For a file only.
   [[nodiscard]] virtual FileTiming timing() const = 0;
-  /// Of a file: goes on near that place.
+  /// For a file only: continues near that position.
   virtual void skip_to(Duration position) = 0;
 };
 

@@ -13,9 +13,9 @@ namespace chorus::sensor_service {
 
 namespace {
 
-// A host that slept must not deliver the past at once: frames later than this are skipped.
+// After the host slept, the past must not come all at once: frames later than this are skipped.
 constexpr Duration kLatest = std::chrono::seconds(1);
-// UTC may be stepped while we wait, so a long wait looks at the clock now and then.
+// UTC may be stepped while we wait, so a long wait checks the clock regularly.
 constexpr Duration kMaxNap = std::chrono::milliseconds(200);
 
 bool wait_on(const Clock& clock, std::stop_token stop, Timestamp until) {
@@ -30,8 +30,8 @@ bool wait_on(const Clock& clock, std::stop_token stop, Timestamp until) {
   return false;
 }
 
-/// "set_origin_ns": nanoseconds; "set_origin": ISO 8601.  What importers note about a set; never
-/// before 1970.
+/// Reads what importers note about a set: "set_origin_ns" in nanoseconds, or "set_origin" in ISO
+/// 8601; never before 1970.
 std::optional<std::int64_t> noted_ns(const record::FrameRecording& recording,
                                      const std::string& key) {
   const auto note = recording.notes.find(key);
@@ -122,19 +122,19 @@ Capture Replay::capture(const ReplaySchedule& schedule, const Turn& turn, Sensor
   return out;
 }
 
-/// Turn after turn of a tape, round after round.
+/// Plays the frames of a tape in order, round after round.
 class Player {
  public:
   Player(ReplayTape& tape, const ReplaySchedule& plan) : tape_(tape), plan_(plan) {}
 
-  /// Moves to the round in which something is due at `now` or soon after; never back.
+  /// Skips to the round before the one playing at `now`; run() drops what is past.  Never back.
   void skip_to(Timestamp now) {
     const std::int64_t round = plan_.round_before(now);
     if (round <= turn_.round && begun_) return;
     begin(std::max(round, turn_.round));
   }
 
-  /// The next frame; none when all is over, or when a whole round has none.
+  /// The next frame; none when the replay is over, or when a whole round has no frames.
   Result<std::optional<SensorFrame>> next() {
     for (int rewound = 0; rewound < 2; ++rewound) {
       auto frame = tape_.next();
@@ -195,7 +195,7 @@ Result<void> Replay::run(std::stop_token stop, const Sink& sink) {
 }
 
 void read_ns(ConfigReader& config, std::string_view key, std::optional<std::int64_t>& out) {
-  // A double holds UTC nanoseconds to 256 ns, the same in every process that is given the number.
+  // A double holds UTC nanoseconds to 256 ns, equally in all processes that get this number.
   constexpr double kMax = 9.2e18;
   if (!config.has(key)) return;
   double value = 0.0;

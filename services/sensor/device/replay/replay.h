@@ -1,4 +1,4 @@
-// The device `replay`: plays a recording again in real time, with new stamps.
+// The device `replay`: plays a recording in real time, with new stamps.
 #pragma once
 
 #include <filesystem>
@@ -15,10 +15,10 @@
 
 namespace chorus::sensor_service {
 
-/// Where the replay begins on the clock.
+/// When the replay begins.
 enum class ReplayEpoch {
-  Now,         ///< The first capture of the set happens as the service starts.
-  AsRecorded,  ///< Captures keep their recorded times; they are delivered from now on.
+  Now,         ///< The set begins when the service starts.
+  AsRecorded,  ///< Captures keep their recorded times, but are delivered from now on.
 };
 
 struct ReplayOptions {
@@ -26,32 +26,32 @@ struct ReplayOptions {
   bool loop = true;
   double speed = 1.0;
   ReplayEpoch epoch = ReplayEpoch::Now;
-  std::optional<Timestamp> epoch_at = {};  ///< Used instead of `epoch`, for several processes.
-  std::optional<Timestamp> origin = {};    ///< First capture of the set; else as noted.
-  std::optional<Duration> period = {};     ///< Length of the set; likewise.
+  std::optional<Timestamp> epoch_at = {};  ///< Replaces `epoch`, for several processes.
+  std::optional<Timestamp> origin = {};    ///< First capture of the set; none: as noted.
+  std::optional<Duration> period = {};     ///< Length of the set; none: as noted.
 };
 
-/// Reads device.replay; mistakes are complained about at their keys.
+/// Reads device.replay; mistakes are reported at their keys.
 [[nodiscard]] ReplayOptions read_replay_options(ConfigReader& config);
 
-/// Waits until the clock shows an instant; false when asked to stop before.
+/// Waits until the clock shows an instant; false when it is told to stop before that.
 using WaitUntil = std::function<bool(std::stop_token, Timestamp)>;
 
-/// Where the replay's time comes from.  It follows true time, so that people are where they were
-/// seen together whatever the hosts' clocks say; frames are stamped by the host's clock.
+/// The times of a replay.  It follows true time, so that people are where they were seen together,
+/// whatever the hosts' clocks say; frames are stamped by the host's clock.
 struct ReplayClock {
   std::shared_ptr<const Clock> world;
-  WaitUntil wait;  ///< Until the world's clock shows it.  Empty: really waits.
+  WaitUntil wait;  ///< Until the world's clock shows it; empty: really waits.
   synthetic::HostClock host = {};
 };
 
-/// The device; frames carry the id `sensor` whatever the recording says.
+/// Makes the device; its frames carry the id `sensor`, whatever the recording says.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> make_replay(std::unique_ptr<ReplayTape> tape,
                                                                const ReplayOptions& options,
                                                                const SensorId& sensor,
                                                                ReplayClock time);
 
-/// Reads device.replay and the recording that it names; damage in it is logged.
+/// Reads device.replay and opens the recording it names; damage is logged.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_replay(ConfigReader& config,
                                                                const SensorId& sensor,
                                                                const HostTime& time);

@@ -9,11 +9,11 @@ namespace {
 
 constexpr double kMaxSpeed = 1000.0;
 constexpr Duration kRounding =
-    std::chrono::microseconds(1);  // an origin that passed through a double
-constexpr Duration kMaxPeriod = std::chrono::hours(24 * 366);  // keeps every product in 64 bits
+    std::chrono::microseconds(1);  // tolerance for an origin that was a double
+constexpr Duration kMaxPeriod = std::chrono::hours(24 * 366);  // no product exceeds 64 bits
 
 Duration divided(Duration span, double speed) {
-  if (speed == 1.0) return span;  // exact: nanoseconds survive
+  if (speed == 1.0) return span;  // exact, to the nanosecond
   return Duration(
       static_cast<Duration::rep>(std::llround(static_cast<double>(span.count()) / speed)));
 }

@@ -2,9 +2,9 @@
 //
 //   due = epoch + ((recorded - origin) + loop * period) / speed
 //
-// `origin` and `period` are shared by all recordings of a set (the first capture and the length
-// over all of them), so that replays in several processes with one epoch stay in step, loop after
-// loop.
+// All recordings of a set share `origin` and `period` (first capture and length of the whole set),
+// so that replays in several processes with one epoch stay in step, round after round (`loop`
+// counts the rounds).
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,14 @@
 namespace chorus::sensor_service {
 
 struct ReplayTiming {
-  Timestamp epoch;   ///< When `origin` happens again.
+  Timestamp epoch;   ///< When `origin` is played.
   Timestamp origin;  ///< First capture of the set.
-  Duration period;   ///< Length of the set; one loop.
+  Duration period;   ///< Length of the set; one round.
   double speed = 1.0;
   bool loop = true;
 };
 
-/// One frame's turn: which frame of the recording, in which round.
+/// One frame when it is played: which frame of the recording, in which round.
 struct Turn {
   Timestamp captured;
   std::uint64_t number = 0;  ///< Within the recording, from 0.
@@ -39,7 +39,7 @@ class ReplaySchedule {
                                                    const ReplayTiming& timing);
 
   [[nodiscard]] Timestamp due(const Turn& turn) const;
-  /// A round that contains, or directly precedes, the first frame not due before `now`.
+  /// A round that contains, or directly precedes, the first frame due at or after `now`.
   [[nodiscard]] std::int64_t round_before(Timestamp now) const;
   [[nodiscard]] bool over(std::int64_t round) const;
   /// Counts frames from the epoch on, from 1; gaps are frames that were not played.
@@ -52,7 +52,7 @@ class ReplaySchedule {
   ReplayTiming timing_;
 };
 
-/// The length of one loop when nobody states it: from first to last capture, plus one usual step.
+/// The length of one round if nothing states it: from first to last capture, plus the usual step.
 [[nodiscard]] inline Duration natural_period(const TapeSpan& span) {
   return span.last - span.first + span.step;
 }

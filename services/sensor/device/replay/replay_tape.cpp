@@ -11,7 +11,7 @@
 namespace chorus::sensor_service {
 namespace {
 
-constexpr std::size_t kSampleFrames = 300;  // ten seconds tell the usual step
+constexpr std::size_t kSampleFrames = 300;  // ten seconds suffice for the usual step
 
 Duration median_step(const std::vector<Timestamp>& captured) {
   std::vector<Duration> steps;
@@ -57,7 +57,7 @@ class FileTape final : public ReplayTape {
       stay_.about.notes["damage." + std::to_string(i + 1)] = std::move(damage[i]);
   }
 
-  /// Looks at the first frames, or at all of them if the file does not say how many there are.
+  /// Reads the first frames, or all of them if the file does not state how many there are.
   Result<void> measure() {
     std::vector<Timestamp> captured;
     std::uint64_t frames = 0;
@@ -99,7 +99,7 @@ class FileTape final : public ReplayTape {
   TapeSpan span_;
 };
 
-/// The stream that is meant, chosen as read_frame_recording() does.
+/// The stream to play, chosen as read_frame_recording() does.
 Result<record::SensorStay> chosen(std::vector<record::SensorStay> stays, const SensorId& which,
                                   const std::string& path) {
   std::string there;

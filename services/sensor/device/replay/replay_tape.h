@@ -1,4 +1,4 @@
-// What the device `replay` plays: a recording of one sensor, frame by frame, again and again.
+// What the device `replay` plays: a recording of one sensor, frame by frame, repeatedly.
 #pragma once
 
 #include <cstdint>
@@ -15,27 +15,27 @@ namespace chorus::sensor_service {
 struct TapeSpan {
   Timestamp first;
   Timestamp last;
-  std::uint64_t frames = 0;  ///< At least one; playing may leave some out.
-  Duration step{0};          ///< The usual time between two.
+  std::uint64_t frames = 0;  ///< At least one; playing may leave out some.
+  Duration step{0};          ///< The usual time between two frames.
 };
 
 class ReplayTape {
  public:
   virtual ~ReplayTape() = default;
 
-  /// Everything but the frames.
+  /// Everything except the frames.
   [[nodiscard]] virtual const record::FrameRecording& about() const = 0;
   [[nodiscard]] virtual TapeSpan span() const = 0;
-  /// Strictly rising in capture time; none at the end.
+  /// Frames with strictly rising capture times; none at the end.
   [[nodiscard]] virtual Result<std::optional<SensorFrame>> next() = 0;
   virtual void rewind() = 0;
 };
 
-/// From memory.
+/// A tape in memory.
 [[nodiscard]] Result<std::unique_ptr<ReplayTape>> tape_of(record::FrameRecording recording);
 
-/// From a file, or a folder of them: ready at once and read as it is played, however long it is.
-/// `which` of several sensors; a recording of one may be played under any name.
+/// A tape from a file or a folder of files: ready at once, and read while it plays.  `which`
+/// selects one of several sensors; a recording of one sensor may be played under any name.
 [[nodiscard]] Result<std::unique_ptr<ReplayTape>> open_tape(const std::filesystem::path& path,
                                                             const SensorId& which);
 

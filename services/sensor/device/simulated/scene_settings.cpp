@@ -14,7 +14,7 @@ using synthetic::kOccluderKinds;
 using synthetic::Occluder;
 
 constexpr double kFarthest = 100.0;  // of anything in a room from its origin [m]
-constexpr double kLargest = 20.0;    // edge of a thing [m]
+constexpr double kLargest = 20.0;    // longest edge of a thing [m]
 constexpr double kSmallest = 0.01;   // [m]
 constexpr int kMaxSeed = 1'000'000'000;
 constexpr int kMaxPeople = 6;

@@ -1,5 +1,5 @@
-// What the device `simulated` can be told of its scene: who moves in it and what stands in it.  All
-// keys optional, defaults in brackets:
+// The settings of the scene for the device `simulated`: which people move and which things stand in
+// it. All keys are optional; defaults are in brackets:
 //
 //   scene.seed [1]          scene.epoch_s [0 = 1970]   scene.people [1]
 //   scene.path [random | circle | line | stand | turn | assembly]    scene.reach_m [1.2]
@@ -13,7 +13,7 @@
 //     x_m [0]    y_m [0]    z_m [0]    yaw_deg [0]
 //     travel_x_m [0]    travel_z_m [0]    period_s [20]    there and back
 //
-// Sensors with equal keys see the same scene, in whatever process they are.
+// Sensors with equal keys see the same scene, even in different processes.
 #pragma once
 
 #include <string>
@@ -24,11 +24,11 @@
 namespace chorus::sensor_service {
 
 struct SceneSettings {
-  synthetic::Scene scene;  ///< No sensor stands in it yet.
+  synthetic::Scene scene;  ///< As yet without sensors.
   std::string people;      ///< "CMU walking", "motion of walk.bvh"
 };
 
-/// Mistakes are reported by the reader's finish().
+/// The reader's finish() reports mistakes.
 [[nodiscard]] SceneSettings read_scene(ConfigReader config);
 
 }  // namespace chorus::sensor_service

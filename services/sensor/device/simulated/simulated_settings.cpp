@@ -10,7 +10,7 @@
 namespace chorus::sensor_service {
 namespace {
 
-constexpr double kFarthest = 100.0;  // of anything in a room from its origin [m]
+constexpr double kFarthest = 100.0;  // anything in a room, from the room's origin [m]
 constexpr int kMaxSeed = 1'000'000'000;
 constexpr std::array<std::string_view, 5> kProfiles{synthetic::kGaussProfile, "A", "B", "C", "D"};
 
@@ -46,7 +46,7 @@ Eigen::Isometry3d read_pose(ConfigReader config) {
   return synthetic::stand_sensor(eye, yaw, pitch);
 }
 
-/// Errors that sensors of one room share come from `seed` alone; the rest differs by the sensor's
+/// Errors that sensors of one room share come from `seed` alone; the others depend on the sensor's
 /// id.
 void read_noise(ConfigReader config, synthetic::SensorChoice& choice) {
   synthetic::SensorModel& model = choice.gauss;
@@ -74,7 +74,7 @@ void read_profile(ConfigReader& config, synthetic::SensorChoice& choice) {
   config.read("profile_draw", draw, 0, kMaxSeed);
   choice.profile = kProfiles.at(profile);
   if (draw > 0) choice.draw = static_cast<std::uint64_t>(draw);
-  choice.own_clock = false;  // the host's clock is a setting of the service
+  choice.own_clock = false;  // the service sets the host's clock
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What the device `simulated` can be told.  All keys optional, defaults in brackets:
+// The settings of the device `simulated`.  All keys are optional; defaults are in brackets:
 //
 //   scene...               who and what there is to see, in scene_settings.h
 //   ring.index [0]    ring.count [6]    ring.radius_m [3]    ring.height_m [1.6]
@@ -29,18 +29,18 @@
 namespace chorus::sensor_service {
 
 struct SimulatedSettings {
-  synthetic::Scene scene;          ///< One sensor in it: this one.
-  synthetic::SensorChoice choice;  ///< Of the sensor.
+  synthetic::Scene scene;          ///< With one sensor: this one.
+  synthetic::SensorChoice choice;  ///< The sensor model.
   std::string people;              ///< "CMU walking"
   Duration latency{0};
 
-  /// A sensor that stands in `scene`, from `start` on.
+  /// The sensor in `scene`, from `start` on.
   [[nodiscard]] Result<std::unique_ptr<synthetic::BodySensor>> sensor_from(Timestamp start) const;
-  /// "gauss", "A 0123456789ab".
+  /// For people: "gauss", "A 0123456789ab".
   [[nodiscard]] std::string profile() const;
 };
 
-/// Mistakes are reported by the reader's finish().
+/// The reader's finish() reports mistakes.
 [[nodiscard]] SimulatedSettings read_simulated_settings(ConfigReader& config,
                                                         const SensorId& sensor);
 
