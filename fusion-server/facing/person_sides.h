@@ -1,7 +1,7 @@
 // Hidden Markov model of one person's sides (docs/papers/sides.md): two bits for the person and one
 // for each view.
 //
-// sign       the held sides are the true ones, or the opposite
+//   sign       the held sides are the true ones, or the opposite
 //   backwards  the person walks backwards
 //   exchanged  one per view: this sensor has left and right exchanged (labels.h)
 //

@@ -3,7 +3,7 @@
 // Each body present is 25 rigid bodies, one per joint, with the joints' own orientations, and one
 // skeleton of Motive's bones.  Both are described for every slot in advance, so that a client's
 // list of models never changes; only a skeleton's bone lengths change, once they are measured.
-// rigid body  id = 25 * slot + joint + 1, "Body0_Head"; a joint that is not tracked has bit 0 of
+//   rigid body  id = 25 * slot + joint + 1, "Body0_Head"; a joint that is not tracked has bit 0 of
 //               its params clear and is placed at the next tracked joint towards the pelvis
 //   skeleton    id = slot + 1, "Body0"; its bones are "Body0_Hip" .. with ids 1 .. 21, in frames
 //               skeleton << 16 | bone; left out while it is unknown which way the body faces

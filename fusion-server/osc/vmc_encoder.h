@@ -4,7 +4,7 @@
 //   /VMC/Ext/OK        i loaded = 1, i calibration = 3 (done), i mode = 0, i tracking = 1 or 0;
 //                      all zero at the end
 //   /VMC/Ext/T         f seconds
-// /VMC/Ext/Root/Pos  s "root", identity: the world itself
+//   /VMC/Ext/Root/Pos  s "root", identity: the world itself
 //   /VMC/Ext/Bone/Pos  s bone, f px py pz qx qy qz qw: relative to its parent, with rotations from
 //                      the T-pose; Hips has its position in the world.  Multiplied along the chain
 //                      they give the joints' positions again.

@@ -15,24 +15,24 @@
 namespace chorus::registration {
 namespace {
 
-constexpr std::size_t kMaxPoints = 1500;  // points of the walk; successive ones repeat one another
+constexpr std::size_t kMaxPoints = 1500;  // of the walk; successive ones are redundant
 constexpr std::size_t kMinMeasurements =
-    20;  // with fewer a sensor keeps the place its chain gave it
+    20;  // with fewer a sensor keeps the place given by its chain
 constexpr int kIterations = 40;
 constexpr double kSettled = 1e-6;   // [rad], [m]
-constexpr double kMinScale = 0.02;  // in sigmas
-constexpr double kRidge = 1e-6;     // keeps an unobserved direction where it is
+constexpr double kMinScale = 0.02;  // in standard deviations
+constexpr double kRidge = 1e-6;     // holds the state in directions that nothing observes
 
-/// A sensor while it is being moved.
+/// A sensor during the adjustment.
 struct Station {
   SensorId id;
   const Walker* walker = nullptr;
   Eigen::Isometry3d level_from_sensor = Eigen::Isometry3d::Identity();
-  /// World: the levelled master.
+  /// World here means the levelled master.
   Eigen::Isometry3d world_from_level = Eigen::Isometry3d::Identity();
   bool levelled = false;
   bool master = false;
-  bool fixed = false;  ///< The master, and sensors that share too few points to be moved.
+  bool fixed = false;  ///< The master, and sensors with too few common points.
 };
 
 Eigen::Isometry3d level_of(const Walker& walker, bool use_floor) {
@@ -58,7 +58,7 @@ std::vector<Station> stations_of(const Places& places, const Walkers& walkers, b
   return stations;
 }
 
-/// Who saw which slot at one instant.
+/// Adds the slots that several sensors saw at one instant.
 void add_instant(const std::vector<std::optional<TrailMoment>>& moments,
                  const std::vector<Station>& stations, std::span<const Slot> slots,
                  std::vector<PointMeasurements>& points) {
@@ -74,8 +74,8 @@ void add_instant(const std::vector<std::optional<TrailMoment>>& moments,
   }
 }
 
-/// Every sensor's own instants, thinned out to save time: overlaps that only some share must not be
-/// missed.
+/// Each sensor's own instants, thinned out to save time: every sensor is included so that no
+/// overlap is missed.
 std::vector<Timestamp> instants_of(const std::vector<Station>& stations, std::size_t slots) {
   std::vector<Timestamp> all;
   for (const Station& station : stations) {
@@ -123,7 +123,7 @@ struct Adjustment {
   std::vector<PointMeasurements> points;
   double along_ratio = 1.0;
   double inflation = 1.0;
-  double scale = 0.0;  ///< Fixed after the first iteration, so that costs can be compared.
+  double scale = 0.0;  ///< Fixed after the first iteration, so that costs are comparable.
 
   [[nodiscard]] std::vector<FusedPoint> fuse_all() const {
     std::vector<Eigen::Isometry3d> places;
@@ -145,7 +145,7 @@ double median_norm(const std::vector<FusedPoint>& all) {
   return median(std::move(norms));
 }
 
-/// Tukey's loss, which the weights above belong to.
+/// Tukey's loss, from which the weights above are derived.
 double cost_of(const Adjustment& adjustment) {
   double cost = 0.0;
   for (const FusedPoint& fused : adjustment.fuse_all()) {
@@ -169,7 +169,7 @@ void add_floors(PlaceEquations& equations, const std::vector<Station>& stations,
   }
 }
 
-/// The master must not move: its rows become identity.
+/// The master must not move: its rows become the identity.
 void hold_fixed(PlaceEquations& equations, const std::vector<Station>& stations) {
   for (std::size_t i = 0; i < stations.size(); ++i) {
     if (!stations[i].fixed) continue;
@@ -198,7 +198,7 @@ PlaceEquations equations_of(const Adjustment& adjustment) {
   return equations;
 }
 
-/// False when nothing moves any more.
+/// Does one iteration; false when nothing moves any more.
 bool iterate(Adjustment& adjustment) {
   const PlaceEquations equations = equations_of(adjustment);
   const Eigen::VectorXd motion = equations.information.ldlt().solve(equations.right);

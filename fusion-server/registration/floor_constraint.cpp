@@ -11,16 +11,15 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kMinUp = 0.17;        // cos(80 deg): a sensor tilted further has no sense of up
-constexpr double kMinHeight = 0.10;    // [m] of the sensor over its floor
-constexpr double kFeetBelow = 0.25;    // [m] feet deeper than this contradict the plane
-constexpr double kFeetAbove = 0.60;    // [m] feet that never come lower than this contradict it too
-constexpr double kLowestShare = 0.10;  // percentile that counts as "touching the floor"
-constexpr double kViewIsVertical =
-    0.05;                              // horizontal part of the view below which yaw is left alone
-constexpr double kFarTilt = deg(1.5);  // floors tilted further off the median are left out
-constexpr double kFarHeight = 0.05;    // [m] the same for heights
-constexpr double kFootJointHeight = 0.05;  // [m] the lowest foot joint over the sole
+constexpr double kMinUp = 0.17;        // cos(80 deg): with more tilt, up is undefined for a sensor
+constexpr double kMinHeight = 0.10;    // [m] least height of the sensor above its floor
+constexpr double kFeetBelow = 0.25;    // [m] feet lower than this contradict the plane
+constexpr double kFeetAbove = 0.60;    // [m] feet that stay higher than this contradict it, too
+constexpr double kLowestShare = 0.10;  // percentile of the feet's heights that counts as the floor
+constexpr double kViewIsVertical = 0.05;  // with a smaller horizontal part of the view, yaw is kept
+constexpr double kFarTilt = deg(1.5);     // floors that deviate more from the median are left out
+constexpr double kFarHeight = 0.05;       // [m] the same for heights
+constexpr double kFootJointHeight = 0.05;  // [m] height of the lowest foot joint above the sole
 
 constexpr std::array kFeet{JointId::AnkleLeft, JointId::AnkleRight, JointId::FootLeft,
                            JointId::FootRight};
@@ -47,7 +46,7 @@ std::optional<FloorPlane> median_floor(const WalkTrack& walk) {
   return *plane;
 }
 
-/// Height over the plane that the lowest tenth of all foot joints stays under.
+/// Height above the plane below which the lowest tenth of all foot joints are.
 std::optional<double> lowest_feet(const WalkTrack& walk, const FloorPlane& floor) {
   std::vector<double> heights;
   for (const SensorFrame& frame : walk.frames) {
@@ -121,7 +120,7 @@ FloorPlane common_floor(const std::vector<PlacedFloor>& floors) {
     }
   }
   normal = (normal.norm() > 0 ? normal : middle).normalized();
-  // Each floor is believed right under its own sensor, where its tilt does no harm.
+  // Each floor's height is taken below its own sensor, where an error of its tilt is harmless.
   std::vector<double> offsets;
   for (const PlacedFloor& each : floors) {
     offsets.push_back(each.floor.distance(each.eye) - normal.dot(each.eye));

@@ -9,33 +9,33 @@
 
 namespace chorus::registration {
 
-/// A sensor's floor over the whole walk, and what is wrong with it if it cannot be used.
+/// A sensor's floor over the whole walk, and the reason if it cannot be used.
 struct WalkFloor {
   std::optional<FloorPlane> floor;  ///< Sensor space; present only when plausible.
   std::string objection;  ///< "its floor plane is above the feet", empty when there is none.
 };
 
-/// Median of the reported planes.  Plausible: it points up in the sensor's own sense of up, lies
-/// below the sensor, and the person's feet stand on it.
+/// Median of the reported planes.  It is plausible if its normal points up in sensor space, it lies
+/// below the sensor, and the person's feet are on it.
 [[nodiscard]] WalkFloor floor_of(const WalkTrack& walk);
 
 /// For sensors without a floor plane: people walk upright, so the mean direction from hips to neck
-/// is up, and the lowest feet touch the floor.  Good to a few degrees.
+/// is up, and the lowest feet are on the floor.  Accurate to a few degrees.
 [[nodiscard]] std::optional<FloorPlane> floor_from_body(const WalkTrack& walk);
 
 /// One sensor's floor and place, both in a common space.
 struct PlacedFloor {
   FloorPlane floor;
-  Eigen::Vector3d eye = Eigen::Vector3d::Zero();  ///< Where the sensor is [m].
+  Eigen::Vector3d eye = Eigen::Vector3d::Zero();  ///< Position of the sensor [m].
 };
 
-/// The common floor: tilt and height averaged, without floors far from the median.  A floor plane
-/// errs by tenths of a degree, which is centimetres at the far side of the room; the mean of N errs
-/// by a root of N less.  `floors` must not be empty.
+/// The common floor: the mean of tilts and heights, without floors far from the median.  A floor
+/// plane is wrong by tenths of a degree, which is centimetres at the far side of the room; the mean
+/// of N floors has 1 / sqrt(N) of that error.  `floors` must not be empty.
 [[nodiscard]] FloorPlane common_floor(const std::vector<PlacedFloor>& floors);
 
-/// level() of the plane, then turned about +y so that +z is the viewing direction projected onto
-/// the floor.
+/// level() of the plane, then a rotation about +y so that +z is the viewing direction projected
+/// onto the floor.
 [[nodiscard]] Eigen::Isometry3d world_from_master(const FloorPlane& floor_in_master);
 
 }  // namespace chorus::registration

@@ -1,5 +1,5 @@
-// Normal equations of small motions, and what two floors add (docs/papers/registration.md, Section
-// 6).
+// Normal equations of small motions, and the part that two floors contribute
+// (docs/papers/registration.md, Section 6).
 #pragma once
 
 #include <numbers>
@@ -12,7 +12,7 @@ namespace chorus::registration {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Row6 = Eigen::Matrix<double, 1, 6>;
 
-/// information * (omega, tau) = right, for a motion on the target side.
+/// information * (omega, tau) = right, for a motion applied on the target side.
 struct Normal {
   Matrix6 information = Matrix6::Zero();
   Vector6 right = Vector6::Zero();
@@ -20,18 +20,18 @@ struct Normal {
   void add(const Row6& row, double residual, double weight);
 };
 
-/// How far two levelled frames may differ in pitch and roll (tilt [rad], per axis) and height [m];
-/// 0: no prior.
+/// Standard deviations between two levelled frames: of pitch and roll (tilt [rad], per axis) and of
+/// height [m]; 0: no prior.
 struct FloorPrior {
   double tilt = 0.0;
   double height = 0.0;
 };
 
-/// Each floor is good to 0.4 deg and 10 mm; the difference of two is worse by sqrt(2).
+/// Each floor is accurate to 0.4 deg and 10 mm; the difference of two is worse by sqrt(2).
 inline constexpr FloorPrior kTwoFloors{deg(0.4) * std::numbers::sqrt2,
                                        mm(10) * std::numbers::sqrt2};
 
-/// Up must stay up, and the floor under the walk must stay in place.  Both frames are levelled.
+/// Both frames are levelled: a motion must not tilt up, nor lift the floor below the walk.
 void add_prior(Normal& normal, const FloorPrior& prior, const Eigen::Isometry3d& target_from_source,
                const Eigen::Vector3d& centre_in_source);
 

@@ -24,13 +24,13 @@ using Icp = pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ, double>;
 constexpr int kRefineIterations = 20;
 constexpr int kSeedIterations = 40;
 constexpr int kYawSeeds = 24;            // 15 deg apart
-constexpr float kKeptShare = 0.9F;       // trimmed
-constexpr double kSettled = 1e-9;        // squared metres and 1 - cos of the last step
-constexpr std::size_t kMaxPoints = 300;  // a 10 s walk at 30 Hz; more costs time and gives nothing
+constexpr float kKeptShare = 0.9F;       // trimmed ICP
+constexpr double kSettled = 1e-9;        // of the last step, in squared metres and as 1 - cos
+constexpr std::size_t kMaxPoints = 300;  // a 10 s walk at 30 Hz; more costs time without benefit
 constexpr std::size_t kMinPoints = 10;
 
-/// Nearest neighbours among a few hundred points by checking all of them: several times faster than
-/// a tree, which spends more on locks than on such a search.
+/// Finds nearest neighbours among a few hundred points by testing them all: several times faster
+/// than a k-d tree, which spends more time on locks than on such a search.
 class Scan : public pcl::search::KdTree<pcl::PointXYZ> {
  public:
   void setInputCloud(const PointCloudConstPtr& cloud, const IndicesConstPtr& /*all*/) override {
@@ -41,7 +41,7 @@ class Scan : public pcl::search::KdTree<pcl::PointXYZ> {
     }
   }
 
-  /// The nearest one only, whatever k is: iterative closest point asks for no more.
+  /// Returns only the nearest one, whatever k is, because ICP needs no more.
   int nearestKSearch(const pcl::PointXYZ& point, int /*k*/, pcl::Indices& indices,
                      std::vector<float>& squares) const override {
     if (points_.rows() == 0) return 0;
@@ -60,7 +60,7 @@ class Scan : public pcl::search::KdTree<pcl::PointXYZ> {
   mutable Eigen::ArrayXf squares_;  ///< Of the last search; one thread uses one ICP.
 };
 
-/// At most kMaxPoints, evenly taken.
+/// At most kMaxPoints points, evenly chosen.
 Points::Ptr cloud_of(Cloud points) {
   Points::Ptr cloud(new Points);
   const std::size_t step = std::max<std::size_t>(1, (points.size() + kMaxPoints - 1) / kMaxPoints);
@@ -86,7 +86,7 @@ void set_up(Icp& icp, const Points::Ptr& source, const Points::Ptr& target, int 
   icp.setEuclideanFitnessEpsilon(kSettled);
 }
 
-/// Runs from `start`; the residual is the root mean of the kept squared nearest distances.
+/// Runs from `start`; the residual is the rms of the kept nearest distances.
 std::optional<IcpFit> run(Icp& icp, const Eigen::Isometry3d& start, double kept_share) {
   Points moved;
   icp.align(moved, start.matrix());
@@ -149,7 +149,7 @@ std::optional<IcpFit> refine_by_icp(Cloud source, Cloud target, const Eigen::Iso
     set_up(icp, from, to, kRefineIterations);
     icp.setMaxCorrespondenceDistance(reach);
     return run(icp, start, 1.0);
-  } catch (const std::exception&) {  // PCL throws on degenerate clouds; the start is kept then
+  } catch (const std::exception&) {  // PCL throws on degenerate clouds; then the start is returned
     return std::nullopt;
   }
 }

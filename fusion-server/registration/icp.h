@@ -14,18 +14,18 @@ using Cloud = std::span<const Eigen::Vector3d>;
 
 struct IcpFit {
   Eigen::Isometry3d target_from_source = Eigen::Isometry3d::Identity();
-  double rms = 0.0;  ///< To the nearest target point, over the accepted correspondences [m].
+  double rms = 0.0;  ///< Distance to the nearest target point, over kept correspondences [m].
   std::size_t accepted = 0;
 };
 
-/// Point-to-point refinement from a good start; points farther than `reach` from every target point
-/// are left out.  None when it does not converge.
+/// Point-to-point refinement from a good start; points farther than `reach` from all target points
+/// are ignored.  None when it does not converge.
 [[nodiscard]] std::optional<IcpFit> refine_by_icp(Cloud source, Cloud target,
                                                   const Eigen::Isometry3d& start, double reach);
 
-/// The published method as far as it is described: levelled clouds, without time stamps or an
+/// The published method as far as it is described: levelled clouds without time stamps or an
 /// initial guess.  Tries 24 yaws about the centroids, keeps the best 90 % of the correspondences,
-/// takes the smallest residual.
+/// and returns the result of smallest residual.
 [[nodiscard]] Result<IcpFit> icp_from_yaw_seeds(Cloud source, Cloud target);
 
 }  // namespace chorus::registration

@@ -16,13 +16,13 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kMinAgreement = 0.3;  // share of inliers below which nothing is believed
+constexpr double kMinAgreement = 0.3;  // with a smaller fraction of inliers the result is refused
 constexpr double kMinSlimness = 0.01;  // lambda2 / lambda1 of the walk: a line at 10 % lateral rms
 constexpr double kBias = mm(10);       // view-dependent joint bias at 90 deg and beyond
-constexpr std::size_t kMaxPairs = 6000;  // more cost time; successive frames repeat one another
-constexpr double kIcpReach = 0.10;       // [m] beyond it a neck point has no partner
+constexpr std::size_t kMaxPairs = 6000;  // more cost time; successive ones are redundant
+constexpr double kIcpReach = 0.10;       // [m] a neck point without a partner this near is ignored
 
-/// Both sides levelled to y = 0 if both floors are known; unchanged otherwise.
+/// Both skeletons' spaces levelled to y = 0 if both floors are known; unchanged otherwise.
 struct Levelled {
   bool both = false;
   Eigen::Isometry3d level_from_target = Eigen::Isometry3d::Identity();
@@ -59,7 +59,7 @@ Result<void> enough(const Pairing& pairing, const std::string& both,
   return fail(ErrorCode::Unavailable, both, why);
 }
 
-/// Whole instants are dropped evenly, never single joints.
+/// Drops whole instants at even distances, never single joints.
 std::vector<Pair> thinned(const Pairing& pairing) {
   const std::size_t keep_every = (pairing.pairs.size() + kMaxPairs - 1) / kMaxPairs;
   if (keep_every <= 1) return pairing.pairs;
@@ -79,8 +79,8 @@ void apply(std::vector<Pair>& pairs, const Levelled& levelled) {
   }
 }
 
-/// The extent of the walk: the two largest principal axes, for the slot seen most (the first among
-/// equals).
+/// The extent of the walk: its two largest principal axes, for the slot seen most often (of equals
+/// the first).
 struct Extent {
   double spread = 0.0;    ///< [m]
   double slimness = 1.0;  ///< lambda2 / lambda1
@@ -108,7 +108,7 @@ Extent extent_of(const std::vector<Pair>& pairs, const std::vector<double>& weig
   return {std::sqrt(major + minor), major > 0 ? minor / major : 0.0};
 }
 
-/// The neck clouds of the pairs, or those of the first slot there is.
+/// The neck clouds of the pairs, or those of the first slot that has pairs.
 void clouds_of(const std::vector<Pair>& pairs, std::vector<Eigen::Vector3d>& target,
                std::vector<Eigen::Vector3d>& source) {
   const std::size_t slot = pairs.front().slot;
@@ -119,8 +119,8 @@ void clouds_of(const std::vector<Pair>& pairs, std::vector<Eigen::Vector3d>& tar
   }
 }
 
-/// Otto 5.2: ICP on the neck clouds.  Returns its residual.  Its result is used only if the timed
-/// pairs, which know more, do not contradict it.
+/// Otto 5.2: ICP on the neck clouds.  Returns its residual.  Its pose is used only if it does not
+/// contradict the timed pairs, which contain more information.
 double refine_with_icp(const std::vector<Pair>& pairs, Refined& refined, double along_ratio) {
   std::vector<Eigen::Vector3d> target;
   std::vector<Eigen::Vector3d> source;
@@ -133,7 +133,7 @@ double refine_with_icp(const std::vector<Pair>& pairs, Refined& refined, double 
   return rms_of(pairs, moved.weights, moved.target_from_source);
 }
 
-/// Bias that no length of walk removes: grows with the angle between the two lines of sight.
+/// The bias that no length of walk removes: it grows with the angle between the lines of sight.
 Matrix6 bias_floor(const Eigen::Isometry3d& target_from_source) {
   const double angle = angular_distance(Eigen::Quaterniond(target_from_source.linear()),
                                         Eigen::Quaterniond::Identity());
@@ -161,7 +161,7 @@ Result<void> believable(const PairwiseRegistration& edge, const Extent& extent,
           both, 100.0 * agreement, edge.rms));
 }
 
-/// A line does not determine the turn around it, unless the floor or the body's height does.
+/// A straight walk leaves the rotation about it open, unless floor or body height determine it.
 Result<void> determined(const Extent& extent, bool levelled, const std::string& both,
                         JointChoice joints) {
   if (extent.slimness >= kMinSlimness || levelled || joints != JointChoice::Neck) return {};
@@ -217,9 +217,9 @@ Eigen::Vector3d middle_of(const std::vector<Eigen::Vector3d>& cloud) {
   return sum / static_cast<double>(std::max<std::size_t>(1, cloud.size()));
 }
 
-/// The floor fixes height, pitch and roll after the fact, as the paper's "floor plane estimation
-/// compensates".  What ICP fitted are the clouds: their middle stays where it put it, whatever tilt
-/// is taken out.
+/// Applies the floor's height, pitch and roll afterwards, as the paper's "floor plane estimation
+/// compensates".  ICP has fitted the clouds: their centre stays where ICP put it, whatever tilt is
+/// removed.
 Eigen::Isometry3d on_the_floor(const Eigen::Isometry3d& level_from_level,
                                const Eigen::Vector3d& middle) {
   Eigen::Isometry3d flat = Eigen::Isometry3d::Identity();

@@ -1,4 +1,4 @@
-// From two trails to one edge of the graph.
+// Computes one edge of the graph from two trails.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,7 @@
 
 namespace chorus::registration {
 
-/// One sensor's walk, with everything that is computed once per sensor.
+/// One sensor's walk, with all that is computed once per sensor.
 struct Walker {
   Trail trail;
   WalkFloor floor;
@@ -17,8 +17,8 @@ struct Walker {
 
 [[nodiscard]] Walker walker_of(const WalkTrack& walk, const RegistrationConfig& config);
 
-/// Error codes: NotFound, the two never saw the person together; Unavailable, they saw too little;
-/// Conflict, what they saw does not fit together.
+/// Errors: NotFound, the two sensors never saw the person together; Unavailable, they saw too
+/// little; Conflict, their observations are inconsistent.
 [[nodiscard]] Result<PairwiseRegistration> register_walkers(const Walker& target,
                                                             const Walker& source,
                                                             const RegistrationConfig& config);
@@ -26,8 +26,8 @@ struct Walker {
 /// Estimates an edge from two walks.
 using PairEstimator = std::function<Result<PairwiseRegistration>(const Walker&, const Walker&)>;
 
-/// solve() with another estimator of pairs and everything else the same, so that estimators can be
-/// compared.
+/// solve() with another estimator of edges and everything else the same, to compare
+/// estimators.
 [[nodiscard]] Registration solve_with(const PairEstimator& estimate,
                                       const std::vector<WalkTrack>& walk, Timestamp now,
                                       const RegistrationConfig& config);

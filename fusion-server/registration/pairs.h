@@ -1,7 +1,7 @@
-// Time-paired correspondences: where the other sensor saw the same joint at that very instant.
+// Time-paired correspondences: where the other sensor saw the same joint at exactly that instant.
 //
-// The target's trail is interpolated at the source's capture times (Otto 5.2.4), so unsynchronised
-// sensors give simultaneous points.  docs/papers/registration.md, Section 2.
+// The target's trail is interpolated at the source's capture times (Otto 5.2.4), so sensors that
+// are not synchronised give simultaneous points. docs/papers/registration.md, Section 2.
 #pragma once
 
 #include <optional>
@@ -17,12 +17,12 @@ struct TrailMoment {
   double speed = 0.0;  ///< Mean over the slots [m/s].
 };
 
-/// Walks along a trail as the instants advance.
+/// Reads a trail at increasing instants.
 class TrailReader {
  public:
   TrailReader(const Trail& trail, Duration max_gap) : frames_(trail.frames), max_gap_(max_gap) {}
 
-  /// Instants must not go back.  None unless a narrow bracket of one body holds the instant.
+  /// Instants must not decrease.  None unless the instant lies in a narrow bracket of one body.
   std::optional<TrailMoment> at(Timestamp instant);
 
  private:
@@ -36,18 +36,18 @@ struct Pair {
   Eigen::Vector3d x_in_source;
   Eigen::Vector3d ray_in_target;  ///< Unit line of sight of the target sensor.
   Eigen::Vector3d ray_in_source;
-  double sigma = 0.0;  ///< Of the difference, as far as the slot determines it [m].
+  double sigma = 0.0;  ///< Of the difference, as given by the slot [m].
   std::size_t slot = 0;
-  /// Number of the source frame among the paired ones; groups simultaneous pairs.
+  /// Index of the source frame among the paired ones; simultaneous pairs have the same.
   std::size_t instant = 0;
 };
 
 struct Pairing {
   std::vector<Pair> pairs;
-  std::size_t instants = 0;      ///< Source frames that gave pairs.
-  std::size_t together = 0;      ///< Source frames at whose instant the target saw somebody too.
-  std::size_t too_fast = 0;      ///< ... of these, refused by max_speed.
-  std::size_t out_of_range = 0;  ///< ... of these, refused by min_distance or max_distance.
+  std::size_t instants = 0;      ///< Source frames for which there are pairs.
+  std::size_t together = 0;      ///< Source frames at whose instant the target saw a body, too.
+  std::size_t too_fast = 0;      ///< ... of these, rejected by max_speed.
+  std::size_t out_of_range = 0;  ///< ... of these, rejected by min_distance or max_distance.
 };
 
 [[nodiscard]] Pairing pair_up(const Trail& target, const Trail& source,

@@ -1,4 +1,4 @@
-// One point of the walk seen by several sensors, eliminated from the adjustment's equations.
+// A point of the walk seen by several sensors, eliminated from the equations of the adjustment.
 //
 // Sensor i sees the point at m_i; T_i is the sensor's place, S_i^-1 the information of its
 // measurement:
@@ -18,7 +18,7 @@
 
 namespace chorus::registration {
 
-/// One sensor's measurement of one point, in its levelled frame.
+/// One sensor's measurement of one point, in the sensor's levelled frame.
 struct PointMeasurement {
   std::size_t sensor = 0;  ///< Index into the places.
   Eigen::Vector3d x;       ///< [m]
@@ -26,11 +26,11 @@ struct PointMeasurement {
   double sigma = 0.0;      ///< Across the line of sight [m].
 };
 
-using PointMeasurements = std::vector<PointMeasurement>;  ///< Of at least two sensors.
+using PointMeasurements = std::vector<PointMeasurement>;  ///< By two or more sensors.
 
-/// A point at the present places.
+/// A point according to the present places.
 struct FusedPoint {
-  std::vector<Eigen::Vector3d> seen;            ///< Each measurement in the world.
+  std::vector<Eigen::Vector3d> seen;            ///< Each measurement in world space.
   std::vector<Eigen::Matrix3d> information;     ///< S^-1 of each measurement.
   Eigen::Vector3d x = Eigen::Vector3d::Zero();  ///< Inverse-variance mean.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
@@ -41,7 +41,7 @@ struct FusedPoint {
                                     std::span<const Eigen::Isometry3d> world_from_level,
                                     double along_ratio);
 
-/// Whole points are believed or not: the worst measurement decides, in units of sigma.
+/// A point is trusted or not as a whole: the norm of its worst measurement, in units of sigma.
 [[nodiscard]] double worst_norm(const FusedPoint& fused);
 
 /// information * (omega, tau of every sensor) = right.
@@ -50,7 +50,7 @@ struct PlaceEquations {
   Eigen::VectorXd right;
 };
 
-/// Adds H and g of one point, times `weight`.
+/// Adds H and g of one point, multiplied by `weight`.
 void add_point(PlaceEquations& equations, const PointMeasurements& measurements,
                const FusedPoint& fused, double weight);
 

@@ -14,12 +14,12 @@ namespace {
 
 constexpr int kIterations = 15;
 constexpr double kSettled = 1e-7;        // [rad], [m]
-constexpr double kMaxCorrelated = 0.98;  // rho beyond this says "constant error", not "no samples"
+constexpr double kMaxCorrelated = 0.98;  // a larger rho means "constant error", not "no samples"
 constexpr double kTiny = 1e-12;
-constexpr double kMinScale = 0.02;  // in sigmas; perfect pairs must not divide by zero
+constexpr double kMinScale = 0.02;  // in sigmas; avoids a division by zero for perfect pairs
 constexpr double kAxes = 3.0;
 
-/// One pair at the present place: what is left, and S^-1.
+/// One pair at the present pose: its residual and S^-1.
 struct Residual {
   Eigen::Vector3d off;
   Eigen::Matrix3d information;
@@ -49,7 +49,7 @@ std::vector<Residual> residuals_of(const std::vector<Pair>& pairs,
   return residuals;
 }
 
-/// Tukey's weights with the scale from the median of the pairs that count so far.
+/// Sets Tukey's weights, scaled by the median over the pairs that count so far.
 void reweigh(const std::vector<Residual>& residuals, Refined& refined) {
   std::vector<double> norms;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
@@ -81,7 +81,7 @@ Eigen::Vector3d centre_of(const std::vector<Pair>& pairs, const std::vector<doub
   return total > 0 ? Eigen::Vector3d(sum / total) : sum;
 }
 
-/// The mean whitened residual of each instant, and how much a single pair scatters.
+/// Mean whitened residual of each instant, and the scatter of single pairs.
 struct Instants {
   std::vector<Eigen::Vector3d> means;
   double squares = 0.0;
@@ -111,8 +111,8 @@ Instants instants_of(const std::vector<Pair>& pairs, const std::vector<Residual>
   return instants;
 }
 
-/// Pairs per independent pair: lag-1 autocorrelation of the instants, times the correlation of the
-/// joints within an instant.
+/// Number of pairs per independent pair: from the lag-1 autocorrelation of the instants and the
+/// correlation of the joints within an instant.
 double inflation_of(const Instants& instants) {
   double same = 0.0;
   double next = 0.0;

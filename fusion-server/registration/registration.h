@@ -12,7 +12,7 @@
 
 namespace chorus::registration {
 
-/// Everything one sensor saw during the walk, in capture order.
+/// All frames of one sensor during the walk, in capture order.
 struct WalkTrack {
   SensorId sensor;
   std::vector<SensorFrame> frames;
@@ -20,31 +20,31 @@ struct WalkTrack {
 
 enum class PairMethod {
   TimedRobust,  ///< Time-paired correspondences, closed form, robust re-weighting, ICP refinement.
-  IcpOnly,      ///< Baseline: neck clouds, PCL ICP, no time (Otto 5.2.1).
+  IcpOnly,      ///< Baseline: neck clouds, PCL ICP, without time (Otto 5.2.1).
 };
 
 enum class JointChoice {
   Neck,  ///< Otto: the neck alone.
   Core,  ///< Neck, SpineShoulder, Head, SpineMid and the flip-invariant shoulder and hip
          ///< mid-points.
-  All,  ///< Every joint: for sensors that tell left from right, and for motions other than walking.
+  All,   ///< All joints: if sensors distinguish left and right, and for motions beyond walking.
 };
 
 struct RegistrationConfig {
   PairMethod method = PairMethod::TimedRobust;
   JointChoice joints = JointChoice::Core;
   bool use_floor = true;  ///< Pitch, roll and height from the floor plane where there is one.
-  /// Error along a sensor's line of sight over the error across it: 1.5-2 for a depth sensor, 5-10
-  /// for a single camera that infers depth from the size of the person.
+  /// Ratio of the errors along and across a sensor's line of sight: 1.5-2 for a depth sensor, 5-10
+  /// for a single camera that infers depth from the person's size.
   double along_ratio = 2.0;
   Duration max_gap = std::chrono::milliseconds(60);  ///< Widest bracket for a correspondence.
   double min_distance = 0.5;                         ///< [m]
   double max_distance = 6.0;                         ///< [m]
-  double max_speed = 2.5;      ///< Person faster than this is not paired [m/s].
+  double max_speed = 2.5;                            ///< No pairs while the person is faster [m/s].
   std::size_t min_pairs = 60;  ///< With fewer correspondences there is no edge.
   double min_spread = 0.25;    ///< Narrower walks are refused [m].
   double max_edge_rms = 0.15;  ///< With larger residuals there is no edge [m].
-  /// Three sensors and more: one adjustment over all of them at the end.
+  /// With three or more sensors: one final adjustment of all of them.
   bool adjust_together = true;
   double good_rms = 0.08;  ///< Above this the verdict is provisional [m].
   Duration good_duration = std::chrono::seconds(20);  ///< Shorter walks stay provisional.
@@ -55,14 +55,14 @@ struct RegistrationConfig {
   bool operator==(const RegistrationConfig&) const = default;
 };
 
-/// One pair of tracks to one edge; an Error says in a full sentence why there is none.
+/// Computes one edge from two tracks; an Error says in a full sentence why there is none.
 [[nodiscard]] Result<PairwiseRegistration> register_pair(const WalkTrack& target,
                                                          const WalkTrack& source,
                                                          const RegistrationConfig& config);
 
-/// All tracks to one registration.  Verdict and reasons are always set; sensors that could not be
-/// linked are missing from `sensors` and named in `reasons` ("sensors s3 and s4 never saw the
-/// person together").
+/// Computes a registration from all tracks.  Verdict and reasons are always set; sensors that could
+/// not be linked are missing from `sensors` and named in `reasons` ("sensors s3 and s4 never saw
+/// the person together").
 [[nodiscard]] Registration solve(const std::vector<WalkTrack>& walk, Timestamp now,
                                  const RegistrationConfig& config);
 

@@ -12,11 +12,11 @@ namespace {
 constexpr double kCutoff = 3.0;  // c of Geman-McClure in standard deviations
 constexpr double kAnneal = 1.4;  // mu <- mu / 1.4
 constexpr int kTukeyIterations = 8;
-constexpr double kMinScale = 0.02;  // in sigmas; perfect pairs must not divide by zero
+constexpr double kMinScale = 0.02;  // in sigmas; avoids a division by zero for perfect pairs
 constexpr double kAgreeingShare = 0.5;
 constexpr int kMaxDoublings = 5;
 
-/// The pairs as the columns that the closed form wants.
+/// The pairs as columns of matrices, as the closed form needs them.
 struct Columns {
   std::vector<Eigen::Vector3d> source;
   std::vector<Eigen::Vector3d> target;
@@ -55,7 +55,7 @@ std::vector<double> residuals(const Columns& columns, const Eigen::Isometry3d& t
   return norms;
 }
 
-/// Geman-McClure with graduated non-convexity; `cutoff` in the pairs' sigmas.
+/// Geman-McClure loss with graduated non-convexity; `cutoff` is in units of the pairs' sigmas.
 Result<RigidFit> anneal(const Columns& columns, Freedom freedom, double cutoff) {
   Result<RigidFit> fit = fit_once(columns, std::vector<double>(columns.size(), 1.0), freedom);
   if (!fit) return fit;
@@ -97,7 +97,7 @@ RobustFit summarise(const Columns& columns, const RigidFit& fit, std::vector<dou
   return result;
 }
 
-/// Tukey's biweight with the scale taken from the median residual of the agreeing pairs.
+/// Tukey's biweight, scaled by the median residual of the inliers.
 Result<RobustFit> polish(const Columns& columns, Freedom freedom, RigidFit fit, double cutoff) {
   std::vector<double> weights(columns.size());
   double scale = 0.0;

@@ -1,6 +1,6 @@
-// Closed-form rigid fit made robust: graduated non-convexity, then Tukey re-weighting.
+// A robust closed-form rigid fit: graduated non-convexity, then Tukey re-weighting.
 //
-// Needs no initial guess and survives more than half of the pairs being wrong in incoherent ways.
+// Needs no initial guess and tolerates more than half of the pairs being wrong incoherently.
 // Derived in docs/papers/registration.md, Section 3.
 #pragma once
 
@@ -12,7 +12,7 @@
 namespace chorus::registration {
 
 enum class Freedom {
-  Yaw,   ///< Both sides levelled: rotation about +y and translation.
+  Yaw,   ///< Both sides are levelled: rotation about +y and translation.
   Full,  ///< Six degrees of freedom.
 };
 
@@ -24,8 +24,8 @@ struct RobustFit {
   std::size_t inliers = 0;
 };
 
-/// `sigma_factor` scales the pairs' own sigmas to the expected ones; it is doubled until half of
-/// the pairs agree, so that noisy sensors are not fitted to a lucky few.
+/// `sigma_factor` scales the pairs' sigmas to the expected ones; it is doubled until half of the
+/// pairs are inliers, so that with noisy sensors the fit does not follow a lucky few.
 [[nodiscard]] Result<RobustFit> fit_robustly(const std::vector<Pair>& pairs, Freedom freedom,
                                              double sigma_factor = 1.0);
 

@@ -20,8 +20,8 @@ namespace chorus::registration {
 namespace {
 
 constexpr double kRadius95 = 2.4477;  // sqrt of chi^2 with 2 degrees of freedom at 95 %
-constexpr double kMinUpright = 0.0;   // cos of the tilt beyond which a sensor would hang head down
-constexpr double kMinHeight = 0.0;    // [m] a sensor under the floor is a wrong solution
+constexpr double kMinUpright = 0.0;   // cos of the tilt beyond which a sensor would be upside down
+constexpr double kMinHeight = 0.0;    // [m] a sensor below the floor is a wrong solution
 
 /// Why two sensors have no edge.
 struct Refusal {
@@ -30,7 +30,7 @@ struct Refusal {
   Error error;
 };
 
-/// Everything between the walk and the verdict.
+/// All intermediate results between the walk and the verdict.
 struct Work {
   const std::vector<WalkTrack>& walk;
   const RegistrationConfig& config;
@@ -38,13 +38,13 @@ struct Work {
   std::map<SensorId, const WalkTrack*> tracks;
   std::vector<Refusal> refusals;
   Registration result;
-  bool doubtful = false;  ///< Something speaks against all places.
+  bool doubtful = false;  ///< There is a doubt about all places.
 
   void doubt(std::string reason) {
     doubtful = true;
     note(std::move(reason));
   }
-  /// Speaks against the place of one sensor and leaves the others good.
+  /// Adds a doubt about the place of one sensor; the others stay good.
   void doubt(const SensorId& sensor, std::string reason) {
     result.verdicts[sensor].reasons.push_back(reason);
     note(std::move(reason));
@@ -79,7 +79,7 @@ void register_pairs(Work& work, const PairEstimator& estimate) {
 }
 
 /// The sensor that reaches the most others; of equals, the one with the smallest total error, then
-/// with the lowest id.
+/// with the smallest id.
 SensorId best_master(const Work& work) {
   SensorId best;
   std::size_t most = 0;
@@ -108,7 +108,7 @@ void choose_master(Work& work) {
   work.result.master = best_master(work);
 }
 
-/// The common floor of all linked sensors; without any, from the upright body.
+/// The common floor of all linked sensors; if none has one, from the upright body.
 FloorPlane floor_in_master(Work& work, const std::map<SensorId, Chain>& chains) {
   std::vector<PlacedFloor> floors;
   for (const auto& [sensor, chain] : chains) {
@@ -124,7 +124,7 @@ FloorPlane floor_in_master(Work& work, const std::map<SensorId, Chain>& chains) 
   return floor_from_body(*work.tracks.at(work.result.master)).value_or(FloorPlane{});
 }
 
-/// "would hang head down", or nothing when the place is possible.
+/// "would hang head down" or the like; nothing when the place is possible.
 std::optional<std::string> impossible(const Eigen::Isometry3d& world_from_sensor) {
   if (!world_from_sensor.matrix().allFinite()) return "has no finite place";
   if (world_from_sensor.linear()(1, 1) < kMinUpright) return "would hang head down";
@@ -140,8 +140,8 @@ double median_inflation(const std::vector<PairwiseRegistration>& edges) {
   return median(std::move(all));
 }
 
-/// Chains first; from three sensors on, all of them once more together.  The covariance stays the
-/// chain's: an upper bound, because the adjustment only adds knowledge.
+/// Links by chains; with three or more sensors, then adjusts all of them together.  The covariance
+/// stays that of the chain: an upper bound, because the adjustment only adds information.
 std::map<SensorId, Chain> link(const Work& work) {
   auto chains = best_chains(work.result.master, work.result.edges);
   const bool timed = work.config.method == PairMethod::TimedRobust;
@@ -180,8 +180,8 @@ bool linked(const Work& work, const SensorId& sensor) {
   return work.result.sensors.contains(sensor);
 }
 
-/// Why this sensor is left out: the reasons of its pairs with linked sensors, with "never together"
-/// summed up.
+/// Says why this sensor is left out: the reasons of its pairs with linked sensors, where several
+/// "never together" are combined.
 void explain_unlinked(Work& work, const SensorId& sensor) {
   std::vector<std::string> strangers;
   std::vector<std::string> reasons;
@@ -221,7 +221,7 @@ double radius95(const Extrinsics& place) {
   return kRadius95 * std::sqrt(std::max(0.0, eigen.eigenvalues()[1]));
 }
 
-/// Longest time any sensor watched the walk.
+/// Length of the walk as seen by the sensor that watched it longest.
 Duration duration_of(const Work& work) {
   Duration longest{};
   for (const auto& [sensor, walker] : work.walkers) {
@@ -241,7 +241,7 @@ const PairwiseRegistration* edge_between(const Work& work, const SensorId& a, co
   return found == edges.end() ? nullptr : &*found;
 }
 
-/// The chain of a sensor leads over pairs that do not agree well.
+/// Adds a doubt if the chain of a sensor contains pairs that do not agree well.
 void judge_chain(Work& work, const SensorId& sensor, const std::vector<SensorId>& chain) {
   for (std::size_t i = 1; i < chain.size(); ++i) {
     const PairwiseRegistration* edge = edge_between(work, chain[i - 1], chain[i]);
@@ -264,7 +264,7 @@ void judge_accuracy(Work& work) {
         fmt::format("sensor {} is placed only to within {:.3f} m; walk longer or further out",
                     sensor.str(), radius));
   }
-  // From the first frame to the last it is always a little less than was asked for.
+  // The time from the first frame to the last is always slightly less than requested.
   const Duration walked = std::chrono::round<std::chrono::seconds>(duration_of(work));
   if (walked < work.config.good_duration) {
     work.doubt(fmt::format("the walk lasted only {:.0f} s; {:.0f} s make a good registration",
@@ -272,7 +272,7 @@ void judge_accuracy(Work& work) {
   }
 }
 
-/// A verdict for each sensor by what speaks against it, and for all sensors with a place together.
+/// Sets the verdict of each sensor by the doubts about it, and that of all placed ones together.
 void pass_sentence(Work& work) {
   work.result.verdict = work.doubtful ? Verdict::Provisional : Verdict::Good;
   for (const auto& [sensor, walker] : work.walkers) {

@@ -1,4 +1,4 @@
-// One sensor's walk, reduced to the points that registration uses.
+// One sensor's walk, reduced to the points used for registration.
 #pragma once
 
 #include <array>
@@ -10,17 +10,17 @@
 
 namespace chorus::registration {
 
-/// A joint, or the midpoint of two.  The midpoint of a mirror pair is the same whichever side the
-/// sensor calls left, so it survives front/rear flips.
+/// A joint, or the midpoint of two.  The midpoint of a mirror pair does not depend on which side
+/// the sensor calls left, so it is not affected by exchanged sides.
 struct Slot {
   JointId first;
   JointId second;
-  double sigma;  ///< Error of one sensor's measurement, to weigh the slots against one another [m].
+  double sigma;  ///< Measurement error of a sensor, relative to other slots [m].
 };
 
 [[nodiscard]] std::span<const Slot> slots_of(JointChoice choice);
 
-/// The slots of the only body in a frame.
+/// The slots of the single body in a frame.
 struct TrailFrame {
   Timestamp captured;
   BodyId body;
@@ -35,8 +35,8 @@ struct Trail {
   std::vector<TrailFrame> frames;  ///< Strictly increasing in time.
 };
 
-/// Frames with exactly one body, tracked joints only.  Frames with several bodies need association
-/// across sensors first; `sole_body` is where that would go.
+/// Uses frames with exactly one body, and only tracked joints.  Frames with several bodies would
+/// first need association across sensors; `sole_body` is the place for that.
 [[nodiscard]] Trail trail_of(const WalkTrack& walk, JointChoice choice);
 
 }  // namespace chorus::registration

@@ -9,11 +9,11 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kEdgeFloor = 0.002;  // [m] what no walk, however long, gets below per hop
-constexpr double kLever = 2.5;        // [m] sensor to walk; Otto Eq. (1)'s best distance
+constexpr double kEdgeFloor = 0.002;  // [m] least error per hop, however long the walk
+constexpr double kLever = 2.5;        // [m] sensor to walk; the best distance of Otto Eq. (1)
 constexpr double kMinSpread = 0.01;   // [m]
 
-/// An edge seen from one of its ends.
+/// An edge as seen from one of its ends.
 struct Hop {
   SensorId to;
   Eigen::Isometry3d from_from_to = Eigen::Isometry3d::Identity();  ///< x_in_from = (.) x_in_to
@@ -21,7 +21,7 @@ struct Hop {
   double error = 0.0;
 };
 
-/// T' = Exp(xi) T turns into T'^-1 = Exp(-Ad(T^-1) xi) T^-1.
+/// T' = Exp(xi) T has the inverse T'^-1 = Exp(-Ad(T^-1) xi) T^-1.
 Hop reversed(const PairwiseRegistration& edge) {
   const Eigen::Isometry3d source_from_target = edge.target_from_source.inverse();
   const Matrix6 turn = adjoint(source_from_target);

@@ -1,7 +1,7 @@
-// Edges between sensors -> the best chain from the master to each client (Otto 5.2.3, Fig. 11).
+// Finds the best chain of edges from the master to each client (Otto 5.2.3, Fig. 11).
 //
-// Best = least summed edge error (Dijkstra).  An edge may be walked both ways; the reversal is
-// explicit here and nowhere else.  Derived in docs/papers/registration.md, Section 7.
+// Best = smallest sum of edge errors (Dijkstra).  An edge may be followed in both directions; it is
+// reversed explicitly, here and nowhere else.  Derived in docs/papers/registration.md, Section 7.
 #pragma once
 
 #include <map>
@@ -15,16 +15,16 @@ struct Chain {
   Eigen::Isometry3d master_from_sensor = Eigen::Isometry3d::Identity();
   std::vector<SensorId> sensors;  ///< Master first.
   double error = 0.0;             ///< Summed edge error [m].
-  /// Of (omega, tau) applied on the master side.
+  /// Covariance of (omega, tau) applied on the master side.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
-/// Reachable sensors only; the master itself has the identity and a chain of one.
+/// Contains reachable sensors only; the master has the identity and a chain of itself.
 [[nodiscard]] std::map<SensorId, Chain> best_chains(const SensorId& master,
                                                     const std::vector<PairwiseRegistration>& edges);
 
-/// Weight of an edge in the graph: rms / sqrt(inliers) plus a constant, so that shorter chains win
-/// ties [m].
+/// Cost of an edge in the graph: rms / sqrt(inliers) plus a constant, so that of equal chains the
+/// shorter one wins [m].
 [[nodiscard]] double edge_error(const PairwiseRegistration& edge);
 
 }  // namespace chorus::registration

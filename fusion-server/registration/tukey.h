@@ -1,15 +1,15 @@
-// Tukey's biweight, and the scale of residuals that it needs.
+// Tukey's biweight, and the scale of the residuals that it requires.
 #pragma once
 
 namespace chorus::registration {
 
-/// In standard deviations; 95 % efficiency for a Gaussian.
+/// In standard deviations; gives 95 % efficiency for a Gaussian.
 inline constexpr double kTukey = 4.685;
 
 /// Median of the norm of a 3-D standard Gaussian.
 inline constexpr double kMedianToSigma = 1.538;
 
-/// Weight in [0, 1] of a residual by its squared ratio to kTukey times the scale.
+/// Weight in [0, 1] of a residual; `squared_ratio` is (residual / (kTukey * scale))^2.
 [[nodiscard]] constexpr double tukey_weight(double squared_ratio) noexcept {
   return squared_ratio < 1.0 ? (1.0 - squared_ratio) * (1.0 - squared_ratio) : 0.0;
 }

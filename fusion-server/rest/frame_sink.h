@@ -1,4 +1,4 @@
-// Turns snapshots into the frames that REST shows.
+// Converts snapshots to the frames that REST serves.
 #pragma once
 
 #include "common/service/frame_resources.h"
@@ -7,7 +7,7 @@
 
 namespace chorus::rest {
 
-/// The frames outlive it.
+/// `frames` must outlive it.
 class FrameSink final : public Sink {
  public:
   explicit FrameSink(service::FrameResources& frames) : frames_(frames) {}
@@ -16,7 +16,7 @@ class FrameSink final : public Sink {
   void publish(std::shared_ptr<const Snapshot> snapshot) override {
     frames_.publish(frame_of(*snapshot));
   }
-  /// An earlier instant with the frames that came too late for it.
+  /// Takes an earlier instant, fused again with the frames that came too late for it.
   void amend(const Snapshot& snapshot) { frames_.amend(frame_of(snapshot)); }
 
  private:

@@ -1,4 +1,4 @@
-// /metrics of a fusion server, Prometheus text.
+// /metrics of a fusion server, as Prometheus text.
 #pragma once
 
 #include <memory>

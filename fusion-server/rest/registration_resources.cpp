@@ -14,7 +14,7 @@
 namespace chorus::rest {
 namespace {
 
-/// The members of a small object; `example` shows one that would be right.
+/// Reads the members of a small object; `example` shows a correct one in errors.
 Result<nlohmann::json> object_of(std::string_view body, const char* what, const char* example) {
   constexpr JsonLimits kLimits{4096, 4};
   auto json = parse_json(body, kLimits);

@@ -1,5 +1,5 @@
-// /registration and its sessions over HTTP: GET shows, POST starts a session or moves the world's
-// origin, DELETE forgets all or cancels a session.
+// /registration and its sessions over HTTP: GET reads, POST starts a session or moves the world's
+// origin, DELETE forgets the registration or cancels a session.
 #pragma once
 
 #include <functional>
@@ -14,23 +14,23 @@
 
 namespace chorus::rest {
 
-/// How long a session may collect [s]: shorter walks cannot be solved, longer ones only use memory.
+/// Limits of a session's length [s]: shorter walks cannot be solved, longer ones waste memory.
 inline constexpr double kMinSession = 8.0;
 inline constexpr double kMaxSession = 300.0;
 
-/// What the routes ask of the owner of the registration; must only post.  `ticket` counts the
-/// requests: RegistrationProgress::commands says which have been carried out.
+/// Requests by the routes to the owner of the registration; they must only be posted.  `ticket`
+/// counts the requests: RegistrationProgress::commands says how many have been carried out.
 struct RegistrationControl {
   std::function<void(Duration target, std::uint64_t session, std::uint64_t ticket)> start;
   std::function<void(std::uint64_t session, std::uint64_t ticket)> cancel;
   std::function<void(std::uint64_t ticket)> forget;
   std::function<void(const core::Origin& origin, std::uint64_t ticket)> move_origin;
-  /// How long a session collects unless the request says otherwise.
+  /// Length of a session unless the request specifies one.
   std::function<Duration()> default_target = [] { return std::chrono::seconds(30); };
 };
 
-/// Thread-safe.  A client's request shows in every answer after its own: until the owner has
-/// carried it out, its expected outcome is shown, and older states are not shown any more.
+/// Thread-safe.  A client's request affects every answer after its own: until the owner has carried
+/// it out, its expected outcome is shown instead of the older state.
 class RegistrationResources {
  public:
   RegistrationResources(service::Serving serving, RegistrationControl control);
@@ -51,17 +51,17 @@ class RegistrationResources {
   service::Serving serving_;
   RegistrationControl control_;
   std::shared_ptr<http::LiveDocument> live_;
-  mutable std::mutex mutex_;  ///< Guards what follows.
+  mutable std::mutex mutex_;  ///< Guards the members below.
   Registration registration_;
   RegistrationProgress progress_;
-  std::uint64_t asked_ = 0;  ///< The last ticket.
+  std::uint64_t asked_ = 0;  ///< Ticket of the latest request.
   std::uint64_t version_ = 0;
 };
 
 /// "{"seconds": 30}" or an empty body -> the target; InvalidArgument for anything else.
 [[nodiscard]] Result<Duration> parse_session_request(std::string_view body, Duration fallback);
 
-/// "{"x": 1.5, "z": -2, "yawDegrees": 90}", in the world as it is; what is left out is 0.
+/// "{"x": 1.5, "z": -2, "yawDegrees": 90}", in the present world; what is omitted is 0.
 /// InvalidArgument for anything else.
 [[nodiscard]] Result<core::Origin> parse_origin_request(std::string_view body);
 

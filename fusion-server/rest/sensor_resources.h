@@ -1,4 +1,4 @@
-// What is polled, over HTTP: /sensors/, /sensors/{id}, and each sensor's last raw frame.
+// The polled sensors over HTTP: /sensors/, /sensors/{id}, and each sensor's last raw frame.
 #pragma once
 
 #include <map>
@@ -15,20 +15,20 @@
 
 namespace chorus::rest {
 
-/// One sensor as a node; `id` is the IRI the document gives it ("" in /sensors/{id}).
+/// One sensor as a node; `id` is its IRI within the document ("" in /sensors/{id}).
 [[nodiscard]] resource::Node sensor_node(const SensorStatus& sensor, std::string id);
 
-/// Thread-safe: published from the pipeline's and the poller's thread, read by the server's.
+/// Thread-safe: the pipeline's and the poller's threads publish, the server's thread reads.
 class SensorResources {
  public:
-  /// These sensors get a live (long-poll) relay of their frames; those added later answer plain
-  /// GETs.
+  /// The frames of these sensors are relayed live (by long polling); those added later only answer
+  /// plain GETs.
   SensorResources(service::Serving serving, const std::vector<SensorId>& sensors);
 
   void publish(const std::vector<SensorStatus>& sensors);
-  /// The frame as the sensor sent it: its own space, its own clock.
+  /// Publishes a frame as the sensor sent it: in its own space, by its own clock.
   void relay(const SensorId& sensor, resource::FramePtr frame);
-  /// Its floor plane, in its own space; none: it has reported none.
+  /// Publishes its floor plane, in its own space; none: it has reported none.
   void floor(const SensorId& sensor, const std::optional<FloorPlane>& floor);
 
   void add_routes(http::Router& router);

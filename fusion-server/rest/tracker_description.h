@@ -1,4 +1,4 @@
-// `/` of a fusion server, and the floor of its world.
+// `/` of a fusion server, and the floor of the world.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace chorus::rest {
 
 [[nodiscard]] service::Self self_of(const std::string& title, bool with_viewer);
 
-/// /, /floor-plane (world: y = 0), and /viewer/ when there is a folder for it.
+/// Adds /, /floor-plane (world: y = 0), and /viewer/ if there is a folder for it.
 void add_description_routes(http::Router& router, const service::Serving& serving,
                             const std::string& title, const std::string& viewer_dir);
 

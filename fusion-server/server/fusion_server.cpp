@@ -45,7 +45,7 @@ core::CoreConfig core_config(const FusionSettings& settings) {
   return core;
 }
 
-/// Logs which sensors the stored places do not fit.
+/// Logs to which sensors the stored places do not apply.
 void report_fit(const Registration& registration, const std::vector<SensorId>& configured) {
   for (const SensorId& sensor : configured) {
     if (!registration.sensors.contains(sensor)) {
@@ -96,7 +96,7 @@ service::Health health_of(const Status& status) {
   return {true, {}};
 }
 
-/// Logs for each unusable folder what is wrong with it; the tracker runs without it.
+/// Logs for each unusable folder what is wrong with it; the tracker runs without that folder.
 std::string probe_folders(const StartSettings& config, const std::string& state_folder) {
   const auto told = [](const char* what, const Result<void>& probe) {
     if (!probe) log::error(what, {{"reason", to_string(probe.error())}});

@@ -1,4 +1,4 @@
-// Everything deploy/config/fusion.json can say, as plain values in two parts.
+// All settings of deploy/config/fusion.json as plain values, in two parts.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@
 
 namespace chorus::server {
 
-/// What a reload takes over.
+/// The settings that a reload applies.
 struct LiveSettings {
   service::LogConfig log;
   std::vector<http::Token> tokens;        ///< Of http.
@@ -32,16 +32,16 @@ struct LiveSettings {
   bool operator==(const LiveSettings&) const = default;
 };
 
-/// What needs a restart.
+/// The settings that require a restart.
 struct StartSettings {
   std::string title = "Chorus fusion server";
   http::ServerConfig http = {.port = 8080};  ///< Without its tokens and identity.
-  bool secure = false;                       ///< There is an identity.
+  bool secure = false;                       ///< Whether there is an identity.
   poll::PollTimings poll;
-  Duration history = std::chrono::seconds(10);  ///< How long /frames/{seq} and ?at= reach back.
+  Duration history = std::chrono::seconds(10);  ///< How far back /frames/{seq} and ?at= reach.
   outputs::OutputsConfig outputs;
-  std::string registration_file;  ///< Given extrinsics; empty: registered from a walk.
-  /// Where state survives a restart; "auto": the user's folder; empty: nowhere.
+  std::string registration_file;  ///< File of given extrinsics; empty: registered from a walk.
+  /// Where state is kept across restarts; "auto": the user's folder; empty: nowhere.
   std::string state_dir;
   service::RecordingConfig recording;
   std::string viewer_dir;  ///< Static files of /viewer/; empty: no viewer.
@@ -56,7 +56,7 @@ struct FusionSettings {
   bool operator==(const FusionSettings&) const = default;
 };
 
-/// Every mistake is reported, all at once.
+/// On errors, reports all mistakes at once.
 [[nodiscard]] Result<FusionSettings> read_fusion_settings(ConfigReader root);
 
 }  // namespace chorus::server

@@ -12,12 +12,12 @@
 namespace chorus::server {
 namespace {
 
-constexpr std::size_t kMaxFrames = 4096;   // 64 sensors at 30 Hz for two seconds
-constexpr std::size_t kMaxCommands = 256;  // people, not frames, send these
+constexpr std::size_t kMaxFrames = 4096;   // two seconds of 64 sensors at 30 Hz
+constexpr std::size_t kMaxCommands = 256;  // sent by people, not for every frame
 constexpr Duration kMaxIdle = std::chrono::milliseconds(20);
 constexpr Duration kGathering = std::chrono::milliseconds(2);
 constexpr Duration kStatusInterval = std::chrono::milliseconds(200);
-/// What broke may break again at once, at every turn.
+/// Whatever failed may fail again immediately, in every iteration.
 constexpr Duration kAfterFailure = std::chrono::milliseconds(10);
 constexpr Duration kStale = std::chrono::milliseconds(1500);
 
@@ -88,8 +88,8 @@ void PipelineLoop::turn() {
   if (now - status_at_ >= kStatusInterval || now < status_at_) publish_status(now);
 }
 
-/// Takes the frames that are there, or waits for the first.  With many sensors one arrives every
-/// other millisecond: they are left to gather, so that not each of them wakes this thread.
+/// Takes the frames that have arrived, or waits for the first.  With many sensors one arrives every
+/// other millisecond: they are collected, so that not each of them wakes this thread.
 void PipelineLoop::gather(Duration idle) {
   const auto since = std::chrono::steady_clock::now() - gathered_at_;
   if (since < kGathering) {
@@ -189,7 +189,7 @@ void PipelineLoop::take_solutions() {
                                                     : "registration not adopted",
                 {{"reasons", joined(sessions.front().reasons)}});
     }
-    // What a session puts into use before its end is withdrawn if the end is refused.
+    // What a session adopts before its end is withdrawn if the final solve is refused.
     if (outcome == core::Outcome::Adopted && kind == core::SolveKind::Final)
       keeper_.keep(worker_, now);
     publish_status(moment);
@@ -230,7 +230,7 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
   return status;
 }
 
-/// Logs once what the pipeline refuses of a live sensor; the poller logs the rest.
+/// Logs once what the pipeline refuses from a live sensor; the poller logs other errors.
 void PipelineLoop::complain(const SensorStatus& sensor) {
   std::string& told = told_[sensor.id];
   const bool news = sensor.state == "live" && !sensor.last_error.empty();

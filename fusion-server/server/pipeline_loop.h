@@ -1,4 +1,4 @@
-// The pipeline's thread: takes frames as they come, ticks at the output rate, hands snapshots out.
+// The pipeline's thread: takes frames as they come, ticks at the output rate, emits snapshots.
 #pragma once
 
 #include <functional>
@@ -21,10 +21,10 @@
 
 namespace chorus::server {
 
-// What other threads may ask of the pipeline.  Tickets rise; Status names the last one carried out.
+// Requests of other threads.  Tickets increase; Status names the last one carried out.
 struct StartSession {
   Duration target{0};
-  std::uint64_t session = 0;  ///< The id that the client was told.
+  std::uint64_t session = 0;  ///< The id that was returned to the client.
   std::uint64_t ticket = 0;
 };
 struct CancelSession {
@@ -44,25 +44,25 @@ struct LoopOptions {
   core::CoreConfig core;
   Registration registration;
   RegistrationStore store{""};
-  std::string store_trouble;  ///< Why the store's folder cannot be used; empty: it can be.
+  std::string store_trouble;  ///< Why the store's folder cannot be used; empty: it can.
   std::shared_ptr<const Clock> clock;
-  std::vector<Sink*> sinks;  ///< Outlive the loop.
+  std::vector<Sink*> sinks;  ///< They must outlive the loop.
   /// Called a few times a second and whenever the registration has changed, on the pipeline's
   /// thread.
   std::function<void(const Status&)> on_status;
   std::function<std::vector<poll::PollReport>()> poll_reports;
-  /// An earlier snapshot with the frames that came too late for it, on the pipeline's thread.
+  /// Called with an earlier snapshot, fused again with late frames, on the pipeline's thread.
   std::function<void(const Snapshot&)> on_amended;
 };
 
 class PipelineLoop {
  public:
   explicit PipelineLoop(LoopOptions options);
-  ~PipelineLoop();  ///< Stops and joins.
+  ~PipelineLoop();  ///< Stops and joins the thread.
 
   void start();
 
-  /// Never blocks; the oldest frames are dropped when the pipeline falls behind.
+  /// Never blocks; if the pipeline falls behind, the oldest frames are dropped.
   void give(SensorFrame frame) { frames_.give(std::move(frame)); }
   /// Takes effect within one output interval.
   void ask(Command command) { commands_.give(std::move(command)); }
@@ -88,12 +88,12 @@ class PipelineLoop {
   Handover<SensorFrame> frames_;
   Handover<Command> commands_;
   Handover<core::Solution> solutions_;
-  std::map<SensorId, std::string> told_;  ///< The last complaint in the log.
+  std::map<SensorId, std::string> told_;  ///< Last complaint logged per sensor.
   Counters counters_;
-  Histogram age_;  ///< Instant to publication [s].
+  Histogram age_;  ///< Time from instant to publication [s].
   Timestamp status_at_{};
   std::chrono::steady_clock::time_point gathered_at_{};
-  std::uint64_t obeyed_ = 0;  ///< Ticket of the last command obeyed.
+  std::uint64_t obeyed_ = 0;  ///< Ticket of the last command carried out.
   StateKeeper keeper_;
   RateReport trouble_{"pipeline step failed", log::Level::Error};
   Worker worker_;

@@ -1,7 +1,7 @@
-// Passes what goes through the fusion server to the recording in progress, if there is one.
+// Passes the fusion server's data to the recording in progress, if there is one.
 //
-// Nothing here waits, encodes or touches the disk: the recorder does that on its own thread, and
-// counts what it had to drop (common/record/recorder.h).
+// It does not wait, encode or access the disk: the recorder does that on its own thread, and counts
+// what it had to drop (common/record/recorder.h).
 #pragma once
 
 #include <memory>
@@ -21,7 +21,7 @@ class RecordingTap final : public Sink {
   [[nodiscard]] std::string_view name() const override { return "recording"; }
   void publish(std::shared_ptr<const Snapshot> snapshot) override;
 
-  /// Any thread.
+  /// May be called from any thread.
   void raw(record::RawFrame frame);
   /// The registration in use; may be told repeatedly, and is recorded when it or the recording is
   /// new. One thread.

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kMaxBytes = 16u << 20;
-constexpr std::uint64_t kMaxPeople = 1ULL << 53U;  // what JSON readers can hold
+constexpr std::uint64_t kMaxPeople = 1ULL << 53U;  // the largest that JSON readers can represent
 
 }  // namespace
 

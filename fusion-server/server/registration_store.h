@@ -1,4 +1,4 @@
-// What survives a restart: the registration and the highest id of people so far, one file each,
+// Keeps data across restarts: the registration and the highest person id so far, one file each,
 // replaced atomically.
 #pragma once
 
@@ -13,20 +13,20 @@ namespace chorus::server {
 
 class RegistrationStore {
  public:
-  /// With an empty folder nothing is kept.
+  /// If the folder is empty, nothing is stored.
   explicit RegistrationStore(std::string folder) : folder_(std::move(folder)) {}
 
-  /// The stored registration; none when there is none.  An unreadable file is an error and is left
-  /// alone.
+  /// Loads the stored registration; none if there is none.  An unreadable file is an error and is
+  /// not changed.
   [[nodiscard]] Result<std::optional<Registration>> load() const;
 
-  /// Writes a temporary file, syncs it, renames it.  After a failure the stored one is unchanged.
+  /// Writes a temporary file, syncs it, renames it.  On failure the stored file is unchanged.
   [[nodiscard]] Result<void> save(const Registration& registration) const;
 
-  /// Moves the stored one to registration.json.old, so that forgetting by mistake can be undone.
+  /// Moves the stored file to registration.json.old, so that an accidental forget can be undone.
   [[nodiscard]] Result<void> forget() const;
 
-  /// The first person id that no earlier run can have used; 1 when none is known.
+  /// The first person id that no earlier run can have used; 1 if nothing is stored.
   [[nodiscard]] Result<std::uint64_t> load_next_person() const;
   [[nodiscard]] Result<void> save_next_person(std::uint64_t next) const;
 
@@ -40,7 +40,7 @@ class RegistrationStore {
   std::string folder_;
 };
 
-/// Given extrinsics; here a missing file is an error.
+/// Loads given extrinsics; here a missing file is an error.
 [[nodiscard]] Result<Registration> load_registration_file(const std::string& path);
 
 }  // namespace chorus::server

@@ -22,7 +22,7 @@ namespace {
 using registration::Walker;
 using registration::WalkTrack;
 
-/// Lower than the pipeline and the network, which have deadlines.
+/// Lower priority than that of pipeline and network, which have deadlines.
 constexpr int kNiceness = 10;
 
 struct Pair {

@@ -1,4 +1,4 @@
-// Where a fusion server keeps what must survive a restart, and whether folders can be used at all.
+// Where a fusion server keeps data across restarts, and whether folders can be used at all.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,10 @@ namespace chorus::server {
 [[nodiscard]] std::string state_folder(std::string_view configured, std::uint16_t port,
                                        const Environment& environment);
 
-/// Creates the folder if necessary and writes a file into it; the error says what is wrong with it.
+/// Creates the folder if necessary and writes a test file; the error says what is wrong.
 [[nodiscard]] Result<void> probe_folder(const std::string& folder);
 
-/// Whether the viewer's files are there, with everything they need.
+/// Checks that the viewer's files are there, with all that they need.
 [[nodiscard]] Result<void> probe_viewer(const std::string& folder);
 
 }  // namespace chorus::server

@@ -1,5 +1,5 @@
-// Keeps on disk what must survive a restart: the registration in use and the highest id of people
-// so far.  The worker writes; a failure is reported until a later write succeeds.
+// Stores what must survive a restart: the registration in use and the highest person id so far.
+// The worker writes; a failure is reported until a later write succeeds.
 #pragma once
 
 #include <cstdint>
@@ -17,18 +17,18 @@ namespace chorus::server {
 
 class StateKeeper {
  public:
-  /// `trouble`: what is already known to be wrong (the folder cannot be used); empty if nothing is.
+  /// `trouble`: an error known beforehand (the folder cannot be used); empty if there is none.
   StateKeeper(RegistrationStore store, std::string trouble);
 
   void keep(Worker& worker, const Registration& registration);
   void forget(Worker& worker);
-  /// Person ids from `next` on are free; may be told repeatedly.
+  /// Person ids from `next` on are free; repeated calls are harmless.
   void people(Worker& worker, std::uint64_t next);
 
   [[nodiscard]] StorageStatus status() const;
 
  private:
-  /// Outlives this object, for jobs still running.
+  /// May outlive this object, for jobs still running.
   struct Shared {
     explicit Shared(RegistrationStore s) : store(std::move(s)) {}
     const RegistrationStore store;
@@ -39,7 +39,7 @@ class StateKeeper {
   void post(Worker& worker, std::function<Result<void>(const RegistrationStore&)> job);
 
   std::shared_ptr<Shared> shared_;
-  std::uint64_t reserved_ = 0;  ///< Person ids below this may be used without writing.
+  std::uint64_t reserved_ = 0;  ///< Person ids below this can be used without another write.
 };
 
 }  // namespace chorus::server

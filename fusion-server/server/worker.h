@@ -1,4 +1,4 @@
-// The thread for slow work: solving a registration, writing it to disk.
+// The thread for slow work: solving and storing a registration.
 #pragma once
 
 #include <atomic>
@@ -15,8 +15,8 @@
 
 namespace chorus::server {
 
-/// Runs jobs one after the other.  The owner bounds how many are queued; stopping drops those not
-/// begun.  Exceptions from a job are logged and counted.
+/// Runs jobs one after the other.  The owner limits how many are queued; stopping drops those not
+/// begun.  Exceptions from jobs are logged and counted.
 class Worker {
  public:
   Worker() : thread_([this](const std::stop_token& stop) { run(stop); }) {}
@@ -29,7 +29,7 @@ class Worker {
     arrived_.notify_one();
   }
 
-  /// Jobs that threw an exception.  Any thread.
+  /// Number of jobs that threw.  May be called from any thread.
   [[nodiscard]] std::uint64_t failed() const noexcept { return failed_; }
 
  private:
@@ -59,7 +59,7 @@ class Worker {
   std::mutex mutex_;
   std::condition_variable_any arrived_;
   std::deque<std::function<void()>> jobs_;
-  std::jthread thread_;  ///< Last: stops and joins before the rest goes.
+  std::jthread thread_;  ///< Last, so that it stops and joins before other members go.
 };
 
 }  // namespace chorus::server

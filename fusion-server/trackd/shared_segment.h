@@ -1,4 +1,4 @@
-// One System V shared memory segment of our own.
+// A System V shared memory segment that we create.
 #pragma once
 
 #include <span>
@@ -11,8 +11,8 @@ namespace chorus::trackd {
 class SharedSegment {
  public:
   /// A new segment, mode 0666, zeroed; or the one of the same size that an earlier run of this user
-  /// left, with its content: readers attached to it stay with us.  Conflict names the segment in
-  /// the way: of another size, of another user, or in use by a program that still runs.
+  /// left, with its content, so that attached readers keep receiving.  Conflict names the existing
+  /// segment: it has another size or user, or is in use by a running program.
   [[nodiscard]] static Result<SharedSegment> create(int key, std::size_t bytes);
 
   SharedSegment(SharedSegment&& other) noexcept
@@ -20,14 +20,14 @@ class SharedSegment {
         id_(std::exchange(other.id_, -1)),
         bytes_(std::exchange(other.bytes_, {})) {}
   SharedSegment& operator=(SharedSegment&&) = delete;
-  ~SharedSegment();  ///< Detaches, and removes it unless readers are attached.
+  ~SharedSegment();  ///< Detaches; removes the segment unless readers are attached.
 
   [[nodiscard]] std::span<char> bytes() const { return bytes_; }
 
  private:
   explicit SharedSegment(int held) : held_(held) {}
 
-  int held_;  ///< Tells other trackers that the key is in use.
+  int held_;  ///< Shows other trackers that the key is in use.
   int id_ = -1;
   std::span<char> bytes_;
 };

@@ -1,6 +1,6 @@
-// trackd / CAVELib shared memory: the tracker's and the controller's block.
+// trackd / CAVELib shared memory: the blocks of the tracker and of the controller.
 //
-// Native byte order, 4-byte packed.  Layout as VR Juggler's and CalVR's readers have it:
+// Native byte order, 4-byte packed.  Layout according to the readers of VR Juggler and CalVR:
 //   tracker     28 bytes: u32 version 1, count, offset 28, size 40, time s, time us, command
 //   sensor      40 bytes: f32 x y z, azimuth elevation roll [deg]; u32 time s, us;
 //               i32 calibrated, frame
@@ -26,16 +26,16 @@ inline constexpr std::size_t kValuators = 20;
 
 enum class LengthUnit { Feet, Metres };
 
-/// Which sensor of its body a joint is, 0 .. 24.
+/// Number of a joint's sensor within its body, 0 .. 24.
 [[nodiscard]] std::size_t sensor_of(JointId joint);
 
-/// The whole tracker block before anybody has been seen.
+/// The whole tracker block before any person was seen.
 [[nodiscard]] std::vector<char> tracker_block(std::size_t sensors);
 [[nodiscard]] std::vector<char> controller_block();
 
-/// Writes into a block made by tracker_block.  Sensors beyond the end of the block are left out.
-/// The header's time is not changed: call write_stamp() afterwards, so that whoever sees a new time
-/// sees new sensors.
+/// Writes into a block made by tracker_block().  Sensors beyond its end are left out.  The header's
+/// time does not change: call write_stamp() afterwards, so that a reader that sees a new time sees
+/// new sensors.
 void write_sensors(const outlet::TrackerFrame& frame, LengthUnit unit, std::span<char> block);
 void write_stamp(Timestamp instant, std::span<char> block);
 

@@ -1,10 +1,10 @@
-// Which datagrams make us connect to their sender: few, and each client once.  Pure.
+// Decides which datagrams make us connect to their sender: few, and each client once.  Pure.
 //
-// Anybody can send a datagram in anybody's name, so connections back are limited in number and in
-// rate: per address, so that one host's flood leaves room for the others, and in total.  A failed
-// connection costs its address more.  VRPN's clients ask again every two seconds until they are
-// heard.  A flood in the names of very many addresses can still use up the total; the protocol has
-// no means to tell.
+// Sender addresses can be forged, so connections to them are limited in number and rate: per
+// address, so that a flood from one host leaves room for others, and in total.  A failed connection
+// costs its address more.  VRPN's clients ask again every two seconds until they are answered.  A
+// flood with very many forged addresses can still use up the total; the protocol offers no way to
+// detect it.
 #pragma once
 
 #include <compare>
@@ -19,16 +19,16 @@
 namespace chorus::vrpn {
 
 struct GateLimits {
-  std::size_t most_under_way = 32;  ///< Connections being made.
+  std::size_t most_under_way = 32;  ///< Connections being established.
   net::Allowance all{32.0, 64.0};
-  std::size_t most_of_source = 8;  ///< Being made to one address.
+  std::size_t most_of_source = 8;  ///< The same for one address.
   net::Allowance source{16.0, 32.0};
   double failure = 4.0;  ///< Extra cost to an address when a connection fails.
-  /// Addresses with an allowance of their own; all others share one.
+  /// Number of addresses with an allowance of their own; all others share one.
   std::size_t most_sources = 256;
 };
 
-/// Who asks, and where it wants to be connected to.
+/// The client that asks, and the port it wants to be connected at.
 struct Asker {
   std::string address;
   std::uint16_t port = 0;
@@ -42,10 +42,10 @@ class RequestGate {
 
   explicit RequestGate(GateLimits limits = {}) : limits_(limits), all_(limits.all) {}
 
-  /// After Connect, say connected() or failed().
+  /// After Verdict::Connect, call connected() or failed().
   [[nodiscard]] Verdict ask(const Asker& asker, SteadyTime now);
   void connected(const Asker& asker);
-  /// It may ask again a little later.
+  /// The connection failed; the client may ask again a little later.
   void failed(const Asker& asker);
   /// A connected client has left; it may ask again.
   void gone(const Asker& asker) { known_.erase(asker); }
@@ -62,9 +62,9 @@ class RequestGate {
 
   GateLimits limits_;
   net::TokenBucket all_;
-  std::set<Asker> known_;                   ///< Under way or connected.
-  std::map<Asker, std::string> under_way_;  ///< By the address under which its source is stored.
-  std::map<std::string, Source> sources_;   ///< By address; "" for those beyond the limit.
+  std::set<Asker> known_;                   ///< Clients being connected or connected.
+  std::map<Asker, std::string> under_way_;  ///< With the address under which its source is stored.
+  std::map<std::string, Source> sources_;   ///< By address; "" for all beyond the limit.
   SteadyTime tidied_{};
 };
 

@@ -1,7 +1,7 @@
-// The bytes of VRPN 07.xx: cookie, messages, descriptions, connection requests.  Pure.
+// Bytes of VRPN 07.xx: cookie, messages, descriptions, connection requests.  Pure.
 //
-// All integers big-endian.  A message is a header of 24 bytes, a payload, and zeros up to a
-// multiple of 8; its length field counts header and payload, not the zeros.
+// All integers are big-endian.  A message is a header of 24 bytes, a payload, and zeros up to a
+// multiple of 8; its length field counts header and payload, but not the zeros.
 #pragma once
 
 #include <cstdint>
@@ -16,21 +16,21 @@ namespace chorus::vrpn {
 
 inline constexpr std::size_t kCookieBytes = 24;
 inline constexpr std::size_t kHeaderBytes = 24;
-inline constexpr std::size_t kSequenceOffset = 20;  ///< Of the sequence number in a message.
-inline constexpr std::size_t kMaxMessage = 64000;   ///< Of the length field.
-inline constexpr std::size_t kMaxDatagram = 1472;   ///< A client's buffer.
-inline constexpr std::size_t kMaxName = 95;         ///< Description payloads hold 100 bytes.
-inline constexpr std::int32_t kMaxNames = 2000;     ///< Senders, and types, of one side.
+inline constexpr std::size_t kSequenceOffset = 20;  ///< Of the sequence number within a message.
+inline constexpr std::size_t kMaxMessage = 64000;   ///< Largest value of the length field.
+inline constexpr std::size_t kMaxDatagram = 1472;   ///< Size of a client's buffer.
+inline constexpr std::size_t kMaxName = 95;         ///< Payloads of descriptions hold 100 bytes.
+inline constexpr std::int32_t kMaxNames = 2000;     ///< Limit on senders, and on types, per side.
 
-/// Types below zero belong to the connection itself.
+/// Negative types concern the connection itself.
 enum class SystemType : std::int32_t { Sender = -1, Type = -2, Datagrams = -3, Log = -4 };
 
-/// What either side sends first; ours says version 07.38 and that nothing is to be logged.
+/// What both sides send first; ours states version 07.38 and that nothing is to be logged.
 [[nodiscard]] std::string cookie();
 /// Malformed unless the first kCookieBytes are a cookie of a version 07.
 [[nodiscard]] Result<void> check_cookie(std::string_view bytes);
 
-/// Big-endian fields, one after the other.
+/// Appends big-endian fields.
 class Payload {
  public:
   Payload& integer(std::uint32_t value);
@@ -43,7 +43,7 @@ class Payload {
 };
 
 struct MessageHead {
-  Timestamp time;  ///< Microseconds on the wire.
+  Timestamp time;  ///< Sent in microseconds.
   std::int32_t sender = 0;
   std::int32_t type = 0;
   std::uint32_t sequence = 0;
@@ -65,7 +65,7 @@ struct Message {
   std::string_view payload;
 };
 
-/// Cuts a TCP stream into messages.
+/// Splits a TCP stream into messages.
 class MessageReader {
  public:
   void add(std::string_view bytes);
@@ -79,7 +79,7 @@ class MessageReader {
 };
 
 /// The TCP port in a datagram "<host> <port>\0" that asks us to connect; the host is ignored,
-/// because it could be anybody's.
+/// because it could be any host.
 [[nodiscard]] Result<std::uint16_t> read_request(std::string_view datagram);
 
 }  // namespace chorus::vrpn

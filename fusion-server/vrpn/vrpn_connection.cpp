@@ -9,10 +9,10 @@ namespace {
 
 using net::error_code;
 
-/// Old poses are worthless: the kernel should hold one or two frames, not seconds of them.
+/// Old poses are useless: the kernel should buffer one or two frames, not seconds of them.
 constexpr int kSendBuffer = 128 * 1024;
 
-/// An int option that Asio has no name for.
+/// An int option that Asio does not define.
 class TcpOption {
  public:
   TcpOption(int name, int value) : name_(name), value_(value) {}
@@ -38,7 +38,7 @@ class TcpOption {
   int value_;
 };
 
-/// A client that takes datagrams is silent on TCP; a host that is gone is noticed after 25 s.
+/// A client with datagrams is silent on TCP; these options detect a dead host after 25 s.
 void set_options(net::Socket& socket) {
   error_code ignored;
   socket.set_option(net::tcp::no_delay(true), ignored);
@@ -112,7 +112,7 @@ void Connection::on_written(error_code failed) {
   if (!socket_.is_open()) return;
   if (failed) return close();
   write();
-  read();  // It may have waited for room among the answers.
+  read();  // Reading may have stopped because of too many answers.
 }
 
 void Connection::publish(const std::shared_ptr<const Reports>& reports) {
@@ -147,7 +147,7 @@ void Connection::refuse(const std::string& reason) {
 
 void Connection::close() {
   if (!socket_.is_open()) return;
-  const auto self = shared_from_this();  // closed_ lets go of it
+  const auto self = shared_from_this();  // closed_ releases the owner's reference
   error_code ignored;
   socket_.close(ignored);
   closed_(this);

@@ -1,4 +1,4 @@
-// One client's sockets.  Lives on the server's thread.
+// The sockets of one client.  Lives on the server's thread.
 #pragma once
 
 #include <array>
@@ -15,20 +15,20 @@
 
 namespace chorus::vrpn {
 
-/// Counted on the server's thread, read on any.
+/// Incremented on the server's thread, read on any.
 struct ServerCounters {
-  std::atomic<std::uint64_t> dropped = 0;  ///< Frames, for one client each.
-  std::atomic<std::uint64_t> failed = 0;   ///< Datagrams.
-  std::atomic<std::uint64_t> refused = 0;  ///< Clients and requests.
+  std::atomic<std::uint64_t> dropped = 0;  ///< Number of frames, counted per client.
+  std::atomic<std::uint64_t> failed = 0;   ///< Number of datagrams.
+  std::atomic<std::uint64_t> refused = 0;  ///< Number of clients and requests.
   std::atomic<std::uint64_t> clients = 0;
 };
 
 struct ClientLimits {
-  std::chrono::milliseconds handshake{5000};  ///< Until the client's cookie is complete.
-  std::chrono::milliseconds stall{5000};      ///< One write may take.
+  std::chrono::milliseconds handshake{5000};  ///< Time limit for the client's cookie.
+  std::chrono::milliseconds stall{5000};      ///< Longest that one write may take.
 };
 
-/// What all connections of a server use; outlives them.
+/// Used by all connections of a server; outlives them.
 struct ConnectionContext {
   net::DatagramSocket* datagrams = nullptr;
   const Clock* clock = nullptr;
@@ -38,8 +38,8 @@ struct ConnectionContext {
 };
 
 /// A client that does not read costs one frame of memory: while a write is in progress only the
-/// newest frame waits, older ones are dropped; after ClientLimits::stall it is closed.  Its answers
-/// are bounded too: with kMaxAnswers waiting, nothing more is read from it.
+/// newest frame waits, and older ones are dropped; after ClientLimits::stall the client is closed.
+/// Its answers are limited, too: while kMaxAnswers are waiting, nothing more is read from it.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   using Closed = std::function<void(const Connection*)>;
@@ -49,7 +49,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   void start();
   void publish(const std::shared_ptr<const Reports>& reports);
-  /// Closes it when a deadline has passed.
+  /// Closes the connection when a deadline has passed.
   void sweep(SteadyTime now);
   void close();
 
@@ -70,11 +70,11 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Closed closed_;
   std::array<char, 4096> input_{};
   bool reading_ = false;
-  std::string answers_;                     ///< Waiting to be written, before the next frame.
-  std::shared_ptr<const Reports> waiting_;  ///< The newest frame not written.
-  std::string output_;                      ///< Being written.
+  std::string answers_;                     ///< Answers to be written before the next frame.
+  std::shared_ptr<const Reports> waiting_;  ///< The newest frame not written yet.
+  std::string output_;                      ///< Data being written.
   bool writing_ = false;
-  SteadyTime deadline_;  ///< For the cookie, then for the write in progress.
+  SteadyTime deadline_;  ///< For the cookie; later, for the write in progress.
 };
 
 }  // namespace chorus::vrpn

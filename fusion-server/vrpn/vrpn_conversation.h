@@ -1,7 +1,7 @@
-// One client's conversation, without its sockets: bytes in, bytes out.
+// The conversation with one client, without its sockets: bytes in, bytes out.
 //
-// Both sides send a cookie at once; after the client's cookie we describe our trackers, then
-// reports flow.  A client selects trackers by describing senders of the same names; one that names
+// Both sides send a cookie immediately; after the client's cookie we describe our trackers, then we
+// send reports.  A client selects trackers by describing senders of the same names; one that names
 // none of ours gets everything, as from VRPN's own server.
 #pragma once
 
@@ -20,9 +20,9 @@
 namespace chorus::vrpn {
 
 struct Peer {
-  std::string address;  ///< Of the TCP connection, numeric.
-  /// It asked by UDP, so it may name a port for datagrams; a client that came by TCP wants
-  /// everything there.
+  std::string address;  ///< Numeric address of the TCP connection's peer.
+  /// The client asked by UDP, so it may name a port for datagrams; a client that connected by TCP
+  /// gets everything there.
   bool asked_by_datagram = false;
 };
 
@@ -30,19 +30,19 @@ class Conversation {
  public:
   Conversation(std::shared_ptr<const Trackers> trackers, Peer peer);
 
-  /// What to send when connected.
+  /// The bytes to send after connecting.
   [[nodiscard]] static std::string greeting() { return cookie(); }
-  /// What to answer over TCP.  Malformed: close the connection.
+  /// The bytes to answer over TCP. Malformed: close the connection.
   [[nodiscard]] Result<std::string> receive(std::string_view bytes, Timestamp now);
 
-  /// Both cookies are there and our trackers described: reports may flow.
+  /// Both cookies have arrived and our trackers are described: reports may be sent.
   [[nodiscard]] bool established() const { return established_; }
-  /// Where datagrams go, on the peer's own address; none: everything over TCP.
+  /// The port for datagrams, at the peer's address; none: everything over TCP.
   [[nodiscard]] std::optional<std::uint16_t> datagram_port() const { return datagram_port_; }
 
-  /// The reports the client wants, numbered, as one piece of the stream ...
+  /// The reports that the client wants, numbered, as one piece of the stream ...
   [[nodiscard]] std::string stream(const Reports& reports);
-  /// ... or as datagrams of whole messages, kMaxDatagram at most each.
+  /// ... or as datagrams of whole messages, at most kMaxDatagram each.
   [[nodiscard]] std::vector<std::string> datagrams(const Reports& reports);
 
  private:
@@ -59,9 +59,9 @@ class Conversation {
   MessageReader reader_;
   bool established_ = false;
   std::optional<std::uint16_t> datagram_port_;
-  std::optional<std::int32_t> ping_type_;                      ///< The client's number for a ping.
-  std::vector<std::optional<std::size_t>> tracker_of_sender_;  ///< By the client's number.
-  std::vector<bool> wanted_;                                   ///< By tracker.
+  std::optional<std::int32_t> ping_type_;                      ///< The client's number for pings.
+  std::vector<std::optional<std::size_t>> tracker_of_sender_;  ///< Indexed by the client's numbers.
+  std::vector<bool> wanted_;                                   ///< Indexed by tracker.
   bool wants_all_ = true;
   std::uint32_t stream_sequence_ = 0;
   std::uint32_t datagram_sequence_ = 0;

@@ -13,7 +13,7 @@ namespace chorus::vrpn {
 
 struct Settings {
   std::string address = "127.0.0.1";
-  int port = 3883;  ///< 0: any.
+  int port = 3883;  ///< 0: any free port.
   net::AllowList allow = {};
   bool joint_trackers = true;
   int max_clients = 128;
@@ -24,7 +24,7 @@ struct Settings {
 
 void read_settings(ConfigReader& reader, Settings& out);
 
-/// All slots are announced.
+/// All slots are announced to clients.
 [[nodiscard]] Result<std::unique_ptr<outlet::Outlet>> open_outlet(
     const Settings& settings, const outlet::OutletContext& context);
 

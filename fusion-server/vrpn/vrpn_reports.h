@@ -1,8 +1,8 @@
-// A tracked frame in VRPN: which trackers there are, and their reports.  Pure.
+// A tracked frame in VRPN: the trackers, and their reports.  Pure.
 //
-// Body0 has the joints as sensors 0..24 (numbers of the Kinect v2 SDK).  Body0_Head and the like
-// have one sensor, 0, for clients that can only read that one.  World axes, metres, quaternions x y
-// z w; one time stamp per frame, that of the poses.
+// Body0 has the joints as sensors 0..24 (the numbers of the Kinect v2 SDK).  Body0_Head etc. have
+// only sensor 0, for clients that can only read that one.  World axes, metres, quaternions x y z w;
+// one time stamp per frame, the time of the poses.
 #pragma once
 
 #include <cstdint>
@@ -15,22 +15,22 @@
 
 namespace chorus::vrpn {
 
-/// Our type ids; the names are fixed by VRPN.
+/// Our type ids; their names are defined by VRPN.
 enum class ReportType : std::int32_t { Pong, PosQuat, Velocity };
 
-/// The trackers we announce; a tracker's index is its sender id.
+/// The trackers that we announce; a tracker's index is its sender id.
 class Trackers {
  public:
-  /// `slots` bodies; `each_joint`: one tracker per joint beside that of the body.
+  /// `slots` bodies; `each_joint`: also one tracker per joint, in addition to that of the body.
   Trackers(std::size_t slots, bool each_joint);
 
   [[nodiscard]] std::size_t size() const { return names_.size(); }
   [[nodiscard]] std::optional<std::size_t> index_of(std::string_view name) const;
   [[nodiscard]] std::size_t body(std::size_t slot) const { return slot; }
-  /// None when joints have no trackers of their own.
+  /// The tracker of a joint; none when joints have no trackers of their own.
   [[nodiscard]] std::optional<std::size_t> joint(std::size_t slot, std::size_t joint) const;
 
-  /// The messages that tell a client of all trackers and types.
+  /// The messages that describe all trackers and types to a client.
   [[nodiscard]] std::string descriptions() const;
 
  private:

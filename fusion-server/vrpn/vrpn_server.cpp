@@ -23,7 +23,7 @@ constexpr std::chrono::milliseconds kConnectTime{2000};
 constexpr int kPortAttempts = 16;
 constexpr std::size_t kMaxRequest = 512;
 
-/// An IPv4 address as a dotted quad whichever socket it came through, as clients write it.
+/// An IPv4 address in dotted form, even from an IPv6 socket, as clients write it.
 std::string text_of(const asio::ip::address& address) {
   if (address.is_v6() && address.to_v6().is_v4_mapped()) {
     return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6()).to_string();
@@ -34,7 +34,7 @@ std::string text_of(const asio::ip::address& address) {
 }  // namespace
 
 struct Server::Impl {
-  /// A connection that a datagram asked for and that is not established yet.
+  /// A connection requested by datagram that is not established yet.
   struct Attempt {
     net::Socket socket;
     Asker asker;
@@ -46,7 +46,7 @@ struct Server::Impl {
 
   Result<void> bind(std::uint16_t port);
   Result<void> listen();
-  /// Starts whatever must always be running and is not.
+  /// Starts the asynchronous operations that must always be pending.
   void ensure();
   void on_accepted(net::Socket socket);
   void receive_request();
@@ -54,14 +54,14 @@ struct Server::Impl {
   void answer_request(const tcp::endpoint& to);
   void connect_back(const tcp::endpoint& to, const Asker& asker);
   void on_connected(error_code failed, const std::shared_ptr<Attempt>& attempt);
-  /// `asker`: it asked to be connected to; none: it connected by itself.
+  /// `asker`: the client that requested the connection; none: it connected by itself.
   void welcome(net::Socket socket, const std::optional<Asker>& asker);
   void forget(const Connection* connection);
   void sweep();
   void deliver();
   void stop();
   void turn_away(const std::string& reason);
-  /// Why another client of this address is refused; empty: it is accepted.
+  /// Why another client from this address is refused; empty: it is accepted.
   [[nodiscard]] std::string objection(const asio::ip::address& of) const;
 
   struct Client {
@@ -86,7 +86,7 @@ struct Server::Impl {
   std::vector<std::shared_ptr<Attempt>> attempts;
   std::unordered_map<const Connection*, Client> clients;
   bool stopping = false;
-  outlet::Newest<std::shared_ptr<const Reports>> newest;  ///< Not delivered yet.
+  outlet::Newest<std::shared_ptr<const Reports>> newest;  ///< The frame not delivered yet.
   std::thread thread;
 };
 
@@ -155,7 +155,7 @@ void Server::Impl::receive_request() {
 
 void Server::Impl::on_request(error_code failed, std::size_t size) {
   if (stopping) return;
-  if (!failed) {  // else: an earlier datagram of ours met a closed port
+  if (!failed) {  // an error here: an earlier datagram of ours met a closed port
     const auto port = read_request({request.data(), size});
     if (!port) {
       turn_away(port.error().message);
@@ -193,7 +193,7 @@ void Server::Impl::on_connected(error_code failed, const std::shared_ptr<Attempt
   try {
     welcome(std::move(attempt->socket), attempt->asker);
   } catch (...) {
-    gate.gone(attempt->asker);  // else it could never ask again
+    gate.gone(attempt->asker);  // otherwise it could never ask again
     throw;
   }
 }
@@ -229,7 +229,7 @@ void Server::Impl::sweep() {
   const SteadyTime now = std::chrono::steady_clock::now();
   for (const auto& attempt : attempts) {
     error_code ignored;
-    if (attempt->deadline <= now) attempt->socket.close(ignored);  // on_connected() learns of it
+    if (attempt->deadline <= now) attempt->socket.close(ignored);  // on_connected() gets an error
   }
   std::vector<std::shared_ptr<Connection>> all;
   for (const auto& [key, client] : clients) all.push_back(client.connection);

@@ -1,4 +1,4 @@
-// VRPN's server: TCP clients, and UDP requests to connect back.  One thread for all sockets.
+// VRPN's server: TCP clients, and UDP requests to connect to a client.  One thread for all sockets.
 #pragma once
 
 #include <cstdint>
@@ -15,27 +15,27 @@ namespace chorus::vrpn {
 
 struct ServerOptions {
   std::string address = "127.0.0.1";
-  std::uint16_t port = 3883;  ///< TCP and UDP; 0: any that is free for both.
-  net::AllowList allow = {};  ///< Who is answered.
+  std::uint16_t port = 3883;  ///< TCP and UDP; 0: any port that is free for both.
+  net::AllowList allow = {};  ///< Hosts that are served.
   std::size_t max_clients = 128;
-  std::size_t max_clients_per_address = 64;  ///< So that one host cannot take all places.
+  std::size_t max_clients_per_address = 64;  ///< Prevents that one host takes all places.
   ClientLimits limits = {};
-  std::shared_ptr<const Clock> clock;  ///< What pings are answered with.
+  std::shared_ptr<const Clock> clock;  ///< Source of the time in answers to pings.
 };
 
 class Server {
  public:
   Server(ServerOptions options, std::shared_ptr<const Trackers> trackers);
-  ~Server();  ///< Closes everything and joins.
+  ~Server();  ///< Closes all sockets and joins the thread.
 
-  /// Binds and serves; Io or InvalidArgument names address and port.
+  /// Binds and serves; errors Io and InvalidArgument name address and port.
   [[nodiscard]] Result<void> start();
   [[nodiscard]] std::uint16_t port() const;
 
-  /// From any one thread.  Never waits: a frame that has not been taken when the next one comes is
+  /// Always from the same thread.  Never waits: a frame not taken when the next one comes is
   /// dropped and counted.
   void publish(std::shared_ptr<const Reports> reports);
-  /// dropped, failed, refused, clients.  Any thread.
+  /// The counters dropped, failed, refused, clients.  May be called from any thread.
   [[nodiscard]] SinkCounters counters() const;
 
  private:

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-// All sensors with covariance and all edges are below 1 MB.
+// 64 sensors with covariances and all edges need less than 1 MB.
 constexpr JsonLimits kLimits{4U << 20U, 16};
 constexpr double kMaxPlace = 1000.0;    // [m]
 constexpr double kMaxNormError = 0.01;  // written with 5 digits
@@ -31,7 +31,7 @@ json verdict_json(const SensorVerdict& own) {
 }
 
 json sensor_json(const SensorId& id, const Extrinsics& place) {
-  // The quaternion is for people and other programs; the matrix restores every bit.
+  // The quaternion is for people and other programs; the matrix is exact to the bit.
   json rotation = json::array();
   for (const double value : place.world_from_sensor.linear().reshaped()) rotation.push_back(value);
   const Eigen::Vector3d p = place.world_from_sensor.translation();
@@ -52,7 +52,7 @@ json sensor_json(const SensorId& id, const Extrinsics& place) {
           {"covariance", std::move(covariance)}};
 }
 
-/// A finite number below `most` in magnitude; `fallback` when the key may be absent.
+/// A finite number of magnitude below `most`; `fallback` if the key is optional.
 Result<double> number(const json& object, const std::string& where, const char* key, double most,
                       std::optional<double> fallback = {}) {
   const auto it = object.find(key);
@@ -100,7 +100,7 @@ Result<std::vector<SensorId>> ids_of(const json& object, const std::string& wher
   return ids;
 }
 
-/// Column by column into `out`, which stays as it is when there is no such key.
+/// Reads columns into `out`, which stays unchanged when the key is missing.
 template <class Matrix>
 Result<void> read_matrix(const json& object, const std::string& where, const char* key,
                          Matrix& out) {
@@ -120,7 +120,7 @@ Result<void> read_matrix(const json& object, const std::string& where, const cha
   return {};
 }
 
-/// If there is a matrix beside the quaternion, the matrix is the more exact of the two.
+/// If there is a matrix as well as a quaternion, the matrix is more exact.
 Result<void> read_rotation(const json& object, const std::string& where, Eigen::Isometry3d& pose) {
   Eigen::Matrix3d rotation = pose.linear();
   if (auto ok = read_matrix(object, where, "rotation", rotation); !ok) return ok;
@@ -205,7 +205,7 @@ Result<void> read_sensors(const json& root, Registration& out) {
   return {};
 }
 
-/// Verdicts per sensor, if the file has them; otherwise its one verdict applies to all.
+/// Reads the verdicts per sensor, if present; otherwise the single verdict applies to all.
 Result<void> read_verdicts(const json& root, const char* key, Verdict fallback, Registration& out) {
   const auto it = root.find(key);
   if (it == root.end() || !it->is_object()) return {};
@@ -228,7 +228,7 @@ Result<void> read_header(const json& root, Registration& out) {
   const auto version = number(root, "", "version", 1e15, 1.0);
   if (!version) return pass(version);
   out.version = static_cast<std::uint64_t>(std::max(0.0, *version));
-  // Given extrinsics without a verdict are believed.
+  // Given extrinsics without a verdict count as good.
   const std::string verdict = root.value("verdict", std::string("Good"));
   const auto known = verdict_named(verdict);
   if (!known) return tl::unexpected(wrong("verdict", "\"" + verdict + "\" is not a verdict"));

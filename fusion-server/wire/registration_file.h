@@ -1,4 +1,4 @@
-// The registration on disk: what survives a restart, and how given extrinsics are read.
+// The registration as a file: for restarts, and for given extrinsics.
 #pragma once
 
 #include <string>
@@ -10,15 +10,15 @@
 
 namespace chorus::wire {
 
-/// JSON with the keys of /registration, plus what only a restart needs (covariance).
+/// JSON with the keys of /registration, plus the covariance, which only a restart needs.
 [[nodiscard]] std::string write_registration(const Registration& registration);
 
 /// Reads such a file, a saved answer of GET /registration, or just {"sensors": {"s1": {"x": ..}}}
 /// with given extrinsics.  Refuses, naming the sensor: missing or non-finite numbers, invalid
-/// rotations, places farther away than 1 km, more than 64 sensors.
+/// rotations, places more than 1 km away, more than 64 sensors.
 [[nodiscard]] Result<Registration> read_registration(std::string_view json);
 
-/// What a recording stores of a registration, valid from `at` on.
+/// The part of a registration that a recording stores, valid from `at` on.
 [[nodiscard]] record::PlacesChanged places_changed(Timestamp at, const Registration& registration);
 
 }  // namespace chorus::wire

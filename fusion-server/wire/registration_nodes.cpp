@@ -16,7 +16,7 @@ constexpr std::array<std::pair<Verdict, std::string_view>, 4> kVerdicts{{
     {Verdict::Refused, "Refused"},
 }};
 
-/// Row by row; squares of 0.1 mm and of a hundredth of a degree, with two digits more.
+/// Row by row; squared units of 0.1 mm and of 0.01 degree, with two more digits.
 std::vector<Decimal> decimals_of(const Eigen::Matrix<double, 6, 6>& covariance) {
   constexpr int kCovarianceDigits = 10;
   std::vector<Decimal> values;
@@ -48,7 +48,7 @@ Node sensor_node(const SensorId& id, const Extrinsics& place) {
   put("qw", q.w(), kRotationDigits);
   put("error", place.error, kPlaceDigits);
   node.properties.emplace_back("chain", names_of(place.chain));
-  if (!place.covariance.isZero(0.0))  // else nothing is known of it
+  if (!place.covariance.isZero(0.0))  // zero: the covariance is unknown
     node.properties.emplace_back("covariance", decimals_of(place.covariance));
   return node;
 }
@@ -64,7 +64,7 @@ Node edge_node(const PairwiseRegistration& edge) {
            {"inliers", static_cast<std::int64_t>(edge.inliers)}}};
 }
 
-/// The session that runs, else the last one; "idle" says that none runs.
+/// The session that is running, else the last one; "idle" if none is running.
 Node newest_session(const RegistrationProgress& progress) {
   constexpr int kDigits = 1;
   const SessionStatus session =
@@ -92,7 +92,7 @@ void add_storage(Node& node, const StorageStatus& storage) {
                                    : storage.trouble);
 }
 
-/// Sensors that took part in a walk and have no place.
+/// Sensors that took part in a walk but have no place.
 std::vector<Node> unplaced_nodes(const Registration& registration) {
   std::vector<Node> nodes;
   for (const auto& [id, own] : registration.verdicts) {

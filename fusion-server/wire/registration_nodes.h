@@ -1,4 +1,4 @@
-// /registration: the extrinsics, why they are not better, and the session that improves them.
+// /registration: the extrinsics, what is wrong with them, and the session that improves them.
 #pragma once
 
 #include <optional>
@@ -15,14 +15,14 @@ namespace chorus::wire {
 [[nodiscard]] resource::Node registration_node(const Registration& registration,
                                                const RegistrationProgress& progress);
 
-/// /registration/sessions/{id}: its progress and its outcome.  `awaits` are shown while it runs.
+/// /registration/sessions/{id}: progress and outcome.  `awaits` is shown while it is running.
 [[nodiscard]] resource::Node session_node(const SessionStatus& session,
                                           const std::vector<std::string>& awaits);
 
 /// "collecting", "solving", "done", "cancelled".
 [[nodiscard]] std::string_view name_of(SessionState state) noexcept;
 
-/// Where to follow a session: "/registration/sessions/7".
+/// The path of a session: "/registration/sessions/7".
 [[nodiscard]] std::string session_path(std::uint64_t id);
 
 [[nodiscard]] std::vector<std::string> names_of(const std::vector<SensorId>& sensors);
