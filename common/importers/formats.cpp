@@ -12,6 +12,7 @@
 #include "common/importers/datasets/ntu_skeleton.h"
 #include "common/importers/datasets/nw_ucla_json.h"
 #include "common/importers/motion_file.h"
+#include "common/importers/own_files.h"
 
 namespace chorus::importers {
 namespace {
@@ -50,6 +51,9 @@ constexpr std::array<ReaderRow, kFormats.size()> kReaders{{
     {FileFormat::C3d, nullptr, &import_motion<MotionFormat::C3d>},
     {FileFormat::Bvh, nullptr, &import_motion<MotionFormat::Bvh>},
     {FileFormat::Mvnx, nullptr, &import_motion<MotionFormat::Mvnx>},
+    {FileFormat::Csv, &read_joint_csv},
+    {FileFormat::Ndjson, &read_frame_lines},
+    {FileFormat::AzureKinect, &read_azure_kinect_csv},
 }};
 
 const ReaderRow& reader_of(FileFormat format) {
@@ -80,13 +84,14 @@ Result<ImportedSet> import_cameras(const std::filesystem::path& folder,
   return set;
 }
 
-Result<ImportedSet> import_each(FileReader read, const std::vector<std::filesystem::path>& inputs,
+Result<ImportedSet> import_each(const ReadRecording& read,
+                                const std::vector<std::filesystem::path>& inputs,
                                 const ImportOptions& options) {
   ImportedSet set;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     ImportOptions own = options;
     if (!options.floors.empty()) own.floor = options.floors[i];
-    auto recording = read(inputs[i], own);
+    auto recording = read(inputs[i], own, i);
     std::error_code ignored;
     if (!recording && std::filesystem::file_size(inputs[i], ignored) == 0) {
       set.empty.push_back(recording.error());
@@ -161,6 +166,16 @@ void note_set_times(std::vector<record::FrameRecording>& recordings) {
   }
 }
 
+/// Whatever was imported: told apart, and with times that belong together.
+Result<ImportedSet> finished(Result<ImportedSet> set) {
+  if (!set) return set;
+  if (const auto distinct = refuse_copies(set->recordings); !distinct) return pass(distinct);
+  if (const auto named = refuse_repeated_sensors(set->recordings); !named) return pass(named);
+  keep_common_counter(set->recordings);
+  note_set_times(set->recordings);
+  return set;
+}
+
 }  // namespace
 
 std::optional<FileFormat> format_named(std::string_view name) {
@@ -170,28 +185,35 @@ std::optional<FileFormat> format_named(std::string_view name) {
   return std::nullopt;
 }
 
-Result<ImportedSet> import_files(FileFormat format,
-                                 const std::vector<std::filesystem::path>& inputs,
-                                 const ImportOptions& options) {
+Result<ImportedSet> import_recordings(const std::vector<std::filesystem::path>& inputs,
+                                      const ImportOptions& options, const ReadRecording& read) {
   if (inputs.empty())
     return fail(ErrorCode::InvalidArgument, "import", "needs at least one input.");
-  const ReaderRow& read = reader_of(format);
-  if (read.set != nullptr && inputs.size() != 1)
-    return fail(ErrorCode::InvalidArgument, "import",
-                "takes one folder of camera views, or one file of motion, at a time.");
   if (options.sensor && inputs.size() != 1)
     return fail(ErrorCode::InvalidArgument, "import", "can name the sensor of one input only.");
-  if (!options.floors.empty() && (read.set != nullptr || options.floors.size() != inputs.size()))
+  if (!options.floors.empty() && options.floors.size() != inputs.size())
     return fail(ErrorCode::InvalidArgument, "import",
                 fmt::format("takes one floor for all, or one for each of the {} inputs, not {}.",
                             inputs.size(), options.floors.size()));
-  auto set = read.set != nullptr ? read.set(inputs.front(), options)
-                                 : import_each(read.file, inputs, options);
-  if (!set) return pass(set);
-  if (const auto distinct = refuse_copies(set->recordings); !distinct) return pass(distinct);
-  if (const auto named = refuse_repeated_sensors(set->recordings); !named) return pass(named);
-  keep_common_counter(set->recordings);
-  note_set_times(set->recordings);
+  return finished(import_each(read, inputs, options));
+}
+
+Result<ImportedSet> import_files(FileFormat format,
+                                 const std::vector<std::filesystem::path>& inputs,
+                                 const ImportOptions& options) {
+  const ReaderRow& row = reader_of(format);
+  if (row.set != nullptr && inputs.size() != 1)
+    return fail(ErrorCode::InvalidArgument, "import",
+                "takes one folder of camera views, or one file of motion, at a time.");
+  if (row.set != nullptr && !options.floors.empty())
+    return fail(ErrorCode::InvalidArgument, "import", "takes one floor of this format.");
+  if (row.set != nullptr) return finished(row.set(inputs.front(), options));
+  auto set = import_recordings(inputs, options,
+                               [&](const std::filesystem::path& file, const ImportOptions& own,
+                                   std::size_t) { return row.file(file, own); });
+  const bool plain = format == FileFormat::Csv || format == FileFormat::Ndjson;
+  if (set && plain && inputs.size() == 1 && !options.floor)
+    set->world_from_sensor.emplace(set->recordings.front().sensor, Eigen::Isometry3d::Identity());
   return set;
 }
 

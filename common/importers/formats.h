@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -16,7 +17,19 @@
 
 namespace chorus::importers {
 
-enum class FileFormat { Labanotation, Ntu, NwUcla, Keraal, Pose2Sim, C3d, Bvh, Mvnx };
+enum class FileFormat {
+  Labanotation,
+  Ntu,
+  NwUcla,
+  Keraal,
+  Pose2Sim,
+  C3d,
+  Bvh,
+  Mvnx,
+  Csv,
+  Ndjson,
+  AzureKinect
+};
 
 struct FormatRow {
   FileFormat format;
@@ -24,7 +37,7 @@ struct FormatRow {
   std::string_view reads;  ///< One line for --help.
 };
 
-inline constexpr std::array<FormatRow, 8> kFormats{{
+inline constexpr std::array<FormatRow, 11> kFormats{{
     {FileFormat::Labanotation, "labanotation",
      "LabanotationSuite csv, Kinect v2 with capture times"},
     {FileFormat::Ntu, "ntu", "NTU RGB+D .skeleton, Kinect v2, 30 Hz assumed"},
@@ -34,6 +47,9 @@ inline constexpr std::array<FormatRow, 8> kFormats{{
     {FileFormat::C3d, "c3d", "C3D, points named as joints, joint centres or markers; as truth"},
     {FileFormat::Bvh, "bvh", "Biovision BVH, the usual joint names; as truth"},
     {FileFormat::Mvnx, "mvnx", "Xsens MVN XML; as truth"},
+    {FileFormat::Csv, "csv", "joints in columns, also those that chorus export writes"},
+    {FileFormat::Ndjson, "ndjson", "/frame documents in lines, also those that chorus fuse writes"},
+    {FileFormat::AzureKinect, "azure-kinect", "PyMoCapViewer csv, Azure Kinect, 32 landmarks"},
 }};
 
 [[nodiscard]] std::optional<FileFormat> format_named(std::string_view name);
@@ -47,12 +63,22 @@ struct ImportedSet {
 };
 
 /// Each input is one sensor; for pose2sim the only input is the folder, for c3d, bvh and mvnx a
-/// file whose world becomes ours (motion_file.h).  Refuses sets in which two inputs would be the
+/// file whose world becomes ours (motion_file.h); so does that of a single csv or ndjson without a
+/// floor.  Refuses sets in which two inputs would be the
 /// same sensor or hold the same numbers.  The notes of every recording say when the set begins and
 /// how long it lasts (set_origin, set_period_ns), so that several replays loop in step.  Files that
 /// count from the start of one sensor keep their distance in time.
 [[nodiscard]] Result<ImportedSet> import_files(FileFormat format,
                                                const std::vector<std::filesystem::path>& inputs,
                                                const ImportOptions& options = {});
+
+/// Reads input number `index`, with the floor that belongs to it.
+using ReadRecording = std::function<Result<record::FrameRecording>(
+    const std::filesystem::path& file, const ImportOptions& options, std::size_t index)>;
+
+/// The same for files that somebody else reads, one sensor each.
+[[nodiscard]] Result<ImportedSet> import_recordings(
+    const std::vector<std::filesystem::path>& inputs, const ImportOptions& options,
+    const ReadRecording& read);
 
 }  // namespace chorus::importers

@@ -17,6 +17,7 @@
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
 #include "services/ctl/text_file.h"
+#include "services/ctl/video_import.h"
 
 namespace chorus::ctl {
 namespace {
@@ -33,7 +34,12 @@ struct ImportArguments {
   std::string unit = "cm";
   bool rays = false;
   bool json = false;
+  std::vector<std::string> lenses;
+  std::string model = "movenet";
+  double rate_hz = 30.0;
 };
+
+constexpr std::string_view kVideo = "video";
 
 /// A CLI11 check that says why a text is refused.
 template <class Parse>
@@ -45,8 +51,8 @@ std::function<std::string(const std::string&)> readable_by(Parse parse) {
 }
 
 std::string check_format(const std::string& name) {
-  if (importers::format_named(name)) return {};
-  std::string known;
+  if (name == kVideo || importers::format_named(name)) return {};
+  std::string known = fmt::format(" {}", kVideo);
   for (const auto& row : importers::kFormats) known += fmt::format(" {}", row.name);
   return fmt::format("there is no format \"{}\"; known are{}", name, known);
 }
@@ -195,7 +201,7 @@ void print_summary(const importers::ImportedSet& set, const std::vector<fs::path
   for (const fs::path& file : written) std::cout << "wrote " << file.string() << '\n';
 }
 
-Result<int> run_import(const ImportArguments& arguments) {
+importers::ImportOptions options_of(const ImportArguments& arguments) {
   importers::ImportOptions options;  // the texts were checked while parsing
   for (const std::string& floor : arguments.floors)
     options.floors.push_back(importers::parse_floor(floor).value());
@@ -205,12 +211,25 @@ Result<int> run_import(const ImportArguments& arguments) {
   if (!arguments.sensor.empty()) options.sensor = SensorId::parse(arguments.sensor).value();
   options.rays = arguments.rays;
   options.metres_per_unit = arguments.unit == "m" ? 1.0 : 0.01;
+  return options;
+}
+
+Result<importers::ImportedSet> read_set(const ImportArguments& arguments,
+                                        const importers::ImportOptions& options) {
+  const std::vector<fs::path> inputs(arguments.inputs.begin(), arguments.inputs.end());
+  if (arguments.format == kVideo)
+    return import_videos(inputs, options, {arguments.lenses, arguments.model, arguments.rate_hz});
+  if (!arguments.lenses.empty())
+    return fail(ErrorCode::InvalidArgument, "--intrinsics", "is for videos; leave it out");
   const auto format = importers::format_named(arguments.format);
   if (options.rays && format != importers::FileFormat::Pose2Sim)
     return fail(ErrorCode::InvalidArgument, "--rays",
                 "only pose2sim has landmarks of cameras; leave it out");
-  const auto set =
-      importers::import_files(*format, {arguments.inputs.begin(), arguments.inputs.end()}, options);
+  return importers::import_files(*format, inputs, options);
+}
+
+Result<int> run_import(const ImportArguments& arguments) {
+  const auto set = read_set(arguments, options_of(arguments));
   if (!set) return pass(set);
   const auto written = write_set(arguments.out, *set);
   if (!written) return pass(written);
@@ -228,7 +247,7 @@ Result<int> run_import(const ImportArguments& arguments) {
 
 Run add_import(CLI::App& options) {
   const auto arguments = std::make_shared<ImportArguments>();
-  std::string formats = "One of:";
+  std::string formats = "One of:\nvideo: what a runner finds in videos, one camera each, as rays";
   for (const auto& row : importers::kFormats)
     formats += fmt::format("\n{}: {}", row.name, row.reads);
   options.add_option("format", arguments->format, formats)->required()->check(check_format);
@@ -252,6 +271,19 @@ Run add_import(CLI::App& options) {
       ->check(readable_by(SensorId::parse));
   options.add_option("--unit", arguments->unit, "Of lengths in BVH, which does not say")
       ->check(CLI::IsMember({"cm", "m"}))
+      ->capture_default_str();
+  options
+      .add_option(
+          "--intrinsics", arguments->lenses,
+          "Lens of a video's camera: a file with the keys of device.camera.intrinsics, or a "
+          "sensor's configuration; once for all, or once for each in their order")
+      ->take_all()
+      ->allow_extra_args(false);
+  options.add_option("--model", arguments->model, "That the runner finds people in videos with")
+      ->capture_default_str();
+  options
+      .add_option("--rate", arguments->rate_hz, "Pictures of a video that are looked at, a second")
+      ->check(CLI::Range(0.1, 1000.0))
       ->capture_default_str();
   options.add_flag("--rays", arguments->rays,
                    "Of camera landmarks only their directions, without the depth of a fit");

@@ -6,20 +6,16 @@
 #include <utility>
 
 #include "common/base/log.h"
-#include "services/sensor/device/camera/apparent_size.h"
 #include "services/sensor/device/camera/camera_resource.h"
 #include "services/sensor/device/camera/grabber.h"
+#include "services/sensor/device/camera/looker.h"
 #include "services/sensor/device/camera/restart_pause.h"
-#include "services/sensor/device/camera/runner_process.h"
-#include "services/sensor/device/camera/runner_wire.h"
 #include "services/sensor/device/camera/shipped_runner.h"
 #include "services/sensor/host_clock.h"
 
 namespace chorus::camera {
 namespace {
 
-constexpr Duration kReadyWithin = std::chrono::seconds(60);
-constexpr Duration kAnswerWithin = std::chrono::seconds(10);
 constexpr Duration kPatience = std::chrono::milliseconds(200);
 constexpr Duration kShortestPause = std::chrono::milliseconds(500);
 constexpr Duration kLongestPause = std::chrono::seconds(30);
@@ -59,14 +55,10 @@ class Camera final : public FrameSource {
   [[nodiscard]] std::string trouble() const override { return parts_.state->trouble(); }
 
  private:
-  struct Runner {
-    std::unique_ptr<RunnerProcess> process;
-    RunnerHello about;
-  };
-  [[nodiscard]] Result<Runner> start_runner(const std::stop_token& stop) const;
+  [[nodiscard]] Result<Looker> start_runner(const std::stop_token& stop) const;
   [[nodiscard]] Result<void> look(Pictures& pictures, const std::stop_token& stop,
                                   const Sink& sink);
-  [[nodiscard]] Result<Capture> ask(Runner& runner, const Shot& shot, const std::stop_token& stop);
+  [[nodiscard]] Result<Capture> ask(Looker& looker, const Shot& shot, const std::stop_token& stop);
 
   Parts parts_;
   std::uint64_t sequence_ = 0;
@@ -83,15 +75,12 @@ DeviceDescription Camera::describe() const {
   return device;
 }
 
-Result<Camera::Runner> Camera::start_runner(const std::stop_token& stop) const {
-  auto process = RunnerProcess::start(parts_.command);
-  if (!process) return pass(process);
-  const auto line = (*process)->read_line(kReadyWithin, stop);
-  if (!line) return pass(line);
-  auto about = read_runner_hello(*line);
-  if (!about) return pass(about);
-  parts_.state->runner_ready(about->hello.name, std::string(about->hello.layout->name));
-  return Runner{std::move(*process), std::move(*about)};
+Result<Looker> Camera::start_runner(const std::stop_token& stop) const {
+  auto looker = Looker::start(parts_.settings, parts_.command, stop);
+  if (looker)
+    parts_.state->runner_ready(looker->about().hello.name,
+                               std::string(looker->about().hello.layout->name));
+  return looker;
 }
 
 Capture capture_of(SensorFrame frame, const Picture& picture, const Lens& lens) {
@@ -105,52 +94,31 @@ Capture capture_of(SensorFrame frame, const Picture& picture, const Lens& lens) 
   return capture;
 }
 
-void widen_all(std::vector<BodyFrame>& bodies, double focal_sigma) {
-  for (BodyFrame& body : bodies) {
-    for (Joint& joint : body.skeleton.joints) {
-      widen(joint, focal_sigma);
-      widen_depth(joint, focal_sigma);
-    }
-  }
-}
-
 /// Sends one picture to the runner and returns its answer.
-Result<Capture> Camera::ask(Runner& runner, const Shot& shot, const std::stop_token& stop) {
-  const auto lens = lens_for(parts_.settings, shot.picture.size);
-  if (!lens) return pass(lens);
-  const Question question{++sequence_, shot.captured,
-                          sent_size(shot.picture.size, runner.about.max_side)};
+Result<Capture> Camera::ask(Looker& looker, const Shot& shot, const std::stop_token& stop) {
   const auto began = std::chrono::steady_clock::now();
-  const std::string bytes = image_header(question) + rgb_bytes(shot.picture, question.size);
-  if (const auto ok = runner.process->send(bytes, kAnswerWithin, stop); !ok) return pass(ok);
-  const auto line = runner.process->read_line(kAnswerWithin, stop);
-  if (!line) return pass(line);
-  bridge::Hello hello = runner.about.hello;
-  hello.camera = sent_camera(lens->camera, question.size);
-  const Depth depth = parts_.settings.depth_from_size ? Depth::FromSize : Depth::None;
-  auto bodies = read_runner_answer(*line, question, hello, depth);
-  if (!bodies) return pass(bodies);
-  widen_all(*bodies, lens->focal_sigma);
-  SensorFrame frame{parts_.sensor,      sequence_,
-                    shot.captured,      parts_.clock->now(),
-                    std::move(*bodies), hello.floor ? hello.floor : parts_.settings.floor};
-  parts_.state->answered(question.size, std::chrono::steady_clock::now() - began,
+  auto found = looker.look(shot.picture, shot.captured, ++sequence_, stop);
+  if (!found) return pass(found);
+  SensorFrame frame{
+      parts_.sensor, sequence_, shot.captured, parts_.clock->now(), std::move(found->bodies),
+      found->floor};
+  parts_.state->answered(found->sent, std::chrono::steady_clock::now() - began,
                          frame.received - frame.captured);
-  return capture_of(std::move(frame), shot.picture, *lens);
+  return capture_of(std::move(frame), shot.picture, found->lens);
 }
 
 /// Runs for as long as one runner lives; success at the end of the pictures.
 Result<void> Camera::look(Pictures& pictures, const std::stop_token& stop, const Sink& sink) {
-  auto runner = start_runner(stop);
-  if (!runner) return pass(runner);
+  auto looker = start_runner(stop);
+  if (!looker) return pass(looker);
   pictures.begin();
   while (!stop.stop_requested()) {
-    if (const auto alive = runner->process->listen(); !alive) return alive;
+    if (const auto alive = looker->listen(); !alive) return alive;
     const bool over = pictures.newest().closed();
     const std::vector<Shot> shots = pictures.newest().take(kPatience);
     if (shots.empty() && over) return {};
     if (shots.empty()) continue;
-    auto capture = ask(*runner, shots.back(), stop);
+    auto capture = ask(*looker, shots.back(), stop);
     if (!capture) return pass(capture);
     sink(std::move(*capture));
   }

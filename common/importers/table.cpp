@@ -1,0 +1,98 @@
+#include "common/importers/table.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "common/base/parse.h"
+
+namespace chorus::importers {
+namespace {
+
+constexpr std::size_t kMaxColumns = 1024;
+constexpr std::size_t kShownFieldBytes = 24;
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \r") - first + 1);
+}
+
+/// Whichever the first row has most of.
+char separator_of(std::string_view header) {
+  char best = ',';
+  for (const char each : {';', '\t'}) {
+    if (std::ranges::count(header, each) > std::ranges::count(header, best)) best = each;
+  }
+  return best;
+}
+
+}  // namespace
+
+void Table::split(std::string_view line) {
+  fields_.clear();
+  while (fields_.size() <= kMaxColumns) {
+    const auto end = line.find(separator_);
+    fields_.push_back(trimmed(line.substr(0, end)));
+    if (end == std::string_view::npos) return;
+    line.remove_prefix(end + 1);
+  }
+}
+
+Result<Table> Table::open(LineReader& lines) {
+  auto header = lines.next_filled();
+  if (!header) return lines.malformed("is empty; its first row has to name the columns.");
+  if (header->starts_with(kByteOrderMark)) header->remove_prefix(kByteOrderMark.size());
+  Table table(lines);
+  table.separator_ = separator_of(*header);
+  table.split(*header);
+  if (table.fields_.size() > kMaxColumns)
+    return lines.malformed(fmt::format("has more than {} columns.", kMaxColumns));
+  for (std::size_t i = 0; i < table.fields_.size(); ++i) {
+    if (table.fields_[i].empty()) continue;
+    if (!table.columns_.emplace(table.fields_[i], i).second)
+      return lines.malformed(fmt::format("names the column \"{}\" twice.", table.fields_[i]));
+  }
+  return table;
+}
+
+Result<bool> Table::next() {
+  const std::size_t expected = fields_.size();
+  const auto line = lines_->next_filled();
+  if (!line) return false;
+  split(*line);
+  if (fields_.size() == expected) return true;
+  return lines_->malformed(fmt::format("holds {} values where the first row names {} columns.",
+                                       fields_.size(), expected));
+}
+
+std::string_view Table::field(std::string_view column) const {
+  const auto found = columns_.find(column);
+  return found == columns_.end() ? std::string_view() : fields_[found->second];
+}
+
+Result<std::optional<double>> Table::number(std::string_view column, double bound) const {
+  const std::string_view text = field(column);
+  if (text.empty()) return std::nullopt;
+  const auto value = parse_finite(text);
+  if (!value) return wrong(column, "is not a number");
+  if (std::abs(*value) > bound) return wrong(column, fmt::format("is beyond +-{}", bound));
+  return value;
+}
+
+Result<std::uint64_t> Table::natural(std::string_view column, std::uint64_t absent) const {
+  const std::string_view text = field(column);
+  if (text.empty()) return absent;
+  const auto value = parse_number<std::uint64_t>(text);
+  if (!value) return wrong(column, "is not a whole number of 0 or more");
+  return *value;
+}
+
+tl::unexpected<Error> Table::wrong(std::string_view column, std::string_view what) const {
+  return lines_->malformed(
+      fmt::format("{}: \"{}\" {}.", column, field(column).substr(0, kShownFieldBytes), what));
+}
+
+}  // namespace chorus::importers

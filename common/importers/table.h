@@ -1,0 +1,42 @@
+// Tables whose first row names the columns; commas, semicolons or tabs between them, no quotes.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/importers/text_rows.h"
+
+namespace chorus::importers {
+
+class Table {
+ public:
+  /// Reads the first row; refuses a text without one, and names that come twice.
+  [[nodiscard]] static Result<Table> open(LineReader& lines);
+
+  /// Reads the next row; false at the end.  Refuses rows of more or fewer fields than columns.
+  [[nodiscard]] Result<bool> next();
+
+  [[nodiscard]] bool has(std::string_view column) const { return columns_.contains(column); }
+  /// The column's field of this row; empty where there is no such column.
+  [[nodiscard]] std::string_view field(std::string_view column) const;
+  /// A finite number within +-bound; none where the field is empty.
+  [[nodiscard]] Result<std::optional<double>> number(std::string_view column, double bound) const;
+  /// A whole number of 0 or more; `absent` where the field is empty.
+  [[nodiscard]] Result<std::uint64_t> natural(std::string_view column, std::uint64_t absent) const;
+  /// Malformed at this row, naming the column and what stands there.
+  [[nodiscard]] tl::unexpected<Error> wrong(std::string_view column, std::string_view what) const;
+
+ private:
+  explicit Table(LineReader& lines) : lines_(&lines) {}
+  void split(std::string_view line);
+
+  LineReader* lines_;
+  char separator_ = ',';
+  std::map<std::string, std::size_t, std::less<>> columns_;
+  std::vector<std::string_view> fields_;
+};
+
+}  // namespace chorus::importers

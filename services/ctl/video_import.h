@@ -1,0 +1,26 @@
+// Videos as recordings: a runner looks at every picture, however long that takes.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/importers/formats.h"
+
+namespace chorus::ctl {
+
+struct VideoImport {
+  /// None, one for all, or one for each: files with the keys of device.camera.intrinsics, or
+  /// sensors' configurations.  None: a usual field of view is assumed.
+  std::vector<std::string> lenses;
+  std::string model;
+  double rate_hz = 30.0;  ///< Pictures looked at.
+};
+
+/// Each input is one camera, named after its file; all videos begin at options.start.  Tells its
+/// progress on standard error.
+[[nodiscard]] Result<importers::ImportedSet> import_videos(
+    const std::vector<std::filesystem::path>& inputs, const importers::ImportOptions& options,
+    const VideoImport& how);
+
+}  // namespace chorus::ctl

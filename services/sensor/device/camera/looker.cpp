@@ -1,0 +1,54 @@
+#include "services/sensor/device/camera/looker.h"
+
+#include <utility>
+
+#include "services/sensor/device/camera/apparent_size.h"
+
+namespace chorus::camera {
+namespace {
+
+constexpr Duration kReadyWithin = std::chrono::seconds(60);
+constexpr Duration kAnswerWithin = std::chrono::seconds(10);
+
+void widen_all(std::vector<BodyFrame>& bodies, double focal_sigma) {
+  for (BodyFrame& body : bodies) {
+    for (Joint& joint : body.skeleton.joints) {
+      widen(joint, focal_sigma);
+      widen_depth(joint, focal_sigma);
+    }
+  }
+}
+
+}  // namespace
+
+Result<Looker> Looker::start(const CameraSettings& settings,
+                             const std::vector<std::string>& command, const std::stop_token& stop) {
+  auto process = RunnerProcess::start(command);
+  if (!process) return pass(process);
+  const auto line = (*process)->read_line(kReadyWithin, stop);
+  if (!line) return pass(line);
+  auto about = read_runner_hello(*line);
+  if (!about) return pass(about);
+  return Looker(settings, std::move(*process), std::move(*about));
+}
+
+Result<Found> Looker::look(const Picture& picture, Timestamp captured, std::uint64_t sequence,
+                           const std::stop_token& stop) {
+  const auto lens = lens_for(*settings_, picture.size);
+  if (!lens) return pass(lens);
+  const Question question{sequence, captured, sent_size(picture.size, about_.max_side)};
+  const std::string bytes = image_header(question) + rgb_bytes(picture, question.size);
+  if (const auto ok = process_->send(bytes, kAnswerWithin, stop); !ok) return pass(ok);
+  const auto line = process_->read_line(kAnswerWithin, stop);
+  if (!line) return pass(line);
+  bridge::Hello hello = about_.hello;
+  hello.camera = sent_camera(lens->camera, question.size);
+  const Depth depth = settings_->depth_from_size ? Depth::FromSize : Depth::None;
+  auto bodies = read_runner_answer(*line, question, hello, depth);
+  if (!bodies) return pass(bodies);
+  widen_all(*bodies, lens->focal_sigma);
+  return Found{std::move(*bodies), *lens, question.size,
+               hello.floor ? hello.floor : settings_->floor};
+}
+
+}  // namespace chorus::camera
