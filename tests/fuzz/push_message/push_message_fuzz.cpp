@@ -1,49 +1,25 @@
 // Any lines as what a program pushes: each is read or refused with words, and what is read is a
 // frame that may be published.  A whole session of them, on clocks that go on, leaves the desk
 // alive.
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 
 #include "services/sensor/device/bridge/push_dialogue.h"
+#include "tests/fuzz/frame_checks.h"
 
 namespace {
 
 using namespace chorus;
 using namespace chorus::bridge;
+using namespace chorus::fuzz;
 
 constexpr Timestamp kStart = from_unix_ns(1'795'246'200'000'000'000);
 constexpr auto kBetween = std::chrono::milliseconds(9);
 
-void require(bool holds) {
-  if (!holds) std::abort();
-}
-
-void check_joint(const Joint& joint) {
-  require(joint.orientation.coeffs().isZero());
-  if (joint.state == JointState::NotTracked) return;
-  require(joint.position.allFinite());
-  if (joint.measurement == Measurement::Ray) require(std::abs(joint.position.norm() - 1.0) < 1e-6);
-  require(!joint.covariance.known() || joint.covariance.plausible());
-}
-
 void check_frame(const SensorFrame& frame) {
-  require(frame.bodies.size() <= kMaxBodies);
-  for (const BodyFrame& body : frame.bodies) {
-    require(body.captured == frame.captured);
-    for (const Joint& joint : body.skeleton.joints) check_joint(joint);
-  }
+  check_bodies(frame.bodies, frame.captured);
   if (frame.floor) require(frame.floor->normal.allFinite() && frame.floor->offset >= 0.0);
-}
-
-/// The next line; the rest stays in `text`.
-std::string_view next_line(std::string_view& text) {
-  const std::string_view line = text.substr(0, text.find('\n'));
-  text.remove_prefix(std::min(text.size(), line.size() + 1));
-  return line;
 }
 
 }  // namespace

@@ -1,0 +1,57 @@
+// Any lines as what a runner says: the first as its hello, the others as its answers to one image,
+// with and without depth from people's size.  Each is read or refused with words, and what is read
+// may be published.
+#include <cstddef>
+#include <cstdint>
+
+#include "services/sensor/device/camera/apparent_size.h"
+#include "services/sensor/device/camera/runner_wire.h"
+#include "tests/fuzz/frame_checks.h"
+
+namespace {
+
+using namespace chorus;
+using namespace chorus::camera;
+using fuzz::require;
+
+const Question kQuestion{42, from_unix_ns(1'795'246'200'250'000'000), {256, 144}};
+constexpr const char* kUsualHello =
+    R"({"type": "hello", "version": 1, "name": "n", "layout": "mediapipe_33"})";
+constexpr double kFocalSigma = 0.1;
+
+/// As the device goes on with them.
+void check_answer(std::vector<BodyFrame> bodies) {
+  for (BodyFrame& body : bodies) {
+    for (Joint& joint : body.skeleton.joints) {
+      widen(joint, kFocalSigma);
+      widen_depth(joint, kFocalSigma);
+    }
+  }
+  fuzz::check_bodies(bodies, kQuestion.captured);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  std::string_view text(reinterpret_cast<const char*>(bytes), size);
+  auto about = read_runner_hello(fuzz::next_line(text));
+  if (!about) {
+    require(!to_string(about.error()).empty());
+    about = read_runner_hello(kUsualHello);
+  }
+  require(about.has_value() && about->max_side > 0);
+  bridge::Hello hello = about->hello;
+  hello.camera = sent_camera(Intrinsics{1280, 720, 1000, 1000, 640, 360, {0.04, -0.1, 0, 0, 0}},
+                             kQuestion.size);
+  while (!text.empty()) {
+    const std::string_view line = fuzz::next_line(text);
+    for (const Depth depth : {Depth::None, Depth::FromSize}) {
+      auto bodies = read_runner_answer(line, kQuestion, hello, depth);
+      if (bodies)
+        check_answer(std::move(*bodies));
+      else
+        require(!to_string(bodies.error()).empty());
+    }
+  }
+  return 0;
+}
