@@ -56,7 +56,7 @@ struct ClientLimits {
 };
 
 /// Sends one request on its own connection; blocks.
-/// `trust`: whom the client believes about an https:// server.
+/// `trust`: the authorities accepted for an https:// server.
 [[nodiscard]] Result<ClientResponse> fetch(const Url& url, const ClientRequest& request,
                                            const ClientLimits& limits = {},
                                            const tls::Trust& trust = {});
@@ -71,7 +71,7 @@ class AsyncClient {
 
   AsyncClient(boost::asio::io_context& io, std::string host, std::uint16_t port,
               ClientLimits limits = {});
-  /// By the URL's host, port and scheme; its target is not used.
+  /// Uses the URL's host, port and scheme, but not its target.
   AsyncClient(boost::asio::io_context& io, const Url& url, ClientLimits limits = {},
               const tls::Trust& trust = {});
   ~AsyncClient();

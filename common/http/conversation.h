@@ -35,8 +35,8 @@ class Conversation {
 
   Conversation(ConversationContext context, Peer peer, Charge charge);
 
-  /// Before begin: the client speaks without TLS to a server that asks for it.  Its request is
-  /// refused with what to do.
+  /// Called before begin when the client speaks without TLS to a server that requires it.  Its
+  /// request is refused, with what to do.
   void expect_tls() { expects_tls_ = true; }
 
   [[nodiscard]] Orders begin(SteadyTime now);

@@ -28,7 +28,7 @@ class AsyncEventStream {
   /// `limits.max_body_bytes` bounds one event; the time-outs apply until the head has arrived.
   AsyncEventStream(boost::asio::io_context& io, std::string host, std::uint16_t port,
                    ClientLimits limits = {});
-  /// By the URL's host, port and scheme; its target is not used.
+  /// Uses the URL's host, port and scheme, but not its target.
   AsyncEventStream(boost::asio::io_context& io, const Url& url, ClientLimits limits = {},
                    const tls::Trust& trust = {});
   ~AsyncEventStream();

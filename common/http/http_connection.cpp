@@ -49,7 +49,7 @@ void HttpConnection::begin(Beginning beginning) {
   carry_out((conversation_.*beginning)(core_.now));
 }
 
-/// The handshake first, in no more time than a request may take.
+/// First the handshake, within the time that a request may take.
 void HttpConnection::seal(Beginning beginning) {
   deadline_ = core_.now + core_.config.limits.header_timeout;
   stream_.seal_as_server(

@@ -26,7 +26,7 @@ class HttpConnection final : public Connection {
   void expire() override;
   void stop() override;
   void close() override;
-  [[nodiscard]] bool idle() const override { return conversation_.idle(); }  // shaking hands, too
+  [[nodiscard]] bool idle() const override { return conversation_.idle(); }  // handshake included
 
  private:
   using Beginning = Orders (Conversation::*)(SteadyTime);

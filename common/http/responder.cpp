@@ -159,9 +159,9 @@ Reaction Responder::react(const RequestHead& head, const Peer& peer) const {
   }
 }
 
-/// To those a browser's question before a request is answered the same for every path.  It comes
-/// without a token, and one that comes with it is not looked at: that would tell whether it is
-/// right.
+/// True for a client that may not read: a browser's preflight from it gets the same answer for
+/// every path.  A preflight comes without a token; if there is one, it is ignored, because the
+/// answer would reveal whether it is right.
 bool Responder::is_stranger(const RequestHead& head, const Peer& peer) const {
   RequestHead anonymous = head;
   anonymous.authorization = {};

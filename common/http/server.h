@@ -48,7 +48,7 @@ struct ServerConfig {
   std::vector<std::string> hosts = {};
   /// Numeric addresses whose X-Forwarded-For is believed for limits; never treated as this host.
   std::vector<std::string> trusted_proxies = {};
-  /// With it, everything is spoken over TLS; a client without TLS is told so (400).
+  /// If set, all connections use TLS; a client without TLS is told so (400).
   std::optional<tls::Identity> identity = {};
   std::vector<Token> tokens = {};           ///< In addition to bearer_token.  See Guard.
   std::shared_ptr<const Clock> clock = {};  ///< Time-stamps the answers; null: the host's clock.
@@ -80,7 +80,7 @@ struct ServerCounters {
   std::uint64_t downloads_open = 0;
   std::uint64_t unauthorized = 0;       ///< Requests with a wrong token, or without one they need.
   std::uint64_t closed_for_room = 0;    ///< Idle connections closed to make room for others.
-  std::uint64_t handshakes_failed = 0;  ///< Of TLS: broken off, garbage, or the client objects.
+  std::uint64_t handshakes_failed = 0;  ///< Of TLS: broken off, garbage, or refused by the client.
   std::uint64_t connections_limit = 0;  ///< Most connections at once, given the descriptors.
 };
 
@@ -97,8 +97,8 @@ class Server {
 
   /// Replaces the tokens from the next request on; from any thread, before or while serving.
   void set_tokens(std::vector<Token> tokens);
-  /// Shows another certificate, from the next connection on; from any thread.  Does nothing for a
-  /// server that speaks without TLS.
+  /// Uses another certificate from the next connection on; from any thread.  Does nothing on a
+  /// server without TLS.
   void set_identity(tls::Identity identity);
 
   /// Posts a task to the server's thread; false when the task of the last call has not been done:

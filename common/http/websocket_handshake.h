@@ -22,7 +22,7 @@ struct Subprotocols {
 };
 [[nodiscard]] Subprotocols subprotocols_of(const RequestHead& head, std::string_view protocol);
 
-/// The request for Beast, which takes at most 1536 bytes including what came after it (`behind`):
+/// The request for Beast, which takes at most 1536 bytes with what came after it (`behind`): has
 /// only the fields of the handshake, because a browser's cookies alone can be longer.
 [[nodiscard]] std::string handshake_of(const RequestHead& head, std::string_view behind);
 

@@ -10,7 +10,7 @@
 
 #include "common/net/token_bucket.h"
 
-// How Beast ends and closes a stream of ours; it finds these by the stream's namespace.
+// How Beast ends and closes a stream of ours; it finds these by the namespace of the stream.
 namespace chorus::net {
 
 inline void beast_close_socket(Stream& stream) { stream.close(); }

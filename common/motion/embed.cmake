@@ -1,5 +1,5 @@
 # Turns text files into C++ string constants.  FILES: name=path pairs; OUT: path without suffix; SPACE: namespace.
-# MSVC-style literal limits do not concern us; the text is cut into raw literals of a bounded length all the same.
+# MSVC's limits on literals do not concern us; the text is nevertheless cut into raw literals of limited length.
 set(declarations "")
 set(definitions "")
 foreach(pair ${FILES})

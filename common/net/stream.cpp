@@ -24,15 +24,15 @@ struct Stream::Secret : std::enable_shared_from_this<Secret> {
   void pump();
   void pumped(error_code failed);
   bool say_rest();
-  /// Feeds what comes into the seal, then calls `then`.
+  /// Passes what arrives to the seal, then calls `then`.
   template <class Then>
   void hear(Then then);
 
   Socket socket;
   tls::Seal seal;
   std::array<char, kReadBytes> incoming{};
-  std::string outgoing;  ///< Being sent, unless empty.
-  Done written;          ///< Called when everything that the seal had to send is sent.
+  std::string outgoing;  ///< Is being sent, unless empty.
+  Done written;          ///< Called when everything from the seal has been sent.
   std::size_t written_size = 0;
 };
 
@@ -52,7 +52,7 @@ void Stream::Secret::shake(const Sealed& done) {
     return done({});
   }
   if (step != tls::Seal::Step::NeedsInput) {
-    say_rest();  // the alert that tells the other side why
+    say_rest();  // the alert, which tells the other side why
     return done({seal.failure()});
   }
   pump();
@@ -84,7 +84,7 @@ void Stream::Secret::read(asio::mutable_buffer room, Done done) {
   });
 }
 
-/// Sends what the seal has to send, in its order.
+/// Sends what the seal has to send, in order.
 void Stream::Secret::pump() {
   if (!outgoing.empty()) return;
   outgoing = seal.take_output();
@@ -102,7 +102,7 @@ void Stream::Secret::pumped(error_code failed) {
   if (const Done done = std::exchange(written, nullptr)) done(failed, size);
 }
 
-/// As much of it as fits, without waiting.
+/// Sends as much of it as possible without waiting.
 bool Stream::Secret::say_rest() {
   const std::string rest = seal.take_output();
   error_code failed;
@@ -133,7 +133,7 @@ void Stream::seal_as_server(const tls::Identity& identity, Sealed done) {
 }
 
 void Stream::read_sealed(asio::mutable_buffer room, Done done) {
-  // Never calls before it returns.
+  // Never calls `done` before it returns.
   asio::post(get_executor(), [secret = secret_, room, done = std::move(done)]() mutable {
     secret->read(room, std::move(done));
   });

@@ -1,8 +1,8 @@
-// A TCP connection that may be sealed by TLS: what HTTP, its event streams and WebSockets run over.
+// A TCP connection, optionally with TLS: HTTP, its event streams and WebSockets run over it.
 //
-// One type for both, so that nothing above is compiled twice.  Unsealed it hands every call on to
+// One type for both, so that nothing above is compiled twice.  Without TLS it passes every call to
 // its socket.  Meets Asio's AsyncReadStream and AsyncWriteStream for one thread: at most one read
-// and one write at a time, handlers kept by whoever owns the stream, default allocators.
+// and one write at a time, handlers kept by the owner of the stream, default allocators.
 #pragma once
 
 #include <cstddef>
@@ -24,26 +24,26 @@ class Stream {
   using executor_type = Executor;
   using Done = std::function<void(error_code, std::size_t)>;
 
-  /// How sealing went.
+  /// The outcome of sealing: of setting up TLS.
   struct Sealing {
-    std::optional<Error> failure = {};  ///< What to do about it included; its context is the host.
-    bool plain = false;                 ///< A client that speaks no TLS: the stream stays unsealed.
+    std::optional<Error> failure = {};  ///< With advice; its context is the host.
+    bool plain = false;                 ///< The client speaks no TLS: the stream stays unsealed.
   };
   using Sealed = std::function<void(Sealing)>;  ///< Called once, never before the call returns.
 
   explicit Stream(const Executor& executor) : socket_(executor) {}
   explicit Stream(Socket socket) : socket_(std::move(socket)) {}
-  Stream(Stream&&) = default;  ///< Not while anything is under way.
+  Stream(Stream&&) = default;  ///< Not while an operation is under way.
   Stream& operator=(Stream&&) = delete;
   ~Stream() = default;
 
-  /// Of a connected socket.  Neither has a time limit: close() ends it.
+  /// For a connected socket.  Neither function has a time-out: close() ends it.
   void seal_as_client(const tls::Trust& trust, const std::string& host, Sealed done);
   void seal_as_server(const tls::Identity& identity, Sealed done);
   [[nodiscard]] bool sealed() const { return secret_ != nullptr; }
 
   [[nodiscard]] executor_type get_executor() { return socket().get_executor(); }
-  /// Bytes go through read and write only, once it is sealed.
+  /// Once it is sealed, send and receive only by read and write.
   [[nodiscard]] Socket& socket();
 
   template <class Buffers, class Handler>
@@ -76,18 +76,18 @@ class Stream {
     write_sealed(said, erased(std::forward<Handler>(handler)));
   }
 
-  /// Sends all of it at once or returns false; then close() it.  Not while a write is under way.
+  /// Sends all of it at once or returns false; in that case close() it.  Not during another write.
   [[nodiscard]] bool say_now(std::string_view said);
-  /// Says that nothing more comes; what comes in can still be read.
+  /// Says that nothing more will be sent; incoming bytes can still be read.
   error_code end_saying();
-  /// Cancels what is under way; afterwards it is unsealed and may be connected again.
+  /// Cancels what is under way; afterwards the stream is unsealed and may be connected again.
   void close();
 
  private:
   struct Secret;
   static constexpr std::size_t kMostAtOnce = 64 * 1024;
 
-  /// Handlers of composed operations can be moved only.
+  /// Handlers of composed operations are move-only.
   template <class Handler>
   static Done erased(Handler&& handler) {
     auto kept = std::make_shared<std::decay_t<Handler>>(std::forward<Handler>(handler));
@@ -97,7 +97,7 @@ class Stream {
   void write_sealed(std::string_view said, Done done);
 
   Socket socket_;                   ///< Closed once it is sealed.
-  std::shared_ptr<Secret> secret_;  ///< Shared with what is under way.
+  std::shared_ptr<Secret> secret_;  ///< Shared with operations under way.
 };
 
 }  // namespace chorus::net

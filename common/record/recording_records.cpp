@@ -108,7 +108,7 @@ std::string read_channel(std::string_view content, const ReadLimits& limits, Def
   const std::uint16_t schema = fields.u16();
   Channel channel;
   channel.topic = fields.text();
-  (void)fields.text();  // the encoding; whoever reads the topic knows it
+  (void)fields.text();  // the encoding, which readers of the topic know
   channel.metadata = fields.strings();
   if (!fields.ok()) return "a channel record is cut short";
   if (limits.wanted && !limits.wanted(channel.topic)) into.skipped.insert(id);

@@ -16,7 +16,7 @@ namespace {
 constexpr int kSerialBits = 127;
 constexpr std::size_t kLongestName = 253;
 
-/// Of OpenSSL calls that fail only without memory or randomness.
+/// For OpenSSL calls that fail only without memory or randomness.
 void need(bool done) {
   if (!done) throw std::runtime_error("making a certificate failed: " + last_reason());
 }
@@ -60,7 +60,7 @@ void set_serial(X509* certificate) {
   BN_free(number);
 }
 
-/// With a key and times, not yet signed.
+/// A certificate with a key and times that is not yet signed.
 Owned<X509> unsigned_certificate(const std::string& name, EVP_PKEY* key, const Validity& validity) {
   Owned<X509> certificate(X509_new());
   need(certificate && X509_set_version(certificate.get(), X509_VERSION_3) == 1);
@@ -71,7 +71,7 @@ Owned<X509> unsigned_certificate(const std::string& name, EVP_PKEY* key, const V
   need(ASN1_TIME_set(X509_getm_notBefore(certificate.get()), time(validity.from)) != nullptr);
   need(ASN1_TIME_set(X509_getm_notAfter(certificate.get()), time(validity.until)) != nullptr);
   need(X509_set_pubkey(certificate.get(), key) == 1);
-  // A common name has at most 64 characters; who checks a host reads the names of the extension.
+  // A common name has at most 64 characters; clients that check a host use the extension's names.
   const std::string shown = name.substr(0, 64);
   need(X509_NAME_add_entry_by_txt(X509_get_subject_name(certificate.get()), "CN", MBSTRING_UTF8,
                                   reinterpret_cast<const unsigned char*>(shown.c_str()), -1, -1,

@@ -1,4 +1,4 @@
-// A small certificate authority: for the hosts of a workshop, which no public authority knows.
+// A small certificate authority for the hosts of a workshop, which no public authority knows.
 #pragma once
 
 #include <chrono>
@@ -9,7 +9,7 @@
 
 namespace chorus::tls {
 
-/// PEM both; whoever has the key is the authority, or the host.
+/// Both in PEM; the owner of the key is the authority, or the host.
 struct Issued {
   std::string certificate;
   std::string key;
@@ -20,15 +20,15 @@ struct Validity {
   std::chrono::sys_seconds until;
 };
 
-/// An hour ago, since clocks of a workshop differ, until this many days from now.
+/// From an hour ago, because a workshop's clocks differ, until `days` days from now.
 [[nodiscard]] Validity for_days(int days);
 
-/// A new authority (elliptic curve P-256) that signs hosts and no further authorities.  `name` is
-/// what people see: "Chorus of hall 3".
+/// A new authority (elliptic curve P-256) that can sign hosts, but no further authorities.  `name`
+/// is shown to people: "Chorus of hall 3".
 [[nodiscard]] Result<Issued> new_authority(const std::string& name, const Validity& validity);
 
 /// A new key and a certificate for one host with these names and numeric addresses; the first is
-/// its common name.  InvalidArgument for what is neither; Malformed when the authority is none.
+/// its common name.  InvalidArgument for any other text; Malformed if `authority` is not one.
 [[nodiscard]] Result<Issued> new_certificate(const Issued& authority,
                                              const std::vector<std::string>& hosts,
                                              const Validity& validity);

@@ -1,4 +1,4 @@
-// What stands in a certificate.
+// The facts in a certificate.
 #pragma once
 
 #include <chrono>
@@ -14,15 +14,15 @@ namespace chorus::tls {
 
 struct CertificateFacts {
   std::string subject;             ///< Its common name.
-  std::string issuer;              ///< Of who signed it.
-  std::vector<std::string> names;  ///< Hosts it is for: "sensor-1.local", "10.0.0.11".
+  std::string issuer;              ///< Common name of the signer.
+  std::vector<std::string> names;  ///< Its hosts: "sensor-1.local", "10.0.0.11".
   std::chrono::sys_seconds not_before{};
   std::chrono::sys_seconds not_after{};
 };
 
 [[nodiscard]] CertificateFacts facts_of(const x509_st& certificate);
 
-/// Of the first certificate of a PEM text; Malformed when there is none.
+/// Facts of the first certificate in a PEM text; Malformed when there is none.
 [[nodiscard]] Result<CertificateFacts> facts_of(std::string_view pem);
 
 /// "2026-11-22"

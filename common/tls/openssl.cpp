@@ -9,7 +9,7 @@
 namespace chorus::tls {
 namespace {
 
-/// Never asks on the terminal: a service has none.
+/// Never asks on the terminal, because a service has none.
 int no_password(char*, int, int, void*) { return -1; }
 
 }  // namespace
@@ -32,7 +32,7 @@ std::vector<Owned<X509>> certificates_in(std::string_view pem) {
   const Owned<BIO> bio = bio_of(pem);
   while (X509* const one = PEM_read_bio_X509(bio.get(), nullptr, no_password, nullptr))
     all.emplace_back(one);
-  // The end of the text is an error too: no further beginning of a certificate.
+  // The end of the text is reported as an error as well, but a harmless one: no certificate begins.
   if (ERR_GET_REASON(ERR_peek_last_error()) != PEM_R_NO_START_LINE) all.clear();
   ERR_clear_error();
   return all;
@@ -54,7 +54,7 @@ Owned<SSL_CTX> new_context(const SSL_METHOD* method) {
                                          SSL_OP_NO_TICKET | SSL_OP_IGNORE_UNEXPECTED_EOF);
   SSL_CTX_set_num_tickets(context.get(), 0);
   SSL_CTX_set_session_cache_mode(context.get(), SSL_SESS_CACHE_OFF);
-  // An idle connection then costs a few kilobytes instead of forty.
+  // An idle connection then takes a few kilobytes instead of forty.
   SSL_CTX_set_mode(context.get(), SSL_MODE_RELEASE_BUFFERS);
   return context;
 }

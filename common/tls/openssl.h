@@ -1,4 +1,4 @@
-// What the files of this room share of OpenSSL; nobody else includes it.
+// The use of OpenSSL that this room's files share; only they include it.
 #pragma once
 
 #include <memory>
@@ -23,20 +23,20 @@ struct Freeing {
 template <class T>
 using Owned = std::unique_ptr<T, Freeing>;
 
-/// Why the last call failed, in OpenSSL's words; forgets it.
+/// Why the last call failed, in OpenSSL's words; clears the errors.
 [[nodiscard]] std::string last_reason();
 
-/// Read-only, of bytes that outlive it.
+/// A read-only view of bytes that must outlive it.
 [[nodiscard]] Owned<BIO> bio_of(std::string_view bytes);
 
-/// The certificates of a PEM text, in its order; none when one of them is broken.
+/// The certificates of a PEM text, in order; none if one of them is broken.
 [[nodiscard]] std::vector<Owned<X509>> certificates_in(std::string_view pem);
 
-/// The unencrypted private key of a PEM text; null: there is none.
+/// The unencrypted private key of a PEM text; null if there is none.
 [[nodiscard]] Owned<EVP_PKEY> key_in(std::string_view pem);
 
-/// What servers and clients have in common: TLS 1.2 and above, forward secrecy, nothing that
-/// outlives a connection.
+/// Settings for servers and clients: TLS 1.2 and above, forward secrecy, nothing that outlives a
+/// connection.
 [[nodiscard]] Owned<SSL_CTX> new_context(const SSL_METHOD* method);
 
 }  // namespace chorus::tls

@@ -13,7 +13,7 @@
 namespace chorus::tls {
 namespace {
 
-/// What the other side's alert, or the bytes it sent instead of TLS, mean for who runs this side.
+/// What an alert of the other side, or bytes that are not TLS, mean for the people on this side.
 struct Reason {
   int code;
   std::string_view words;
@@ -46,7 +46,7 @@ std::string words_for(unsigned long code) {
          (text == nullptr ? "it broke off" : text);
 }
 
-/// Notes the certificate that is objected to: afterwards OpenSSL does not have it any more.
+/// Notes the facts of a certificate that is refused, because afterwards OpenSSL no longer has it.
 int note_objection(int accepted, X509_STORE_CTX* checking) {
   const void* const ssl =
       X509_STORE_CTX_get_ex_data(checking, SSL_get_ex_data_X509_STORE_CTX_idx());
@@ -74,7 +74,7 @@ Seal Seal::over(ssl_ctx_st* context) {
   BIO* const in = BIO_new(BIO_s_mem());
   BIO* const out = BIO_new(BIO_s_mem());
   if (!seal.ssl_ || in == nullptr || out == nullptr) throw std::bad_alloc();
-  BIO_set_mem_eof_return(in, -1);  // nothing there yet, not the end
+  BIO_set_mem_eof_return(in, -1);  // empty means nothing yet, not the end
   SSL_set_bio(seal.ssl_.get(), in, out);
   return seal;
 }
@@ -161,7 +161,7 @@ Seal::Step Seal::step_of(int result) {
   return Step::Failed;
 }
 
-/// A client's to the certificate it was shown.
+/// Why the client refuses the certificate it was shown.
 std::string Seal::objection() const {
   const long verdict = SSL_get_verify_result(ssl_.get());
   if (!trust_ || verdict == X509_V_OK) return {};

@@ -1,8 +1,8 @@
-// One side of a TLS connection (1.2 or 1.3) without sockets: bytes of the network in and out on one
-// side, what is said on the other.
+// One side of a TLS connection (1.2 or 1.3) without sockets: encrypted bytes in and out towards the
+// network, plain bytes towards the program.
 //
-// Asio's TLS stream sends each buffer as a record of its own, cannot say its end without waiting
-// for the other's, and needs sockets to be tested; hence OpenSSL directly.
+// Asio's TLS stream sends each buffer as a separate record, cannot send its end without waiting for
+// the other side's, and needs sockets in tests; therefore this uses OpenSSL directly.
 #pragma once
 
 #include <cstddef>
@@ -20,44 +20,44 @@ struct ssl_st;
 
 namespace chorus::tls {
 
-/// True for the first byte of what a client sends that speaks TLS; HTTP begins with a letter.
+/// True for the first byte from a client that speaks TLS; HTTP begins with a letter.
 [[nodiscard]] constexpr bool begins_tls(char first) { return first == '\x16'; }
 
-/// Not thread-safe.  After each call, take_output() has to be sent if it is not empty.
+/// Not thread-safe.  After each call, take_output() must be sent if it is not empty.
 class Seal {
  public:
   enum class Step {
     Done,
     NeedsInput,  ///< Call again after receive().
-    Ended,       ///< The other side has said its end.
-    Failed       ///< For good; see failure().
+    Ended,       ///< The other side has sent its end.
+    Failed       ///< It stays so; see failure().
   };
 
   [[nodiscard]] static Seal of_server(const Identity& identity);
-  /// `host`: name or numeric address that the server's certificate must be for.
+  /// `host`: the name or numeric address that the server's certificate must contain.
   [[nodiscard]] static Seal of_client(const Trust& trust, std::string host);
 
   Seal(Seal&&) noexcept = default;
   Seal& operator=(Seal&&) noexcept = default;
   ~Seal();
 
-  /// Bytes that have come from the network.
+  /// Takes bytes from the network.
   void receive(std::string_view bytes);
   [[nodiscard]] std::string take_output();
 
-  /// First; may need several calls.
+  /// Must come first; may need several calls.
   [[nodiscard]] Step handshake();
 
   struct Heard {
     Step step = Step::Done;
-    std::size_t size = 0;  ///< Of what was put into the room, with Done.
+    std::size_t size = 0;  ///< If Done: bytes put into the room.
   };
   [[nodiscard]] Heard read(std::span<char> room);
   [[nodiscard]] Step write(std::string_view said);
-  /// Nothing is said after this; the other side may still speak.
+  /// Sends our end: nothing follows it, but the other side may go on.
   void say_end();
 
-  /// What is wrong and what to do about it, once a step was Failed.
+  /// What is wrong and what to do, after a step has Failed.
   [[nodiscard]] const Error& failure() const { return failure_; }
 
  private:
@@ -69,9 +69,9 @@ class Seal {
   [[nodiscard]] Step step_of(int result);
   [[nodiscard]] std::string objection() const;
 
-  std::unique_ptr<CertificateFacts> refused_;  ///< Of a client; outlives ssl_, which points to it.
+  std::unique_ptr<CertificateFacts> refused_;  ///< For a client; outlives ssl_, which points to it.
   std::unique_ptr<ssl_st, Freeing> ssl_;
-  std::optional<Trust> trust_;  ///< Of a client.
+  std::optional<Trust> trust_;  ///< For a client.
   std::string host_;
   Error failure_;
 };

@@ -30,7 +30,7 @@ constexpr double kLeastFree = 1024.0;          // [MB]: half an hour of six sens
 constexpr double kBytesPerMb = 1e6;
 constexpr double kNsPerMs = 1e6;
 
-/// `trust`: of an https:// service; none: client::authorities().
+/// `trust`: for an https:// service; none: client::authorities().
 Result<http::ClientResponse> ask(const std::string& base, const std::string& path,
                                  const std::string& token,
                                  const std::optional<tls::Trust>& trust = {}) {
@@ -125,7 +125,7 @@ Finding of_answering(const std::string& subject, const std::string& url, const s
 }
 
 Finding unreached(const std::string& subject, const Error& error) {
-  // A certificate that is refused says what to do itself.
+  // The message for a refused certificate already says what to do.
   if (error.message.find("certificate") != std::string::npos)
     return {false, subject, to_string(error),
             "chorus doctor on that host looks at its certificate"};

@@ -27,10 +27,10 @@ struct ExaminedService {
   nlohmann::json config;  ///< An object.
 
   [[nodiscard]] std::uint16_t port() const;
-  /// The address to reach it from this host: "http://127.0.0.1:8081/", or https:// with a name of
+  /// The address to reach it from this host: "http://127.0.0.1:8081/", or https:// with a name from
   /// its certificate.
   [[nodiscard]] std::string url() const;
-  /// The file of its certificate; empty: it speaks without TLS.
+  /// The file of its certificate; empty: it uses no TLS.
   [[nodiscard]] std::string certificate() const;
   /// A token that may read; empty when there is none.
   [[nodiscard]] std::string read_token() const;
@@ -45,7 +45,7 @@ struct ExaminedService {
 [[nodiscard]] Finding health_finding(const ExaminedService& service);
 /// Whether the service accepts a token of its own configuration.
 [[nodiscard]] Finding token_finding(const ExaminedService& service);
-/// Whether its certificate, if it has one, can be read and is good for a month at least.
+/// Whether its certificate, if it has one, can be read and is valid for at least another month.
 [[nodiscard]] Findings certificate_findings(const ExaminedService& service);
 /// Whether its folders exist and have room.
 [[nodiscard]] Findings disk_findings(const ExaminedService& service);

@@ -35,7 +35,7 @@ struct InitArguments {
   std::vector<std::string> sensors;
   std::string sensors_from;
   std::vector<std::string> outputs;
-  std::string tls;  ///< Folder; see tls_folder.
+  std::string tls;  ///< A folder; see tls_folder.
   bool no_tls = false;
   AuthorityWishes authority;
   CertificateWishes certificate;
@@ -86,7 +86,7 @@ bool is_loopback(const std::string& address) {
   return address.starts_with("127.") || address == "::1" || address == "localhost";
 }
 
-/// Where this host's certificate is; empty: without TLS.
+/// The folder of this host's certificate; empty: without TLS.
 std::string tls_folder(const InitArguments& arguments) {
   if (arguments.no_tls) return {};
   if (!arguments.tls.empty()) return arguments.tls;

@@ -30,7 +30,7 @@ Result<void> cannot(const std::string& file, const std::string& option = {}) {
               std::string("cannot be written: ") + std::strerror(errno) + option);
 }
 
-/// To the group of the services, where that is possible.
+/// Gives it to the services' group, if possible.
 bool hand_over(int file) {
   const group* const services = ::getgrnam("chorus");
   return services == nullptr || ::geteuid() != 0 || ::fchown(file, 0, services->gr_gid) == 0;
@@ -44,7 +44,7 @@ Result<void> write_file(const std::string& file, const std::string& text, Reader
     std::cout << text;
     return {};
   }
-  // A new file beside the old one, so that who reads meanwhile gets one of the two, whole.
+  // Writes a new file next to the old one, so that readers always get one of the two completely.
   const std::string fresh = overwriting == Overwriting::Yes ? file + ".new" : file;
   if (overwriting == Overwriting::Yes) ::unlink(fresh.c_str());
   const int made =

@@ -1,4 +1,4 @@
-// chorus origin: says where the world begins, by numbers or by somebody who stands there.
+// chorus origin: sets the origin of the world, by numbers or by a person who stands there.
 #include <chrono>
 #include <cmath>
 #include <iostream>
@@ -23,7 +23,7 @@ namespace {
 using client::ServiceClient;
 
 constexpr std::chrono::milliseconds kAskEvery{50};
-constexpr double kFarthest = 1000.0;  // [m], as the server has it
+constexpr double kFarthest = 1000.0;  // [m], the same as the server's
 
 struct OriginArguments {
   std::string url = client::default_server();
@@ -35,7 +35,7 @@ struct OriginArguments {
   bool json = false;
 };
 
-/// Watches whoever stands there for a while.
+/// Watches the person who stands there for this long.
 Result<Stance> watch(const ServiceClient& server, double seconds) {
   std::vector<Stance> seen;
   const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);

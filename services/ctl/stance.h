@@ -1,4 +1,4 @@
-// Where somebody stands and which way they face, from a fused frame as JSON.
+// Where a person stands and which way the person faces, from a fused frame as JSON.
 #pragma once
 
 #include <span>
@@ -10,16 +10,16 @@
 namespace chorus::ctl {
 
 struct Stance {
-  double x = 0.0;    ///< Of the pelvis, in the world [m].
+  double x = 0.0;    ///< Of the pelvis, in world space [m].
   double z = 0.0;    ///< [m]
-  double yaw = 0.0;  ///< Of the way they face, about +y from +z [rad].
+  double yaw = 0.0;  ///< Direction faced, about +y from +z [rad].
 };
 
-/// Of the one person in it.  NotFound: nobody, or hips and shoulders are not seen; Conflict: there
-/// are more; Unavailable: left and right, and so the front, are uncertain.
+/// The stance of the only person in the frame.  NotFound: nobody, or hips and shoulders are not
+/// seen; Conflict: several people; Unavailable: left and right, and so the front, are uncertain.
 [[nodiscard]] Result<Stance> stance_in(const nlohmann::json& frame);
 
-/// The mean of somebody who stands still.  NotFound: of too few; Conflict: they move or turn.
+/// The mean for a person who stands still.  NotFound: too few stances; Conflict: movement or turns.
 [[nodiscard]] Result<Stance> steady(std::span<const Stance> seen);
 
 }  // namespace chorus::ctl

@@ -1,4 +1,4 @@
-// chorus init ca and chorus init certificate: an authority in a folder, and the certificates of
+// For chorus init ca and chorus init certificate: an authority in a folder, and certificates for
 // hosts.
 #pragma once
 
@@ -14,23 +14,23 @@ inline constexpr const char* kTlsFolder = "/etc/chorus/tls";
 
 struct AuthorityWishes {
   std::string folder = kAuthorityFolder;
-  std::string name;  ///< What browsers show.
+  std::string name;  ///< The name that browsers show.
   int days = 3650;
 };
 
 struct CertificateWishes {
-  std::vector<std::string> hosts;  ///< Names and addresses; empty: of this host.
+  std::vector<std::string> hosts;  ///< Names and addresses; empty: those of this host.
   std::string authority = kAuthorityFolder;
   std::string folder = kTlsFolder;
-  bool renew = false;  ///< Overwrites.
-  int days = 800;      ///< What browsers accept at most from an authority of one's own is 825.
+  bool renew = false;  ///< Overwrite the present one.
+  int days = 800;      ///< Browsers accept at most 825 from a private authority.
 };
 
-/// Writes ca.crt for everybody and ca.key for the owner alone; never what is there already.
+/// Writes ca.crt, readable by everybody, and ca.key, only by the owner; never overwrites them.
 [[nodiscard]] Result<void> write_authority(const AuthorityWishes& wishes);
 
-/// Writes host.crt, host.key and ca.crt for the services.  This host's own names for itself
-/// (localhost, 127.0.0.1, ::1) are always among the certificate's.
+/// Writes host.crt, host.key and ca.crt for the services.  The certificate always contains this
+/// host's own names for itself (localhost, 127.0.0.1, ::1).
 [[nodiscard]] Result<void> write_certificate(const CertificateWishes& wishes);
 
 }  // namespace chorus::ctl

@@ -103,8 +103,8 @@ std::string http_of(const ServiceWishes& wishes) {
       quoted(wishes.address), wishes.port, tls_of(wishes.tls), tokens_of(wishes));
 }
 
-/// s1 stands at the first place of a ring of six, s2 at the second: simulated sensors of one
-/// workshop look at the same person from different sides.
+/// s1 gets the first place of a ring of six, s2 the second: so the simulated sensors of one
+/// workshop see the same person from different sides.
 std::size_t ring_place_of(const std::string& id) {
   constexpr std::size_t kPlaces = 6;
   const std::size_t digits = id.find_last_not_of("0123456789") + 1;

@@ -32,7 +32,7 @@ export function anchors() {
   return list;
 }
 
-/// The square around somebody whose middle of the hips and a point of whose circle are known; his feet are down in it.
+/// The square around a person, from the middle of the hips and a point of the circle; the feet are towards its bottom.
 export function squareAround([x, y], [rimX, rimY]) {
   const [dx, dy] = [rimX - x, rimY - y];
   return { x, y, size: 2 * Math.hypot(dx, dy) * MARGIN, angle: Math.atan2(dx, -dy) };

@@ -1,6 +1,6 @@
 // The settings of the device `simulated`.  All keys are optional; defaults are in brackets:
 //
-//   scene...               who and what there is to see, in scene_settings.h
+//   scene...               which people and things there are, in scene_settings.h
 //   ring.index [0]    ring.count [6]    ring.radius_m [3]    ring.height_m [1.6]
 //   ring.pitch_deg [13]
 //   pose.x_m [0]    pose.y_m [1.6]    pose.z_m [0]    pose.yaw_deg [0]    pose.pitch_deg [0]
@@ -15,7 +15,7 @@
 //   noise.drop_percent [0]
 //   noise.floor_tilt_deg [0.15]
 //   noise.floor_offset_mm [3]
-//   latency_ms [0]          from capture to delivery, beside that of the profile
+//   latency_ms [0]          from capture to delivery, in addition to that of the profile
 #pragma once
 
 #include <string>
