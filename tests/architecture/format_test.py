@@ -1,4 +1,4 @@
-"""All of our C++ is as clang-format writes it, and the check is seen to find what is not."""
+"""All of our C++ is formatted by clang-format, and the check detects code that is not."""
 
 import subprocess
 import tempfile

@@ -1,5 +1,5 @@
-"""The house rules that a machine can check: who may include whom, what stages may not touch, how long a
-file may be.  docs/architecture.md shows the same table as a picture."""
+"""The house rules that a program can check: which room may include which, what stages must not use, and how long a file may be.
+docs/architecture.md shows the same table as a picture."""
 
 import re
 from dataclasses import dataclass
@@ -30,14 +30,14 @@ ROWS = [
 ]
 ROW_OF = {room: row for row, rooms in enumerate(ROWS) for room in rooms}
 
-# Values that rooms of the fusion server hand to each other; each header is a row of its own.
+# Values that rooms of the fusion server pass to each other; each header is a row of its own.
 VALUE_HEADERS = {"fusion-server/flow.h", "fusion-server/status.h", "fusion-server/sink.h"}
 
 STAGES = {f"fusion-server/{stage}" for stage in ("align", "facing", "associate", "fusion", "registration")}
 FUSION_SERVER = {room for room in ROW_OF if room.startswith("fusion-server/")}
-# Callable without a network: neither included nor linked, not even through others.
+# Usable without a network: they must not include or link it, not even indirectly.
 NO_SOCKET = {"fusion-server/core", "fusion-server/pipeline"} | VALUE_HEADERS | STAGES
-# They speak protocols of their own: sockets, but no HTTP.
+# They implement other protocols: sockets, but no HTTP.
 NO_HTTP = {f"fusion-server/{room}" for room in ("outlet", "vrpn", "dtrack", "natnet", "trackd", "osc", "mxtp")}
 
 # (who, what they may not include, why)
@@ -60,7 +60,7 @@ ASIO = re.compile(r"<boost/(asio|beast)")
 POINT_CLOUDS_AND_IMAGES = re.compile(r"<(pcl|opencv2)/")
 ASIO_DOORS = {"common/net/asio.h", "common/net/asio_local.h", "common/http/beast.h", "common/http/websocket_stream.cpp"}
 
-# Policy of linked data is given to HTTP (common/resource/link_lines.h), never known by it.
+# Linked-data policy is passed to HTTP (common/resource/link_lines.h); HTTP must not contain it.
 LINKED_DATA = re.compile(r"/ns/ldp|openapi|context\.jsonld|</shapes>|Chorus-Clock")
 
 MAX_LINES = 400
@@ -81,7 +81,7 @@ class Violation:
 
 
 def room_of(path):
-    """'common/body/bones.h' -> 'common/body'; None for what is no room of ours."""
+    """'common/body/bones.h' -> 'common/body'; None for files outside our rooms."""
     if path in VALUE_HEADERS:
         return path
     parts = path.split("/")
@@ -127,7 +127,7 @@ def header_violations(file, text):
 
 
 def standing_violations(root, file, text):
-    """A header stands alone because its own source includes it before anything else."""
+    """A header is self-contained because its own source includes it first."""
     own = file.removesuffix(".cpp") + ".h"
     if not file.endswith(".cpp") or not (Path(root) / own).exists():
         return
@@ -145,7 +145,7 @@ def form_violations(file, text):
 
 
 def linked_rooms(root):
-    """Room -> the rooms its library links, directly or through others, by what the CMakeLists say."""
+    """Room -> the rooms that its library links directly or indirectly, according to the CMakeLists."""
     direct, room_by_name = {}, {}
     for file in sorted(root.glob("*/**/CMakeLists.txt")):
         relative = file.parent.relative_to(root).as_posix()
@@ -167,7 +167,7 @@ def linked_rooms(root):
 
 
 def link_violations(file, text, reach):
-    """A room links what it includes, so that the link graph is the layer table."""
+    """A room links what it includes, so that the link graph equals the layer table."""
     own = room_of(file)
     if own not in reach:
         return
@@ -188,7 +188,7 @@ def socket_violations(reach):
 
 
 def violations(root):
-    """Every broken rule below `root`, in order of files."""
+    """All violations of the rules below `root`, ordered by file."""
     root = Path(root)
     found = []
     reach = linked_rooms(root)

@@ -1,4 +1,4 @@
-"""Our tree keeps the rules; made-up trees that break one are caught, so the check is known to work."""
+"""Our tree keeps the rules; artificial trees that break one are detected, so the check is known to work."""
 
 import sys
 import tempfile

@@ -1,4 +1,4 @@
-"""Where the services under test answer, and one small HTTP client that hides nothing."""
+"""The addresses of the services under test, and a small HTTP client that hides nothing."""
 
 import http.client
 import os
@@ -17,7 +17,7 @@ class Answer:
 
 
 def get(url, accept=None, headers=None, method="GET"):
-    """One request on a connection of its own; no Accept header unless asked for."""
+    """Sends one request on a new connection; without an Accept header unless one is given."""
     parts = urlsplit(url)
     connection = http.client.HTTPConnection(parts.hostname, parts.port, timeout=TIMEOUT_S)
     sent = dict(headers or {})

@@ -1,4 +1,4 @@
-"""Linked Data Platform 1.0, read-only: what the W3C suite asks of a server that only reads, and our own HTTP rules."""
+"""Linked Data Platform 1.0, read-only: what the W3C suite requires of a read-only server, and our own HTTP rules."""
 
 import json
 import unittest
@@ -7,7 +7,7 @@ from chorus_processes import URLS, get
 
 LDP = "http://www.w3.org/ns/ldp#"
 DOCUMENTS = ["/", "/frame", "/skeletons/", "/floor-plane", "/clock", "/recordings/"]
-SCHEMAS = ["/ns", "/shapes"]  # Turtle files as they are written; no other format
+SCHEMAS = ["/ns", "/shapes"]  # Turtle files served as they are; there is no other format
 FUSION_ONLY = ["/registration", "/sensors/"]
 TURTLE = "text/turtle"
 
@@ -92,7 +92,7 @@ class LdpReadOnly(unittest.TestCase):
     def test_conditional_get(self):
         for url in documents(schemas=True):
             if url.endswith("/clock"):
-                continue  # never the same twice
+                continue  # its body is never the same twice
             for _ in range(50):  # a live resource may change between the two requests
                 etag = get(url).headers["ETag"]
                 again = get(url, headers={"If-None-Match": etag})

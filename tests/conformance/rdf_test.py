@@ -1,4 +1,4 @@
-"""Readers by others on our Turtle: rapper, serdi and rdflib, and the same graph in every format."""
+"""Readers by others read our Turtle: rapper, serdi and rdflib; every format contains the same graph."""
 
 import shutil
 import subprocess
@@ -10,7 +10,7 @@ from chorus_processes import URLS, get
 try:
     import rdflib
     from rdflib.compare import isomorphic
-except ImportError:  # the system python has it (python3-rdflib); another one may not
+except ImportError:  # the system's python has it (python3-rdflib); others may not
     rdflib = None
 
 PATHS = ["/", "/skeletons/", "/floor-plane", "/clock", "/ns", "/shapes"]

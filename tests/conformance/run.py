@@ -1,7 +1,7 @@
-"""Starts the demo on free ports, waits until it tracks somebody, and shows it to clients that others wrote.
+"""Starts the demo on free ports, waits until it tracks a person, and runs a command that uses it as a client.
 
-usage: run.py COMMAND...   with CHORUS_BIN naming the folder of the programs.  The command finds the services in
-CHORUS_FUSION_URL and CHORUS_SENSOR_URL; its exit code is ours.
+usage: run.py COMMAND...   CHORUS_BIN is the folder of the programs. The command finds the services in CHORUS_FUSION_URL and
+CHORUS_SENSOR_URL; run.py exits with its exit code.
 """
 
 import json
@@ -35,7 +35,7 @@ def main(command):
     port = free_ports(SENSORS + 1)
     base = f"http://127.0.0.1:{port}"
     demo = subprocess.Popen(["deploy/demo.sh", "--bin", os.environ["CHORUS_BIN"], "--port", str(port),
-                             "--set", 'http.allowed_origin="null"'], cwd=ROOT,  # of pages opened as files
+                             "--set", 'http.allowed_origin="null"'], cwd=ROOT,  # for pages opened as files
                             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
     try:
         deadline = time.monotonic() + TRACKS_WITHIN_S

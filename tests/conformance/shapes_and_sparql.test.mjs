@@ -1,5 +1,5 @@
-// What a linked-data client does with us: n3 reads, the served SHACL shapes hold, and one SPARQL query that starts at / and follows
-// links finds the head of every fused body.
+// What a linked-data client can do with our services: n3 reads them, the served SHACL shapes hold, and one SPARQL query that starts at /
+// and follows links finds the head of every fused body.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -19,7 +19,7 @@ async function read(url, accept = 'text/turtle') {
   return answer.text();
 }
 
-/// The graph at url; live documents are read through their immutable twin, so that formats can be compared.
+/// The graph at url; live documents are read from their immutable copies, so that formats can be compared.
 async function graph(url) {
   return new Store(new Parser({ baseIRI: url }).parse(await read(url)));
 }

@@ -1,4 +1,4 @@
-// The viewer shows the real fusion server in headless Chromium: six sensors, somebody walking, nothing complained about.
+// The viewer shows the real fusion server in headless Chromium: six sensors, a person walking, no error reported.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -19,7 +19,7 @@ test('the viewer shows the fused person and every raw one, live', async () => {
     const shown = await page.evaluate(() => window.chorusViewer);
     assert.ok(shown.fusedFrames > before + 5, 'frames keep coming');
     assert.equal(shown.sensors, 6);
-    // While the walk is still being registered the headline says so; half a minute of it makes the registration good.
+    // The headline says when the walk is still being registered; after half a minute the registration is good.
     await page.waitForFunction(() => document.querySelector('#headline').textContent.startsWith('Live: one person'), null, { timeout: 90000 });
     assert.equal(await page.locator('#sensors tr').count(), 6);
     assert.ok(await colorsOnCanvas(page) > 50, 'something is drawn');

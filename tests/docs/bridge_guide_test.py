@@ -1,5 +1,5 @@
-"""Every line of docs/guide/bridge.md runs as it is printed, on ports of its own; what it shows is there, and every message
-that the page explains is one that the code says."""
+"""Every line of docs/guide/bridge.md runs as printed, on free ports; its output appears, and every message that the page explains exists in
+the code."""
 
 import json
 import os
@@ -22,7 +22,7 @@ PAGE = (ROOT / "docs/guide/bridge.md").read_text(encoding="utf-8")
 LINES = [line for block in re.findall(r"^```sh\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE) for line in block.splitlines() if line]
 PRINTED_PORTS = range(8080, 8085)
 PATIENCE_S = 90
-READY = {"/push": '"frames"', "/frame": '"Skeleton"'}  # what is worth waiting for, by what a line asks
+READY = {"/push": '"frames"', "/frame": '"Skeleton"'}  # the output to wait for, by what a line requests
 
 
 class BridgeGuide(unittest.TestCase):
@@ -42,14 +42,14 @@ class BridgeGuide(unittest.TestCase):
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.addCleanup(process.wait)
         self.addCleanup(process.terminate)
-        time.sleep(1)  # as a person would take to write the next line
+        time.sleep(1)  # the time a person would need to type the next line
 
     def run_line(self, line):
         return subprocess.run(["bash", "-o", "pipefail", "-c", line], cwd=ROOT, env=self.paths, capture_output=True, text=True,
                               timeout=PATIENCE_S, check=False)
 
     def shown(self, line):
-        """The output, as soon as it shows something."""
+        """The output, once the wanted text appears in it."""
         wanted = next((text for path, text in READY.items() if line.endswith(path) and "data-binary" not in line), "")
         end = time.monotonic() + PATIENCE_S
         while True:

@@ -1,5 +1,5 @@
-"""Every line of docs/guide/cameras.md after the installation runs as it is printed, on ports of its own; the installation is what
-tests/run.sh does; the table of models is that of the runner; and every message that the page explains is one of ours."""
+"""Every line of docs/guide/cameras.md after the installation runs as printed, on free ports; the installation equals that of tests/run.sh;
+the table of models is the runner's; and every message that the page explains exists in the code."""
 
 import json
 import os
@@ -23,7 +23,7 @@ PAGE = (ROOT / "docs/guide/cameras.md").read_text(encoding="utf-8")
 BLOCKS = [block.splitlines() for block in re.findall(r"^```sh\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)]
 INSTALLATION, *USE = BLOCKS
 PATIENCE_S = 120
-# What is worth waiting for, by how a line ends; the fusion server is at 8080.
+# The output to wait for, by how a line ends; the fusion server is at 8080.
 READY = {"/camera": '"state": "live"', "8080/frame": '"Skeleton"', "/frame": '"rayX"'}
 PORTS = range(8080, 8085)
 

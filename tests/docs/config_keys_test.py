@@ -1,4 +1,4 @@
-"""Every key a program reads is in its file below deploy/config, explained there, and every key there is read."""
+"""Every key that a program reads is in its file in deploy/config and explained there, and every key there is read."""
 
 import json
 import re
@@ -6,7 +6,7 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-# Which code reads which file.
+# Which code reads which configuration file.
 READERS = {
     "fusion.json": ["fusion-server/server", "fusion-server/outputs", "fusion-server/outlet", "fusion-server/vrpn", "fusion-server/dtrack",
                     "fusion-server/natnet", "fusion-server/trackd", "fusion-server/osc", "fusion-server/mxtp", "common/service"],
@@ -45,8 +45,8 @@ def source_of(folders):
 
 
 def unexplained(text):
-    """Keys with a value of their own before which, back to an empty line or the brace of an unexplained object, no
-    comment stands."""
+    """Keys that have a value and no explanation: no comment precedes them after the last empty line or the opening brace of an unexplained
+    object."""
     explained = False
     found = []
     for line in text.splitlines():

@@ -1,5 +1,5 @@
-"""Every curl line and every example in our documents works against a running demo: run as it is printed, with the
-ports moved, from a folder that holds the documents and takes what a line writes."""
+"""Every curl line and every example in our documents works against a running demo: each runs as printed, with other ports, in a folder that
+contains the documents and receives the files that a line writes."""
 
 import json
 import os
@@ -23,12 +23,12 @@ START_WITHIN_S = 60
 FIRST_BODY_WITHIN_S = 60
 BLOCK = re.compile(r"^```sh\n(.*?)^```", re.DOTALL | re.MULTILINE)
 SKIPPED = {"node_modules", "build", "var", ".git"}
-# They want sensors of their own: bridge_guide_test.py and cameras_guide_test.py run their lines.
+# They need sensors of their own: bridge_guide_test.py and cameras_guide_test.py run their lines.
 TESTED_ALONE = {"docs/guide/bridge.md", "docs/guide/cameras.md"}
 
 
 def curl_lines():
-    """(document, line) for every line of a shell block that calls curl or an example of ours."""
+    """(document, line) for every line of a shell block that calls curl or one of our examples."""
     for file in sorted(ROOT.rglob("*.md")):
         name = file.relative_to(ROOT)
         if SKIPPED & set(name.parts) or name.as_posix() in TESTED_ALONE:
@@ -40,7 +40,7 @@ def curl_lines():
 
 
 def moved(line, first):
-    """The line for a demo whose fusion server listens on `first`, failing on HTTP errors."""
+    """The line changed for a demo whose fusion server listens on `first`; it fails on HTTP errors."""
     for i in range(SENSORS + 1):
         line = line.replace(f"127.0.0.1:{DOCUMENTED_FUSION_PORT + i}", f"127.0.0.1:{first + i}")
     return re.sub(r"^curl\s", "curl --fail --max-time 20 ", line)

@@ -1,4 +1,4 @@
-"""Every `chorus` line of docs/guide/export.md runs as it is printed, one after the other, and writes what it names."""
+"""Every `chorus` line of docs/guide/export.md runs as printed, in order, and writes the files it names."""
 
 import json
 import os

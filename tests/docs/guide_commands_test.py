@@ -1,5 +1,5 @@
-"""Every `chorus` line of docs/guide/research.md runs as it is printed, and every message that
-docs/guide/troubleshooting.md explains is one that the code still says."""
+"""Every `chorus` line of docs/guide/research.md runs as printed, and every message that docs/guide/troubleshooting.md explains exists in
+the code."""
 
 import os
 import re

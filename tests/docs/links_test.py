@@ -1,4 +1,4 @@
-"""Every link in our Markdown files leads somewhere, and so does every path a document names in backticks."""
+"""Every link in our Markdown files has a target, and every path that a document names in backticks exists."""
 
 import re
 import sys
@@ -8,7 +8,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 SKIPPED = {"node_modules", "build", "var", ".git"}
-HISTORY = "docs/decisions/"  # decisions name what was planned or has since moved
+HISTORY = "docs/decisions/"  # decisions may name files that were only planned or have been moved
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 NAMED = re.compile(r"`((?:common|docs|deploy|fusion-server|proto|services|tests)/[^`\s]*)`")
 CODE_BLOCK = re.compile(r"^```.*?^```", re.DOTALL | re.MULTILINE)
@@ -16,7 +16,7 @@ HEADING = re.compile(r"^#+\s+(.*)$", re.MULTILINE)
 
 
 def anchors(text):
-    """The fragments a Markdown file offers, spelt as forges spell them."""
+    """The fragments that a Markdown file offers, spelt as on GitHub and the like."""
     plain = (re.sub(r"[^\w\- ]", "", heading.replace("`", "").lower()) for heading in HEADING.findall(text))
     return {heading.strip().replace(" ", "-") for heading in plain}
 
@@ -33,7 +33,7 @@ def exists(path):
 
 
 def broken(file, root):
-    """(link, reason) for everything in the file that leads nowhere."""
+    """(link, reason) for every broken link in the file."""
     text = file.read_text(encoding="utf-8")
     prose = CODE_BLOCK.sub("", text)
     for link in LINK.findall(prose):

@@ -1,4 +1,4 @@
-"""Every `npx` line of the documentation names a package and a program that is in it, as the tests' lock file has it."""
+"""Every `npx` line of the documentation names a package, and a program in it, that the tests' lock file contains."""
 
 import json
 import re

@@ -19,15 +19,15 @@ constexpr double kStanding = 4.0;    // [s]
 constexpr double kBackwards = 3.0;   // [s]
 constexpr double kBackSpeed = 0.6;   // [m/s]
 constexpr double kEnterSpeed = 0.9;  // [m/s]
-constexpr double kOutside = 4.0;     // from where they come, from the middle [m]
+constexpr double kOutside = 4.0;     // how far from the middle they come from [m]
 constexpr double kStopping = 0.5;    // [s]
 constexpr double kStride = 0.8;      // amplitude of the strides
-constexpr double kRaising = 0.7;     // until the hand is up, and down again [s]
+constexpr double kRaising = 0.7;     // time to raise the hand, and to lower it again [s]
 constexpr double kWaveRate = 1.2;    // [Hz]
 constexpr double kWaveReach = 0.15;  // [m]
 constexpr std::uint64_t kPurpose = 761;
 
-/// Where the walk after the beginning starts.
+/// The start of the walk that follows the beginning.
 struct Start {
   Eigen::Vector2d place;
   double heading = 0.0;  ///< [rad]
@@ -40,10 +40,10 @@ Start start_of(const Walker& walker) {
   return {point.place, point.heading};
 }
 
-/// What somebody does so long before the end of the beginning.
+/// The pose at some time before the end of the beginning.
 struct Pose {
-  double ahead = 0.0;  ///< Of the start, along its heading [m]
-  double phase = 0.0;  ///< Of the gait; runs backwards with the feet.
+  double ahead = 0.0;  ///< In front of the start, along its heading [m]
+  double phase = 0.0;  ///< Phase of the gait; runs backwards like the feet.
   double amplitude = 0.0;
   synthetic::Reach reach{};
 };
@@ -54,7 +54,7 @@ synthetic::Reach waving(double left_over) {
   return {false, up, {-0.35 + swing, 1.65, 0.25}};
 }
 
-/// Comes to a stop over the last kStopping; `left_over` seconds before the end.
+/// Comes to a stop over the last kStopping; `left_over` is the time in seconds before the end.
 Pose walking(double left_over, double speed, double stride) {
   const double slow = std::min(left_over, kStopping);
   const double way = speed * (left_over - slow + 0.5 * slow * slow / kStopping);
@@ -87,14 +87,14 @@ Skeleton<WorldSpace> body_in(const Pose& pose, const Start& start, const Gait& g
   return body;
 }
 
-/// How far before the start a straight way in begins [m].
+/// Distance from the start at which a straight way in begins [m].
 double way_in(const Start& start) {
   const double along = start.place.dot(start.forward());
   const double aside = start.place.squaredNorm() - along * along;
   return along + std::sqrt(std::max(0.0, kOutside * kOutside - aside));
 }
 
-/// Turns everything about the middle so that the way in passes midway between two sensors.
+/// The turn of everything about the middle that lets the way in pass midway between two sensors.
 double turn_between(const Start& start, const ColdScript& script) {
   if (script.start != ColdStart::Enter || script.ring.count == 0) return 0.0;
   const double along = start.place.dot(start.forward());

@@ -1,8 +1,8 @@
-// Somebody whom the tracker sees for the first time while they do anything but walk ahead: nothing
-// that was learned of them before helps to tell front from rear.
+// A person whom the tracker first sees while they do anything except walk forwards: nothing learned
+// about them earlier helps to tell front from rear.
 //
-// The beginning lasts three to six seconds and ends standing; then they walk at random as everybody
-// else.  World: the workspace centre is the origin, metres.
+// The beginning lasts three to six seconds and ends standing; then they walk at random like
+// everybody else.  World: the workspace centre is the origin, metres.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ enum class ColdStart {
   Stand,  ///< Stands still.
   Wave,   ///< Stands and waves one hand.
   Back,   ///< Walks backwards.
-  Enter,  ///< Comes from outside, from behind the sensors, between two of them.
+  Enter,  ///< Comes from outside, passing between two sensors.
 };
 
 inline constexpr std::array<std::string_view, 4> kColdStarts{"stand", "wave", "back", "enter"};
@@ -25,12 +25,12 @@ inline constexpr std::array<std::string_view, 4> kColdStarts{"stand", "wave", "b
 struct ColdScript {
   ColdStart start = ColdStart::Stand;
   std::uint64_t seed = 1;
-  Timestamp begin;  ///< When the first of it happens.
+  Timestamp begin;  ///< Start of the first action.
   double body_scale = 1.0;
-  synthetic::Ring ring = {};  ///< Between whose sensors they come in.
+  synthetic::Ring ring = {};  ///< The sensors between which they come in.
 };
 
-/// Time counts from 1970.
+/// Its time counts from 1970.
 [[nodiscard]] synthetic::Person cold_starter(const ColdScript& script);
 
 }  // namespace chorus::bench

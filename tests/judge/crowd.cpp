@@ -16,17 +16,17 @@ using synthetic::WalkerScript;
 
 constexpr double kFullTurn = 2.0 * std::numbers::pi;
 constexpr double kCircling = 0.8;                   // [m]
-constexpr double kReach = 1.3;                      // of those who cross [m]
-constexpr double kWorkRing = 1.0;                   // where the working places lie [m]
+constexpr double kReach = 1.3;                      // of people who cross [m]
+constexpr double kWorkRing = 1.0;                   // radius on which the working places lie [m]
 constexpr double kGap = 0.4;                        // between people at work [m]
-constexpr double kStint = 10.0;                     // of one person of a relay [s]
+constexpr double kStint = 10.0;                     // of one person in a relay [s]
 constexpr double kMinPause = 0.3, kMaxPause = 2.0;  // [s]
 constexpr double kNever = 1e9;                      // [s]
-constexpr double kBeside = 0.5;                     // from the middle, of two side by side [m]
-constexpr double kBench = 0.2;                      // from one of their stations to the next [m]
+constexpr double kBeside = 0.5;                     // from the middle, for two side by side [m]
+constexpr double kBench = 0.2;                      // between one's neighbouring stations [m]
 enum Purpose : std::uint64_t { kBuild = 701, kSpeed, kHour, kPause };
 
-/// Of different build, and somewhere in their loop.
+/// A walker of random build, starting somewhere in their loop.
 WalkerScript script_of(std::uint64_t seed, std::size_t person, PathKind path) {
   constexpr double kSpread = 0.08;
   WalkerScript script;
@@ -37,10 +37,10 @@ WalkerScript script_of(std::uint64_t seed, std::size_t person, PathKind path) {
   return script;
 }
 
-/// Somebody else's way, turned about the middle after a shift aside and delayed.
+/// Another person's walk, shifted to the side, turned about the middle and delayed.
 struct Placing {
   double yaw = 0.0;    ///< [rad]
-  double aside = 0.0;  ///< [m] to the left of the way
+  double aside = 0.0;  ///< [m] to the left of the walk
   double delay = 0.0;  ///< [s]
 };
 
@@ -63,14 +63,14 @@ synthetic::Person placed(const WalkerScript& script, const Placing& placing) {
   };
 }
 
-/// A time in the room, after the beginning [s]; `behind`: how long the walk stood still before.
+/// A time in the room, counted from the beginning [s]; `behind`: for how long the walk has paused.
 struct Stint {
   double enters = 0.0;
   double leaves = kNever;
   double behind = 0.0;
 };
 
-/// Somebody who is out of the room between their stints.
+/// A person who is out of the room between their stints.
 synthetic::Person in_stints(synthetic::Person walk, Timestamp begin, std::vector<Stint> stints) {
   return [walk = std::move(walk), begin, stints = std::move(stints)](Duration since_epoch) {
     const double time = seconds(Timestamp{since_epoch} - begin);
@@ -84,7 +84,7 @@ synthetic::Person in_stints(synthetic::Person walk, Timestamp begin, std::vector
   };
 }
 
-/// When somebody who walks along z next passes the middle, from `time` on [s since 1970].
+/// When a person who walks along z next passes the middle, from `time` on [s since 1970].
 double next_middle(const synthetic::Person& walk, double time) {
   constexpr double kStep = 0.01;  // [s]
   const auto z_at = [&](double t) { return walk(from_seconds(t))[JointId::Neck].position.z(); };
@@ -108,7 +108,7 @@ std::vector<synthetic::Person> crossing_people(std::size_t count, std::uint64_t 
   const std::size_t pairs = std::max<std::size_t>(1, count / 2);
   const double hour = synthetic::Draw{seed, kHour}.uniform(0.0, 10.0);
   for (std::size_t i = 0; i < 2 * pairs; ++i) {
-    WalkerScript script = script_of(seed, i / 2, PathKind::Line);  // both of a pair keep step
+    WalkerScript script = script_of(seed, i / 2, PathKind::Line);  // both of a pair walk in step
     script.reach = kReach;
     const synthetic::Walker walker(script);
     const double loop = seconds(walker.path().loop());
@@ -117,7 +117,7 @@ std::vector<synthetic::Person> crossing_people(std::size_t count, std::uint64_t 
     Placing placing;
     placing.yaw = -heading_of_line(script) + std::numbers::pi * pair / pair_count +
                   (i % 2 == 0 ? 0.0 : std::numbers::pi);
-    placing.delay = hour + 0.5 * loop * pair / pair_count;  // each pair meets at its own time
+    placing.delay = hour + 0.5 * loop * pair / pair_count;  // each pair meets at another time
     const Eigen::Vector3d left = about_y(heading_of_line(script)) * Eigen::Vector3d::UnitX();
     script.centre = 0.5 * passing * Eigen::Vector2d(left.x(), left.z());
     people.push_back(placed(script, placing));
@@ -156,10 +156,10 @@ std::vector<synthetic::Person> people_around(double radius, std::uint64_t seed) 
 std::vector<synthetic::Person> relayed_people(std::uint64_t seed, Timestamp begin) {
   std::vector<synthetic::Person> people;
   synthetic::Draw pauses{seed, kPause};
-  Stint stint{-kStint, kStint, 0.0};  // the first one was there before
+  Stint stint{-kStint, kStint, 0.0};  // the first one was there from the start
   for (std::size_t i = 0; i < 3; ++i) {
     WalkerScript script = script_of(seed, i, PathKind::Random);
-    script.seed = seed;  // one walk for all
+    script.seed = seed;  // the same walk for all
     if (i == 2) stint.leaves = kNever;
     people.push_back(in_stints(placed(script, {}), begin, {stint}));
     const double pause = pauses.uniform(kMinPause, kMaxPause);
@@ -199,7 +199,7 @@ std::vector<synthetic::Person> booth_people(std::uint64_t seed, Timestamp begin)
     stint = {stint.leaves + pause, 0.0, stint.behind + pause};
   }
   WalkerScript other = script_of(seed, 1, PathKind::Line);
-  other.seed = script.seed;  // one way for both
+  other.seed = script.seed;  // both use the same way
   other.reach = kReach;
   return {in_stints(way, begin, stints[0]), in_stints(placed(other, along_z), begin, stints[1])};
 }
@@ -249,8 +249,8 @@ std::vector<Eigen::Isometry3d> places_behind_screen() {
 }
 
 synthetic::Occluder screen() {
-  // A third of the way to the sensors: its shadow on the crossing is half as wide again, less half
-  // of how far apart the sensors are.
+  // A third of the way to the sensors: its shadow at the crossing is half as wide again as the box,
+  // less half the distance between the sensors.
   synthetic::Occluder box;
   box.half = {0.05, 1.25, 0.3};
   box.world_from_box.translation() = Eigen::Vector3d(-1.0, box.half.y(), 0.0);

@@ -15,13 +15,13 @@ namespace {
 using associate::CostTable;
 
 struct Followed {
-  std::optional<std::uint64_t> now;   ///< Id at this instant.
+  std::optional<std::uint64_t> now;   ///< Id at the present instant.
   std::optional<std::uint64_t> last;  ///< Id at the last answered instant.
-  std::optional<Timestamp> came;      ///< Its first instant in the room.
-  std::optional<Timestamp> answered;  ///< The first one with an answer.
+  std::optional<Timestamp> came;      ///< The person's first instant in the room.
+  std::optional<Timestamp> answered;  ///< The first instant with an answer.
 };
 
-/// One pass over the instants.
+/// Counts everything in one pass over the instants.
 class Census {
  public:
   explicit Census(const IdentityConfig& config) : config_(config) {}
@@ -114,10 +114,10 @@ class Census {
     }
   }
 
-  /// `rate`: instants in a second.
+  /// `rate`: instants per second.
   void count_heirs(Identity& found, double rate) const {
-    std::map<std::uint64_t, std::size_t> people;  // that an id followed
-    std::map<std::size_t, std::size_t> ids;       // that mostly followed a person
+    std::map<std::uint64_t, std::size_t> people;  // the people that an id followed
+    std::map<std::size_t, std::size_t> ids;       // the ids that mostly followed a person
     for (const auto& [pair, count] : together_) {
       const auto& [person, id] = pair;
       if (static_cast<double>(count) < rate * config_.lasting) continue;
@@ -138,7 +138,7 @@ class Census {
     return count > 0 ? sum / static_cast<double>(count) : 0.0;
   }
 
-  /// Instants of the best one-to-one assignment of people to ids for the whole time.
+  /// Number of instants matched by the best one-to-one assignment of people to ids over all time.
   [[nodiscard]] std::size_t true_positives() const {
     std::vector<std::uint64_t> ids;
     for (const auto& [id, life] : lives_) ids.push_back(id);

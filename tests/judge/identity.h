@@ -1,7 +1,7 @@
-// How well answered people keep their identity beside the true ones.
+// How well the answered people keep their identities, compared with the truth.
 //
-// CLEAR-MOT matching: a true person keeps its answer as long as that is within reach, the rest is
-// assigned one-to-one at least distance.  Horizontal distances [m].
+// CLEAR-MOT matching: a true person keeps its answer as long as that is within reach; the others
+// are assigned one-to-one with the least total distance.  Horizontal distances [m].
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@
 
 namespace chorus::bench {
 
-/// An answered person.
+/// A person in a method's answer.
 struct Claimed {
   std::uint64_t id = 0;
   Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< World x, z [m]
 };
 
-/// One instant: who is said to be where, and where everybody truly is (not finite: not in the
+/// One instant: the people in the answer, and where everybody truly is (not finite: not in the
 /// room).
 struct Roll {
   Timestamp instant;
@@ -28,24 +28,24 @@ struct Roll {
 };
 
 struct IdentityConfig {
-  double reach = 0.5;    ///< An answer further away is not that person [m].
-  double ghost = 0.5;    ///< Share of its life that a track must follow somebody not to be a ghost.
-  double lasting = 1.0;  ///< An id has followed a person, not just passed by, after so long [s].
+  double reach = 0.5;    ///< A farther answer is not that person [m].
+  double ghost = 0.5;    ///< A track that follows people for less of its life is a ghost.
+  double lasting = 1.0;  ///< After this time an id has followed a person, not just passed by [s].
 };
 
 struct Identity {
-  std::size_t switches = 0;        ///< A person's answer changes its id.
-  std::size_t fragmentations = 0;  ///< A person's answer ends and begins again.
-  std::size_t ghosts = 0;          ///< Ids that mostly follow nobody.
-  double coverage = 0.0;           ///< Share of people's instants that were answered.
-  /// 2 IDTP / (people's instants + answers), ids assigned once for the whole time.
+  std::size_t switches = 0;        ///< How often a person's answer changed its id.
+  std::size_t fragmentations = 0;  ///< How often a person's answer ended and began again.
+  std::size_t ghosts = 0;          ///< Ids that mostly followed nobody.
+  double coverage = 0.0;           ///< Fraction of people's instants with an answer.
+  /// 2 IDTP / (people's instants + answers), with ids assigned once for all instants.
   double idf1 = 0.0;
   double minutes = 0.0;
-  /// From when a person is there to its first answer, mean of those that were answered [s].
+  /// Mean time from a person's appearance to the first answer, over those who got one [s].
   double first_answer = 0.0;
-  /// Times that an id followed a further person for a second or longer.
+  /// How often an id followed another person than before for a second or longer.
   std::size_t inherited = 0;
-  std::size_t spare_ids = 0;  ///< Ids that follow people who had one already.
+  std::size_t spare_ids = 0;  ///< Ids of people who already had one.
 };
 
 [[nodiscard]] Identity identity_of(const std::vector<Roll>& rolls,

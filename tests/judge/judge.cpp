@@ -16,10 +16,10 @@ namespace {
 
 using synthetic::HostClock;
 
-// Any instant of our time; walks begin at a place in the loop that the seed chooses.
+// Any instant of the present; the seed chooses where in the loop a walk begins.
 constexpr std::int64_t kSomeTime = 1'795'000'000'000'000'000;
 constexpr double kLatestBegin = 200.0;  // [s]
-constexpr double kBuildSpread = 0.08;   // the first person is up to so much taller or shorter
+constexpr double kBuildSpread = 0.08;   // most by which the first person is taller or shorter
 enum Purpose : std::uint64_t { kDrawBegin = 501, kDrawBuild, kDrawClock };
 
 struct Recorded {
@@ -29,7 +29,7 @@ struct Recorded {
 
 bool is_gauss(const Setting& setting) { return setting.profile == synthetic::kGaussProfile; }
 
-/// Somebody whose whole walk moves there and back once in `period`.
+/// A person whose whole walk moves along `way` and back once in `period`.
 synthetic::Person gliding(synthetic::Person person, const Eigen::Vector3d& way, Timestamp begin,
                           Duration period) {
   return [=](Duration since_epoch) {
@@ -93,7 +93,7 @@ Recorded record_sensor(const Workshop& workshop, const SensorId& id, std::size_t
   return {record(*sensor, workshop.begin + setting.length), sensor->clock()};
 }
 
-/// The host's clock is off by so much more.
+/// Adds an offset and a drift to the host's clock.
 void set_off(Recorded& recorded, Timestamp begin, double offset, double drift) {
   const HostClock before = recorded.clock;
   recorded.clock.origin = begin;
@@ -109,7 +109,7 @@ SensorId sensor_number(std::size_t place) {
   return SensorId::parse(fmt::format("s{}", place + 1)).value();
 }
 
-/// One sensor, stamped by its host's clock.
+/// Records one sensor, with stamps by its host's clock.
 Recorded record_host(const Workshop& workshop, std::size_t place, bool confides) {
   const Setting& asked = workshop.setting;
   Recorded recorded = record_sensor(workshop, sensor_number(place), place, confides);
@@ -172,7 +172,7 @@ std::vector<registration::WalkTrack> first_of(const Workshop& workshop, Duration
 }
 
 Setting row_of_four() {
-  constexpr double kApart = 2.5;     // [m]; each sees 1.8 m to either side at the walk's distance
+  constexpr double kApart = 2.5;     // [m]; each sees 1.8 m to both sides at the walk's distance
   constexpr double kDistance = 2.6;  // [m]
   constexpr double kHeight = 1.6;    // [m]
   Setting setting;
@@ -192,7 +192,7 @@ std::vector<Eigen::Isometry3d> pair_places(double angle) {
 }
 
 Timestamp true_time(const HostClock& clock, Timestamp stamp) {
-  // The clock runs within parts per million of true time, so two steps are exact to nanoseconds.
+  // The clock deviates by parts per million, so two iterations are exact to nanoseconds.
   Timestamp guess = stamp;
   for (int i = 0; i < 3; ++i) guess = stamp - (clock.host_time(guess) - guess);
   return guess;

@@ -1,4 +1,4 @@
-// A body beside the truth, with its labels as they are and with left and right exchanged.
+// Error of a body against the truth, with its labels as given and with left and right exchanged.
 #pragma once
 
 #include "common/body/bones.h"
@@ -6,7 +6,7 @@
 
 namespace chorus::bench {
 
-/// One body's summed distances from the truth [m], over the joints that were seen.
+/// Sum of one body's distances from the truth [m], over the joints that were seen.
 struct LabelledError {
   double as_given = 0.0;
   double exchanged = 0.0;  ///< With left and right exchanged as a whole.

@@ -14,7 +14,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kThirdDifferenceGain =
     20.0;  // variance of x - 3x + 3x - x over that of x: 1 + 9 + 9 + 1
 constexpr double kMadToSigma = 1.4826;
-constexpr double kUsualPace = 1.5;  // of the median step: wider is a gap
+constexpr double kUsualPace = 1.5;  // wider than this many median steps is a gap
 
 struct Sample {
   double time;
@@ -44,7 +44,7 @@ std::vector<std::vector<Sample>> runs_of(const std::vector<Sample>& samples) {
   return runs;
 }
 
-/// Which joint, and in which state all four frames have it.
+/// A joint, and the state that it must have in all four frames.
 struct Wanted {
   std::size_t joint;
   JointState state;

@@ -1,4 +1,4 @@
-// The statistics by which a log of one body is known: computed alike from real and from simulated
+// Statistics of a log of one body, computed in the same way from real and from simulated
 // frames.
 #pragma once
 
@@ -15,18 +15,18 @@ namespace chorus::bench {
 struct LogStatistics {
   std::array<Eigen::Vector3d, kJointCount> white{};  ///< Robust white noise per axis, tracked [m]
   std::array<Eigen::Vector3d, kJointCount> white_inferred{};  ///< The same while inferred [m]
-  std::array<double, kJointCount> inferred_share{};           ///< Of the frames that saw the joint.
+  std::array<double, kJointCount> inferred_share{};           ///< Fraction of the joint's frames.
   std::map<JointId, double> bone_std;                         ///< By child joint [m]
-  std::map<JointId, double> lag_frame;  ///< Autocorrelation of the bone length, next frame.
-  std::map<JointId, double> lag_third;  ///< After a third of a second.
-  std::map<JointId, double> lag_later;  ///< After 0.4 s.
+  std::map<JointId, double> lag_frame;  ///< Autocorrelation of the bone length at one frame.
+  std::map<JointId, double> lag_third;  ///< The same at a third of a second.
+  std::map<JointId, double> lag_later;  ///< The same at 0.4 s.
   std::array<double, 3> steps{};        ///< Between frames: median, 95 %, longest [s]
-  std::size_t unoriented = 0;           ///< Joints whose orientation never came.
+  std::size_t unoriented = 0;           ///< Joints that never had an orientation.
   std::size_t frames = 0;
 };
 
-/// Of the body with this id, or of the first one of each frame.  Frames must be in capture order;
-/// third differences are taken only over four frames at the usual pace.
+/// Statistics of the body with this id, or of the first body in each frame.  Frames must be in
+/// capture order; third differences are only taken over four frames at the usual rate.
 [[nodiscard]] LogStatistics statistics_of(const std::vector<SensorFrame>& frames);
 
 /// Standard deviation, and autocorrelation at a lag given in samples; NaN for too few.

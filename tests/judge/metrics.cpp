@@ -14,9 +14,9 @@ namespace chorus::bench {
 namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kRest = 0.03;    // [m/s] a joint slower than this rests
-constexpr double kJump = 0.08;    // [m] beyond the true step
-constexpr double kNextTo = 1.5;   // instants further apart than so many usual steps are no steps
+constexpr double kRest = 0.03;    // [m/s] a slower joint is at rest
+constexpr double kJump = 0.08;    // [m] more than the true step
+constexpr double kNextTo = 1.5;   // instants more than this many usual steps apart are no step
 constexpr double kMinLag = -0.2;  // [s]
 constexpr double kMaxLag = 0.4;   // [s]
 
@@ -37,7 +37,7 @@ struct Mean {
   }
 };
 
-/// Usual time between instants [s].
+/// Usual time between successive instants [s].
 double usual_step(const Answers& answers) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < answers.size(); ++i) {
@@ -47,7 +47,7 @@ double usual_step(const Answers& answers) {
   return chorus::median(std::move(steps));
 }
 
-/// A joint seen at two instants in a row.
+/// A joint seen at two successive instants.
 struct Step {
   std::size_t joint = 0;
   double dt = 0.0;  ///< [s]
@@ -71,7 +71,7 @@ void each_step(const Answers& answers, const Visit& visit) {
   }
 }
 
-/// Turns the body's own frame (z where it faces) into the world.
+/// Rotates the body's own frame (z where it faces) into the world.
 Eigen::Quaterniond world_from_body(const Skeleton<WorldSpace>& exact) {
   const Eigen::Vector3d to_left = exact[ShoulderLeft].position - exact[ShoulderRight].position;
   return about_y(std::atan2(-to_left.z(), to_left.x()));
@@ -94,7 +94,7 @@ std::optional<double> length_of(const Skeleton<WorldSpace>& body, JointId child)
   return (body[child].position - body[bone->parent].position).norm();
 }
 
-/// Standard deviation over mean of one bone's length; NaN below two sights.
+/// Standard deviation over mean of one bone's length; NaN below two samples.
 double variation_of(const Answers& answers, JointId child) {
   Mean mean;
   for (const Answer& answer : answers) {
@@ -109,7 +109,7 @@ double variation_of(const Answers& answers, JointId child) {
   return std::sqrt(square.value()) / mean.value();
 }
 
-/// Distance of the labelled pairs from the truth, as they are and with left and right exchanged.
+/// Distances of the labelled pairs from the truth, as given and with left and right exchanged.
 struct Labelling {
   double as_stated = 0.0;
   double exchanged = 0.0;
@@ -159,7 +159,7 @@ double correlation(const Answers& answers, std::ptrdiff_t lag) {
   return scale > 0 ? both / scale : kNothing;
 }
 
-/// Where between -1 and 1 a parabola through three values has its top.
+/// Where between -1 and 1 a parabola through three values has its maximum.
 double top_of(double before, double middle, double after) {
   const double bend = before - 2.0 * middle + after;
   return bend < 0 ? std::clamp(0.5 * (before - after) / bend, -1.0, 1.0) : 0.0;

@@ -15,8 +15,8 @@ namespace {
 using enum JointId;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kApart = 0.15;   // [m] limbs nearer than this cannot be told apart by place
-constexpr double kStands = 0.05;  // [m/s] an ankle slower than this stands
+constexpr double kApart = 0.15;   // [m] limbs closer together cannot be distinguished by position
+constexpr double kStands = 0.05;  // [m/s] a slower ankle stands
 constexpr double kStance = 0.2;   // [s]
 constexpr double kAhead = 0.05;   // [s]
 constexpr std::array kArm{ElbowLeft, WristLeft, HandLeft};
@@ -35,7 +35,7 @@ struct Mean {
   [[nodiscard]] double value() const { return count > 0 ? sum / count : kNothing; }
 };
 
-/// Is this pair of limbs exchanged?  None: it cannot be told.
+/// Whether this pair of limbs is exchanged; none: it cannot be decided.
 std::optional<bool> is_exchanged(const Answer& answer, std::span<const JointId> left_limb) {
   double as_stated = 0.0;
   double exchanged = 0.0;
@@ -61,7 +61,7 @@ std::optional<double> length_of(const Skeleton<WorldSpace>& body, JointId child)
   return (body[child].position - body[parent].position).norm();
 }
 
-/// Does the true ankle stand between this instant and the one before?
+/// Whether the true ankle stands between this instant and the previous one.
 bool stands(const Answers& answers, std::size_t at, JointId ankle) {
   const double dt = seconds(answers[at].instant - answers[at - 1].instant);
   const Eigen::Vector3d way =
@@ -78,14 +78,14 @@ void add_stance(const Places& places, double length, Mean& squares) {
   for (const Eigen::Vector2d& each : places) squares.add((each - middle).squaredNorm());
 }
 
-/// Of one foot.
+/// Adds the stances of one foot.
 void add_stances(const Answers& answers, JointId ankle, Mean& squares) {
   Places places;
   std::size_t first = 0;
   for (std::size_t at = 1; at <= answers.size(); ++at) {
     if (at < answers.size() && stands(answers, at, ankle)) {
       const Joint& joint = answers[at].body[ankle];
-      // Beside the true one, which may creep.
+      // Relative to the true one, which may move slowly.
       const Eigen::Vector3d off = joint.position - answers[at].exact[ankle].position;
       if (joint.seen()) places.emplace_back(off.x(), off.z());
       continue;
@@ -96,7 +96,7 @@ void add_stances(const Answers& answers, JointId ankle, Mean& squares) {
   }
 }
 
-/// The true place of a joint so long after an instant, on a straight line between two; none at the
+/// A joint's true position some time after an instant, linearly interpolated; none at the
 /// end.
 std::optional<Eigen::Vector3d> later(const Answers& answers, std::size_t at, std::size_t joint) {
   const Timestamp instant = answers[at].instant + from_seconds(kAhead);

@@ -8,10 +8,10 @@ namespace chorus::bench {
 namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kRest = 0.03;       // [m/s] a joint slower than this rests
+constexpr double kRest = 0.03;       // [m/s] a slower joint is at rest
 constexpr double kChi2Of3 = 7.8147;  // 95 % with three degrees of freedom
 
-/// Speed of a true joint about an instant [m/s]; of a lone instant 0.
+/// Speed of a true joint at an instant [m/s]; 0 if there is only one instant.
 double speed_at(const Answers& answers, std::size_t at, std::size_t joint) {
   const std::size_t before = at == 0 ? 0 : at - 1;
   const std::size_t after = std::min(at + 1, answers.size() - 1);
@@ -42,7 +42,7 @@ void each_stated(const Answers& answers, const Sighted& which, const Visit& visi
   }
 }
 
-/// e^T P^-1 e; infinite where a covariance that cannot be one is stated.
+/// e^T P^-1 e; infinite if the stated matrix is no covariance.
 double distance_of(const Eigen::Vector3d& off, const Eigen::Matrix3d& covariance) {
   const Eigen::LLT<Eigen::Matrix3d> root(covariance);
   if (root.info() != Eigen::Success) return std::numeric_limits<double>::infinity();

@@ -1,4 +1,4 @@
-// Images out of a byte stream, however it is cut into chunks.
+// Reads images from a byte stream, no matter how it is split into chunks.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 

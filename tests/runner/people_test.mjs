@@ -1,4 +1,4 @@
-// Numbers of people, and people out of the networks' numbers.
+// Numbers given to people, and people computed from the output of the networks.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -31,7 +31,7 @@ function row(x, y, score, pointScore = 0.9) {
 const rows = (...some) => Float32Array.from([...some, ...Array(6 - some.length).fill(row(0, 0, 0))].flat());
 
 test('MoveNet: pixels of the image, nobody twice, nobody who is hardly there', () => {
-  const square = wholeImage(256, 128); // a wide image lies in the middle of the square
+  const square = wholeImage(256, 128); // a wide image lies at mid-height of the square
   const people = readPeople(rows(row(0.25, 0.25, 0.8), row(0.252, 0.25, 0.6), row(0.7, 0.4, 0.3), row(0.5, 0.3, 0.2), row(0.1, 0.3, 0.9, 0.1)), square);
   assert.deepEqual(people.map((person) => person.score.toFixed(1)), ['0.8', '0.3']);
   const [u, v, sure] = people[0].pixels[0];
