@@ -20,7 +20,7 @@ using nlohmann::json;
 
 constexpr JsonLimits kLimits{.bytes = 1024 * 1024, .nesting = 16, .comments = true};
 constexpr std::size_t kMaxArrayLength = 4096;  ///< Also the largest array index that --set accepts.
-constexpr std::size_t kShownCharacters = 80;   ///< Of foreign text, quoted in our messages.
+constexpr std::size_t kShownCharacters = 80;   ///< Of a foreign text, for messages.
 constexpr double kMillisecondsPerSecond = 1e3;
 
 /// What is wrong with a text; names the key that was given twice, if any.
@@ -83,7 +83,7 @@ struct ConfigReader::Node {
   json value = json::object();
   std::string path;  ///< "sensors.0"; empty at the root
   std::shared_ptr<std::vector<std::string>> problems;
-  std::string origin;                        ///< Root only.
+  std::string origin;                        ///< Set only at the root.
   std::set<std::string, std::less<>> known;  ///< Every key that was asked for.
   std::map<std::string, std::shared_ptr<Node>> children;
 

@@ -94,7 +94,7 @@ std::string as_word(std::string_view text) {
 
 std::string text_line(const LevelName& level, std::string_view name, Fields fields) {
   std::string line(level.name);
-  line.resize(6, ' ');  // to align: length of the longest level name, plus a space
+  line.resize(6, ' ');  // aligned: longest level name, plus a space
   // An event name is ours and may hold spaces, but never a line break.
   for (const char c : name) line += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
   for (const Field& field : fields) {
@@ -106,7 +106,7 @@ std::string text_line(const LevelName& level, std::string_view name, Fields fiel
 std::string json_members(const LevelName& level, std::string_view name, Fields fields) {
   std::string line = R"("level":)" + json_text(level.name) + R"(,"event":)" + json_text(name);
   for (const Field& field : fields) {
-    const bool bare = field.bare && nlohmann::json::accept(field.value);  // not "nan"
+    const bool bare = field.bare && nlohmann::json::accept(field.value);  // JSON has no "nan"
     line.append(",").append(json_text(field.key)).append(":");
     line.append(bare ? field.value : json_text(field.value));
   }

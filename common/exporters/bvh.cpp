@@ -11,8 +11,8 @@
 namespace chorus::exporters {
 namespace {
 
-constexpr int kLengthDigits = 6;  // of centimetres: 10 nm
-constexpr int kAngleDigits = 6;   // of degrees
+constexpr int kLengthDigits = 6;  // decimals of centimetres: 10 nm
+constexpr int kAngleDigits = 6;   // decimals of degrees
 
 void append_vector(std::string& text, const Eigen::Vector3d& v) {
   for (Eigen::Index i = 0; i < 3; ++i) {

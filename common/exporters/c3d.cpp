@@ -12,7 +12,7 @@ namespace chorus::exporters {
 namespace {
 
 constexpr std::size_t kBlock = 512;
-constexpr std::size_t kMaxBlocks = 255;  // of parameters; their number is stored in one byte
+constexpr std::size_t kMaxBlocks = 255;  // of parameters, because one byte counts them
 constexpr std::size_t kMaxPersons = 100;
 constexpr std::size_t kLabelsPerParameter = 255;  // dimensions are stored in bytes
 constexpr std::size_t kMaxFrames = 65535;         // limit of a 16-bit word
@@ -167,7 +167,7 @@ std::string parameters_of(const Take& take, std::size_t data_start) {
   parameters.group("ANALOG");
   parameters.add("USED", word(0));
   parameters.add("GEN_SCALE", real(1.0));
-  parameters.add("RATE", real(0.0));  // of no analog samples; py-c3d compares it with the header's
+  parameters.add("RATE", real(0.0));  // no analog samples; py-c3d compares it with the header's
   for (const std::string_view name : {"LABELS", "DESCRIPTIONS", "UNITS"})
     parameters.add(name, {-1, {0, 0}, {}});
   parameters.add("SCALE", {4, {0}, {}});

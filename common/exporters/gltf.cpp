@@ -163,7 +163,7 @@ class GltfWriter {
     std::vector<bool> has_child(fit.joints.size(), false);
     for (std::size_t i = 1; i < fit.joints.size(); ++i) has_child[fit.joints[i].parent] = true;
     for (std::size_t i = 0; i < fit.joints.size(); ++i) {
-      if (!has_child[i]) continue;  // never turns
+      if (!has_child[i]) continue;  // a joint without children never turns
       std::vector<Eigen::Quaternionf> turns;
       for (const FittedPose& pose : fit.poses)
         turns.push_back(pose.turns[i].cast<float>().normalized());

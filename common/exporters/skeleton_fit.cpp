@@ -41,7 +41,7 @@ Eigen::Vector3d t_pose_direction(JointId end) {
     if (end == row.left) return Eigen::Vector3d(row.x, row.y, row.z).normalized();
     if (end == row.right) return Eigen::Vector3d(-row.x, row.y, row.z).normalized();
   }
-  return Eigen::Vector3d::UnitY();  // the spine
+  return Eigen::Vector3d::UnitY();  // the spine points up
 }
 
 /// Median distance of two joints over the frames that have both; none if there is no such frame.

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kNanosecondsPerSecond = 1e9;
 constexpr Duration kSameInstant = std::chrono::microseconds(1);
-constexpr double kWholeHertz = 1e-6;  // relative; because instants are whole nanoseconds
+constexpr double kWholeHertz = 1e-6;  // relative tolerance, as instants are whole ns
 constexpr double kUsualHz = 30.0;     // for a single sample
 constexpr double kMaxRateHz = 1000.0;
 

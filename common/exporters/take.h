@@ -52,7 +52,7 @@ struct Take {
 };
 
 struct TakeOptions {
-  double rate_hz = 0.0;  ///< 0: about the median step's, so that the last sample is on the grid.
+  double rate_hz = 0.0;  ///< 0: near the median step's; the last sample is on the grid.
   Duration max_gap = std::chrono::milliseconds(200);
   std::optional<PersonId> person = {};  ///< Export only this person.
 };

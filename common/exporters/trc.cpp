@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kRateDigits = 6;
 constexpr int kTimeDigits = 6;
-constexpr int kCoordinateDigits = 5;  // of millimetres
+constexpr int kCoordinateDigits = 5;  // decimals of millimetres
 
 std::string properties(const Take& take, std::size_t markers) {
   std::string rate;

@@ -10,7 +10,7 @@
 namespace chorus {
 namespace {
 
-constexpr double kLeastSpread = 0.0038;  // 1 - cos 5 deg, the smallest eigenvalue of two such rays
+constexpr double kLeastSpread = 0.0038;  // 1 - cos 5 deg: least eigenvalue of rays 5 deg apart
 
 double along(const Ray& ray, const Eigen::Vector3d& point) {
   return ray.direction.dot(point - ray.eye);

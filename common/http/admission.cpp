@@ -65,7 +65,7 @@ void ServerCore::welcome(net::Socket socket) {
   if (gone || connections.size() >= most_connections + kReserve ||
       (limited && of_it >= most_of_it + kReservePerAddress)) {
     if (of_it == 0) per_peer.erase(account);
-    return;  // Closes it.
+    return;  // Dropping the socket closes it.
   }
   ++of_it;
   const bool surplus_of_it = of_it > most_of_it;

@@ -284,7 +284,7 @@ void Conversation::end_download() {
 bool Conversation::send_piece() {
   if (!answer_.file || sent_of_file_ >= answer_.file->size()) return false;
   if (!answer_.file->read(sent_of_file_, piece_)) {
-    hang_up();  // the announced length cannot be kept: only a broken connection says so
+    hang_up();  // the announced length cannot be kept; only hanging up can say so
     return true;
   }
   sent_of_file_ += piece_.size();

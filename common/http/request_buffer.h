@@ -41,7 +41,7 @@ class RequestBuffer {
   std::size_t capacity_;
   std::size_t begin_ = 0;
   std::size_t end_ = 0;
-  std::size_t checked_ = 0;  ///< The first bytes of unread(), known to contain no end of a head.
+  std::size_t checked_ = 0;  ///< Length of the part of unread() known to hold no end of a head.
 };
 
 }  // namespace chorus::http

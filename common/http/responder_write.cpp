@@ -38,7 +38,7 @@ struct Asking {
 
   Subprotocols offered;
   std::string bearer;
-  RequestHead head;  ///< Points into the above.
+  RequestHead head;  ///< Points into the members above.
 };
 
 }  // namespace

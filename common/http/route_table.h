@@ -28,7 +28,7 @@ struct Router::Entry {
   bool vital = false;                     ///< See Router::vital.
   bool for_everybody = false;             ///< See Router::for_everybody.
   bool shows_people = false;              ///< See Router::shows_people.
-  std::unique_ptr<StaticFiles> files;     ///< The pattern is a prefix then.
+  std::unique_ptr<StaticFiles> files;     ///< If set, the pattern is a prefix.
 
   [[nodiscard]] bool readable() const { return getter || live || files; }
 };

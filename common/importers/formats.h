@@ -62,21 +62,21 @@ struct ImportedSet {
   std::vector<Error> empty = {};  ///< Inputs without content, which were left out.
 };
 
-/// Each input is one sensor; for pose2sim the only input is the folder, for c3d, bvh and mvnx a
-/// file whose world becomes ours (motion_file.h); so does that of a single csv or ndjson without a
-/// floor.  Refuses sets in which two inputs would be the
-/// same sensor or hold the same numbers.  The notes of every recording say when the set begins and
-/// how long it lasts (set_origin, set_period_ns), so that several replays loop in step.  Files that
-/// count from the start of one sensor keep their distance in time.
+/// Each input is one sensor; for pose2sim the only input is the folder; for c3d, bvh and mvnx it is
+/// a file whose world becomes ours (motion_file.h), and so does that of a single csv or ndjson file
+/// without a floor.  Refuses sets in which two inputs would be the same sensor or hold the same
+/// numbers.  The notes of every recording say when the set begins and how long it lasts
+/// (set_origin, set_period_ns), so that several replays loop in step.  Files that count from the
+/// start of one sensor keep their distance in time.
 [[nodiscard]] Result<ImportedSet> import_files(FileFormat format,
                                                const std::vector<std::filesystem::path>& inputs,
                                                const ImportOptions& options = {});
 
-/// Reads input number `index`, with the floor that belongs to it.
+/// Reads input number `index`, with its floor.
 using ReadRecording = std::function<Result<record::FrameRecording>(
     const std::filesystem::path& file, const ImportOptions& options, std::size_t index)>;
 
-/// The same for files that somebody else reads, one sensor each.
+/// The same for files that the caller's function reads, one sensor each.
 [[nodiscard]] Result<ImportedSet> import_recordings(
     const std::vector<std::filesystem::path>& inputs, const ImportOptions& options,
     const ReadRecording& read);

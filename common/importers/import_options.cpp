@@ -8,7 +8,7 @@
 namespace chorus::importers {
 namespace {
 
-constexpr std::size_t kMaxIdBytes = 64;  // SensorId::parse
+constexpr std::size_t kMaxIdBytes = 64;  // as in SensorId::parse
 
 bool is_id_character(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||

@@ -31,13 +31,13 @@ struct ImportLimits {
 inline constexpr double kMaxImported = 100.0;
 
 struct ImportOptions {
-  std::optional<SensorId> sensor;   ///< Default: named after the file.
+  std::optional<SensorId> sensor;   ///< None: sensor_named_after(file).
   std::optional<FloorPlane> floor;  ///< In sensor space; put into every frame.
   /// Replaces `floor`: one for each of several inputs.
   std::vector<FloorPlane> floors = {};
   Timestamp start = kDefaultStart;  ///< Time of the first frame, if the file has no UTC.
   bool rays = false;  ///< Turns camera landmarks into rays instead of fitting their depth.
-  double metres_per_unit = 0.01;  ///< For BVH, which does not say; usually centimetres.
+  double metres_per_unit = 0.01;  ///< For BVH files, which do not state it; usually cm.
   ImportLimits limits;
 };
 

@@ -1,4 +1,4 @@
-// Puts bodies that come row by row together into frames.  Private to this folder's .cpp files.
+// Collects bodies that come row by row into frames.  Private to this folder's .cpp files.
 #pragma once
 
 #include "common/importers/import_options.h"
@@ -12,9 +12,9 @@ class Instants {
   Instants(const ImportOptions& options, record::FrameRecording& recording)
       : options_(options), recording_(recording) {}
 
-  /// There is a frame of this instant from now on, be it without bodies.
+  /// Adds a frame for this instant, which may stay without bodies.
   [[nodiscard]] Result<void> reach(const LineReader& at, Timestamp captured);
-  /// The body with this id at this instant, made if it is new.  Refuses instants that go back, too
+  /// The body with this id at this instant, added if it is new.  Refuses instants that go back, too
   /// many frames, and too many bodies; `at` names the row.
   [[nodiscard]] Result<BodyFrame*> body(const LineReader& at, Timestamp captured, BodyId id);
 

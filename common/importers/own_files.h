@@ -1,8 +1,8 @@
-// Files of people's own trackers in two plain forms, which are also what `chorus export --format
-// csv` and `chorus fuse --out X.ndjson` write.
+// Reads the files of other trackers in two simple formats, which `chorus export --format csv` and
+// `chorus fuse --out X.ndjson` write too.
 //
-// CSV: one row a joint, the first row names the columns; docs/guide/recording.md explains them.
-// NDJSON: one /frame document a line (proto/README.md, section 3).
+// CSV: one row per joint; the first row names the columns; docs/guide/recording.md explains them.
+// NDJSON: one /frame document per line (proto/README.md, section 3).
 #pragma once
 
 #include "common/importers/import_options.h"
@@ -10,16 +10,16 @@
 
 namespace chorus::importers {
 
-/// Needs the columns joint, x_m, y_m, z_m and utc or time_s; person, state and qx..qw may be there.
-/// Rows of one instant stand together, instants in their order.
+/// Requires the columns joint, x_m, y_m, z_m and utc or time_s; person, state and qx..qw are
+/// optional. Rows of one instant are adjacent, and instants are in order.
 [[nodiscard]] Result<record::FrameRecording> read_joint_csv(const std::filesystem::path& file,
                                                             const ImportOptions& options = {});
 
 [[nodiscard]] Result<record::FrameRecording> read_frame_lines(const std::filesystem::path& file,
                                                               const ImportOptions& options = {});
 
-/// PyMoCapViewer's log of Azure Kinect's body tracking: `timestamp` [us], `body_idx` and for each
-/// of 32 landmarks its confidence and x, y, z [mm], as "PELVIS (c)", "PELVIS (x)", ...
+/// PyMoCapViewer's log of Azure Kinect's body tracking: `timestamp` [us], `body_idx`, and for each
+/// of 32 landmarks its confidence and x, y, z [mm], named "PELVIS (c)", "PELVIS (x)", ...
 [[nodiscard]] Result<record::FrameRecording> read_azure_kinect_csv(
     const std::filesystem::path& file, const ImportOptions& options = {});
 

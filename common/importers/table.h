@@ -1,4 +1,4 @@
-// Tables whose first row names the columns; commas, semicolons or tabs between them, no quotes.
+// Tables whose first row names the columns, separated by commas, semicolons or tabs; no quotes.
 #pragma once
 
 #include <map>
@@ -13,20 +13,20 @@ namespace chorus::importers {
 
 class Table {
  public:
-  /// Reads the first row; refuses a text without one, and names that come twice.
+  /// Reads the first row; refuses a text without one, and repeated names.
   [[nodiscard]] static Result<Table> open(LineReader& lines);
 
-  /// Reads the next row; false at the end.  Refuses rows of more or fewer fields than columns.
+  /// Reads the next row; false at the end.  Refuses rows with more or fewer fields than columns.
   [[nodiscard]] Result<bool> next();
 
   [[nodiscard]] bool has(std::string_view column) const { return columns_.contains(column); }
-  /// The column's field of this row; empty where there is no such column.
+  /// This row's field in the column; empty if there is no such column.
   [[nodiscard]] std::string_view field(std::string_view column) const;
-  /// A finite number within +-bound; none where the field is empty.
+  /// A finite number within +-bound; none if the field is empty.
   [[nodiscard]] Result<std::optional<double>> number(std::string_view column, double bound) const;
-  /// A whole number of 0 or more; `absent` where the field is empty.
+  /// A whole number of 0 or more; `absent` if the field is empty.
   [[nodiscard]] Result<std::uint64_t> natural(std::string_view column, std::uint64_t absent) const;
-  /// Malformed at this row, naming the column and what stands there.
+  /// Malformed at this row; names the column and its content.
   [[nodiscard]] tl::unexpected<Error> wrong(std::string_view column, std::string_view what) const;
 
  private:

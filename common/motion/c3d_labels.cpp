@@ -67,7 +67,7 @@ constexpr LabelRow kLabelRows[] = {
 
 constexpr std::size_t kFewestJoints = 2;
 constexpr std::size_t kShownLabels = 12;
-constexpr std::size_t kMaxSkeletons = 2 * kMaxFrames;  // of all subjects: 800 MB
+constexpr std::size_t kMaxSkeletons = 2 * kMaxFrames;  // of all subjects together: 800 MB
 
 /// Label without its subject -> index of the point.
 using Labels = std::map<std::string, std::size_t>;

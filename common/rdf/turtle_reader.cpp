@@ -55,7 +55,7 @@ class Events {
                               const SerdNode* language) {
     auto& events = *static_cast<Events*>(self);
     if (events.stopped_ || events.failed())
-      return SERD_ERR_UNKNOWN;  // Serd closes its lists before it stops
+      return SERD_ERR_UNKNOWN;  // Serd still closes open lists before it stops
     TripleView triple;
     if (!events.expand(s, 0, triple.subject) || !events.expand(p, 1, triple.predicate) ||
         !events.expand(o, 2, triple.object)) {

@@ -227,7 +227,7 @@ void Recorder::Impl::run() {
     for (bool last = false; how && !last;) {
       {
         const std::scoped_lock lock(mutex);
-        last = stopping;  // what is queued now is the last that is written
+        last = stopping;  // the items queued now are the last to be written
       }
       for (const RecordedEvent& event : take()) {
         if (how) how = write(event);

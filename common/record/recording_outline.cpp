@@ -9,7 +9,7 @@ namespace {
 using mcap::ByteReader;
 using mcap::Op;
 
-constexpr std::uint64_t kMaxRun = 1U << 20;  // for messages outside of chunks
+constexpr std::uint64_t kMaxRun = 1U << 20;  // largest run of messages outside of chunks
 
 class Scan {
  public:

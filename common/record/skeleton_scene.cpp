@@ -145,7 +145,7 @@ void put_lines(std::string& out, const resource::BodyResource& body) {
     if (from < 0 || to < 0) continue;
     indices += (indices.empty() ? "" : ",") + std::to_string(from) + "," + std::to_string(to);
   }
-  if (indices.empty()) {  // the schema takes no indices as: all points in order
+  if (indices.empty()) {  // by the schema, no indices means all points in order
     out += "\"lines\":[]";
     return;
   }

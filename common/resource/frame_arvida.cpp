@@ -22,7 +22,7 @@ constexpr std::string_view kPrefixes =
     "@prefix xsd: <http://www.w3.org/2001/XMLSchema#> .\n";
 
 constexpr std::string_view kDouble = "\"^^xsd:double";
-constexpr std::size_t kJointText = 2048;  // longest joint, without its names
+constexpr std::size_t kJointText = 2048;  // bytes of the longest joint, without its names
 
 class ArvidaFrame {
  public:

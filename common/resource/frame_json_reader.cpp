@@ -64,7 +64,7 @@ class Reading {
     for (const Json& object : *bodies) {
       if (!object.is_object())
         return complain(frame, "bodies", "holds something that is no object");
-      if (facts_[frame].bodies.size() > kMaxBodies) return;  // assemble() names the limit
+      if (facts_[frame].bodies.size() > kMaxBodies) return;  // assemble() reports the limit
       const std::size_t body = add_subject(object, "a body");
       facts_[frame].bodies.push_back(body);
       read_common(body, object);

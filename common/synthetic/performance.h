@@ -21,7 +21,7 @@ struct Performance {
 
 struct MotionFile {
   std::filesystem::path path;
-  double metres_per_unit = 0.01;  ///< For BVH, which does not say; usually centimetres.
+  double metres_per_unit = 0.01;  ///< For BVH files, which do not state it; usually cm.
 };
 
 /// Chooses by the extension: .bvh, .amc, .c3d or .mvnx.  The skeleton of X_01.amc is X_01.asf or

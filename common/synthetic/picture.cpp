@@ -15,7 +15,7 @@ namespace chorus::synthetic {
 namespace {
 
 constexpr int kJpegQuality = 85;
-constexpr int kPngEffort = 1;  // Of nine, because each picture is viewed only once.
+constexpr int kPngEffort = 1;  // The lowest of nine: each picture is viewed once.
 
 /// libjpeg calls this instead of returning an error.
 struct JpegErrors {

@@ -9,7 +9,7 @@
 namespace chorus::synthetic {
 
 struct Reach {
-  bool left = false;                                 ///< Which hand.
+  bool left = false;                                 ///< True for the left hand.
   double amount = 0.0;                               ///< 0: arm unchanged, 1: wrist at target.
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< Target of the wrist [m]
 };

@@ -13,7 +13,7 @@ namespace chorus::synthetic {
 namespace {
 
 constexpr std::uint64_t kDrawDepth = 401;
-constexpr double kMaxDepthCode = 65535;  // 16 bit
+constexpr double kMaxDepthCode = 65535;  // largest 16-bit value
 constexpr double kTileSize = 0.5;        // of the floor pattern [m]
 constexpr std::uint16_t kNobody = 0;
 constexpr std::uint16_t kThing = 65535;
@@ -25,7 +25,7 @@ struct RangeImage {
   int height = 0;
   std::vector<float> range;  ///< [m], infinity: nothing
   std::vector<std::uint16_t> person;
-  std::vector<Eigen::Vector3f> rays;  ///< Unit.
+  std::vector<Eigen::Vector3f> rays;  ///< Unit vectors.
 };
 
 /// Sensor x points to the sensor's left, but image columns run to its right.

@@ -36,7 +36,7 @@ struct SensorChoice {
   std::optional<std::uint64_t> draw;  ///< Seed that draws the parameters; none: nominal.
   std::vector<Stress> stress = {};
   std::uint64_t seed = 1;       ///< The same for all sensors of a room, so that they share errors.
-  std::uint64_t bias_seed = 1;  ///< Of SDK and people: a person's error is the same in every run.
+  std::uint64_t bias_seed = 1;  ///< For biases of SDK and people: the same in every run.
   bool own_clock = true;        ///< Stamps frames by the host's erring clock; false: by true time.
   /// The parameters of "gauss", which has no intervals to draw from, no sources to scale, and an
   /// exact clock.

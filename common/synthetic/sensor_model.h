@@ -38,7 +38,7 @@ struct FieldOfView {
 struct GaussianNoise {
   double along = 0.025;          ///< Standard deviation [m]
   double across = 0.010;         ///< Per axis [m]
-  double inferred_factor = 2.5;  ///< Factor for Inferred joints.
+  double inferred_factor = 2.5;  ///< Inferred joints have this much more noise.
   double turn = deg(4);          ///< Noise of orientations, per axis [rad]
 };
 

@@ -49,7 +49,7 @@ void ClockFilter::add(const ClockExchange& exchange) {
   }
   const Duration held = exchange.their_sending - exchange.their_receipt;
   const Duration round_trip = exchange.received - exchange.sent;
-  if (held < Duration{0} || round_trip < held) return;  // before anything can overflow
+  if (held < Duration{0} || round_trip < held) return;  // impossible; the sums below could overflow
   const Duration delay = round_trip - held;
   if (delay / 2 > limits_.max_uncertainty) return;
   const Duration theirs_minus_ours = (exchange.their_receipt - exchange.sent) / 2 +

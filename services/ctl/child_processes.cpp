@@ -16,7 +16,7 @@
 namespace chorus::ctl {
 namespace {
 
-constexpr int kExecFailed = 127;  // the shells' exit code for this
+constexpr int kExecFailed = 127;  // what a shell exits with then
 
 /// The signals that end the wait; they stay blocked during run_children.
 class HeldSignals {

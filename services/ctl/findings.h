@@ -24,7 +24,7 @@ using Findings = std::vector<Finding>;
 struct ExaminedService {
   std::string kind;  ///< "sensor" or "fusion"
   std::string file;
-  nlohmann::json config;  ///< An object.
+  nlohmann::json config;  ///< A JSON object.
 
   [[nodiscard]] std::uint16_t port() const;
   /// The address to reach it from this host: "http://127.0.0.1:8081/", or https:// with a name from

@@ -169,7 +169,7 @@ Result<int> run_record(const RecordArguments& arguments) {
   client::LiveRecordingOptions options;
   options.service = *url;
   options.file = arguments.out;
-  options.raw = arguments.raw || !arguments.fused;  // neither named: both
+  options.raw = arguments.raw || !arguments.fused;  // with neither option: both
   options.fused = arguments.fused || !arguments.raw;
   asio::io_context io{1};
   const auto live = client::LiveRecording::start(io, options);

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::uintmax_t kMaxLensBytes = 1u << 20;
 
-/// "cam01.mp4: 43 %, 12 s left", over and over on a terminal; elsewhere once every tenth.
+/// "cam01.mp4: 43 %, 12 s left": redrawn on a terminal; elsewhere printed once every tenth.
 class Progress {
  public:
   explicit Progress(std::string name) : name_(std::move(name)) {}
@@ -31,7 +31,7 @@ class Progress {
     if (!begun_) {
       begun_ = now;
       first_ = share;
-      return;  // how long the runner took to start says nothing
+      return;  // the runner's start-up time tells nothing
     }
     const int percent = static_cast<int>(100.0 * share);
     if (percent / (terminal_ ? 1 : 10) == told_) return;
@@ -54,7 +54,7 @@ class Progress {
   int told_ = -1;
 };
 
-/// The text of the lens alone, as JSON.
+/// The text of only the lens, as JSON.
 Result<std::string> lens_text(const std::string& file) {
   const auto text = read_file(file, kMaxLensBytes);
   if (!text) return pass(text);
@@ -67,7 +67,7 @@ Result<std::string> lens_text(const std::string& file) {
               "is a sensor's configuration without device.camera.intrinsics");
 }
 
-/// As a sensor's section device.camera would be read.
+/// The settings that a sensor would read from its section device.camera.
 Result<camera::CameraSettings> settings_for(const fs::path& video, const VideoImport& how,
                                             std::size_t index) {
   nlohmann::json section{{"source", video.string()},

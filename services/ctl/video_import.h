@@ -1,4 +1,4 @@
-// Videos as recordings: a runner looks at every picture, however long that takes.
+// Turns videos into recordings: a runner processes every picture, however long that takes.
 #pragma once
 
 #include <filesystem>
@@ -11,13 +11,13 @@ namespace chorus::ctl {
 
 struct VideoImport {
   /// None, one for all, or one for each: files with the keys of device.camera.intrinsics, or
-  /// sensors' configurations.  None: a usual field of view is assumed.
+  /// configurations of sensors.  None: assumes a usual field of view.
   std::vector<std::string> lenses;
   std::string model;
-  double rate_hz = 30.0;  ///< Pictures looked at.
+  double rate_hz = 30.0;  ///< Most pictures per second.
 };
 
-/// Each input is one camera, named after its file; all videos begin at options.start.  Tells its
+/// Each input is one camera, named after its file; all videos begin at options.start.  Reports the
 /// progress on standard error.
 [[nodiscard]] Result<importers::ImportedSet> import_videos(
     const std::vector<std::filesystem::path>& inputs, const importers::ImportOptions& options,

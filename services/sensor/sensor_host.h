@@ -20,7 +20,7 @@ struct Setup {
   SensorSettings settings;
   std::shared_ptr<const Clock> clock;  ///< The host's, with its errors.
   std::unique_ptr<FrameSource> device;
-  std::shared_ptr<http::Router> router = std::make_shared<http::Router>();  ///< With the device's.
+  std::shared_ptr<http::Router> router = std::make_shared<http::Router>();  ///< With device routes.
 };
 
 class SensorHost {

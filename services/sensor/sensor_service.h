@@ -92,7 +92,7 @@ class SensorService {
 
   mutable std::mutex mutex_;  ///< Guards the members below.
   LatestCapturePtr latest_;
-  std::optional<Timestamp> refused_capture_;  ///< Of the previous capture, if it was refused.
+  std::optional<Timestamp> refused_capture_;  ///< Of the capture before, if refused.
   ServiceCounters counters_;
   std::chrono::steady_clock::time_point last_capture_{};
   std::string ended_;  ///< Why the device delivers nothing more; empty while it is running.

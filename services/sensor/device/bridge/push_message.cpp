@@ -33,7 +33,7 @@ template <std::size_t N>
 struct Element {
   std::array<double, N> place{};
   Sureness sure;
-  const Json* object = nullptr;  ///< If the element is an object: that.
+  const Json* object = nullptr;  ///< The element itself, if it is a JSON object.
 };
 
 Result<JointState> read_state(const Json& value, const At& at) {

@@ -21,7 +21,7 @@ struct CameraReport {
   std::uint64_t looked_at = 0;  ///< By the runner.
   std::uint64_t connects = 0;   ///< How often the source was opened.
   std::uint64_t starts = 0;     ///< How often the runner was started.
-  double answer_ms = 0.0;       ///< Time of the runner per image, smoothed.
+  double answer_ms = 0.0;       ///< Runner's time per image, smoothed.
   double latency_ms = 0.0;      ///< From light to landmarks, smoothed.
 };
 

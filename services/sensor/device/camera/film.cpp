@@ -10,11 +10,11 @@ namespace {
 
 constexpr std::size_t kMaxFrames = 1'000'000;  // nine hours at 30 Hz
 
-/// When pictures were captured, counted from the file's first one.
+/// The capture times of pictures, counted from the file's first one.
 class FilmClock {
  public:
   explicit FilmClock(const FileTiming& timing) : step_(timing.step) {}
-  /// Some containers tell no time for their last pictures.
+  /// Some containers have no times for their last pictures.
   Duration next(std::optional<Duration> told) {
     if (!begun_) {
       begun_ = true;
@@ -43,7 +43,7 @@ SensorFrame frame_of(const Film& film, Timestamp captured, std::uint64_t sequenc
 }
 
 bool wanted(const Film& film, const FilmFrames& out, Timestamp captured) {
-  constexpr double kNearly = 0.9;  // of a step: pictures do not come evenly
+  constexpr double kNearly = 0.9;  // of a step, because pictures are not evenly spaced
   return out.frames.empty() ||
          seconds(captured - out.frames.back().captured) * film.settings.max_rate_hz >= kNearly;
 }

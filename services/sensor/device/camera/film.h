@@ -1,5 +1,5 @@
-// All pictures of a video file, looked at one after the other: as long as that takes, none is left
-// out.
+// Runs all pictures of a video file through a runner, one after the other, without leaving any out,
+// however long that takes.
 #pragma once
 
 #include <functional>
@@ -9,20 +9,20 @@
 namespace chorus::camera {
 
 struct Film {
-  CameraSettings settings;  ///< Its source is the file; max_rate_hz bounds what is looked at.
-  std::vector<std::string> command;  ///< Of the runner.
+  CameraSettings settings;  ///< Its source is the file; max_rate_hz limits the pictures used.
+  std::vector<std::string> command;  ///< The command of the runner.
   SensorId sensor;
-  Timestamp start;  ///< When its first picture was captured.
-  /// Told after every picture: the share of the file that is over [0, 1].
+  Timestamp start;  ///< Capture time of its first picture.
+  /// Called after every picture: the fraction of the file that is done, [0, 1].
   std::function<void(double share)> progress = {};
 };
 
 struct FilmFrames {
-  std::vector<SensorFrame> frames;  ///< One for each picture; captured = received.
+  std::vector<SensorFrame> frames;  ///< One per picture; captured = received.
   std::string runner;               ///< Its name.
   std::string layout;
   Lens lens;
-  std::size_t people = 0;  ///< Most of them in one picture.
+  std::size_t people = 0;  ///< The most in one picture.
 };
 
 /// An error names the file and what is wrong with it, or the runner.

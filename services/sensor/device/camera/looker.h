@@ -1,4 +1,4 @@
-// A runner that is ready, and what it finds in pictures.
+// A runner that is ready, and the people it finds in pictures.
 #pragma once
 
 #include <memory>
@@ -14,24 +14,24 @@ namespace chorus::camera {
 
 struct Found {
   std::vector<BodyFrame> bodies;
-  Lens lens;                        ///< Of the picture.
-  Size sent;                        ///< As the runner got it.
-  std::optional<FloorPlane> floor;  ///< As the runner says, or as configured.
+  Lens lens;                        ///< For the picture.
+  Size sent;                        ///< Size at which the runner got it.
+  std::optional<FloorPlane> floor;  ///< From the runner, or as configured.
 };
 
-/// Not thread-safe; refers to its settings.
+/// Not thread-safe; keeps a reference to its settings.
 class Looker {
  public:
-  /// Starts the command and hears what it is.
+  /// Starts the command and waits for its hello.
   [[nodiscard]] static Result<Looker> start(const CameraSettings& settings,
                                             const std::vector<std::string>& command,
                                             const std::stop_token& stop);
 
-  /// One picture to the runner, and its answer.
+  /// Sends one picture to the runner and returns its answer.
   [[nodiscard]] Result<Found> look(const Picture& picture, Timestamp captured,
                                    std::uint64_t sequence, const std::stop_token& stop);
   [[nodiscard]] const RunnerHello& about() const { return about_; }
-  /// Reads what it has to say to people; Unavailable when it has ended.
+  /// Reads its standard error; Unavailable when it has ended.
   [[nodiscard]] Result<void> listen() { return process_->listen(); }
 
  private:
