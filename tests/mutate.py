@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Plants one error at a time and sees which unit test notices.  By hand, not in CI.
+"""Makes one error at a time and checks which unit test fails.  To be run by hand, not in CI.
 
     tests/mutate.py                      the forty named mutants, then a hundred drawn ones
     tests/mutate.py --drawn 0            the named ones only
-    tests/mutate.py --again survived     asks once more about those that survived, after a test was added
-    tests/mutate.py --report             what the results file says, as Markdown; builds nothing
+    tests/mutate.py --again survived     tests those that survived once more, after a test was added
+    tests/mutate.py --report             prints the results file as Markdown; builds nothing
 
-The checkout stays as it is: everything is built in a copy (--scratch).  Results are kept there line by line, so that a
-run can be ended at any time and goes on where it was.  Exit code 0: all named mutants died and at most 15 in a hundred
-of the drawn ones survived; 1: not so; 2: it could not be tried.
+The checkout is not changed: everything is built in a copy (--scratch). Results are stored there line by line, so that a run can be stopped
+at any time and continues where it was. Exit code 0: all named mutants were killed, and at most 15 in a hundred of the drawn ones survived;
+1: not so; 2: it could not be tested.
 """
 
 import argparse
@@ -42,7 +42,7 @@ def arguments():
 
 
 def named_mutants(entries, read):
-    """{name: Mutant}; a line that is not there exactly once is an error that names the mutant."""
+    """{name: Mutant}; a line that does not occur exactly once is an error that names the mutant."""
     mutants = {}
     for entry in entries:
         lines = read(entry["file"]).splitlines()
@@ -57,13 +57,13 @@ def named_mutants(entries, read):
 
 
 def wanted_draws(texts, seed, count, known):
-    """The first `count` that compile, as far as that is known."""
+    """The first `count` mutants that compile, as far as that is known."""
     usable = (m for m in drawn(texts, seed) if known.get(m.key, {}).get("status") != "does not compile")
     return list(itertools.islice(usable, count))
 
 
 def check_baseline(scratch, file, limit, passed):
-    """What fails without a mutant says nothing about one."""
+    """A test that fails without a mutant says nothing about one."""
     tests = [test for test in scratch.tests_of(file) if test not in passed]
     problem = scratch.make(*tests) if tests else ""
     for test in tests:

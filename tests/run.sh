@@ -4,8 +4,8 @@
 #   tests/run.sh --sanitize address|thread [ctest arguments]
 #     the unit, integration and fusion-system tests instead, built with that sanitizer (presets asan and tsan)
 #   tests/run.sh --workshop
-#     instead: makes the packages, installs them into fresh Debian roots without network, and looks; then five of these as hosts of a
-#     workshop, with networks of their own (as root, minutes)
+#   instead: makes the packages, installs them into fresh Debian roots without network, and tests them; then uses five of these as
+#    hosts of a workshop, each with its own network (as root, minutes)
 # CHORUS_JOBS=N limits the build (default: all cores, but no more than the memory can feed).
 # CHORUS_TARGETS="base.file_test ..." builds only these with --sanitize; then choose the same tests by -R.
 set -euo pipefail
@@ -13,7 +13,7 @@ cd "$(dirname "$0")/.."
 
 step() { printf '\n== %s\n' "$*"; }
 
-# npm ci once per lock file: a second run finds the stamp and is quick.
+# npm ci once per lock file: later runs find the stamp and are quick.
 npm_packages() {
   local stamp="$1/node_modules/.chorus-lock"
   cmp -s "$1/package-lock.json" "$stamp" && return
@@ -44,8 +44,8 @@ export CCACHE_SLOPPINESS=pch_defines,time_macros  # else it keeps nothing that r
 command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
 jobs=${CHORUS_JOBS:-$(deploy/build-jobs.sh)}
 
-# A finding ends the test that met it.  Everything linked dynamically is not instrumented, so the thread sanitizer
-# is told not to look into what it cannot see (tests/tsan.supp).
+# A finding ends the test in which it occurs. Dynamically linked libraries are not instrumented, so the thread sanitizer is told to ignore
+# them (tests/tsan.supp).
 run_sanitized() {
   export ASAN_OPTIONS="detect_leaks=1:strict_string_checks=1:detect_stack_use_after_return=1"
   export UBSAN_OPTIONS="print_stacktrace=1:halt_on_error=1"
@@ -77,5 +77,5 @@ cmake --preset fuzz "${launcher[@]}" --log-level=WARNING
 cmake --build build/fuzz -j "$jobs" --target fuzzers
 
 step "tests"
-# Many tests wait for processes of theirs: one more than there are cores.
+# Many tests wait for their child processes: so run one more than there are cores.
 exec ctest --test-dir build/dev --output-on-failure -j "$(( $(nproc) + 1 ))" "$@"

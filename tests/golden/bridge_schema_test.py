@@ -1,5 +1,5 @@
-"""proto/bridge.schema.json accepts the golden messages of proto/golden/bridge, refuses those whose form is wrong, and
-names the layouts that there are.
+"""proto/bridge.schema.json accepts the golden messages of proto/golden/bridge, refuses malformed ones, and names all existing
+layouts.
 
 usage: bridge_schema_test.py PROTO_FOLDER
 """

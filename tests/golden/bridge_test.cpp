@@ -1,4 +1,4 @@
-// proto/golden/bridge through our reader: what is read, and what is refused with which words.
+// proto/golden/bridge read by our reader: what is accepted, and what is refused with which words.
 #include <fstream>
 #include <set>
 #include <sstream>

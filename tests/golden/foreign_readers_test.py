@@ -1,4 +1,4 @@
-"""rapper, serdi and rdflib read everything that proto/golden calls perfect or good, and our own vocabulary and shapes.
+"""rapper, serdi and rdflib read everything in proto/golden/perfect and good, and our own vocabulary and shapes.
 
 usage: foreign_readers_test.py PROTO_FOLDER.  Exit code 77: none of the three is installed.
 """
@@ -50,7 +50,7 @@ def read_with_rdflib(rdflib):
 
 
 def check_arvida_paths(rdflib, path, graph):
-    """The property paths of the published ARVIDA clients give exactly one value each (wire format of the profile)."""
+    """The property paths used by published ARVIDA clients give exactly one value each (wire format of the profile)."""
     spatial = "http://vocab.arvida.de/2015/06/spatial/vocab#"
     query = """
       PREFIX spatial: <%s> PREFIX vom: <http://vocab.arvida.de/2015/06/vom/vocab#>

@@ -27,7 +27,7 @@ std::string contents(const std::string& path) {
   return text.str();
 }
 
-/// What the manifest says of one file.
+/// What the manifest says about one file.
 struct Promise {
   std::string kind;
   std::map<std::string, std::string> said;
@@ -152,7 +152,7 @@ TEST(Golden, NoTruncationIsTakenForAFrame) {
     const std::string whole = contents(std::string("perfect/one-body") + extension);
     for (std::size_t size = 0; size + 2 < whole.size(); size += 7) {
       const auto frame = read_frame(whole.substr(0, size), format);
-      // A cut between two subjects of Turtle leaves a document, but never a whole body.
+      // Turtle cut off between two subjects is still a document, but never has a whole body.
       EXPECT_FALSE(frame) << extension << " cut at " << size;
     }
   }

@@ -12,7 +12,7 @@ def resolve(document, reference):
 
 
 def fits(value, schema, document):
-    """`document`: where references of the schema lead."""
+    """`document`: the document that the schema's references point into."""
     if "$ref" in schema:
         rest = {key: item for key, item in schema.items() if key != "$ref"}
         return fits(value, {**resolve(document, schema["$ref"]), **rest}, document)

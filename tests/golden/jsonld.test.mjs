@@ -1,5 +1,5 @@
-// With an independent JSON-LD processor and an independent Turtle parser: perfect/x.jsonld is the graph of perfect/x.ttl,
-// and perfect/x.json is too, once the Link header's context is applied: only the spelling of its decimals differs.
+// An independent JSON-LD processor and an independent Turtle parser find that perfect/x.jsonld is the graph of perfect/x.ttl, and so is
+// perfect/x.json with the Link header's context applied: only its decimals are spelt differently.
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
@@ -17,7 +17,7 @@ async function documentLoader(url) {
   return { contextUrl: null, documentUrl: url, document: context };
 }
 
-/// Our documents have no blank nodes where this is used: triples can be compared as text.
+/// Where this is used our documents have no blank nodes: triples can be compared as text.
 function lines(quads) {
   return quads.map((q) => [q.subject, q.predicate, q.object].map((t) =>
     (t.termType === 'Literal' ? `"${t.value}"^^${t.datatype.value}` : t.value)).join(' ')).sort();
@@ -32,7 +32,7 @@ const names = readdirSync(`${proto}golden/perfect`).filter((name) => name.endsWi
 
 test('there is something to compare', () => assert.ok(names.length >= 3));
 
-/// Living names, as withLivingNames() gives them, in triples.
+/// Stable names, as withLivingNames() gives them, in triples.
 function livingLines(triples) {
   return triples.filter((line) => !line.includes('ns#of ')).map((line) => line.split(' ').map((term) => term
     .replace(/\/frames\/\d+#(\d+)-(\w+)$/, '/skeletons/$1#$2').replace(/\/frames\/\d+#(\d+)$/, '/skeletons/$1')
@@ -51,7 +51,7 @@ for (const name of names) {
     assert.deepEqual(lines(triples), lines(new Parser({ baseIRI: base }).parse(read('ttl'))));
   });
 
-  /// JSON names what lives on; JSON-LD names frame, bodies and joints by the frame, and checks here that it does.
+  /// JSON only gives names to what outlives a frame; JSON-LD names frame, bodies and joints by the frame, which is checked here.
   const withLivingNames = (frame) => {
     assert.equal(frame['@id'], `frames/${frame.sequence}`);
     for (const body of frame.bodies) {
@@ -73,8 +73,8 @@ for (const name of names) {
   });
 }
 
-/// Decimals as the numbers they are, to a hundred thousandth: JSON's numbers arrive in scientific notation, and jsonld.js takes those
-/// that JavaScript writes as 4e-8 for integers.
+/// Decimals as numbers rounded to a hundred thousandth: JSON's numbers arrive in scientific notation, and jsonld.js treats those that
+/// JavaScript writes as 4e-8 as integers.
 function numbers(quads) {
   const decimal = /^"([^"]*)"\^\^http:\/\/www\.w3\.org\/2001\/XMLSchema#decimal$/;
   return quads.map((line) => line.split(' ').map((term) => term.replace(decimal, (_, text) => `decimal ${Math.round(Number(text) * 1e5) + 0}`)).join(' ')).sort();
@@ -89,7 +89,7 @@ for (const name of names) {
   });
 }
 
-// A document with everything that nodes can hold: blank nodes, a list, an indexed container, terms that mean something else in a type.
+// A document with all that nodes can contain: blank nodes, a list, an indexed container, terms with a type-dependent meaning.
 test('documents/registration: JSON-LD is the graph of the Turtle', async () => {
   const read = (extension) => readFileSync(`${proto}golden/documents/registration.${extension}`, 'utf8');
   const options = { base: 'http://localhost/registration', documentLoader };

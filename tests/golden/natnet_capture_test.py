@@ -1,4 +1,4 @@
-"""Our NatNet reader on what a real Motive sent: it must be right before it judges our own frames."""
+"""Our NatNet reader reads what a real Motive sent: it must be right before it judges our own frames."""
 import math
 import os
 import re
@@ -52,7 +52,7 @@ class Packets(unittest.TestCase):
 
 
 def datagrams(path):
-    """(source port, target port, payload) of the UDP over IPv4 in a pcapng file."""
+    """(source port, target port, payload) of the UDP packets over IPv4 in a pcapng file."""
     data, at = path.read_bytes(), 0
     while at < len(data):
         kind, size = struct.unpack_from("<II", data, at)
@@ -67,7 +67,7 @@ def datagrams(path):
 
 @unittest.skipUnless(CAPTURE.is_dir(), f"runs where the whole capture is there: {CAPTURE}")
 class WholeCapture(unittest.TestCase):
-    """Against what the vendor's own sample client printed of the same frames."""
+    """Compares with the output of the vendor's own sample client for the same frames."""
 
     def test_every_datagram_can_be_read(self):
         readers = {natnet.SERVER_INFO: natnet.server_info, natnet.MODELS: natnet.models, natnet.FRAME: natnet.frame,
@@ -101,7 +101,7 @@ class WholeCapture(unittest.TestCase):
             self.assert_printed(found.place + found.turned, pose.split())
 
     def assert_printed(self, numbers, texts):
-        """With two digits; a five behind them may have gone either way."""
+        """Numbers printed with two digits; a five after them may have been rounded either way."""
         self.assertEqual(len(numbers), len(texts))
         for number, text in zip(numbers, texts):
             self.assertLessEqual(abs(number - float(text)), 0.005 + 1e-6)

@@ -1,5 +1,5 @@
-"""proto/openapi.json: its references resolve, it has every path of proto/README.md, openapi.yaml is made from it, and its schemas
-accept the golden JSON and refuse it with anything required left out.
+"""proto/openapi.json: its references resolve, it has every path of proto/README.md, openapi.yaml is generated from it, and its schemas
+accept the golden JSON and refuse it if anything required is missing.
 
 usage: openapi_test.py PROTO_FOLDER
 """

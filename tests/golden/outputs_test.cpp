@@ -1,4 +1,4 @@
-// tests/golden/outputs: every encoder gives the bytes that are kept there.
+// tests/golden/outputs: every encoder produces the bytes stored there.
 #include <bit>
 #include <cstdlib>
 #include <fstream>

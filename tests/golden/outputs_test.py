@@ -1,4 +1,4 @@
-"""tests/golden/outputs through readers of their own: the poses are those of the twin, proto/golden/perfect/fused.json."""
+"""tests/golden/outputs read by independent readers: the poses are those of proto/golden/perfect/fused.json."""
 import json
 import struct
 import sys
@@ -53,7 +53,7 @@ class Golden(unittest.TestCase):
                 (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = matrix_of(*orientation(joints, name))
                 expected = ((xx, -xz, xy), (-zx, zz, -zy), (yx, -yz, yy))
                 for a, b in zip(rotation, expected):
-                    self.assert_near(a, b, 5e-5, name)  # the twin has five digits
+                    self.assert_near(a, b, 5e-5, name)  # the JSON file has five digits
 
     def test_vmc(self):
         messages = [m for datagram in datagrams("fused.vmc") for m in osc_messages(datagram)]
@@ -90,7 +90,7 @@ class Golden(unittest.TestCase):
                 self.assert_near(got, expected, 1e-5, what)
                 compared += 1
             self.assertGreaterEqual(compared, 15)
-        # What is not tracked hangs at its parent and turns with it: shoulder 0.3 of the way to where it would be.
+        # Untracked parts are placed at their parent and rotate with it: a shoulder at 0.3 of the way to its joint.
         left = found[0].segments
         self.assertEqual(left["LeftUpperArm"].turned, left["LeftShoulder"].turned)
         self.assertEqual(left["LeftShoulder"].turned, left["T12"].turned)

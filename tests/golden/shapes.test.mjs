@@ -1,4 +1,4 @@
-// The SHACL shapes, with an independent validator: they accept what the golden folders call valid and refuse what a shape can see.
+// The SHACL shapes in an independent validator: they accept the valid golden files and refuse all errors that a shape can detect.
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import { test } from 'node:test';
@@ -18,7 +18,7 @@ for (const name of readdirSync(`${proto}golden/perfect`).filter((file) => file.e
   });
 }
 
-// What a reader refuses for its numbers, names and missing properties, a shape sees too.
+// Wrong numbers, wrong names and missing properties, which readers refuse, are detected by shapes, too.
 const visible = ['no-time', 'no-body-time', 'no-sequence', 'no-source', 'no-space', 'no-body-id', 'no-joint-name', 'no-state', 'no-position',
   'half-a-position', 'absurd-coordinate', 'nan-coordinate', 'two-positions', 'unknown-state', 'unknown-space', 'unknown-joint',
   'negative-sequence', 'negative-variance', 'string-for-a-number', 'decimal-for-an-integer', 'quaternion-of-length-two',

@@ -1,6 +1,6 @@
-"""proto/golden/vrpn: what each .bin holds, byte for byte, by an encoder that shares nothing with the server's.
+"""proto/golden/vrpn: checks each .bin byte for byte with an encoder that shares no code with the server's.
 
-`vrpn_golden_test.py FOLDER --write` makes the .bin files from their .json twins."""
+`vrpn_golden_test.py FOLDER --write` makes the .bin files from the .json files of the same name."""
 import json
 import struct
 import sys

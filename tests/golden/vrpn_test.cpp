@@ -23,7 +23,7 @@ std::string golden(const std::string& name) {
 
 std::shared_ptr<const Trackers> one_person() { return std::make_shared<const Trackers>(1, true); }
 
-/// The head of one person, as frame.json says.
+/// The head of one person, as in frame.json.
 outlet::TrackerFrame frame() {
   outlet::TrackerFrame frame;
   frame.instant = kTime;

@@ -1,5 +1,5 @@
-// Regression ceilings on simulated rings: generous, so that only a broken estimator trips them. The
-// figures themselves are chorus-bench's.
+// Regression ceilings on simulated rings: generous, so that only a broken estimator exceeds them.
+// chorus-bench reports the values themselves.
 #include <gtest/gtest.h>
 
 #include "common/base/units.h"

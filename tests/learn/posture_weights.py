@@ -5,11 +5,11 @@
 
 Recordings that may be shipped, of people who face one sensor: Labanotation (MIT), KERAAL (BSD-2),
 UI-PRMD (PDDL), Azure Kinect (MIT).  The front is known from the labels.  A logistic regression
-without constant on offsets along the front is fitted to (offsets, front) and, implied, to
-(-offsets, rear): turning the direction round turns the sign and nothing else, and offsets do not
-know the labels (docs/papers/sides.md).  Every recording weighs by the share of its collection,
-whatever its length.  Prints the weights, and for each collection how many frames the weights
-learned from the others get right.
+without constant on offsets along the front is fitted to (offsets, front) and, implicitly, to (-offsets, rear):
+reversing the direction changes the sign and nothing else, and offsets do not depend on the labels
+(docs/papers/sides.md). Every recording is weighted by the fraction that its collection has, whatever its length.
+Prints the weights, and for each collection the number of frames that weights learned from the other collections get
+right.
 """
 
 import csv
@@ -81,7 +81,7 @@ def turn_about(axis, degrees):
 
 
 def ui_body(places, angles):
-    """Forward kinematics: places in the parent's frame [cm], R = Rz Rx Ry."""
+    """Forward kinematics: positions in the parent's frame [cm], R = Rz Rx Ry."""
     turns, joints = [], []
     for i, parent in enumerate(UI_PARENTS):
         x, y, z = angles[3 * i : 3 * i + 3]

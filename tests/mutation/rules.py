@@ -1,4 +1,4 @@
-"""What may be broken in a line of C++, one thing at a time."""
+"""The single changes that can break a line of C++."""
 
 import random
 import re
@@ -21,7 +21,7 @@ STATEMENT = re.compile(r"^\s*(?:if \(.*\) )?(?!return\b|break\b|case\b|else\b|us
 
 @dataclass(frozen=True)
 class Mutant:
-    """One line of one file, as it is and as it is broken."""
+    """One line of one file, in its original and its broken form."""
     file: str
     line: int  # counted from one
     before: str
@@ -34,7 +34,7 @@ class Mutant:
 
 
 def blanked(line):
-    """The line with comments and texts blanked, so that columns stay what they are."""
+    """The line with comments and strings blanked, so that columns do not change."""
     code = TEXT.sub(lambda found: '"' + "_" * (len(found.group()) - 2) + '"', line)
     comment = code.find("//")
     return code if comment < 0 else code[:comment] + " " * (len(code) - comment)
@@ -53,7 +53,7 @@ def exchanges(line, code, table):
 
 
 def constants(line, code):
-    """A number becomes nothing; nothing becomes one."""
+    """A number becomes zero; zero becomes one."""
     masked = TEMPLATE.sub(lambda found: "<" + "_" * (len(found.group()) - 2) + ">", code)
     for found in NUMBER.finditer(masked):
         number = found.group().replace("'", "")
@@ -63,7 +63,7 @@ def constants(line, code):
 
 
 def broken_lines(line, rule):
-    """Every way in which the rule breaks this line."""
+    """All broken forms of this line by this rule."""
     code = blanked(line)
     if not code.strip() or NO_CODE.match(code):
         return []
@@ -80,7 +80,7 @@ def broken_lines(line, rule):
 
 
 def whole_statement(lines, index):
-    """The line begins a statement: the one before it ended one, or opened or closed a block."""
+    """Whether the line begins a statement: the previous one ended one, or opened or closed a block."""
     for earlier in reversed(lines[:index]):
         code = blanked(earlier).strip()
         if code:
@@ -98,7 +98,7 @@ def mutants_of(file, text, rule):
 
 
 def drawn(texts, seed):
-    """Mutants without end of list: the rules take turns, each draws without replacement.
+    """Endless mutants: the rules take turns, and each draws without replacement.
 
     texts: {file: text}.  The same texts and seed give the same mutants.
     """

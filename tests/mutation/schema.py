@@ -1,6 +1,6 @@
-"""Many mutants of one file in one build: each line asks which mutant is wanted and does as before if it is another.
+"""Builds many mutants of one file at once: each line asks which mutant is active and is unchanged for all others.
 
-A line that none of the forms below fits, or that does not compile, is built by itself.
+A line that fits none of the forms below, or that does not compile, is built separately.
 """
 
 import re
@@ -54,7 +54,7 @@ HEAD = re.compile(r"^(\s*(?:\} else )?(?:if|while) \()(.*)(\) \{)\s*$")
 
 
 def code_of(line):
-    """Without a comment at its end."""
+    """The line without a comment at its end."""
     return line[:len(blanked(line).rstrip())]
 
 
@@ -63,7 +63,7 @@ def followed_by_else(lines, index):
 
 
 def difference(before, after):
-    """(start, end in before, end in after) of what differs."""
+    """(start, end in before, end in after) of the part that differs."""
     start = 0
     while start < min(len(before), len(after)) and before[start] == after[start]:
         start += 1
@@ -120,7 +120,7 @@ def by_constant(mutant, number):
 
 
 def rewritten(lines, mutant, number):
-    """The line that is both, or nothing."""
+    """The line that contains both forms, or nothing."""
     index = mutant.line - 1
     line = by_statement(lines, index, mutant, number) or by_declaration(mutant, number) or by_head(mutant, number)
     if line:
@@ -131,7 +131,7 @@ def rewritten(lines, mutant, number):
 
 
 def merged(text, numbered):
-    """The file with as many of {number: mutant} in it as fit, and the numbers that did; one to a line."""
+    """The file with as many of {number: mutant} as fit, at most one per line, and the numbers that did."""
     lines = text.splitlines()
     taken, out = {}, list(lines)
     for number, mutant in numbered.items():

@@ -1,4 +1,4 @@
-"""A copy of the tree with a build of its own, in which files may be broken."""
+"""A copy of the tree with a build of its own, in which files can be broken."""
 
 import json
 import os
@@ -11,10 +11,10 @@ from pathlib import Path
 from schema import HEADER, merged
 
 ROOMS = ("registration", "fusion", "facing", "associate", "align")
-# For files of other rooms that a named mutant is in: file -> tests.
+# For files of other rooms that contain a named mutant: file -> tests.
 OTHER_TESTS = {"common/time/clock_estimate.cpp": ["time.clock_estimate_test"],
                "common/body/interpolate.cpp": ["body.interpolate_test"]}
-SLOW = ("solve_test", "pair_test", "covariance_test")  # asked last
+SLOW = ("solve_test", "pair_test", "covariance_test")  # run last
 FAILED = re.compile(r"\[  FAILED  \] (\S+)")
 BROKEN = ".broken.h"
 ERROR = re.compile(r"([\w-]+\.broken\.h):(\d+):\d+: +(?:(?:fatal )?error|required from)")
@@ -33,7 +33,7 @@ class Scratch:
                               **options)
 
     def refresh(self):
-        """Copies what git knows or would add; files that are the same keep their time, so that nothing is built twice."""
+        """Copies all files that git tracks or would add; unchanged files keep their time, so that nothing is rebuilt needlessly."""
         listed = self.run("git", "-C", str(self.checkout), "ls-files", "-co", "--exclude-standard").stdout.splitlines()
         for name in listed:
             source, target = self.checkout / name, self.tree / name
@@ -56,7 +56,7 @@ class Scratch:
             raise SystemExit("mutate: the scratch copy does not configure:\n" + done.stderr[-2000:])
 
     def make(self, *targets):
-        """'' or what the compiler said."""
+        """'', or the compiler's output."""
         done = self.run("ninja", "-C", str(self.build), f"-j{self.jobs}", *targets)
         return "" if done.returncode == 0 else done.stdout + done.stderr
 
@@ -65,7 +65,7 @@ class Scratch:
         return {str(path.relative_to(self.checkout)): path.read_text() for path in files}
 
     def tests_of(self, file):
-        """The file's own test first, the slow ones last."""
+        """The file's own test first, slow tests last."""
         if file in OTHER_TESTS:
             return OTHER_TESTS[file]
         room, stem = Path(file).parent.name, Path(file).stem
@@ -75,7 +75,7 @@ class Scratch:
         return [f"{room}.{name}" for name in names]
 
     def ask(self, test, number, limit):
-        """Who notices: '' nobody, else the first failing case, 'crash' or 'time limit'."""
+        """Which test fails: '' none, else the first failing case, 'crash' or 'time limit'."""
         program = self.build / "tests" / test
         environment = dict(self.environment, CHORUS_MUTANT=str(number))
         try:
@@ -89,7 +89,7 @@ class Scratch:
         return found.group(1) if found else f"crash ({done.returncode})"
 
     def plant(self, file, text):
-        """The broken text as a header of the system's, so that none of its warnings is an error."""
+        """The broken text as a system header, so that its warnings are no errors."""
         broken = self.tree / (file.removesuffix(".cpp") + BROKEN)
         broken.write_text("#pragma GCC system_header\n" + text)
         (self.tree / file).write_text(f'#include "{broken.relative_to(self.tree)}"\n')
@@ -107,14 +107,14 @@ class Scratch:
 
 
 class FileRound:
-    """All mutants of one file that are still to be asked about."""
+    """All mutants of one file that are not tested yet."""
 
     def __init__(self, scratch, file, numbered, limit):
         self.scratch = scratch
         self.file = file
         self.left = dict(numbered)
-        self.single = {}  # what must be built by itself
-        self.built = set()  # the tests that hold what is planted now
+        self.single = {}  # mutants to be built separately
+        self.built = set()  # the tests that contain the present mutants
         self.limit = limit
         self.original = (scratch.checkout / file).read_text()
 
@@ -131,7 +131,7 @@ class FileRound:
         return {"status": "survived", "seconds": round(time.monotonic() - started, 1)}
 
     def together(self):
-        """As many as fit into one build; yields (number, result)."""
+        """As many mutants as fit into one build; yields (number, result)."""
         while True:
             text, taken = merged(self.original, self.left)
             if len(taken) < 2:
@@ -166,7 +166,7 @@ class FileRound:
 
 
 class Results:
-    """One JSON object a line; what stands there is not asked again."""
+    """One JSON object per line; mutants found there are not tested again."""
 
     def __init__(self, path):
         self.path = Path(path)

@@ -1,5 +1,5 @@
-"""Makes the packages, installs them without network into a fresh Debian root, and looks: what is brought along, what is where, that
-the services answer, and what upgrade, roll-back, removal and purge leave.  By hand, as root: tests/run.sh --workshop
+"""Makes the packages, installs them without network into a fresh Debian root, and checks: the dependencies, the files, that the services
+answer, and what upgrade, roll-back, removal and purge leave. By hand, as root: tests/run.sh --workshop
 
   CHORUS_PACKAGES=DIR   a folder that deploy/make-packages.sh has made; otherwise it is made
   CHORUS_ROOT=FILE      a tar of a root (mmdebstrap --variant=standard bookworm FILE); otherwise it is made and kept in var/
@@ -44,7 +44,7 @@ class Installed(unittest.TestCase):
         run("cp", "-r", PACKAGES, self.root / "packages")
 
     def inside(self, command, check=True):
-        """In the root, with a network of its own: loopback alone."""
+        """Runs a script in the root, with a network of its own: loopback only."""
         script = ("mount --make-rprivate / && mount -t proc proc $0/proc && mount -t tmpfs dev $0/dev && "
                   "for d in null zero urandom random; do touch $0/dev/$d; mount --bind /dev/$d $0/dev/$d; done; ip link set lo up; "
                   'exec chroot "$0" bash -c "$1"')
@@ -119,7 +119,7 @@ class Installed(unittest.TestCase):
         self.assertEqual(self.inside("ldd /usr/libexec/chorus/chorus | grep 'not found'; true"), "")
 
     def another_version(self, version):
-        """The sensor's package once more, as if built from a later commit."""
+        """The sensor's package, as if built from a later commit."""
         for name in ("common", "sensor"):
             deb = next((self.root / "packages").glob(f"chorus-{name}_*.deb"))
             self.inside(f"dpkg-deb -R /packages/{deb.name} /tmp/{name} && cd /tmp/{name}/DEBIAN && "

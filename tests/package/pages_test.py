@@ -1,4 +1,4 @@
-"""Manual pages and completions are made from the options that --help shows."""
+"""Manual pages and completions are generated from the options that --help shows."""
 
 import os
 import re
@@ -16,7 +16,7 @@ def said(program, *arguments):
 
 
 def completions(program, *words):
-    """What bash offers after these words; the last one may be begun."""
+    """The words that bash suggests after these words; the last one may be incomplete."""
     script = (f"{said(program, '--print', 'completion')}\n"
               f"COMP_WORDS=({program} {' '.join(repr(word) for word in words)}); COMP_CWORD={len(words)}\n"
               f"_{program.replace('-', '_')}; printf '%s\\n' \"${{COMPREPLY[@]}}\"")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 BIN = Path(os.environ["CHORUS_BIN"])
 NEEDED = re.compile(r"\(NEEDED\)\s+Shared library: \[([^\]]+)\]")
-# Names of libraries that a Debian root has, or that are small.
+# Names of libraries that are in every Debian root, or are small.
 SMALL = ("libc", "libm", "libstdc++", "libgcc_s", "ld-linux", "libfmt", "libspdlog", "libserd-0", "libzstd", "libcrypto", "libssl", "libz", "libexpat",
          "libjpeg")
 LARGE = ("libopencv", "libpcl")

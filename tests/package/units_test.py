@@ -1,4 +1,4 @@
-"""The systemd units are well-formed, and what they run is shut in: `systemd-analyze` says OK."""
+"""The systemd units are well-formed, and their services are sandboxed: `systemd-analyze` says OK."""
 
 import re
 import shutil
@@ -17,7 +17,7 @@ def analyze(*arguments):
 
 
 def runnable(unit, folder):
-    """The unit with a program and a manual page that are there before the package is installed."""
+    """The unit with a program and a manual page that exist before the package is installed."""
     text = re.sub(r"/usr/bin/chorus-\w+ [^\n]*", "/bin/true", unit.read_text(encoding="utf-8"))
     text = re.sub(r"^Documentation=.*\n", "", text, flags=re.MULTILINE)
     copy = Path(folder) / unit.name
@@ -56,7 +56,7 @@ class Units(unittest.TestCase):
 
 
 class Promises(unittest.TestCase):
-    """What the guide says of the units stands in them."""
+    """What the guide says about the units is in them."""
 
     def test_each_unit(self):
         for unit in UNITS:
@@ -66,7 +66,7 @@ class Promises(unittest.TestCase):
                              f"ConditionPathExists=/etc/chorus/{unit.stem.removeprefix('chorus-')}.json"):
                     self.assertIn(f"\n{line}\n", text)
                 self.assertRegex(text, r"\nMemoryMax=\d+[MG]\n")
-                # The state of the clock is read by adjtimex.
+                # The state of the clock is read with adjtimex.
                 self.assertRegex(text, r"\nSystemCallFilter=.*adjtimex")
                 self.assertNotIn("ProtectClock", text)
 

@@ -1,4 +1,4 @@
-"""deploy/workshop.sh does on each host what its guide says, in that order, and says what is wrong with an inventory."""
+"""deploy/workshop.sh does on each host what its guide says, in that order, and reports errors in an inventory."""
 
 import json
 import os
@@ -9,7 +9,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 TOKEN = "0123456789abcdef"
-# Instead of ssh: notes host and command, keeps what came by standard input, and answers as hosts do.
+# Replaces ssh: records host and command, stores what arrived on stdin, and answers like a host.
 FAKE_SSH = """#!/bin/bash
 echo "$1 | $2" >> "$NOTES/commands"
 case $2 in

@@ -9,20 +9,20 @@ export function launch() {
   });
 }
 
-/// Opens the viewer and collects everything it complains about.
+/// Opens the viewer and collects all errors that it reports.
 export async function openViewer(browser, url) {
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
   const complaints = [];
   page.on('pageerror', (error) => complaints.push(String(error)));
   page.on('console', (message) => {
-    // Software WebGL says that it is slow; that is no fault of the page.
+    // Software WebGL reports that it is slow; that is no error of the page.
     if (message.type() === 'error' && !/GPU stall|swiftshader/i.test(message.text())) complaints.push(message.text());
   });
   await page.goto(url);
   return { page, complaints };
 }
 
-/// How many distinct colours the canvas shows: an empty scene has a handful, a drawn one hundreds.
+/// Number of distinct colours on the canvas: an empty scene has a handful, a drawn one hundreds.
 export function colorsOnCanvas(page) {
   return page.evaluate(async () => {
     await new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));

@@ -1,5 +1,5 @@
-// A fusion server's public JSON, made up: one standing person who sways, two sensors.  For looking at the viewer
-// alone; the system test shows it the real server.  Its clock is an hour ahead of the browser's.
+// The public JSON of a fake fusion server: one standing person who sways, two sensors. Tests the viewer alone; the system test shows it the
+// real server. Its clock is an hour ahead of the browser's.
 import { createServer } from 'node:http';
 import { readFile } from 'node:fs/promises';
 import { extname, join, normalize } from 'node:path';
@@ -44,7 +44,7 @@ function frame(sequence, place) {
 const LIVE = { state: 'live', ageMilliseconds: 12, rateHz: 30, bodies: 1, weight: 0.8, share: 0.97 };
 const LOST = { state: 'lost', ageMilliseconds: 61000, rateHz: 30, bodies: 1, weight: 0, share: 0, lastError: 'connection refused' };
 
-/// What the fake server answers; tests change it while it runs.
+/// The answers of the fake server; tests change them while it runs.
 export function usualWorld() {
   return {
     people: 1,

@@ -1,4 +1,4 @@
-// One sentence for each state of the tracker, and colours that do not lie.
+// One sentence for each state of the tracker, and matching colours.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 

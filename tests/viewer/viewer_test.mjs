@@ -1,4 +1,4 @@
-// The viewer alone, against made-up JSON: it draws, names states, survives a server that goes away.
+// The viewer alone, with artificial JSON: it draws, shows states, and survives a server that disappears.
 import assert from 'node:assert/strict';
 import { copyFile, mkdtemp, rm } from 'node:fs/promises';
 import { tmpdir } from 'node:os';

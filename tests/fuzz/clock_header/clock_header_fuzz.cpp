@@ -1,5 +1,5 @@
-// Any text as a Chorus-Clock header, and any four stamps as an exchange: two times or nothing, and
-// an estimate that stays within its own bound, whatever the stamps are.
+// Reads any text as a Chorus-Clock header, and any four stamps as an exchange: the result is two
+// times or nothing, and an estimate that stays within its own bound, whatever the stamps are.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -20,7 +20,7 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
-/// What was read can be written and read again.
+/// A header that was read can be written and read again.
 void check_header(std::string_view text) {
   const auto stamps = parse_server_stamps(text);
   if (!stamps) return;
@@ -30,7 +30,7 @@ void check_header(std::string_view text) {
   require(same && same->receipt == stamps->receipt && same->sending == stamps->sending);
 }
 
-/// The bytes as exchanges of four stamps, one after the other.
+/// Reads the bytes as successive exchanges of four stamps.
 void check_filter(std::string_view bytes) {
   constexpr std::size_t kStamps = 4;
   ClockFilter filter;
@@ -41,7 +41,7 @@ void check_filter(std::string_view bytes) {
     bytes.remove_prefix(sizeof stamps);
     newest = from_unix_ns(stamps[3]);
     filter.add({from_unix_ns(stamps[0]), from_unix_ns(stamps[1]), from_unix_ns(stamps[2]), newest});
-    if (newest < kEarliest || newest > kLatest) continue;  // our own clock is no stranger's
+    if (newest < kEarliest || newest > kLatest) continue;  // our own clock is not under attack
     const auto estimate = filter.at(newest);
     if (estimate) require(estimate->uncertainty >= Duration::zero());
     (void)correction(estimate);

@@ -1,5 +1,5 @@
-// Any bytes as a config file, and as a --set assignment: an answer or an Error, never a crash, and
-// a value that was accepted is inside the range it was read with.
+// Reads any bytes as a config file, and as a --set assignment: the result is a value or an Error,
+// never a crash, and an accepted value is inside the range it was read with.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

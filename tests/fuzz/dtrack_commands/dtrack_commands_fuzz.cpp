@@ -1,4 +1,4 @@
-// DTrack's command channel: any bytes, cut anywhere, give the same commands and bounded answers.
+// DTrack's command channel: any bytes, split anywhere, give the same commands and bounded answers.
 #include <cstdint>
 #include <cstdlib>
 #include <string>
@@ -20,7 +20,7 @@ struct Outcome {
   bool readable = true;
 };
 
-/// Fed `step` bytes at a time, until it cannot be read any further.
+/// Feeds `step` bytes at a time until the stream cannot be read any further.
 Outcome read(std::string_view bytes, std::size_t step) {
   Outcome outcome;
   CommandReader reader;
@@ -55,8 +55,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   const std::string_view text(reinterpret_cast<const char*>(bytes + 1), size - 1);
   const Outcome one_by_one = read(text, 1);
   const Outcome in_steps = read(text, 1 + bytes[0]);
-  // A command that is too long ends the stream; what stood before it in the same read is not
-  // obeyed.
+  // A command that is too long ends the stream; commands before it in the same read are not
+  // executed.
   require(one_by_one.readable == in_steps.readable);
   if (one_by_one.readable) require(one_by_one.commands == in_steps.commands);
   check_answers(one_by_one.commands, true);

@@ -1,8 +1,8 @@
-// The strict head reader against Boost.Beast: what we accept, Beast accepts with the same meaning.
+// The strict head reader compared with Boost.Beast: what we accept, Beast accepts in the same way.
 //
-// That is the whole point of being strict: no second reader of HTTP, whatever stands before or
-// behind us, understands an accepted request in another way.  The reverse is not wanted: Beast
-// accepts more.
+// This is the purpose of being strict: no other HTTP reader, in a proxy in front of us or behind
+// us, may understand an accepted request differently.  The reverse is not required: Beast accepts
+// more.
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
@@ -25,7 +25,7 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
-/// Reading in two parts finds the same end as reading at once.
+/// Reading in two parts finds the same end as reading all at once.
 void check_resumed_reading(std::string_view bytes, const HeadEnd& whole) {
   const std::string_view half = bytes.substr(0, bytes.size() / 2);
   const HeadEnd first = find_head_end(half, 0);
@@ -37,7 +37,7 @@ void check_resumed_reading(std::string_view bytes, const HeadEnd& whole) {
   }
 }
 
-/// RFC 9112 9.3: whoever says close, closes.  In HTTP/1.0 Beast lets keep-alive win over it.
+/// RFC 9112 9.3: whoever sends close, closes.  In HTTP/1.0 Beast lets keep-alive override it.
 bool kept_alive(const beast::request_parser<beast::string_body>& parser) {
   for (const auto& field : parser.get()) {
     if (field.name() == beast::field::connection &&
@@ -88,7 +88,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   check_resumed_reading(text, end);
   RequestHead head;
   if (end.progress != HeadProgress::Complete) {
-    (void)read_head(text, head);  // Never called so, but it must not matter.
+    (void)read_head(text, head);  // Production code never does this, but it must be harmless.
     return 0;
   }
   if (read_head(text.substr(0, end.size), head)) return 0;

@@ -1,4 +1,4 @@
-// Any bytes at all as C3D, BVH or MVNX: no crash, no endless loop, no number that is none.
+// Reads any bytes as C3D, BVH or MVNX: no crash, no endless loop, no NaN or infinity.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -47,7 +47,7 @@ void read_mvnx(std::string_view bytes) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(bytes), size);
-  // The first byte of a sound file says which it is; of others, all readers have to refuse it.
+  // A valid file's first bytes tell its format; all readers must refuse everything else.
   if (text.starts_with("HIERARCHY")) {
     read_bvh(text);
   } else if (text.starts_with('<')) {

@@ -1,4 +1,4 @@
-// NatNet's command channel: any datagrams from anybody give bounded answers and few clients.
+// NatNet's command channel: any datagrams from any host give bounded answers and few clients.
 #include <cstdint>
 #include <cstdlib>
 #include <span>
@@ -32,7 +32,7 @@ void check(const Reply& reply, std::span<const char> datagram) {
   if (reply.bytes.empty()) return;
   require(datagram.size() >= 4);
   require(number_at<std::uint16_t>(reply.bytes, 2) == reply.bytes.size() - 4);
-  // Nobody who answers us is answered.
+  // Messages that are answers themselves must not be answered.
   const auto said = static_cast<Message>(number_at<std::uint16_t>(reply.bytes, 0));
   require(is_an_answer(said));
   require(!is_an_answer(static_cast<Message>(number_at<std::uint16_t>(datagram, 0))));
@@ -40,7 +40,7 @@ void check(const Reply& reply, std::span<const char> datagram) {
 
 }  // namespace
 
-/// Datagrams, each behind a byte that says from whom and one that says how long it is.
+/// Datagrams, each preceded by a byte for its sender and a byte for its length.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   if (size < 1) return 0;
   CommandDesk made = desk((bytes[0] & 1) != 0);

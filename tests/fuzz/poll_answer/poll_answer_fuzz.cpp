@@ -1,5 +1,5 @@
-// Any bytes as what a sensor answers, through the client that polls it: bytes on a connection, an
-// answer or an Error, a frame or a reason; and the same bytes as a stream of events.
+// Feeds arbitrary bytes, as a sensor's answer, to the client that polls it: the result is a
+// response or an Error, then a frame or a reason.  The same bytes are also read as an event stream.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -23,7 +23,7 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
-/// Answers the first request with these bytes and hangs up.
+/// Answers the first request with these bytes and closes the connection.
 class Sensor {
  public:
   Sensor(asio::io_context& io, std::string_view answer)
@@ -91,7 +91,7 @@ void check_answer(std::string_view bytes) {
   (void)poll::exchange_of(*response);
 }
 
-/// However the stream is cut, the same events come out of it.
+/// However the stream is split, it gives the same events.
 void check_events(std::string_view bytes) {
   constexpr std::size_t kMax = 2u << 20;
   http::EventReader whole(kMax);

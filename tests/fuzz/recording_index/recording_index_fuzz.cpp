@@ -1,5 +1,5 @@
-// Any bytes as index.json of a recording: a report or an Error, never a crash; a report names only
-// files of its own folder, and written down it reads as the same.
+// Reads any bytes as index.json of a recording: a report or an Error, never a crash; a report names
+// only files in its own folder, and after being written it reads as the same.
 #include <unistd.h>
 
 #include <cstddef>
@@ -20,7 +20,7 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
-/// In memory where there is such a place; holds one file that an index may name.
+/// In memory where possible; contains one file that an index may name.
 fs::path folder() {
   static const fs::path made = [] {
     const fs::path shared = fs::exists("/dev/shm") ? "/dev/shm" : fs::temp_directory_path();

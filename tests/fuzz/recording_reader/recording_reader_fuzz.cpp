@@ -1,4 +1,4 @@
-// Any bytes at all as a recording: no crash, no endless loop, no unbounded memory.
+// Reads any bytes as a recording: no crash, no endless loop, no unbounded memory.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     if (read->messages[i].log_time < read->messages[i - 1].log_time) __builtin_trap();
   }
   if (read->notes.size() > chorus::record::kMaxNotes) __builtin_trap();
-  // And whatever was read, as a recording of a cell: frames of every stream rise in time.
+  // Also as a recording of a cell: the frames of every stream are ordered by time.
   const auto session = chorus::record::cell_of(*read, "fuzz", {.fused = true});
   if (!session) return 0;
   for (const auto& sensor : session->sensors) {

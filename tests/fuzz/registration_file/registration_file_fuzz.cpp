@@ -1,5 +1,5 @@
-// Any bytes as a registration file: places or an Error, never a crash; what is accepted is finite,
-// and written down it reads as the same places.
+// Reads any bytes as a registration file: places or an Error, never a crash; accepted places are
+// finite, and after being written they read as the same places.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

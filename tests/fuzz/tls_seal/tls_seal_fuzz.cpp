@@ -1,7 +1,7 @@
-// Any bytes to either side of TLS, in a handshake or behind one, in pieces; and any text as a
-// certificate.  A side says Done for nothing that nobody sent, and says why when it fails.
+// Feeds any bytes to either side of TLS, during a handshake or after one, in pieces; and any text
+// as a certificate.  A side reports Done only for data that was sent, and says why it fails.
 //
-// The first byte chooses: bit 0 the side, bit 1 whether hands have been shaken, bit 2 a text.
+// The first byte chooses: bit 0 the side, bit 1 whether the handshake is complete, bit 2 a text.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -48,7 +48,7 @@ void check(Seal& side, std::string_view bytes, bool shaken) {
   std::array<char, 128> room;
   while (true) {
     const Step step = shaken ? side.read(room).step : side.handshake();
-    require(step != Step::Done);  // sealed by nobody, so nothing was said
+    require(step != Step::Done);  // nobody encrypted anything, so nothing was sent
     require((step == Step::Failed) == !side.failure().message.empty());
     (void)side.take_output();
     if (step != Step::NeedsInput || bytes.empty()) break;

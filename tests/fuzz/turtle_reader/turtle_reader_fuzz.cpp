@@ -1,5 +1,5 @@
-// Any bytes as a frame in every format: an answer or an Error, never a crash; what is accepted can
-// be written and read again, and the template readers never accept what the parsers refuse.
+// Reads any bytes as a frame in every format: a frame or an Error, never a crash; an accepted frame
+// can be written and read again, and template readers never accept what the parsers refuse.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

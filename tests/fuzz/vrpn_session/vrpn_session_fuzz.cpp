@@ -1,4 +1,4 @@
-// A VRPN conversation: however its bytes are cut, it says the same, and what it sends can be read.
+// A VRPN conversation: however its input is split, its output is the same and can be read.
 #include <cstdint>
 #include <cstdlib>
 #include <string>

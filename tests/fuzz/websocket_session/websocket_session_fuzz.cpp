@@ -1,8 +1,8 @@
-// Any bytes behind the handshake of a WebSocket, to a real server on loopback: it stays, and
-// answers the next request.  Frames are read by Boost.Beast, which is not cut so that it could be
-// fed without a stream; what is ours is what happens with them.
+// Sends any bytes after the handshake of a WebSocket to a real server on loopback: it survives and
+// answers the next request.  Boost.Beast reads the frames and cannot be fed without a stream; what
+// is tested here is our reaction to them.
 //
-// The first line goes into the handshake, as one more field; the rest are frames.
+// The first line is sent in the handshake as an additional field; the rest are frames.
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -25,7 +25,7 @@ namespace {
 
 using namespace chorus;
 
-constexpr int kPatience = -1;  // the fuzzer's own limit for one input ends it
+constexpr int kPatience = -1;  // no limit; the fuzzer's own limit per input applies
 
 void require(bool holds) {
   if (!holds) std::abort();
@@ -53,7 +53,7 @@ class Client {
     require(failed == 0 || (errno == EINTR && ready(POLLOUT, kPatience) > 0));
   }
   ~Client() {
-    const linger at_once{1, 0};  // no port is left behind in TIME_WAIT
+    const linger at_once{1, 0};  // so that no port stays in TIME_WAIT
     ::setsockopt(socket_, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
     ::close(socket_);
   }
@@ -71,7 +71,7 @@ class Client {
   }
 
  private:
-  /// poll(2) for what the fuzzer's own alarm does not end.
+  /// poll(2) that is repeated when interrupted, except by the fuzzer's own alarm.
   [[nodiscard]] int ready(short events, int patience_ms) const {
     pollfd waiting{socket_, events, 0};
     while (true) {
@@ -86,7 +86,7 @@ class Client {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  constexpr int kSilence = 2;  // what has not come by then does not come [ms]
+  constexpr int kSilence = 2;  // [ms]; what has not arrived by then will not
   const std::string_view text(reinterpret_cast<const char*>(bytes), size);
   const std::size_t line = std::min(text.find('\n'), text.size());
   const Client client;

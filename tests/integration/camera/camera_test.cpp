@@ -1,4 +1,4 @@
-// The device `camera`: a video file made here, and the stand-in runner, which finds what is red.
+// The device `camera` with a video file made here and the stand-in runner, which finds red areas.
 #include "services/sensor/device/camera/camera.h"
 
 #include <condition_variable>
@@ -26,7 +26,7 @@ constexpr double kRate = 25.0;
 constexpr int kPictures = 25;
 constexpr double kFocal = 300.0;
 
-/// Where the middle of the red square is in picture i [px from the left edge]; it moves 8 px a
+/// Centre of the red square in picture i [px from the left edge]; it moves by 8 px per picture.
 /// picture.
 double red_at(int i) { return 60.0 + 8.0 * i; }
 
@@ -83,7 +83,7 @@ class Rig {
     });
   }
   void stop() { running_ = {}; }
-  /// The captures so far, when there are so many, or no more will come.
+  /// The captures so far, once there are `least`, or no more will come.
   std::vector<Capture> captures(std::size_t least, Duration patience = 20s) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, patience, [&] { return captures_.size() >= least || over_; });
@@ -130,7 +130,7 @@ const Joint& head_of(const Capture& capture) {
   return capture.frame.bodies.at(0).skeleton.joints[index_of(JointId::Head)];
 }
 
-/// Which picture of the video shows the red square where the head's ray goes.
+/// The number of the video's picture whose red square is where the head's ray points.
 double picture_seen(const Capture& capture) {
   const Eigen::Vector3d ray = head_of(capture).position;
   const double u = 160.0 - kFocal * ray.x() / ray.z();  // the sensor's x points left

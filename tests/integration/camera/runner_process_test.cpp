@@ -1,4 +1,4 @@
-// A child process as a runner: what it says, how it ends, and that it cannot hold us up.
+// A child process as a runner: what it says, how it ends, and that it cannot block us.
 #include "services/sensor/device/camera/runner_process.h"
 
 #include <signal.h>

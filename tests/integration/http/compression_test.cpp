@@ -1,4 +1,4 @@
-// Compressed representations: made once, told apart by their tags, never sent to who did not ask.
+// Compressed bodies: made once, distinguished by tags, and sent only to clients that accept them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

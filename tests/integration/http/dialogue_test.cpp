@@ -1,4 +1,4 @@
-// WebSockets whose clients speak: who may, what is said, how it ends.
+// WebSockets whose clients send messages: which are allowed, what is answered, how it ends.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ struct Told {
   std::atomic<int> looks = 0;
 };
 
-/// Says what it hears; "twice", "end", "throw" and "flood" do what they say.
+/// Repeats what it receives; "twice", "end", "throw" and "flood" do what they say.
 class Echo final : public Dialogue {
  public:
   explicit Echo(std::shared_ptr<Told> told) : told_(std::move(told)) { ++told_->open; }

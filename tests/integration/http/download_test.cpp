@@ -18,7 +18,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// A service with one route, /file, to whatever stands at `path` now.
+/// A service with one route, /file, which serves the file that is at `path` at that time.
 class Download : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 const ClientRequest kAsking{"GET", "/frame", {{"Accept", "text/event-stream, text/turtle;q=0.9"}}};
 
-/// What a stream told, in order.
+/// What a stream delivered, in order.
 struct Heard {
   std::optional<ClientResponse> head;
   std::vector<ServerEvent> events;
@@ -40,7 +40,7 @@ class EventStreamClient : public testing::Test {
     }
     EXPECT_TRUE(holds());
   }
-  /// The end of a stream whose server answers with these bytes.
+  /// The error at the end of a stream whose server answers with these bytes.
   Error end_of(const std::string& answer, ClientLimits limits = {}) {
     ScriptedServer server({answer});
     AsyncEventStream stream(io_, "127.0.0.1", server.port(), limits);

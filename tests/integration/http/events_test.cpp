@@ -129,7 +129,7 @@ TEST(Events, LittleWaitsForAReaderWhoStopsForAWhile) {
     (void)service.ask("/frames/1");  // By then the server's thread has seen the publish.
   }
   const std::string heard = client.hear_until("id: " + std::to_string(kLast) + "\n");
-  // What the reader's own kernel has taken is out of our hands: six frames.
+  // Six frames are in the reader's own kernel and cannot be dropped any more.
   EXPECT_LE(times(heard, "id: "), 9u);
 }
 

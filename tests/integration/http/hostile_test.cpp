@@ -1,5 +1,5 @@
-// Clients that break the rules, by mistake or on purpose: each gets a clear answer or is cut off,
-// nobody else notices, and nothing is understood in two ways.
+// Clients that break the rules, by mistake or on purpose: each gets a clear answer or is
+// disconnected, no other client is affected, and no request is ambiguous.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -28,11 +28,11 @@ class HostileTest : public testing::Test {
     return config;
   }
   void SetUp() override { service_.frame->publish(frame_document(1)); }
-  /// Whatever happened, others are served.
+  /// Whatever happened, other clients are served.
   void TearDown() override { EXPECT_EQ(service_.ask("/frame").status, 200); }
 
   std::uint16_t port() const { return service_.server.port(); }
-  /// Says everything and reads to the end of input, which has to come.
+  /// Sends all of it and reads to the end of input, which must come.
   std::string refused(std::string_view request) {
     RawClient client(port());
     client.say(request);
@@ -207,7 +207,7 @@ TEST_F(HostileTest, AClientThatNeverReadsIsClosed) {
   std::string requests;
   for (int i = 0; i < 100; ++i) requests += "GET /big HTTP/1.1\r\nHost: localhost\r\n\r\n";
   client.say(requests);
-  // While it hangs, others are served; then the write deadline frees the connection.
+  // While it hangs, other clients are served; then the write deadline frees the connection.
   EXPECT_EQ(service_.ask("/frame").status, 200);
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   while (service_.server.counters().connections_open > 0 &&

@@ -1,4 +1,4 @@
-// How many may come at once, and who gives way.
+// How many clients may come at once, and which of them is dropped.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -24,7 +24,7 @@ std::string get_for(const std::string& address) {
 
 std::string poll() { return kGet + "Prefer: wait=30\r\nIf-None-Match: \"1-ttl\"\r\n\r\n"; }
 
-/// Asks and keeps the connection; the status.
+/// Sends a request and keeps the connection; returns the status.
 int ask_and_stay(Clients& clients, std::uint16_t port, const std::string& request) {
   clients.push_back(std::make_unique<RawClient>(port));
   clients.back()->say(request);
@@ -91,7 +91,7 @@ TEST(Limits, AnIdleConnectionGivesWay) {
   Clients idle;
   for (int i = 0; i < 8; ++i)
     EXPECT_EQ(ask_and_stay(idle, service.server.port(), kGet + "\r\n"), 200);
-  std::this_thread::sleep_for(std::chrono::milliseconds(600));  // deadlines are that coarse
+  std::this_thread::sleep_for(std::chrono::milliseconds(600));  // deadlines are checked this rarely
   Clients newcomers;
   for (int i = 0; i < 3; ++i)
     EXPECT_EQ(ask_and_stay(newcomers, service.server.port(), kGet + "\r\n"), 200) << i;

@@ -1,4 +1,4 @@
-// Prefer: wait with If-None-Match: held until the document changes, a 304 in vain.
+// Prefer: wait with If-None-Match: held until the document changes, else answered by 304.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ std::string poll_for(int version, int wait_s, const std::string& accept = "*/*")
          std::to_string(version) + "-ttl\"\r\n\r\n";
 }
 
-/// Returns once the server holds so many polls.
+/// Waits until the server holds `polls` long polls.
 bool waiting(const Server& server, std::uint64_t polls) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
   while (server.counters().long_polls_waiting != polls) {

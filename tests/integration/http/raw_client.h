@@ -1,4 +1,4 @@
-// A client without manners: sends exactly the bytes it is told and reads what comes.
+// A client that obeys no protocol: sends exactly the given bytes and reads what comes.
 #pragma once
 
 #include <arpa/inet.h>
@@ -37,7 +37,7 @@ class RawClient {
 
   [[nodiscard]] bool connected() const { return connected_; }
 
-  /// False once the other side does not take bytes any more.
+  /// False once the other side no longer accepts bytes.
   bool say(std::string_view bytes) {
     while (!bytes.empty()) {
       const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
@@ -47,7 +47,7 @@ class RawClient {
     return true;
   }
 
-  /// As much as the other side takes at once, waiting for it to take anything; 0: it did not.
+  /// Sends what the other side accepts at once, after waiting for it to accept some; 0: it did not.
   std::size_t say_some(std::string_view bytes, std::chrono::milliseconds time) {
     pollfd ready{socket_, POLLOUT, 0};
     if (::poll(&ready, 1, static_cast<int>(time.count())) <= 0) return 0;
@@ -55,13 +55,13 @@ class RawClient {
     return sent > 0 ? static_cast<std::size_t>(sent) : 0;
   }
 
-  /// What comes next; empty at the end of input or when the time is over.
+  /// The next bytes; empty at the end of input or when the time is over.
   std::string hear_some(std::chrono::milliseconds time) {
     receive(std::chrono::steady_clock::now() + time);
     return std::exchange(heard_, {});
   }
 
-  /// Reads until `text` has come, the end of input, or the time is over; returns everything unread.
+  /// Reads until `text` arrives, or input or time end; returns everything unread.
   std::string hear_until(std::string_view text,
                          std::chrono::milliseconds time = std::chrono::seconds(10)) {
     const auto deadline = std::chrono::steady_clock::now() + time;
@@ -70,7 +70,7 @@ class RawClient {
     return std::exchange(heard_, {});
   }
 
-  /// Reads to the end of input; empty when the time is over before.
+  /// Reads to the end of input; empty if the time ends first.
   std::string hear_all(std::chrono::milliseconds time = std::chrono::seconds(10)) {
     const auto deadline = std::chrono::steady_clock::now() + time;
     while (!ended_ && receive(deadline)) {
@@ -110,7 +110,7 @@ class RawClient {
   std::string heard_;
 };
 
-/// The status of the first answer in `text`; 0 without one.
+/// The status of the first answer in `text`; 0 if there is none.
 [[nodiscard]] inline int status_in(std::string_view text) {
   constexpr std::string_view kVersion = "HTTP/1.1 ";
   if (!text.starts_with(kVersion)) return 0;

@@ -1,4 +1,4 @@
-// A server without manners: answers with exactly the bytes it is told.
+// A server that obeys no protocol: answers with exactly the given bytes.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace chorus::http::test {
 
-/// Accepts connections one after the other and answers each with fixed bytes after the first read;
-/// then closes, unless the bytes are empty: then it says nothing until the client leaves.
+/// Accepts connections one after the other and, after the first read, answers each with fixed bytes
+/// and closes it; if the bytes are empty, it stays silent until the client leaves.
 class ScriptedServer {
  public:
   explicit ScriptedServer(std::vector<std::string> answers)

@@ -1,4 +1,4 @@
-// The A3/A4 checklist of linked data over HTTP, asked over a real socket.
+// The A3/A4 checklist of linked data over HTTP, checked over a real socket.
 #include "common/http/server.h"
 
 #include <gmock/gmock.h>

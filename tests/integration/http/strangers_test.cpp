@@ -1,4 +1,4 @@
-// Who is let in: by which name, from which page, with which token.
+// Which clients are admitted: by which host name, from which page, with which token.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// A small service on a free port: what the integration tests talk to.
+// A small service on a free port, used by the integration tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ struct TestServer {
     return {"127.0.0.1", server.port(), std::move(target)};
   }
 
-  /// fetch() that must get an answer.
+  /// fetch() that must succeed.
   [[nodiscard]] ClientResponse ask(const std::string& target, std::vector<Header> headers = {},
                                    const std::string& method = "GET",
                                    const std::string& body = {}) const {
@@ -52,7 +52,7 @@ struct TestServer {
   }
 
   std::shared_ptr<LiveDocument> frame = std::make_shared<LiveDocument>();
-  std::string last_body;  ///< Of POST /registration; read it after the answer.
+  std::string last_body;  ///< Of POST /registration; read it only after the answer.
   Server server;
 
  private:

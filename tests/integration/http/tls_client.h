@@ -1,4 +1,4 @@
-// A client without manners that speaks TLS.
+// A client that obeys no protocol, over TLS.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ class TlsRawClient {
     return seal_.write(text) == tls::Seal::Step::Done && raw_.say(seal_.take_output());
   }
 
-  /// Until `text` has come, or its end; returns everything unread.
+  /// Reads until `text` arrives, or the end; returns everything unread.
   std::string hear_until(std::string_view text) {
     std::string all;
     std::array<char, 4096> room;
@@ -45,9 +45,9 @@ class TlsRawClient {
     }
     return all;
   }
-  /// To the end that the server says; see said_end().
+  /// Reads to the end that the server announces; see said_end().
   std::string hear_all() { return hear_until("\xff nothing says this \xff"); }
-  /// The last hear_all() came to a proper end, not to a broken connection.
+  /// Whether the last hear_all() met a proper end rather than a broken connection.
   [[nodiscard]] bool said_end() const { return last_ == tls::Seal::Step::Ended; }
 
  private:

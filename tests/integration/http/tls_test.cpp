@@ -125,7 +125,7 @@ TEST(Tls, AWebSocketCarriesEveryVersion) {
   EXPECT_THAT(client.hear_until("{\"n\":1}"), HasSubstr("101 Switching Protocols"));
   service.frame->publish(test::frame_document(2));
   EXPECT_THAT(client.hear_until("{\"n\":2}"), HasSubstr("{\"n\":2}"));
-  std::this_thread::sleep_for(100ms);  // a server that is still writing just hangs up
+  std::this_thread::sleep_for(100ms);  // a server that is writing would only close
   std::thread stopping([&] { service.server.stop(); });
   EXPECT_THAT(client.hear_all(), HasSubstr("\x88\x02\x03\xe9"));  // going away
   EXPECT_TRUE(client.said_end());
@@ -148,7 +148,7 @@ TEST(Tls, PlainHttpIsToldWhatToDo) {
   const std::string answer = client.hear_all();
   EXPECT_EQ(test::status_in(answer), 400);
   EXPECT_THAT(answer, HasSubstr("https://"));
-  // A token that came in the clear is not even looked at.
+  // A token that came unencrypted is not even checked.
   const auto written = fetch(service.url("/registration"), {.method = "POST", .body = "x"});
   ASSERT_TRUE(written);
   EXPECT_EQ(written->status, 400);
@@ -232,7 +232,7 @@ TEST(Tls, GarbageCostsItsOwnConnection) {
     client.say(bytes);
   }
   TlsRawClient half(service.server.port(), workshop().trust());
-  half.raw().say(std::string(400, '\x17'));  // garbage behind a good handshake
+  half.raw().say(std::string(400, '\x17'));  // garbage after a good handshake
   half.raw().hear_all(2s);
   EXPECT_TRUE(half.raw().ended());
   EXPECT_TRUE(ask(service, "/frames/1"));

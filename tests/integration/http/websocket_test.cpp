@@ -1,4 +1,4 @@
-// WebSocket readers of a live document; frames are taken apart by hand (RFC 6455 5.2).
+// WebSocket readers of a live document; frames are parsed by hand (RFC 6455 5.2).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -147,9 +147,9 @@ TEST(WebSocket, ABadHandshakeIsRefusedAndClosed) {
   EXPECT_TRUE(open_sockets(service.server, 0));
 }
 
-/// A masked frame of up to 64 kB whose first byte is ours to choose.
+/// A masked frame of up to 64 kB with a chosen first byte.
 std::string frame_of(int first_byte, const std::string& payload) {
-  constexpr std::size_t kLongest = 125;  // in the short form, which is then the only one allowed
+  constexpr std::size_t kLongest = 125;  // for payloads this short only the short form is allowed
   std::string frame(1, static_cast<char>(first_byte));
   if (payload.size() <= kLongest) {
     frame += static_cast<char>(0x80 | payload.size());
@@ -193,10 +193,10 @@ INSTANTIATE_TEST_SUITE_P(
                       masked(0x8, "x"),                            // close of one byte
                       masked(0x8, "\x03\xE8\xFF"),                 // its reason is no UTF-8
                       masked(0x1, "\xC3\x28"),                     // nor is this text
-                      frame_of(kText, std::string(4097, 'x')),     // more than a client may say
-                      many_fragments(),                            // nor in pieces
-                      masked(0x0, "x"),                            // continues nothing
-                      std::string("\x09\x80\x01\x02\x03\x04", 6),  // a ping in fragments
+                      frame_of(kText, std::string(4097, 'x')),     // more than a client may send
+                      many_fragments(),                            // nor in fragments
+                      masked(0x0, "x"),                            // continuation without a start
+                      std::string("\x09\x80\x01\x02\x03\x04", 6),  // a fragmented ping
                       frame_of(0x89, std::string(126, 'x')),       // a ping of more than 125 bytes
                       std::string("GET / HTTP/1.1\r\n\r\n")));
 
@@ -322,7 +322,7 @@ TEST(WebSocket, WhoDoesNotAnswerACloseIsHungUpOn) {
   RawClient client(service.server.port());
   client.say(hello());
   ASSERT_TRUE(open_sockets(service.server, 1));
-  client.say(masked(0x8, std::string("\x03\xE8", 2)));  // and stays
+  client.say(masked(0x8, std::string("\x03\xE8", 2)));  // and keeps the connection open
   EXPECT_TRUE(open_sockets(service.server, 0));
   (void)client.hear_all();
   EXPECT_TRUE(client.ended());

@@ -1,4 +1,4 @@
-// What keeps a server accepting, whatever its handlers throw.
+// A server continues to accept, whatever its handlers throw.
 #include "common/net/listen.h"
 
 #include <new>

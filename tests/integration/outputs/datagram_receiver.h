@@ -1,4 +1,4 @@
-// A UDP port that somebody sends to.
+// A UDP port that receives datagrams.
 #pragma once
 
 #include <arpa/inet.h>
@@ -34,7 +34,7 @@ class DatagramReceiver {
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] std::string target() const { return "127.0.0.1:" + std::to_string(port_); }
 
-  /// Also what is sent to this group on this port; false where the machine cannot.
+  /// Also receives what is sent to this group on this port; false if the machine cannot.
   [[nodiscard]] bool join(const char* group, const char* interface = "0.0.0.0") {
     ip_mreq request{};
     ::inet_pton(AF_INET, group, &request.imr_multiaddr);
@@ -42,7 +42,7 @@ class DatagramReceiver {
     return ::setsockopt(socket_, IPPROTO_IP, IP_ADD_MEMBERSHIP, &request, sizeof request) == 0;
   }
 
-  /// The next datagram; empty when none comes in time.
+  /// The next datagram; empty if none arrives in time.
   [[nodiscard]] std::string next(int milliseconds = 10'000) {
     pollfd ready{socket_, POLLIN, 0};
     if (::poll(&ready, 1, milliseconds) <= 0) return {};

@@ -1,4 +1,4 @@
-// DTrack's command channel over real sockets: a client as A.R.T.'s SDK behaves, and hostile ones.
+// DTrack's command channel over real sockets: a client like A.R.T.'s SDK, and hostile ones.
 #include <functional>
 #include <memory>
 #include <random>
@@ -39,7 +39,7 @@ std::string ask(RawClient& client, std::string_view command) {
   return client.hear_until("\0"sv);
 }
 
-/// The service still answers a client that behaves.
+/// The service still answers a well-behaved client.
 void expect_alive(CommandServer& server) {
   ASSERT_TRUE(wait_for([&] { return server.counters().clients == 0; }));
   RawClient client(server.port());
@@ -69,7 +69,7 @@ TEST(DtrackCommandServer, TheOldestConnectionIsInControl) {
   EXPECT_NE(ask(second, "dtrack2 tracking stop").find("err 2"), std::string::npos);
   first.reset();
   ASSERT_TRUE(wait_for([&] { return server->counters().clients == 1; }));
-  EXPECT_FALSE(server->controller().has_value());  // what the first one started has ended with it
+  EXPECT_FALSE(server->controller().has_value());  // tracking ended with the client that started it
   EXPECT_EQ(ask(second, "dtrack2 tracking start"), "dtrack2 ok\0"s);
   ASSERT_TRUE(server->controller().has_value());
   EXPECT_NE(server->controller(), controller);
@@ -109,7 +109,7 @@ TEST(DtrackCommandServer, TenThousandConnectionsCostNobodyElseAnything) {
   for (int i = 0; i < 10'000; ++i) {
     RawClient another(server->port());
     another.say("dtrack2 getmsg\0"s);
-    if (i % 100 == 0) (void)another.hear_until("\0"sv);  // answered or closed: it keeps up
+    if (i % 100 == 0) (void)another.hear_until("\0"sv);  // answered or closed: the server keeps up
   }
   EXPECT_EQ(ask(client, "dtrack2 get status active"), "dtrack2 set status active mea\0"s);
   EXPECT_TRUE(server->controller().has_value());

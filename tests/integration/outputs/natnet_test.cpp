@@ -48,7 +48,7 @@ std::unique_ptr<Server> server_with(ServerOptions given) {
   return server ? std::move(*server) : nullptr;
 }
 
-/// `number` is its first byte.
+/// The first byte of the frame is `number`.
 void publish(Server& server, char number, std::size_t bytes = 60) {
   Bytes payload(bytes);
   payload.front() = number;
@@ -61,7 +61,7 @@ std::string ask(DatagramReceiver& client, const Server& server, const std::strin
   return client.next();
 }
 
-/// As a client does that wants frames; its second word has been read when this returns.
+/// Connects like a client that wants frames; its second message has been read on return.
 std::string connect(DatagramReceiver& client, const Server& server) {
   std::string info = ask(client, server, kConnect);
   (void)ask(client, server, kModels);
@@ -90,7 +90,7 @@ TEST(NatNetServer, AClientGetsFramesWhereItConnectedFrom) {
   EXPECT_TRUE(wait_for([&] { return server->counters().clients == 1; }));
   EXPECT_EQ(ask(client, *server, kFrame).substr(0, 5), "\7\0\x3C\0a"s);
   client.say(kDisconnect, server->port());
-  EXPECT_EQ(ask(client, *server, "\x0E\0\0\0"s).size(), 283u);  // what came before has been read
+  EXPECT_EQ(ask(client, *server, "\x0E\0\0\0"s).size(), 283u);  // earlier messages have been read
   publish(*server, 'b');
   EXPECT_EQ(client.next(200), "");
   EXPECT_TRUE(wait_for([&] { return server->counters().clients == 0; }));
@@ -169,7 +169,7 @@ TEST(NatNetServer, TheGroupHearsUsByTheAddressWeListenOn) {
   EXPECT_EQ(ask(client, *server, kConnect).size(), 283u);
   publish(*server, 'a');
   const std::string heard = joined ? member.next(1000) : "";
-  EXPECT_EQ(client.next(200), "");  // it has only asked where the frames are
+  EXPECT_EQ(client.next(200), "");  // it only asked where frames are sent
   if (heard.empty()) GTEST_SKIP() << "runs where loopback has multicast";
   EXPECT_EQ(heard.substr(0, 5), "\7\0\x3C\0a"s);
 }
@@ -234,7 +234,7 @@ TEST(NatNetServer, AFloodOfConnectionsLeavesTheClientItsFrames) {
 TEST(NatNetServer, TwoServersDoNotTalkToEachOther) {
   const auto first = server_with(options());
   const auto second = server_with(options());
-  // What the first would say to the second if somebody wrote in its name.
+  // What the first server would send to the second if its address were forged.
   DatagramReceiver stranger;
   const std::string unrecognized = ask(stranger, *first, "\x37\0\0\0"s);
   EXPECT_EQ(unrecognized, "\x64\0\0\0"s);
@@ -324,7 +324,7 @@ TEST(NatNetOutput, TellsThatBonesWereMeasuredAndDescribesThem) {
     snapshot->bodies[0].slot = 0;
     snapshot->bodies[0].skeleton = giant;
     sinks->front()->publish(snapshot);
-    const std::string frame = client.next();  // one at a time: none is dropped
+    const std::string frame = client.next();  // one at a time, so that none is dropped
     ASSERT_EQ(frame.substr(0, 2), "\7\0"s);
     changed = frame[frame.size() - 6] == 2;
     EXPECT_TRUE(!changed || i + 1 >= BoneLengths::kFrames) << i;

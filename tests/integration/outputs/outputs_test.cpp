@@ -1,4 +1,4 @@
-// What really arrives on a socket when outputs are switched on in the configuration.
+// What really arrives on a socket when outputs are enabled in the configuration.
 #include "fusion-server/outputs/outputs.h"
 
 #include <thread>
@@ -29,7 +29,7 @@ std::shared_ptr<const Snapshot> somebody(std::uint64_t sequence) {
   return s;
 }
 
-/// The only sink that is on.
+/// The only sink that is enabled.
 std::unique_ptr<Sink> sink_of(
     const OutputsConfig& config,
     const std::shared_ptr<const Clock>& clock = std::make_shared<SystemClock>()) {
@@ -124,7 +124,7 @@ TEST(DtrackOutput, SendsToTheClientInControlAtThePortItOpened) {
     dtrack::Settings& settings = config.dtrack.protocol;
     settings.commands = true;
     settings.send_to_client = allowed;
-    // Port 0 would hide which one it is.
+    // With port 0 the port would be unknown.
     settings.command.port = outlet::testing::free_port();
     const auto sink = sink_of(config);
     ASSERT_TRUE(sink);

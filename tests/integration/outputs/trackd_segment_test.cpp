@@ -1,4 +1,4 @@
-// trackd's segments as another program finds them: attached by key, and gone afterwards.
+// trackd's segments as seen by another program: attached by key, and removed afterwards.
 #include <sys/shm.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -19,7 +19,7 @@ namespace {
 using testing::FailsWith;
 using testing::IsOk;
 
-/// Two keys nobody else uses.
+/// Settings with two keys that nobody else uses.
 Settings settings_of_this_test() {
   Settings settings;
   settings.tracker_key = 0x43000000 + static_cast<int>(::getpid() & 0xFFFFF) * 2;
@@ -29,7 +29,7 @@ Settings settings_of_this_test() {
 
 bool there(int key) { return ::shmget(key, 0, 0) >= 0 || errno != ENOENT; }
 
-/// A reader as VR Juggler's: attaches read-write and follows the header.
+/// A reader like VR Juggler's: attaches read-write and follows the header.
 class Reader {
  public:
   explicit Reader(int key) : place_(::shmat(::shmget(key, 0, 0), nullptr, 0)) {}
@@ -109,7 +109,7 @@ TEST(TrackdSegment, OneThatIsInUseIsRefusedAndLeftAlone) {
   EXPECT_TRUE(there(settings.tracker_key));
 }
 
-/// Made by a program that has ended since.
+/// Creates a segment by a program that has ended since.
 void leave_behind(int key, std::size_t bytes) {
   const pid_t child = ::fork();
   if (child == 0) ::_exit(::shmget(key, bytes, IPC_CREAT | IPC_EXCL | 0666) < 0 ? 1 : 0);
@@ -175,7 +175,7 @@ TEST(TrackdSegment, AnAttachedReaderSeesTheRestartAfterACrash) {
   EXPECT_FALSE(reader->sees_a_head());
   (*outlet)->send(frame_of_somebody());
   EXPECT_TRUE(reader->sees_a_head());
-  reader.reset();  // else the segment would stay
+  reader.reset();  // otherwise the segment would stay
 }
 
 TEST(TrackdSegment, OneTakenOverFromADeadRunIsNotTakenFromTheNewOne) {

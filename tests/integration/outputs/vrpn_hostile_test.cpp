@@ -1,5 +1,5 @@
-// Hostile and broken clients of the VRPN server: each is turned away or closed, and a good client
-// beside them goes on getting every frame.
+// Hostile and broken clients of the VRPN server: each is refused or closed, while a good client
+// continues to get every frame.
 #include "tests/integration/outputs/vrpn_rig.h"
 
 #include <arpa/inet.h>
@@ -30,7 +30,7 @@ class HostileVrpn : public test::VrpnRig {
     ASSERT_TRUE(good.connect(server->port()));
     ASSERT_TRUE(good_is_served());
   }
-  /// A frame published from now on reaches the good client.
+  /// Whether a frame published now reaches the good client.
   bool good_is_served() {
     const auto begun = static_cast<double>(sequence);
     return publish_until([&] {
@@ -95,7 +95,7 @@ TEST_F(HostileVrpn, AClientThatNeverReadsIsClosedAndCostsNobodyElse) {
       },
       6));
   EXPECT_GE(server->counters().refused, 1u);
-  EXPECT_GT(server->counters().dropped, 0u);  // newest frame wins while it does not read
+  EXPECT_GT(server->counters().dropped, 0u);  // only the newest frame waits for this client
   EXPECT_TRUE(good_is_served());
 }
 
@@ -109,7 +109,7 @@ TEST_F(HostileVrpn, AClientThatPingsAndNeverReadsIsClosed) {
   for (int i = 0; i < 1000; ++i) flood += ping;
   deaf.say(pings);
   ASSERT_TRUE(wait_until([&] { return server->counters().clients == 2; }));
-  // It says more until nobody listens; the server's memory for it is bounded, so that comes soon.
+  // It sends until the server reads no more; the server's memory is limited, so that is soon.
   std::thread saying([&] {
     while (deaf.say(flood)) {
     }
@@ -119,8 +119,8 @@ TEST_F(HostileVrpn, AClientThatPingsAndNeverReadsIsClosed) {
   EXPECT_TRUE(good_is_served());
 }
 
-/// Bytes that the server takes from a client that does not read, until it has taken none for a
-/// second or has taken `most`.
+/// Number of bytes that the server accepts from a client that does not read, until it has accepted
+/// none for a second or has reached `most`.
 std::size_t bytes_taken(http::test::RawClient& client, std::string_view repeated,
                         std::size_t most) {
   std::size_t taken = 0;
@@ -136,8 +136,8 @@ std::size_t bytes_taken(http::test::RawClient& client, std::string_view repeated
 
 class PatientVrpn : public test::VrpnRig {};
 
-// Closing the client is the stall limit's work, reading no more from it is kMaxAnswers': with an
-// hour of patience only the second keeps its answers from growing without end.
+// Closing the client is the effect of the stall limit, reading no more from it that of kMaxAnswers:
+// with an hour of patience only the second prevents endless growth of its answers.
 TEST_F(PatientVrpn, FromAClientThatPingsAndNeverReadsNoMoreIsRead) {
   constexpr std::size_t kMax = 32U << 20U;  // The system's own buffers take less than half of it.
   ServerOptions options;
@@ -150,7 +150,7 @@ TEST_F(PatientVrpn, FromAClientThatPingsAndNeverReadsNoMoreIsRead) {
   for (int i = 0; i < 1000; ++i) pings += vrpn_message(0, 0, "");
   EXPECT_LT(bytes_taken(deaf, pings, kMax), kMax);
   EXPECT_EQ(server->counters().clients, 1u);
-  // Its answers begin to be read, so it is heard again.
+  // Its answers are being read now, so the server reads again.
   std::size_t heard = 0;
   while (deaf.say_some(pings.substr(0, 24), std::chrono::milliseconds(0)) == 0 && heard < kMax) {
     const std::size_t more = deaf.hear_some(std::chrono::seconds(10)).size();
@@ -171,7 +171,7 @@ TEST_F(HostileVrpn, TenThousandRequestsMakeFewConnections) {
              sizeof address);
   };
   for (int i = 0; i < 10'000; ++i) {
-    // Ports above those that the system gives to others.
+    // Ports above those that the system assigns to others.
     say("127.0.0.1 " + std::to_string(61'000 + i % 4'500) + std::string(1, '\0'));
     if (i % 100 == 0) say(std::string(static_cast<std::size_t>(i % 1400), '\xFF'));
   }
@@ -182,7 +182,7 @@ TEST_F(HostileVrpn, TenThousandRequestsMakeFewConnections) {
   ::close(asking);
 }
 
-/// Asks the server again and again, from 127.0.0.2, to be connected to on ports where nobody
+/// Keeps asking the server, from 127.0.0.2, to connect to ports where nobody
 /// listens.
 class Flood {
  public:
@@ -221,7 +221,7 @@ class Flood {
 TEST_F(HostileVrpn, AFloodOfRequestsFromOneHostDoesNotLockOutAnother) {
   const Flood flood(server->port());
   ASSERT_TRUE(wait_until([&] { return server->counters().refused > 500; }));
-  // One may be lucky; each asks ten times.
+  // One might be lucky; each asks ten times.
   std::vector<std::unique_ptr<VrpnClient>> others;
   for (int i = 0; i < 14; ++i) {
     others.push_back(std::make_unique<VrpnClient>(std::vector<std::string>{"Body0"}));
@@ -248,7 +248,7 @@ TEST_F(HostileVrpn, ClientsBeyondTheLimitAreTurnedAway) {
   EXPECT_TRUE(wait_until([&] { return server->counters().clients == 20; }));
 }
 
-/// Three places for each address.
+/// Three connections at a time for each address.
 class FairVrpn : public test::VrpnRig {
  protected:
   void SetUp() override {

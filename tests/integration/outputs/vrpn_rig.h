@@ -1,4 +1,4 @@
-// A VRPN server on a free port, and persons for it to tell of.
+// A VRPN server on a free port, and people for it to report.
 #pragma once
 
 #include <chrono>
@@ -46,7 +46,7 @@ class VrpnRig : public ::testing::Test {
   void publish(std::size_t count, std::uint64_t number) {
     server->publish(std::make_shared<const Reports>(encode(persons(count, number), *trackers)));
   }
-  /// Publishes every few ms until the condition holds; a ceiling, not a measure.
+  /// Publishes every few ms until the condition holds, up to a generous time limit.
   bool publish_until(const std::function<bool()>& holds, std::size_t count = 1) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
     while (!holds()) {

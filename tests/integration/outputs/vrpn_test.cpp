@@ -1,4 +1,4 @@
-// VRPN over real sockets, both ways of connecting, to a client that shares no code with the server.
+// VRPN over real sockets, connected both ways, with a client that shares no code with ours.
 #include "tests/integration/outputs/vrpn_rig.h"
 
 #include <arpa/inet.h>
@@ -65,8 +65,7 @@ TEST_F(Vrpn, AClientThatAsksByDatagramIsCalledBackAndGetsDatagrams) {
 TEST_F(Vrpn, WhoNamesAnotherHostsAddressGetsNoDatagramsAnywhere) {
   serve();
   VrpnClient client({"Body0"});
-  ASSERT_TRUE(
-      client.request(server->port(), "127.0.0.2"));  // connects back to the source all the same
+  ASSERT_TRUE(client.request(server->port(), "127.0.0.2"));  // connects back to the source anyway
   const auto message = first_pose(client);
   ASSERT_TRUE(message);
   EXPECT_FALSE(message->by_datagram);
@@ -103,7 +102,7 @@ TEST_F(Vrpn, EveryClientGetsEveryFrameOnce) {
     publish(1, n);
     for (VrpnClient* client : {&by_tcp, &by_udp}) {
       double z = 0;
-      while (z < 10'000) {  // what was under way before
+      while (z < 10'000) {  // frames sent before that
         const auto message = client->next("vrpn_Tracker Pos_Quat");
         ASSERT_TRUE(message);
         z = pose_of(*message)->position.z();
@@ -130,7 +129,7 @@ TEST_F(Vrpn, RepeatedRequestsOfOneClientMakeOneConnection) {
     ::sendto(asking, text.c_str(), text.size() + 1, 0, reinterpret_cast<sockaddr*>(&address), size);
   }
   ASSERT_TRUE(wait_until([&] { return server->counters().clients == 1; }));
-  VrpnClient other({"Body0"});  // after its answer the 50 have all been read
+  VrpnClient other({"Body0"});  // after its answer all 50 have been read
   ASSERT_TRUE(other.request(server->port()));
   ASSERT_TRUE(first_pose(other));
   EXPECT_EQ(server->counters().clients, 2u);
