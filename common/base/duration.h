@@ -7,7 +7,7 @@ namespace chorus {
 
 using Duration = std::chrono::nanoseconds;
 
-/// An instant of the steady clock, for time-outs.  UTC is Timestamp (common/time).
+/// An instant of the steady clock, for time-outs.  For UTC see Timestamp (common/time).
 using SteadyTime = std::chrono::steady_clock::time_point;
 
 /// Seconds as a double, for formulas and reports.

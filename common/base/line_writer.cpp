@@ -61,7 +61,7 @@ struct LineWriter::State {
   std::uint64_t untold = 0;            ///< Missing, not yet reported; writer's thread only.
   std::atomic<std::size_t> bytes = 0;  ///< Waiting or being written.
   std::atomic<std::uint64_t> dropped = 0;
-  /// Pieces that the reader has taken, or that are lost for good.
+  /// Number of pieces that the reader has taken, or that are lost for good.
   std::atomic<std::uint64_t> progress = 0;
   std::atomic<bool> ended = false;
 };

@@ -14,7 +14,7 @@ namespace chorus::log {
 /// Waits until all lines logged so far are written; false when nobody reads within `patience`.
 bool flush(std::chrono::milliseconds patience = std::chrono::milliseconds(500));
 
-/// Lines dropped since the start.
+/// Number of lines dropped since the start.
 [[nodiscard]] std::uint64_t dropped_lines();
 
 }  // namespace chorus::log

@@ -76,7 +76,7 @@ struct Skeleton {
 [[nodiscard]] Skeleton<WorldSpace> to_world(const Eigen::Isometry3d& world_from_sensor,
                                             const Skeleton<SensorSpace>& body);
 
-/// The way back, for simulated sensors and tests.
+/// The reverse of to_world(), for simulated sensors and tests.
 [[nodiscard]] Skeleton<SensorSpace> to_sensor(const Eigen::Isometry3d& sensor_from_world,
                                               const Skeleton<WorldSpace>& body);
 

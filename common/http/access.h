@@ -12,7 +12,7 @@
 
 namespace chorus::http {
 
-/// Both ends of the connection a request came over.
+/// Both ends of the connection that a request came over.
 struct Peer {
   bool loopback = false;
   std::string local_address = {};  ///< Our address on this connection, as text without the port.

@@ -28,7 +28,7 @@ struct AnswerStamp {
   Timestamp received;  ///< When the request was complete: t1 of the clock field.
   Timestamp sent;      ///< t2, and Date.
   bool close = false;
-  bool keep_alive_http10 = false;     ///< Say so to an HTTP/1.0 client.
+  bool keep_alive_http10 = false;     ///< Sends keep-alive, for HTTP/1.0.
   std::string_view clock_field = {};  ///< See AnswerPolicy.
 };
 

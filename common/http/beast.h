@@ -1,6 +1,6 @@
 // The only file that includes Boost.Beast: its response parser, for the client.
 //
-// The server reads requests itself (request_head.h), stricter than Beast 1.74 does.
+// The server reads requests itself (request_head.h), more strictly than Beast 1.74 does.
 #pragma once
 
 #include "common/net/asio.h"

@@ -1,4 +1,4 @@
-// Conditional requests and the wish to wait: If-None-Match (RFC 9110 13.1.2), Prefer: wait (RFC
+// Conditional requests and requests to wait: If-None-Match (RFC 9110 13.1.2), Prefer: wait (RFC
 // 7240 4.3).
 #pragma once
 

@@ -214,7 +214,7 @@ void Conversation::begin_body() {
 }
 
 void Conversation::advance_body() {
-  // The head stays in the buffer, for the action to read; the body is taken out from after it.
+  // The head stays in the buffer, for the action to read; only the body after it is moved out.
   const auto wanted = static_cast<std::size_t>(head_.content_length) - body_.size();
   buffer_.take_body(request_size_, wanted, body_);
   if (body_.size() < head_.content_length) {

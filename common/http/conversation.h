@@ -30,7 +30,7 @@ struct ConversationContext {
 
 class Conversation {
  public:
-  /// Counts the connection for the account that a trusted proxy names; false when that one is full.
+  /// Counts the connection for the account that a trusted proxy names; false when it is full.
   using Charge = std::function<bool(const std::string& account)>;
 
   Conversation(ConversationContext context, Peer peer, Charge charge);

@@ -63,7 +63,7 @@ void Conversation::begin_stream() {
   count(context_.counters.event_streams_open);
   orders_.small_queue = orders_.wait = true;
   const auto current = reaction_.entry->live->current();
-  // A reader that comes back and has the newest version already gets the next one.
+  // A reader that reconnects and already has the newest version waits for the next one.
   if (current && !head_.last_event_id.empty() && head_.last_event_id == current->options().version)
     streamed_ = current;
   watch();

@@ -22,7 +22,7 @@ namespace chorus::http {
 
 using Header = std::pair<std::string, std::string>;
 
-/// One representation of the resource; their order in Document is the server's preference.
+/// One representation of the resource; the variants' order in Document is the server's preference.
 struct Variant {
   std::string media_type;               ///< "text/turtle"; sent with parameters, if it has any.
   std::function<std::string()> render;  ///< Pure and thread-safe; called at most once.

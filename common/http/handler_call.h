@@ -21,7 +21,7 @@ namespace chorus::http {
 /// An answer to this request that carries the problem.
 [[nodiscard]] Answer complaint(Problem problem, const RequestHead& head, std::string_view route);
 
-/// Runs a handler; its exceptions end here.
+/// Runs a handler; an exception becomes an Error.
 template <class T, class Call>
 Result<T> guarded(const RequestHead& head, const Call& call) {
   try {

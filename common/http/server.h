@@ -1,4 +1,4 @@
-// An HTTP/1.1 server for polled resources: keep-alive, conditional, long poll, hostile clients.
+// An HTTP/1.1 server for polled resources: keep-alive, conditional requests, long polls, limits.
 #pragma once
 
 #include <chrono>

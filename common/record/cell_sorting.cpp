@@ -84,7 +84,7 @@ void Sorting::begin_file(const fs::path& file, const std::vector<Channel>& chann
 
 /// False when this file belongs to another recording, or repeats a part.
 bool Sorting::begins_or_follows(Line& line) const {
-  if (line.newest == files_) return true;  // this very file; a file named twice counts as two
+  if (line.newest == files_) return true;  // has this very file already
   if (line.files.empty()) line.recording = source_.recording;
   const bool follows = !line.recording.empty() && line.recording == source_.recording &&
                        (source_.part.empty() || !line.parts.contains(source_.part));

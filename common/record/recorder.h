@@ -20,7 +20,7 @@ namespace chorus::record {
 
 struct RecorderLimits {
   std::uintmax_t max_file_bytes = 1ull << 30;  ///< The next file begins at this size,
-  /// or at this unpacked size, because some programs need the memory to read a whole file,
+  /// or at this unpacked size, because some programs read a whole file into memory,
   std::uintmax_t max_unpacked_bytes = 2ull << 30;
   Duration max_file_duration = std::chrono::minutes(10);  ///< or after this time.
   /// The recording ends before the free space falls below this.

@@ -73,7 +73,7 @@ class TemplateText {
  private:
   const char* at_;
   const char* const end_;
-  std::string_view iso_;  ///< Last time read; most bodies have the frame's.
+  std::string_view iso_;  ///< The last time read; most repeat it.
   Timestamp iso_time_;
 };
 

@@ -1,4 +1,4 @@
-// The use of OpenSSL that this room's files share; only they include it.
+// The OpenSSL helpers that this room's files share; nothing else includes them.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// chorus import FORMAT INPUT... --out DIR
+// chorus import FORMAT INPUT... --out DIR: turns files of other programs into recordings.
 #include <iostream>
 #include <memory>
 #include <set>

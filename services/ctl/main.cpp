@@ -1,4 +1,4 @@
-// chorus: the command line.
+// chorus: the command line program.
 #include "services/ctl/command.h"
 
 int main(int argc, char** argv) {

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::uintmax_t kMaxLensBytes = 1u << 20;
 
-/// "cam01.mp4: 43 %, 12 s left": redrawn on a terminal; elsewhere printed once every tenth.
+/// "cam01.mp4: 43 %, 12 s left": redrawn on a terminal; elsewhere printed at every tenth.
 class Progress {
  public:
   explicit Progress(std::string name) : name_(std::move(name)) {}

@@ -10,7 +10,7 @@ export function toImage(square, u, v) {
   return [square.x + du * cos - dv * sin, square.y + du * sin + dv * cos];
 }
 
-/// `side` x `side` x 3 values of `Output`, bilinear, each value times `scale`.
+/// The square scaled to `side` x `side` pixels: 3 values each, bilinear, times `scale`, in an array of type `Output`.
 export function cropped({ width, height, pixels }, square, side, Output = Float32Array, scale = 1 / 255) {
   const out = new Output(side * side * 3);
   const step = square.size / side;

@@ -49,7 +49,7 @@ export async function engine() {
   return tf;
 }
 
-/// The networks by name.
+/// Loads the networks with these names.
 export async function load(tf, names) {
   const { loadGraphModel } = await import('@tensorflow/tfjs-converter');
   const known = await knownFiles();

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::chrono::seconds kDemandLasts{
     2};                                       // how long one request keeps encoding fast
-constexpr std::chrono::seconds kIdlePace{1};  // greatest age while nobody asks
+constexpr std::chrono::seconds kIdlePace{1};  // longest pause between images otherwise
 
 }  // namespace
 
