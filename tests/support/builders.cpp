@@ -16,7 +16,7 @@ struct Place {
   double x, y, z;
 };
 
-/// Centre and left side of a 1.75 m person, facing +z; the right side is the mirror image.
+/// Centre and left joints of a 1.75 m person, facing +z; the right side is the mirror image.
 constexpr std::array kStanding{
     Place{JointId::SpineBase, 0, 0.95, 0},       Place{JointId::SpineMid, 0, 1.20, 0},
     Place{JointId::SpineShoulder, 0, 1.43, 0},   Place{JointId::Neck, 0, 1.50, 0},
@@ -28,8 +28,8 @@ constexpr std::array kStanding{
     Place{JointId::FootLeft, 0.11, 0.03, 0.13},
 };
 
-/// The left arm stretched out at shoulder height, with the same bone lengths to the millimetre or
-/// so.
+/// The left arm stretched out at shoulder height, with the same bone lengths to about a
+/// millimetre.
 constexpr std::array kStretchedArm{
     Place{JointId::ElbowLeft, 0.46, 1.40, 0},    Place{JointId::WristLeft, 0.71, 1.40, 0},
     Place{JointId::HandLeft, 0.78, 1.40, 0},     Place{JointId::HandTipLeft, 0.86, 1.40, 0},

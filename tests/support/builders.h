@@ -1,4 +1,4 @@
-// Simple, plausible values for tests: a person at a place, a sensor that looks at it, a frame of
+// Simple, plausible values for tests: a standing person, a sensor that looks at them, a frame of
 // both.
 //
 // The person is 1.75 m tall, faces +z at heading 0 and has its left hand at +x.  Metres, radians.
@@ -21,8 +21,8 @@ inline constexpr Timestamp kStart = from_unix_ns(1'795'246'200'000'000'000);
 /// Capture interval of a 30 Hz sensor.
 inline constexpr Duration kFrameInterval{33'333'333};
 
-/// Upright, arms hanging.  `place` is the point on the floor under SpineBase.  All joints are
-/// tracked; the leaves (head, hand tips, thumbs, feet) have no orientation, as with the Kinect.
+/// Upright with arms hanging down.  `place` is the point on the floor below SpineBase.  All joints
+/// are tracked; the leaves (head, hand tips, thumbs, feet) have no orientation, as with the Kinect.
 [[nodiscard]] Skeleton<WorldSpace> standing_person(const Eigen::Vector3d& place = {0, 0, 0},
                                                    double heading = 0.0);
 
@@ -30,12 +30,12 @@ inline constexpr Duration kFrameInterval{33'333'333};
 [[nodiscard]] Skeleton<WorldSpace> t_pose_person(const Eigen::Vector3d& place = {0, 0, 0},
                                                  double heading = 0.0);
 
-/// A sensor at a place, looking along +z turned by `yaw` about +y, tilted down by `pitch`.
+/// A sensor at `place`, looking along +z turned by `yaw` about +y, tilted down by `pitch`.
 [[nodiscard]] Eigen::Isometry3d sensor_pose(const Eigen::Vector3d& place, double yaw,
                                             double pitch = 0.0);
 
-/// Sensor `index` of `count`, evenly on a circle round the origin, level, looking at the axis.
-/// Sensor 0 stands at (0, height, -radius) and looks along +z.
+/// Sensor `index` of `count`, evenly spaced on a circle around the origin, level, looking at the
+/// axis.  Sensor 0 stands at (0, height, -radius) and looks along +z.
 [[nodiscard]] Eigen::Isometry3d ring_sensor(int index, int count, double radius = 2.5,
                                             double height = 1.2);
 
@@ -51,10 +51,10 @@ inline constexpr Duration kFrameInterval{33'333'333};
 [[nodiscard]] SensorFrame sensor_frame(std::string_view sensor, Timestamp captured,
                                        std::vector<BodyFrame> bodies);
 
-/// An id that is known to be good; dies when it is not.
+/// An id that must be valid; otherwise the test program aborts.
 [[nodiscard]] SensorId sensor_id(std::string_view text);
 
-/// Marks the joint not tracked.
+/// Makes the joint NotTracked.
 void hide(Joint& joint);
 
 }  // namespace chorus::testing

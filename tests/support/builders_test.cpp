@@ -1,4 +1,4 @@
-// The person the other tests stand on: plausible, symmetric, where it was put.
+// The person that other tests rely on: plausible, symmetric, at the given place.
 #include "tests/support/builders.h"
 
 #include <numbers>

@@ -7,7 +7,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Words that some key takes; what a key does not take is not accepted.
+/// Words that some key accepts; others refuse them.
 constexpr const char* kWords[] = {
     "s2",     "0.0.0.0",   "http://a", "warn",      "json",        "A",         "circle",
     "replay", "otto",      "icp-only", "neck",      "as-recorded", "powerwall", "predicted",
@@ -34,7 +34,7 @@ std::vector<json> other_values(const json& value) {
     others.push_back(json::parse(R"([{"token": "0123456789abcdef", "role": "images"}])"));
     others.push_back(json::parse(R"([{"slot": 1, "targets": ["127.0.0.1:7"]}])"));
   }
-  std::erase(others, value);  // zero times something
+  std::erase(others, value);  // zero times ten is zero again
   return others;
 }
 

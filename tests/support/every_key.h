@@ -1,4 +1,4 @@
-// Every key of a configuration, changed one at a time: nobody has to keep a list of them.
+// Changes every key of a configuration, one at a time, so that no list of keys is needed.
 #pragma once
 
 #include <functional>
@@ -8,14 +8,14 @@
 
 namespace chorus::testing {
 
-/// One key and a text of the configuration in which it alone has another value that is accepted.
+/// One key, and the configuration in which only this key has another valid value.
 struct ChangedKey {
   std::string key;   ///< "http.port"
   std::string text;  ///< JSON; empty when no other value was accepted.
 };
 
-/// `text`: JSON with comments; lists count as one key.  `accepted` says whether a configuration can
-/// be read.
+/// `text`: JSON with comments; a list counts as one key.  `accepted` says whether a configuration
+/// can be read.
 [[nodiscard]] std::vector<ChangedKey> every_key_changed(
     std::string_view text, const std::function<bool(const std::string& text)>& accepted);
 

@@ -1,5 +1,5 @@
-// Ports for what tests and benchmarks start, below those that the kernel gives to outgoing
-// connections; tests in Python (ports.py) take the ones behind.
+// Ports for processes of tests and benchmarks, below those that the kernel uses for outgoing
+// connections; tests in Python (ports.py) take those after them.
 #pragma once
 
 #include <arpa/inet.h>
@@ -19,7 +19,7 @@ namespace chorus::testing {
   return address;
 }
 
-/// A port that nobody has now; never the same twice.
+/// A port that is free at present; never the same twice.
 [[nodiscard]] inline std::uint16_t free_port() {
   constexpr int kFirst = 10'000;
   constexpr int kCount = 6'000;

@@ -1,4 +1,4 @@
-// What the tests say about our values; every failure names the number that was wrong.
+// Matchers for our values; every failure names the number that was wrong.
 //
 //   EXPECT_THAT(fit, IsOk());
 //   EXPECT_THAT(parse("x"), FailsWith(ErrorCode::Malformed));
@@ -64,7 +64,7 @@ MATCHER_P3(IsometryNear, expected, metres, radians,
   return arg.matrix().allFinite() && distance <= metres && angle <= radians;
 }
 
-/// Same states, and every joint that both have seen is within `metres`.
+/// The same states, and every joint seen in both differs by at most `metres`.
 MATCHER_P2(SkeletonNear, expected, metres, "is within " + ::testing::PrintToString(metres) + " m") {
   for (std::size_t i = 0; i < kJointCount; ++i) {
     const Joint& joint = arg.joints[i];
@@ -83,7 +83,7 @@ MATCHER_P2(SkeletonNear, expected, metres, "is within " + ::testing::PrintToStri
   return true;
 }
 
-/// Largest distance of a joint that both have seen [m]; for reports.  Zero when there is none.
+/// Largest distance between joints seen in both [m]; for messages.  Zero when there is none.
 template <class Space>
 double largest_distance(const Skeleton<Space>& a, const Skeleton<Space>& b) {
   double largest = 0.0;

@@ -1,4 +1,4 @@
-// A matcher that says yes to everything would make every other test worthless.
+// A matcher that accepts everything would make all other tests worthless.
 #include "tests/support/matchers.h"
 
 #include <limits>

@@ -1,4 +1,4 @@
-"""MXTP02 datagrams read strictly, from the format's description and with none of our encoder.
+"""Reads MXTP02 datagrams strictly, according to the format's description, without our encoder's code.
 
 Big-endian: "MXTP02", u32 sample, u8 datagram (0x80: the only one), u8 items, u32 time code in ms, u8 character, u8 body segments,
 u8 props, u8 finger segments, u16 reserved, u16 bytes of payload; then per segment u32 id, f32 x y z, f32 qw qx qy qz.
@@ -17,14 +17,14 @@ NAMES = ["Pelvis", "L5", "L3", "T12", "T8", "Neck", "Head", "RightShoulder", "Ri
          "LeftShoulder", "LeftUpperArm", "LeftForeArm", "LeftHand", "RightUpperLeg", "RightLowerLeg", "RightFoot", "RightToe",
          "LeftUpperLeg", "LeftLowerLeg", "LeftFoot", "LeftToe"]
 
-# Segments whose origin is one of our joints.
+# Segments whose origin is at one of our joints.
 JOINT_OF_SEGMENT = {
     "Pelvis": "SpineBase", "T12": "SpineMid", "Neck": "SpineShoulder",
     **{side + segment: joint + side for side in ("Left", "Right")
        for segment, joint in (("UpperArm", "Shoulder"), ("ForeArm", "Elbow"), ("Hand", "Wrist"), ("UpperLeg", "Hip"),
                               ("LowerLeg", "Knee"), ("Foot", "Ankle"), ("Toe", "Foot"))}}
 
-# Segments that lie along two of our joints, and where those point in T-pose.  A sole is flat when ankle to foot falls by 25 degrees.
+# Segments along two of our joints, and their directions in T-pose. A sole is flat if ankle to foot points down by 25 degrees.
 UP, DOWN, LEFT, RIGHT = (0, 0, 1), (0, 0, -1), (0, 1, 0), (0, -1, 0)
 AHEAD_AND_DOWN = (math.cos(math.radians(25)), 0, -math.sin(math.radians(25)))
 ALONG = {
@@ -60,19 +60,19 @@ def read(data):
 
 
 def place(joint):
-    """A joint of /frame in Xsens' axes."""
+    """A joint of /frame converted to Xsens' axes."""
     return joint["z"], joint["x"], joint["y"]
 
 
 def head(joints):
-    """Where the head begins: MVN's neck ends there, and our Neck is half-way from SpineShoulder; None where those are not tracked."""
+    """Where the head begins and MVN's neck ends: our Neck is half-way there from SpineShoulder; None if these are not tracked."""
     if "x" not in joints["Neck"] or "x" not in joints["SpineShoulder"]:
         return None
     return tuple(2 * n - s for n, s in zip(place(joints["Neck"]), place(joints["SpineShoulder"])))
 
 
 def directions(segments, joints):
-    """(what, where a segment's rotation takes a direction of the T-pose, where the joints say it points), where they do."""
+    """(name, T-pose direction rotated by the segment, direction according to the joints), where both are known."""
     def way(start, end):
         if "x" not in joints[start] or "x" not in joints[end]:
             return None
@@ -89,7 +89,7 @@ def directions(segments, joints):
     for (upper, lower), hinge in HINGES.items():
         (ux, uy, uz), (lx, ly, lz) = ways[upper] or (0, 0, 0), ways[lower] or (0, 0, 0)
         normal = (uy * lz - uz * ly, uz * lx - ux * lz, ux * ly - uy * lx)
-        if math.hypot(*normal) > math.sin(math.radians(31)):  # straighter limbs: the twist is a guess
+        if math.hypot(*normal) > math.sin(math.radians(31)):  # for straighter limbs the twist is a guess
             expected = [c / math.hypot(*normal) for c in normal]
             yield upper + "'s hinge", turned(upper, hinge), expected
             yield lower + "'s hinge", turned(lower, hinge), expected

@@ -1,7 +1,7 @@
-"""NatNet 3.x datagrams read strictly, from the format's description and with none of our encoder.
+"""Reads NatNet 3.x datagrams strictly, according to the format's description, without our encoder's code.
 
-Little-endian.  A datagram is {u16 message, u16 size, payload}; real servers send bytes behind the payload of some answers, so
-read() hands those back.  Everything inside a payload must be used up to its last byte.
+Little-endian. A datagram is {u16 message, u16 size, payload}; real servers send bytes after the payload of some answers, so read() returns
+those, too. Everything inside a payload must be used up to its last byte.
 """
 import struct
 from collections import namedtuple
@@ -48,7 +48,7 @@ class Payload:
 
 
 def read(datagram):
-    """(message, payload, what stands behind it)"""
+    """(message, payload, bytes after it)"""
     message, size = struct.unpack_from("<HH", datagram)
     if len(datagram) < 4 + size:
         raise ValueError("shorter than it says")
@@ -129,7 +129,7 @@ def models(payload):
     return found
 
 
-# Joint of ours that a bone turns about, where it is one of them.
+# Our joint about which a bone rotates, where there is one.
 JOINT_OF_BONE = {
     "Hip": "SpineBase", "Chest": "SpineMid", "Neck": "SpineShoulder", "Head": "Neck",
     **{side[0] + bone: joint + side for side in ("Left", "Right")
@@ -142,7 +142,7 @@ def _product(a, b):
 
 
 def bones_in_world(skeleton, model):
-    """Name of a bone without that of its skeleton -> (place, rows of its rotation): down the chain of local bones."""
+    """Name of a bone without that of its skeleton -> (position, rows of its rotation), multiplied along the chain of local bones."""
     done = {0: ((0.0, 0.0, 0.0), ((1, 0, 0), (0, 1, 0), (0, 0, 1)))}
     found = {}
     for bone, described in zip(skeleton.bones, model.bones):

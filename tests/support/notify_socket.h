@@ -1,4 +1,4 @@
-// The other end of sd_notify.
+// The receiving end of sd_notify.
 #pragma once
 
 #include <sys/socket.h>
@@ -30,7 +30,7 @@ class NotifySocket {
   NotifySocket(const NotifySocket&) = delete;
   NotifySocket& operator=(const NotifySocket&) = delete;
 
-  /// What has come since the last call.
+  /// The messages received since the last call.
   [[nodiscard]] std::vector<std::string> received() const {
     std::vector<std::string> all;
     std::array<char, 256> text{};

@@ -1,4 +1,4 @@
-"""DTrack, OSC/VMC and trackd read as their receivers do, from the formats' descriptions and with none of our encoders."""
+"""Readers of DTrack, OSC/VMC and trackd, written from the formats' descriptions, without our encoders' code."""
 import math
 import re
 import struct
@@ -7,7 +7,7 @@ JOINTS = ["SpineBase", "SpineMid", "Neck", "Head", "ShoulderLeft", "ElbowLeft", 
           "ElbowRight", "WristRight", "HandRight", "HipLeft", "KneeLeft", "AnkleLeft", "FootLeft", "HipRight", "KneeRight",
           "AnkleRight", "FootRight", "SpineShoulder", "HandTipLeft", "ThumbLeft", "HandTipRight", "ThumbRight"]
 
-# Joint whose orientation a joint without one of its own is sent with: the next one towards the pelvis.
+# Joint whose orientation is sent for a joint that has none: the next one towards the pelvis.
 TOWARDS_PELVIS = {
     "SpineMid": "SpineBase", "SpineShoulder": "SpineMid", "Neck": "SpineShoulder", "Head": "Neck",
     "ShoulderLeft": "SpineShoulder", "ElbowLeft": "ShoulderLeft", "WristLeft": "ElbowLeft", "HandLeft": "WristLeft",
@@ -16,7 +16,7 @@ TOWARDS_PELVIS = {
     "HipLeft": "SpineBase", "KneeLeft": "HipLeft", "AnkleLeft": "KneeLeft", "FootLeft": "AnkleLeft",
     "HipRight": "SpineBase", "KneeRight": "HipRight", "AnkleRight": "KneeRight", "FootRight": "AnkleRight"}
 
-# Unity's humanoid, and the joint each bone turns about where it is one of ours.
+# Unity's humanoid, and the joint about which each bone rotates, where it is one of ours.
 UNITY_PARENT = {
     "Spine": "Hips", "Chest": "Spine", "UpperChest": "Chest", "Neck": "UpperChest", "Head": "Neck",
     **{side + bone: parent if parent in ("UpperChest", "Hips") else side + parent
@@ -39,7 +39,7 @@ def matrix_of(x, y, z, w):
 
 
 def orientation(joints, name):
-    """(x, y, z, w) a joint of /frame is sent with, or None when none of those towards the pelvis has one."""
+    """Orientation (x, y, z, w) sent for a joint of /frame, or None if no joint towards the pelvis has one."""
     while name is not None:
         joint = joints.get(name, {})
         if "qw" in joint:
@@ -112,11 +112,11 @@ def _times(a, b):
 
 
 def vmc_bone_places(messages):
-    """Bone -> its place in our world (x, y, z): down the chain, then out of Unity's axes."""
+    """Bone -> its position in our world (x, y, z): multiplied along the chain, then converted from Unity's axes."""
     local = {a[0]: (a[1:4], a[4:8]) for address, a in messages if address == "/VMC/Ext/Bone/Pos"}
 
     def world(bone):
-        if bone not in local:  # the receiver has never heard of it: where its parent is
+        if bone not in local:  # the receiver never received it: use its parent's pose
             return world(UNITY_PARENT[bone]) if bone in UNITY_PARENT else ((0, 0, 0), (0, 0, 0, 1))
         p, q = local[bone]
         if bone not in UNITY_PARENT:

@@ -1,14 +1,14 @@
-"""Ports for processes of our own, below those that the kernel gives to outgoing connections."""
+"""Ports for our test processes, below those that the kernel uses for outgoing connections."""
 
 import os
 import socket
 
 FIRST, LAST = 16000, 32000
-next_tried = FIRST + os.getpid() * 64 % (LAST - FIRST)  # another process begins elsewhere
+next_tried = FIRST + os.getpid() * 64 % (LAST - FIRST)  # different processes start at different ports
 
 
 def free_ports(count):
-    """The first of `count` neighbouring ports that nobody listens on; never the same ones twice."""
+    """The first of `count` neighbouring ports where nobody listens; never the same ones twice."""
     global next_tried
     for _ in range((LAST - FIRST) // count):
         first = next_tried if next_tried + count <= LAST else FIRST

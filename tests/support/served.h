@@ -1,4 +1,4 @@
-// Asks the routes of a service without any socket.
+// Calls the routes of a service without a socket.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 namespace chorus::testing {
 
 struct Answer {
-  int status = 0;  ///< As the server would say it.
+  int status = 0;  ///< As the server would send it.
   std::string type;
   std::string etag;
   std::string head;
-  std::string body;  ///< Of a refusal: its message.
+  std::string body;  ///< Of a refusal: the message.
 };
 
 /// `path` may end in ?key=value.

@@ -1,5 +1,5 @@
-"""Stands in for a runner (proto/runner.md) where a test needs answers at once: one person, all of whose landmarks lie in the
-middle of what is red in the picture.  Nobody is there when nothing is red.
+"""Replaces a runner (proto/runner.md) in tests that need immediate answers: one person, with all landmarks in the centre of the red part of
+the picture. Without red there is nobody.
 
     stand_in_runner.py [--model NAME] [--die-after N] [--lie] [--silent]
 """

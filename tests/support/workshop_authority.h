@@ -1,4 +1,4 @@
-// An authority for tests, and hosts that it vouches for.
+// A certificate authority for tests, and hosts with its certificates.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ class WorkshopAuthority {
   [[nodiscard]] tls::Issued issue(const std::vector<std::string>& hosts, int days = 30) const {
     return tls::new_certificate(authority_, hosts, tls::for_days(days)).value();
   }
-  /// Good until a day ago.
+  /// A certificate that expired a day ago.
   [[nodiscard]] tls::Issued issue_expired(const std::vector<std::string>& hosts) const {
     using std::chrono::hours;
     const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());

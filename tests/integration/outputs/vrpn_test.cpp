@@ -65,7 +65,8 @@ TEST_F(Vrpn, AClientThatAsksByDatagramIsCalledBackAndGetsDatagrams) {
 TEST_F(Vrpn, WhoNamesAnotherHostsAddressGetsNoDatagramsAnywhere) {
   serve();
   VrpnClient client({"Body0"});
-  ASSERT_TRUE(client.request(server->port(), "127.0.0.2"));  // connects back to the source anyway
+  ASSERT_TRUE(
+      client.request(server->port(), "127.0.0.2"));  // connects back to the source all the same
   const auto message = first_pose(client);
   ASSERT_TRUE(message);
   EXPECT_FALSE(message->by_datagram);

@@ -14,7 +14,7 @@ using rdf::Term;
 using rdf::TermKind;
 using rdf::Triple;
 
-/// Blank node label to what is known about it.
+/// Maps the label of a blank node to what is known about it.
 using Colours = std::map<std::string, std::string>;
 
 std::string text_of(const Term& term, const Colours& colours) {
@@ -39,7 +39,7 @@ Colours first_colours(const std::set<Triple>& graph) {
   return colours;
 }
 
-/// One round: a blank node's new colour is its old one and the sorted triples it stands in.
+/// One round: a blank node's new colour is its old one plus its sorted triples.
 Colours refine(const std::set<Triple>& graph, const Colours& colours) {
   std::map<std::string, std::vector<std::string>> around;
   for (const Triple& triple : graph) {

@@ -1,4 +1,4 @@
-// Do two graphs say the same, whatever their blank nodes are called?
+// Whether two graphs are equal except for the labels of their blank nodes.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 namespace chorus::testing {
 
 /// Empty when `left` and `right` are isomorphic, else a few triples that only one side has.  Blank
-/// nodes are told apart by what surrounds them (colour refinement): exact for trees and for every
-/// graph whose blank nodes differ in that, which holds for all documents of ours.
+/// nodes are distinguished by their surroundings (colour refinement): exact for trees and for every
+/// graph whose blank nodes differ in these, which is true of all our documents.
 [[nodiscard]] std::string difference(const rdf::Graph& left, const rdf::Graph& right);
 
 }  // namespace chorus::testing

@@ -25,7 +25,7 @@ def frame_line(captured=None, x=0.0):
 
 class BridgeRig(Rig):
     def bridge(self, name="s1", port=None, **settings):
-        """A sensor with url, ws and path of its local socket."""
+        """A sensor with the URLs and the path of its local socket."""
         port = port or free_port()
         path = pathlib.Path(self.folder.name) / f"{name}.sock"
         options = {"id": name, "http.port": port, "device.kind": "bridge", "device.bridge.socket": path, **settings}

@@ -1,4 +1,4 @@
-// docs/guide/examples/bridge/push.js in headless Chromium: a page of another origin, with a token, pushes landmarks as pixels.
+// docs/guide/examples/bridge/push.js in headless Chromium: a page of another origin, with a token, pushes landmarks in pixels.
 import assert from 'node:assert';
 import { spawn } from 'node:child_process';
 import { readFile } from 'node:fs/promises';
@@ -23,7 +23,7 @@ async function sensorProcess(t, ...settings) {
   });
 }
 
-/// Serves push.js and an empty page beside it.
+/// Serves push.js and an empty page.
 async function pages(t) {
   const source = await readFile(new URL('../../../docs/guide/examples/bridge/push.js', import.meta.url));
   const server = createServer((request, response) => {
@@ -50,7 +50,7 @@ async function until(what, condition) {
   }
 }
 
-/// Pushes 30 frames a second of a person whose nose is at the right edge of the middle of the image.
+/// Pushes 30 frames a second of a person whose nose is at the right edge of the image, at mid-height.
 async function pushFrom(page, url, token) {
   await page.evaluate(async ([where, secret]) => {
     const { Pusher } = await import('/push.js');

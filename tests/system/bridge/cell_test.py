@@ -1,4 +1,4 @@
-"""Three sensors fed by Python senders, each by another way, one with its clock minutes off: registered from the walk and fused."""
+"""Three sensors fed by Python senders, each in another way, one with a clock that is minutes off: registered from the walk and fused."""
 import math
 import subprocess
 import sys

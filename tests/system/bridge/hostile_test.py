@@ -1,4 +1,4 @@
-"""Pushers that flood, stall, lie or send garbage harm nobody: not who reads the sensor, not who pushes to it, not the sensor."""
+"""Pushers that flood, stall, lie or send garbage affect nobody: neither readers of the sensor, nor other pushers, nor the sensor."""
 import json
 import os
 import random
@@ -12,7 +12,7 @@ from bridge_rig import BridgeRig, frame_line, get, get_json, hello_line, send, w
 import chorus_push
 
 NEVER_STOPS = 1 << 30
-SLOW_READ_S = 1.0  # generous: other tests run beside this one
+SLOW_READ_S = 1.0  # generous: other tests run at the same time
 
 
 class Good(threading.Thread):
@@ -37,7 +37,7 @@ class Good(threading.Thread):
 
 
 class Reader(threading.Thread):
-    """Reads /frame again and again and remembers how long it took at worst."""
+    """Reads /frame again and again and records the longest time it took."""
 
     def __init__(self, sensor):
         super().__init__(daemon=True)
@@ -94,7 +94,7 @@ def local(sensor):
 
 class Hostile(BridgeRig):
     def with_good(self, hostility, **settings):
-        """Runs something bad beside a good pusher and a reader, and sees that these notice nothing."""
+        """Runs an attack together with a good pusher and a reader, and checks that these are not affected."""
         sensor = self.bridge(**settings)
         good = Good(sensor)
         wait_for("the good one is live", lambda: self.push_state(sensor)["state"] == "live" and good.sent > 10)
@@ -227,7 +227,7 @@ class Hostile(BridgeRig):
         wait_for("the sensor is free", lambda: time.sleep(0.5) is None and self.push_state(sensor)["state"] == "silent")
         time.sleep(2)
         liar.send(hello_line(name="liar"))
-        for _ in range(30):  # answers each question for the time with another day
+        for _ in range(30):  # answers each time request with another day
             message = json.loads(liar.receive())
             self.assertNotEqual(message["type"], "bye")
             if message["type"] == "clock":
@@ -306,4 +306,4 @@ class Post(BridgeRig):
 
 
 if __name__ == "__main__":
-    unittest.main(warnings="ignore")  # sockets of clients that are rude are not closed
+    unittest.main(warnings="ignore")  # impolite clients leave sockets open

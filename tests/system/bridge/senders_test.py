@@ -1,4 +1,4 @@
-"""The senders of the guide work: Python by WebSocket, POST and local socket, and C++; each with a wrong clock taken off."""
+"""The senders of the guide work: Python by WebSocket, POST and local socket, and C++; wrong clocks are corrected for each."""
 import os
 import subprocess
 import sys
@@ -83,7 +83,7 @@ class Senders(BridgeRig):
             wrong = chorus_push.Pusher(url, {"name": "wrong", "layout": "coco_17"}, "wrong", tell=told.append)
             self.assertFalse(wrong.push([]))
             self.assertIn("401", told[-1])
-            time.sleep(2.1)  # what was pushed by POST holds the sensor for so long
+            time.sleep(2.1)  # a pusher by POST holds the sensor for this long
 
     def test_a_pusher_comes_back_when_the_sensor_does(self):
         sensor = self.bridge()
@@ -138,7 +138,7 @@ class DepthLandmarks(unittest.TestCase):
         self.assertIsNone(self.lifted(depth, at=(0, 0))[0])
         for row in range(3):
             for column in range(3):
-                depth[row][column] = 900  # somebody stands before it
+                depth[row][column] = 900  # a person in front of it
         self.assertIsNone(self.lifted(depth, at=(0, 0))[0])
         self.assertEqual(self.lifted([[0] * 11] * 11), [None] * 33)
         self.assertIsNone(self.lifted([[2000] * 11] * 11, at=(40, 5))[0], "outside the image")

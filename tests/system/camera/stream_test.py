@@ -1,4 +1,4 @@
-"""A stream that comes, goes and comes back: Motion JPEG over HTTP stands in for an IP camera, the stand-in runner looks."""
+"""A stream that starts, stops and starts again: Motion JPEG over HTTP replaces an IP camera, with the stand-in runner."""
 
 import http.server
 import json
@@ -18,7 +18,7 @@ RATE_HZ = 15
 
 
 class Camera:
-    """Serves one picture again and again, as IP cameras do; all connections end with `stop`."""
+    """Serves the same picture repeatedly, as IP cameras do; `stop` ends all connections."""
 
     def __init__(self, jpeg, port=0):
         camera = self
@@ -34,7 +34,7 @@ class Camera:
                         head = f"--picture\r\nContent-Type: image/jpeg\r\nContent-Length: {len(jpeg)}\r\n\r\n"
                         self.wfile.write(head.encode() + jpeg + b"\r\n")
                 except OSError:
-                    pass  # the sensor has left
+                    pass  # the sensor has disconnected
 
             def log_message(self, *_):
                 pass

@@ -1,5 +1,5 @@
-"""A real video through a real chorus-sensor and the runner that comes with Chorus: rays of the person in it, at the times of
-the pictures, close to where MediaPipe saw the same landmarks (tests/data/pose2sim_mediapipe)."""
+"""A real video through a real chorus-sensor and the runner included in Chorus: rays of the person in it, at the times of the pictures,
+close to where MediaPipe saw the same landmarks (tests/data/pose2sim_mediapipe)."""
 
 import json
 import os
@@ -20,7 +20,7 @@ TRUTH = ROOT / "tests/data/pose2sim_mediapipe"
 RATE_HZ = 60
 PICTURES = 100
 LENGTH_NS = round(1e9 * PICTURES / RATE_HZ)
-# Joints that both layouts make of one landmark alone, and which of MediaPipe's that is.
+# Joints that both layouts compute from a single landmark, and its number in MediaPipe.
 JOINTS = {"ShoulderLeft": 11, "ShoulderRight": 12, "ElbowLeft": 13, "ElbowRight": 14, "WristLeft": 15, "WristRight": 16, "HipLeft": 23,
           "HipRight": 24, "KneeLeft": 25, "KneeRight": 26, "AnkleLeft": 27, "AnkleRight": 28}
 FARTHEST_PX = 35  # median, in pictures of 1080 x 1920 in which the person is about 1300 high; measured 15 to 20
@@ -35,7 +35,7 @@ def camera():
 
 
 def pixel_of(joint, lens):
-    """Where a ray meets the picture; its axes are left, up, ahead."""
+    """Where a ray meets the picture; the ray's axes are left, up, forward."""
     x, y = -joint["rayX"] / joint["rayZ"], -joint["rayY"] / joint["rayZ"]
     k1, k2, p1, p2, k3 = lens["distortion"]
     r2 = x * x + y * y
@@ -45,7 +45,7 @@ def pixel_of(joint, lens):
 
 
 def picture_of(frame):
-    """Which picture of the video was captured then: rounds begin at whole multiples of its length."""
+    """Number of the video's picture captured at that time: rounds begin at whole multiples of its length."""
     return round(int(frame["capturedNanoseconds"]) % LENGTH_NS * 1e-9 * RATE_HZ) % PICTURES
 
 
@@ -58,7 +58,7 @@ class Video(unittest.TestCase):
         return sensor
 
     def frames(self, sensor, count):
-        """So many different frames with somebody in them."""
+        """Collects `count` different frames that contain a person."""
         found = {}
         end = time.monotonic() + PATIENCE_S
         while len(found) < count and time.monotonic() < end:

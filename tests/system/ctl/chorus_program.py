@@ -1,4 +1,4 @@
-"""Runs the real `chorus` program: what its tests share."""
+"""Runs the real `chorus` program: functions shared by its tests."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""chorus import and fuse, as a person runs them: from the shipped recordings to fused frames."""
+"""chorus import and fuse as users run them: from the shipped recordings to fused frames."""
 
 import json
 import statistics
@@ -8,7 +8,7 @@ from pathlib import Path
 
 from chorus_program import CAMERAS, chorus
 
-PLAIN_MEAN_M = 0.104  # what fusion has to beat (tests/data/README.md)
+PLAIN_MEAN_M = 0.104  # fusion must be better than this (tests/data/README.md)
 SETTINGS = ["--config", f"{CAMERAS}/fusion.json"]
 
 
@@ -17,7 +17,7 @@ def frames_of(file):
 
 
 def median_error(fused, truth):
-    """Over all joints of all frames that have a truth at the very same instant [m]."""
+    """Median error over all joints of all frames with a truth at exactly the same instant [m]."""
     truth_at = {frame["capturedNanoseconds"]: frame["bodies"][0]["joints"] for frame in truth}
     errors = []
     for frame in fused:

@@ -1,5 +1,5 @@
-"""chorus register, status and replay against servers: a stand-in that plays the fusion server's part, and
-real chorus-sensor processes."""
+"""chorus register, status and replay against servers: a stand-in for the fusion server, and real chorus-sensor
+processes."""
 
 import json
 import signal
@@ -20,8 +20,8 @@ PLACE = {"x": 1.0, "y": 1.5, "z": 0.0, "qx": 0, "qy": 0, "qz": 0, "qw": 1, "erro
 
 
 class FusionStandIn:
-    """Answers as proto/README.md says.  `old` is the registration in use before; a session is over after three looks
-    at it, and `outcome` is what came of it."""
+    """Answers according to proto/README.md. `old` is the registration in use before; a session ends after it was polled three times, and
+    `outcome` is its result."""
 
     SESSION = "/registration/sessions/41"
 
@@ -32,7 +32,7 @@ class FusionStandIn:
         self.mine = False
         self.old = {"@type": "Registration", "verdict": old, "reasons": [], "master": "s1", "sensors": {"s2": PLACE}, "edges": []}
         self.outcome = {"verdict": verdict, "reasons": list(reasons), "adopted": adopted}
-        self.others = others  # None, "automatic" or "client": who started the session that runs
+        self.others = others  # None, "automatic" or "client": who started the running session
         stand_in = self
 
         class Handler(BaseHTTPRequestHandler):

@@ -26,7 +26,7 @@ def median(values):
 
 
 def fused_frames(port, seconds):
-    """Every frame of so many seconds, by long poll on one connection."""
+    """All frames during some seconds, by long polling on one connection."""
     connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
     frames, tag, deadline = [], None, time.monotonic() + seconds
     while time.monotonic() < deadline:
@@ -101,7 +101,7 @@ class RealCameras(unittest.TestCase):
         return eventually(look, seconds=60)
 
     def truth_of(self, frame):
-        """The true joints at a fused frame's instant, between two of its frames; none where the loop begins again."""
+        """The true joints at a fused frame's instant, interpolated between two true frames; none where the loop restarts."""
         seen = frame_at(f"http://127.0.0.1:{self.port + 1}/")
         phase = (int(frame["capturedNanoseconds"]) - int(seen["capturedNanoseconds"])) / 1e9 * RATE_HZ
         index = (seen["sequence"] - 1 + phase) % FRAMES

@@ -1,4 +1,4 @@
-"""deploy/demo.sh with the programs that were just built: delivers, says what is wrong, leaves nothing behind."""
+"""deploy/demo.sh with the newly built programs: it delivers, reports what is wrong, and leaves nothing behind."""
 
 import json
 import os
@@ -32,10 +32,10 @@ class Demo(unittest.TestCase):
         self.port = free_ports(PORTS)
 
     def left_by(self, process):
-        """What still runs of the demo's session, and which of its ports still answer."""
+        """The processes of the demo's session that still run, and its ports that still answer."""
         lines = subprocess.run(["ps", "-o", "stat=,args=", "-s", str(process.pid)], capture_output=True,
                                text=True).stdout.splitlines()
-        running = [line for line in lines if not line.startswith("Z")]  # dead, only not yet buried
+        running = [line for line in lines if not line.startswith("Z")]  # Z: dead, only not yet reaped
         return running + [port for port in range(self.port, self.port + PORTS) if is_listening(port)]
 
     def assert_nothing_left(self, process):
@@ -81,7 +81,7 @@ class Demo(unittest.TestCase):
         self.assertIn("choose one", done.stderr)
 
     def test_plays_what_chorus_record_wrote_in_its_place(self):
-        """One file of six sensors, with the registration that it was recorded with."""
+        """One file of six sensors, including the registration it was recorded with."""
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         process = demo(self.port)
@@ -135,7 +135,7 @@ class Demo(unittest.TestCase):
             while not is_listening(self.port) and time.monotonic() < deadline:
                 time.sleep(0.1)
             self.assertTrue(is_listening(self.port), "the demo did not come up")
-            os.killpg(process.pid, stop)  # as a terminal does
+            os.killpg(process.pid, stop)  # as a terminal does on Ctrl-C
             output, _ = process.communicate(timeout=START_WITHIN_S)
             self.assertNotEqual(process.returncode, 0, output)
             self.assert_nothing_left(process)

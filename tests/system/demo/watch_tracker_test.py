@@ -1,4 +1,4 @@
-"""What the demo calls "delivered" is judged on made-up trackers: a good one, and each way of being bad."""
+"""Tests what the demo counts as "delivered" with artificial trackers: a good one, and each kind of bad one."""
 
 import json
 import subprocess
@@ -15,7 +15,7 @@ RUN_S = 3
 
 
 class FakeTracker:
-    """Answers /frame and /registration; `rate` frames a second, each with `bodies` bodies."""
+    """Answers /frame and /registration; `rate` frames per second, each with `bodies` bodies."""
 
     def __init__(self, rate, bodies):
         started = time.monotonic()

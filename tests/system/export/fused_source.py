@@ -1,4 +1,4 @@
-"""Fused frames for export tests: the real four-camera recording, and a stand-in for a fusion server that plays them."""
+"""Fused frames for export tests: the real four-camera recording, and a stand-in for a fusion server that serves them."""
 
 import http.server
 import json
@@ -32,7 +32,7 @@ def frames_with_bodies(lines):
 
 
 class FakeFusion:
-    """GET /frame with ETag and If-None-Match: each frame for a thirtieth of a second, 503 before the first."""
+    """GET /frame with ETag and If-None-Match: each frame for 1/30 s, 503 before the first."""
 
     def __init__(self, lines):
         lines = [line for line in lines.splitlines() if line]

@@ -1,5 +1,5 @@
-// Exported files under readers written by others: three.js' BVHLoader and GLTFLoader, and the
-// Khronos glTF validator.  The real four-camera recording is fused, exported and read back.
+// Reads exported files with programs of others: three.js' BVHLoader and GLTFLoader, and the
+// Khronos glTF validator. The real four-camera recording is fused, exported and read back.
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -23,7 +23,7 @@ execFileSync(chorus, ["fuse", at("rec"), "--config", `${CAMERAS}/fusion.json`, "
 const fused = readFileSync(at("fused.ndjson"), "utf8").trim().split("\n").map((line) => JSON.parse(line))
   .filter((frame) => frame.bodies.length > 0);
 
-/** Exports and gives { files, remarks, ... } of the report. */
+/** Exports and returns { files, remarks, ... } from the report. */
 function exported(format, file, ...more) {
   const source = more.includes("--from") ? more.splice(more.indexOf("--from"), 2)[1] : at("fused.ndjson");
   const done = spawnSync(chorus, ["export", source, "--format", format, "--out", at(file), "--json", ...more],
@@ -32,7 +32,7 @@ function exported(format, file, ...more) {
   return JSON.parse(done.stderr);
 }
 
-/** "at most 56.2 mm": what the export itself says of bones of constant length. */
+/** "at most 56.2 mm": the error that the export itself reports for bones of constant length. */
 const promisedMetres = (report) => Number(/at most ([\d.]+) mm/.exec(report.remarks[0])[1]) / 1000;
 
 /** Largest distance between bones of three.js by joint name and the fused joints of a frame [m]. */

@@ -1,5 +1,5 @@
-"""chorus export as a person runs it: every number of TRC, CSV and C3D is that of the fused frames, read with nothing but
-Python's standard library; sources of every kind; what goes wrong says what to do."""
+"""chorus export as users run it: every number of TRC, CSV and C3D equals that of the fused frames, read with nothing but Python's standard
+library; all kinds of sources; errors say what to do."""
 
 import csv
 import io
@@ -38,7 +38,7 @@ def read_c3d(data):
 
 
 def opensim_row(line, markers):
-    """The fields of a row as OpenSim cuts it: an empty one at its end does not count, and the number must be right."""
+    """The fields of a row as OpenSim splits it: an empty one at its end does not count, and their number must be right."""
     fields = line.split("\t")
     fields = fields[:-1] if fields[-1] == "" else fields
     assert len(fields) == 2 + 3 * markers, f"expected {2 + 3 * markers} fields, found {len(fields)}"
@@ -46,7 +46,7 @@ def opensim_row(line, markers):
 
 
 def check_header(data, values):
-    """What py-c3d asserts of every file before it reads a point: header and parameters say the same."""
+    """What py-c3d checks in every file before it reads a point: header and parameters agree."""
     def number(name, form):
         return struct.unpack_from(form, values[name][1])[0]
     points, samples = struct.unpack_from("<HH", data, 2)
@@ -75,7 +75,7 @@ class Export(unittest.TestCase):
         cls.folder.cleanup()
 
     def export(self, file_format, *more):
-        """To standard output, from standard input: the pipe of the guide."""
+        """To standard output, from standard input: the pipe in the guide."""
         code, out, error = chorus("export", "-", "--format", file_format, "--out", "-", *more, feed=self.lines)
         self.assertEqual(code, 0, error)
         return out
@@ -124,7 +124,7 @@ class Export(unittest.TestCase):
         self.comes_back("c3d", 0.0002)
 
     def comes_back(self, file_format, metres):
-        """The truth that `chorus import` makes of the file is within `metres` of the fused joints."""
+        """The truth that `chorus import` reads from the file is within `metres` of the fused joints."""
         file = self.at / f"back.{file_format}"
         file.write_bytes(self.export(file_format))
         folder = self.at / f"back-{file_format}"

@@ -1,4 +1,4 @@
-"""VRPN, NatNet and DTrack's command channel answer this host and the addresses that are listed, and nobody else."""
+"""VRPN, NatNet and DTrack's command channel answer this host and the listed addresses, and no others."""
 
 import re
 import socket
@@ -17,7 +17,7 @@ def own_address():
 
 
 def heard(kind, end, words):
-    """What an end answers to these words; empty when it does not."""
+    """What an output answers to these bytes; empty when it does not."""
     with socket.socket(socket.AF_INET, kind) as client:
         client.settimeout(PATIENCE_S)
         try:

@@ -1,4 +1,4 @@
-"""What the services answer is what proto/openapi.json says: statuses and media types of every GET."""
+"""The services answer as proto/openapi.json specifies: statuses and media types of every GET."""
 import json
 import unittest
 from urllib.parse import quote
@@ -16,7 +16,7 @@ def bare(headers):
 
 class Contract(Rig):
     def check(self, service, places):
-        """Asks for each place of {path of the document: path asked for} in every way that may be accepted."""
+        """Requests each path of {path of the document: path requested} with every media type that is offered."""
         for path, asked in places.items():
             documented = GETS[path]
             types = documented["200"].get("content", {})

@@ -1,4 +1,4 @@
-"""Sensors that answer nonsense: each is refused with a reason, and a good one beside them keeps its rate."""
+"""Sensors that send nonsense: each is refused with a reason, and a good one next to them keeps its rate."""
 import json
 import math
 import sys
@@ -90,11 +90,11 @@ class Liars(Rig):
         begun = time.monotonic()
         wait_for("three seconds of frames", lambda: shown()["s1"]["framesReceived"] > before["s1"]["framesReceived"] + 90)
         rate = 90 / (time.monotonic() - begun)
-        # A poller that waited for a liar would get a few frames a second; a busy machine costs some, too.
+        # A poller that waited for a liar would get a few frames per second; a busy machine loses some, too.
         self.assertGreater(rate, 15.0)
         self.assertLess(shown()["s1"]["framesMissed"], shown()["s1"]["framesReceived"] / 4)
         wait_for("a body is fused all the while", lambda: get_json(fusion.url + "frame")["bodies"])
-        # Back-off: after seconds of failing nobody has been asked more than a few times a second.
+        # Back-off: after seconds of failures no sensor is asked more than a few times per second.
         for name, fake in fakes.items():
             self.assertLess(fake.requests, 200, name)
         self.assertTrue(fusion.alive())
@@ -123,7 +123,7 @@ class Liars(Rig):
         begun, before = time.monotonic(), fakes["spin"].requests
         time.sleep(1.0)
         per_second = (fakes["spin"].requests - before) / (time.monotonic() - begun)
-        self.assertLess(per_second, 260)  # 4 ms between requests, however new each frame claims to be
+        self.assertLess(per_second, 260)  # 4 ms between requests, even if each frame claims to be new
         self.assertEqual(fusion.stop(), 0)
 
 

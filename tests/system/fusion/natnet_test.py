@@ -17,8 +17,8 @@ from ports import free_port  # noqa: E402
 
 SENSORS = 3
 PRINTED = 1e-4  # metres; /frame has four decimals
-ENOUGH = 20     # frames compared
-MOST = 1000     # datagrams looked at for that
+ENOUGH = 20     # number of frames compared
+MOST = 1000     # most datagrams read to get them
 CONNECT, MODELS, FRAME, KEEP_ALIVE, ECHO = 0, 4, 6, 10, 12
 
 
@@ -40,7 +40,7 @@ class Client:
         self.socket.sendto(natnet.request(message, payload), self.server)
 
     def hear(self, message):
-        """The payload of the next datagram that is such a message."""
+        """The payload of the next datagram with such a message."""
         for _ in range(MOST):
             found, payload, behind = natnet.read(self.socket.recv(65536))
             if behind:
@@ -64,7 +64,7 @@ class NatNet(Rig):
         return fusion
 
     def frame_of(self, fusion, number):
-        """What /frames says of the newest sequence with these lowest 31 bits; None when it is not kept any more."""
+        """What /frames reports for the newest sequence with these lowest 31 bits; None if it is no longer kept."""
         now = get_json(fusion.url + "frame")["sequence"] + 30
         status, _, body = get(fusion.url + f"frames/{now - (now - number) % 2**31}")
         return json.loads(body) if status == 200 else None
@@ -75,7 +75,7 @@ class NatNet(Rig):
             self.assertLessEqual(abs(a - b), tolerance, f"{what}: {got} is not {expected}")
 
     def check(self, frame, told, models):
-        """True when there was somebody to compare."""
+        """True when there was a person to compare."""
         self.assertEqual(frame.exposure, int(told["capturedNanoseconds"]))
         self.assertLessEqual(frame.exposure, frame.received)
         self.assertLessEqual(frame.received, frame.sent)
@@ -142,7 +142,7 @@ class NatNet(Rig):
         self.assertTrue(1 <= self.metric(fusion, "clients") <= 16)
 
     def misbehave(self, done):
-        """Noise, datagrams that announce more than they bring, far too long ones, and connections from many ports."""
+        """Noise, datagrams shorter than they announce, far too long ones, and connections from many ports."""
         kinds = [os.urandom(40), b"", b"\0", struct.pack("<HH", 0, 500), b"\0" * 60000, natnet.request(77), natnet.request(7)]
         while not done.wait(0.02):
             with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as stranger:

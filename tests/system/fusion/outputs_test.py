@@ -1,4 +1,4 @@
-"""Simulated sensors, a real chorus-fusion, and what leaves it: DTrack, MXTP02, VMC, VRChat and trackd carry the poses of GET /frame."""
+"""Simulated sensors, a real chorus-fusion, and its outputs: DTrack, MXTP02, VMC, VRChat and trackd carry the poses of GET /frame."""
 import ctypes
 import json
 import shutil
@@ -18,8 +18,8 @@ from output_readers import (JOINT_OF_BONE, JOINTS, dtrack_bodies, dtrack_lines, 
 
 SENSORS = 3
 PRINTED = 1e-4  # metres; /frame has four decimals
-ENOUGH = 20     # frames compared
-MOST = 1000     # datagrams looked at for that
+ENOUGH = 20     # number of frames compared
+MOST = 1000     # most datagrams read to get them
 
 
 def receiver(test):
@@ -46,12 +46,12 @@ class Outputs(Rig):
         return self.fusion(sensors, **{"registration.file": self.given_ring(SENSORS), **settings})
 
     def full_sequence(self, fusion, low, bits):
-        """The newest sequence whose lowest bits these are: protocols have no more."""
+        """The newest sequence with these lowest bits: protocols have no more."""
         now = get_json(fusion.url + "frame")["sequence"] + 30
         return now - (now - low) % 2**bits
 
     def joints_of(self, fusion, sequence):
-        """Joints of the only body of that frame, by name."""
+        """Joints of the only body in that frame, by name."""
         status, _, body = get(fusion.url + f"frames/{sequence}")
         self.assertEqual(status, 200, body)
         bodies = json.loads(body)["bodies"]
@@ -94,7 +94,7 @@ class Outputs(Rig):
                 self.assert_near(a, b, 1e-4, name)
 
     def check_vmc(self, fusion, vmc, first):
-        """Both outputs were given the same frames from the same one on: frame k of this is frame first + k."""
+        """Both outputs got the same frames from the same one on: frame k of this one is frame first + k."""
         messages, sequence, checked = [], first - 1, 0
         for _ in range(MOST):
             found = osc_messages(vmc.recv(65536))
@@ -126,7 +126,7 @@ class Outputs(Rig):
             body = mxtp.read(receiving.recv(65536))
             sequence = self.full_sequence(fusion, body.sample, 32)
             if get(fusion.url + f"frames/{sequence}")[0] != 200:
-                continue  # not kept any more
+                continue  # no longer kept
             self.check_mxtp(self.joints_of(fusion, sequence), body)
             checked += 1
             if checked == ENOUGH:
@@ -141,7 +141,7 @@ class Outputs(Rig):
         if mxtp.head(joints):
             self.assert_near(body.segments["Head"].place, mxtp.head(joints), 3 * PRINTED, "Head")
         for what, got, expected in mxtp.directions(body.segments, joints):
-            # Four decimals of short bones: a hand of 15 cm to a thousandth; a plane of two bones less well.
+            # Four decimals for short bones: a hand of 15 cm is exact to a thousandth; a plane of two bones is less exact.
             self.assert_near(got, expected, 1e-2, what)
 
     def test_trackd_is_there_while_the_server_runs(self):

@@ -1,4 +1,4 @@
-"""Behind a real nginx on the same host, configured as plainly as can be: the token is still needed."""
+"""The server behind a real nginx on the same host, in its simplest configuration: the token is still required."""
 import http.client
 import pathlib
 import shutil

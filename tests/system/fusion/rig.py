@@ -18,7 +18,7 @@ BIN = pathlib.Path(os.environ.get("CHORUS_BIN", ROOT / "build/dev/bin"))
 sys.path.insert(0, str(ROOT / "tests/support"))
 from ports import free_port  # noqa: E402
 
-PATIENCE = 40.0  # seconds; a ceiling for loaded machines, nothing is expected to take it
+PATIENCE = 40.0  # seconds; generous for loaded machines, nothing should take that long
 
 
 def get(url, accept="application/json", headers=None, timeout=10.0):
@@ -63,7 +63,7 @@ class Process:
 
     def __init__(self, name, *arguments):
         self.log = tempfile.NamedTemporaryFile("w+", suffix=f".{name}.log")
-        # State goes where no other run finds it, unless the test says where.
+        # Its state is stored where no other run finds it, unless the test says where.
         self.state = tempfile.TemporaryDirectory()
         environment = {k: v for k, v in os.environ.items() if k != "STATE_DIRECTORY"}
         self.child = subprocess.Popen([str(BIN / name), *arguments], cwd=ROOT, stdout=self.log, stderr=self.log,
@@ -147,7 +147,7 @@ class Rig(unittest.TestCase):
 
 
 def ring_pose(index, count, radius=3.0, height=1.6, pitch_deg=13.0):
-    """Place `index` of `count` on a circle, looking at its centre and down; as deploy/config/sensor.json has it."""
+    """Place `index` of `count` on a circle, looking at its centre and down; as in deploy/config/sensor.json."""
     import math
     yaw = 2 * math.pi * index / count
     position = (-radius * math.sin(yaw), height, -radius * math.cos(yaw))
@@ -158,7 +158,7 @@ def ring_pose(index, count, radius=3.0, height=1.6, pitch_deg=13.0):
 
 
 class FakeSensor:
-    """An HTTP server whose /frame is whatever respond(handler) writes."""
+    """An HTTP server whose /frame is written by respond(handler)."""
 
     def __init__(self, respond):
         class Handler(http.server.BaseHTTPRequestHandler):
@@ -181,7 +181,7 @@ class FakeSensor:
         fake = self
         self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
         self.server.daemon_threads = True
-        self.server.handle_error = lambda *_: None  # a client that leaves is no event
+        self.server.handle_error = lambda *_: None  # ignore clients that disconnect
         self.url = f"http://127.0.0.1:{self.server.server_port}/"
         threading.Thread(target=self.server.serve_forever, daemon=True).start()
 

@@ -5,7 +5,7 @@ import unittest
 
 from rig import BIN, Rig, get_json, wait_for
 
-# What says nothing of the service, and what carries its own numbers.
+# Headers that do not depend on the service, and headers with its own numbers.
 ITS_OWN = {"date", "chorus-clock", "server-timing", "etag", "content-length", "content-location", "link"}
 TURTLE, JSON, N_TRIPLES = "text/turtle", "application/json", "application/n-triples"
 
@@ -20,7 +20,7 @@ class Asked:
                       "recent": frame["sequence"] - 15}
 
     def answer(self, method, path, accept):
-        """(status, headers without what is the service's own, headers it has) of one request."""
+        """(status, headers without the service's own, names of the headers) of one request."""
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=20)
         try:
             connection.request(method, path.format(**self.names), headers={"Accept": accept})

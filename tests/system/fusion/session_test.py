@@ -1,4 +1,4 @@
-"""Registration sessions as clients see them, and what survives the server's death: real processes, simulated sensors."""
+"""Registration sessions as seen by clients, and what is kept when the server is killed: real processes, simulated sensors."""
 import json
 import os
 import pathlib
@@ -10,7 +10,7 @@ import unittest
 from rig import BIN, ROOT, Rig, get, get_json, send, wait_for
 
 COUNT = 3
-# Good after a short walk: how good is none of this test's business.
+# Good after a short walk: how good the registration is does not matter in this test.
 QUICK = {"registration.seconds": 10, "registration.good_duration_s": 8, "registration.good_position_m": 1.0, "registration.good_rms_m": 1.0}
 CHORUS = BIN / "chorus"
 
@@ -35,7 +35,7 @@ class Sessions(Rig):
         status, headers, body = send("POST", fusion.url + "registration", b'{"seconds": 8}')
         self.assertEqual(status, 202)
         path = headers["Location"]
-        for _ in range(40):  # while the pipeline gets to know of it
+        for _ in range(40):  # until the pipeline has received it
             session = get_json(fusion.url + path.lstrip("/"))
             self.assertEqual((session["state"], session["verdict"]), ("collecting", "None"), session)
             self.assertEqual(self.registration(fusion)["session"]["state"], "collecting")
@@ -118,7 +118,7 @@ class Sessions(Rig):
         third = self.sensor(2, COUNT)
         state = pathlib.Path(self.folder.name) / "state"
         state.mkdir()
-        # A restart with a third sensor: what a SIGHUP with a longer list does, without a file to edit.
+        # A restart with a third sensor has the effect of a SIGHUP with a longer list, without a file to edit.
         (state / "registration.json").write_bytes(
             (pathlib.Path(fusion.state.name) / f"chorus/fusion-{fusion.port}/registration.json").read_bytes())
         more = self.fusion({**self.polled, "s3": third.url}, state_dir=state, **QUICK)

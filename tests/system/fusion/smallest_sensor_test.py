@@ -1,4 +1,4 @@
-"""docs/guide/examples/smallest_sensor.py under a real fusion server: its person is tracked, and no frame is missed."""
+"""docs/guide/examples/smallest_sensor.py with a real fusion server: its person is tracked, and no frame is missed."""
 
 import json
 import os
@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[3]
 FUSION = Path(os.environ["CHORUS_BIN"]) / "chorus-fusion"
 SEEN_WITHIN_S = 30
 WATCHED_S = 3
-PLACE = {"x": 0, "y": 1.2, "z": 0, "qx": 0, "qy": 0, "qz": 0, "qw": 1}  # as its floor plane says
+PLACE = {"x": 0, "y": 1.2, "z": 0, "qx": 0, "qy": 0, "qz": 0, "qw": 1}  # according to its floor plane
 
 
 def asked(url):

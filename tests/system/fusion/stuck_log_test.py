@@ -1,4 +1,4 @@
-"""A log that nobody reads costs lines and nothing else."""
+"""A log that nobody reads only loses lines."""
 import fcntl
 import json
 import os
@@ -20,7 +20,7 @@ class Piped:
     def __init__(self, *arguments):
         self.read_end, write_end = os.pipe()
         fcntl.fcntl(write_end, F_SETPIPE_SZ, 4096)
-        # A description of our own: making the child's non-blocking would spoil the test.
+        # An open file description of our own: making the child's non-blocking would invalidate the test.
         filler = os.open(f"/proc/self/fd/{write_end}", os.O_WRONLY | os.O_NONBLOCK)
         try:
             while True:
@@ -66,7 +66,7 @@ class StuckLog(Rig):
         return int(re.search(r"^chorus_fused_frames_total (\d+)$", metrics, re.MULTILINE).group(1))
 
     def watch(self, fusion):
-        """Frames a second, and the share of those we have seen that somebody is in."""
+        """Frames per second, and the fraction of the frames seen that contain a person."""
         begin, first = time.monotonic(), self.published(fusion)
         seen = []
         while time.monotonic() - begin < WATCHED_S:

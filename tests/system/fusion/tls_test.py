@@ -1,4 +1,4 @@
-"""A tracker reads its sensors over TLS; an expired, a foreign and a renewed certificate, and a file that is spoilt while everything runs."""
+"""A tracker reads its sensors over TLS; an expired, a foreign and a renewed certificate, and a file damaged while everything runs."""
 
 import json
 import os
@@ -112,7 +112,7 @@ class Tls(Rig):
                     self.assertFalse(taken)
 
     def expired(self, name):
-        """By openssl, since ours makes none that have expired."""
+        """Made with openssl, because our own program makes no expired ones."""
         folder = self.path / name
         shutil.copytree(self.path / "host", folder)
         (folder / "names").write_text("subjectAltName=IP:127.0.0.1,DNS:localhost\n")

@@ -1,5 +1,5 @@
-"""A tracker reads a sensor that wants a token, says so when it is the wrong one, and takes another one over while it runs; both tell
-systemd how they are."""
+"""A tracker reads a sensor that requires a token, reports a wrong token, and accepts another one while it runs; both report their state to
+systemd."""
 
 import json
 import os

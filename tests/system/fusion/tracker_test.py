@@ -46,7 +46,7 @@ class Tracker(Rig):
         self.check_restart(fusion, settings, stored)
 
     def check_frames(self, fusion):
-        """Long polling yields each sequence once, in order."""
+        """Long polling returns each sequence once, in order."""
         tag, sequences = None, []
         while len(sequences) < 60:
             headers = {"If-None-Match": tag, "Prefer": "wait=5"} if tag else {}
@@ -88,7 +88,7 @@ class Tracker(Rig):
         status, _, body = send("POST", fusion.url + "registration")
         self.assertEqual(status, 409)
         self.assertIn("running", json.loads(body)["detail"])
-        # A running session leaves the good registration alone.
+        # A running session does not change the good registration.
         self.assertEqual(get_json(fusion.url + "registration")["version"], before["version"])
 
     def check_restart(self, fusion, settings, stored):

@@ -46,7 +46,7 @@ class VrpnClient:
 
     def _call_back(self, host, port):
         self.datagrams = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.datagrams.connect((host, port))  # only to learn which of our addresses leads there
+        self.datagrams.connect((host, port))  # only to find out which of our addresses is used for it
         own = self.datagrams.getsockname()[0]
         self.datagrams.close()
         self.datagrams = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -72,7 +72,7 @@ class VrpnClient:
             self.bytes += got
 
     def _cut(self, data):
-        """(message or None, rest); raises for what the protocol does not allow."""
+        """(message or None, rest); raises an error for what the protocol does not allow."""
         length, seconds, us, sender, kind, _ = struct.unpack(">IIIiiI", data[:24])
         stored = -(-length // 8) * 8
         if not 24 <= length <= 64000 or stored > len(data):

@@ -1,4 +1,4 @@
-"""VRPN out of a real chorus-fusion, fed by simulated sensors: every pose is that of GET /frame of the same instant."""
+"""VRPN from a real chorus-fusion with simulated sensors: every pose equals that of GET /frame at the same instant."""
 import math
 import shutil
 import subprocess
@@ -13,7 +13,7 @@ JOINTS = ("SpineBase SpineMid Neck Head ShoulderLeft ElbowLeft WristLeft HandLef
 
 
 def turn_between(a, b):
-    """Angle between two nearly equal quaternions x y z w; of the difference, for /frame rounds its parts."""
+    """Angle between two nearly equal quaternions x y z w; computed from their difference, because /frame rounds."""
     return 2 * min(math.dist(a, b), math.dist(a, [-x for x in b]))
 
 
@@ -37,7 +37,7 @@ class Vrpn(Rig):
         self.fail(f"no frame at {us}")
 
     def one_frame(self, client):
-        """Pose by (tracker, sensor) of one whole frame, its time, and whether they came as datagrams."""
+        """Pose by (tracker, sensor) for one whole frame, its time, and whether it came by datagram."""
         poses, time_us, way = {}, None, set()
         for tracker, sensor, us, position, turn, datagram in client.poses():
             if time_us is not None and us != time_us:
@@ -49,7 +49,7 @@ class Vrpn(Rig):
             poses[tracker, sensor] = position, turn
 
     def check(self, client, trackers, by_datagram):
-        for _ in range(20):  # the first frames of a client by UDP may still come by TCP
+        for _ in range(20):  # at first a UDP client may still get frames by TCP
             poses, us, way = self.one_frame(client)
             if way == {by_datagram}:
                 break
@@ -96,7 +96,7 @@ class Vrpn(Rig):
             self.assertEqual(seen.stderr, "", name)
             joints = 1 if "_" in name else 25
             poses = sum(" pos (" in line for line in seen.stdout.splitlines())
-            self.assertGreater(poses, 30 * joints, name)  # a few seconds at 30 Hz, starting included
+            self.assertGreater(poses, 30 * joints, name)  # a few seconds at 30 Hz, including the start
             for what in ("sensor 0:" if joints == 1 else "sensor 24:", " vel ("):
                 self.assertIn(what, seen.stdout)
 

@@ -55,11 +55,11 @@ class Cell(Rig):
         file.write_bytes(get(fusion.url + report["download"].lstrip("/"), accept="*/*")[2])
         self.assertEqual(file.stat().st_size, report["bytes"])
 
-        # Raw frames through the pipeline twice: the same bytes, and what the server made of them at the time.
+        # Raw frames through the pipeline twice: the result is the same, byte for byte, and equals what the server fused live.
         self.assertEqual(self.fuse(file, "a.mcap"), self.fuse(self.at / "rec/walk", "b.mcap"))
         again = [json.loads(line) for line in self.fuse(file, "a.ndjson").splitlines()]
         live = self.fused_frames(file)
-        # Offline the instants of 30 Hz are rounded, live they are cut off: a nanosecond apart.
+        # Offline the 30 Hz instants are rounded, live they are truncated: a nanosecond apart.
         instant = lambda frame: round(int(frame["capturedNanoseconds"]) / 1e6)
         by_instant = {instant(frame): frame for frame in again}
         pairs = [(frame, by_instant[instant(frame)]) for frame in live if instant(frame) in by_instant]
@@ -69,7 +69,7 @@ class Cell(Rig):
         self.assertNotEqual(self.fuse(file, "c.mcap", "--method", "mean"), (self.at / "a.mcap").read_bytes())
 
     def fused_frames(self, file):
-        """By the recording's own probe: independent of the reader that fuses."""
+        """Uses the recording's own probe, which is independent of the reader used for fusing."""
         read = subprocess.run([BIN.parent / "tests/recording_probe", "read", file], capture_output=True, check=True)
         return [json.loads(m["text"]) for m in json.loads(read.stdout)["messages"] if m["topic"] == "/frame"]
 
@@ -127,7 +127,7 @@ class Cell(Rig):
         self.assertEqual(done.returncode, 1)
         self.assertIn("was recorded, not imported", done.stderr)
         self.assertEqual((folder / "s1.mcap").read_bytes(), kept)
-        for _ in range(2):  # an import itself may be made again
+        for _ in range(2):  # importing can be repeated
             done = chorus("import", "labanotation", source, "--out", folder, "--sensor", "s2")
             self.assertEqual(done.returncode, 0, done.stderr)
 

@@ -1,4 +1,4 @@
-// Our MCAP files under the format's own reader (npm @mcap/core), and its files under ours.
+// Our MCAP files read by the format's own reader (npm @mcap/core), and its files read by ours.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";

@@ -1,5 +1,5 @@
-// `recording_probe write FILE` makes a recording whose contents the test knows, `session` one of a
-// cell; `recording_probe read FILE` prints what our reader makes of a file, as JSON.
+// `recording_probe write FILE` makes a recording with contents known to the test, `session` one of
+// a cell; `recording_probe read FILE` prints what our reader reads from a file, as JSON.
 #include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>

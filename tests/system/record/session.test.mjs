@@ -1,4 +1,4 @@
-// A recording of a whole cell under the format's own reader (npm @mcap/core): index, checksums, schemas, metadata, and what
+// A recording of a whole cell read by the format's own reader (npm @mcap/core): index, checksums, schemas, metadata, and what
 // viewers draw.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
@@ -26,7 +26,7 @@ for (const id of ["s1", "s2"]) {
   TOPICS[`/sensors/${id}/scene`] = "foxglove.SceneUpdate";
 }
 
-/** The part of JSON Schema that our schemas use; what is wrong, or nothing. */
+/** Checks with the part of JSON Schema that our schemas use; returns what is wrong, or nothing. */
 function misfit(value, schema, at = "") {
   const types = { object: (v) => v !== null && typeof v === "object" && !Array.isArray(v), array: Array.isArray,
     string: (v) => typeof v === "string", number: (v) => typeof v === "number", integer: Number.isInteger,

@@ -1,4 +1,4 @@
-"""Few descriptors and many idle connections: others are still served, and monitors see it."""
+"""With few descriptors and many idle connections, others are still served, and monitoring shows it."""
 
 import contextlib
 import re

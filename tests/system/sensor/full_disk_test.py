@@ -1,4 +1,4 @@
-"""A disk without room: POST /recordings/ says so by its status and tells nobody where files are."""
+"""With a full disk, POST /recordings/ reports it by its status and reveals no paths."""
 
 import os
 import subprocess
@@ -9,7 +9,7 @@ from sensor_process import Sensor, temporary_folder
 
 
 def in_a_mount_namespace(folder):
-    """Runs what follows where `folder` is a file system that is full: it holds one inode, its root."""
+    """Runs a command so that `folder` is a full file system: it holds only one inode, its root."""
     return ["unshare", "-rm", "sh", "-c", f'mount -t tmpfs -o size=64k,nr_inodes=1 none "{folder}" && exec "$@"', "sh"]
 
 

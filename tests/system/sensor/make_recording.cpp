@@ -1,5 +1,5 @@
-// `make_recording FILE FRAMES FIRST_MS`: a person who walks a metre a second along x before one
-// sensor, 25 Hz, from FIRST_MS after a fixed instant; notes say that the set lasts four seconds.
+// `make_recording FILE FRAMES FIRST_MS`: a person who walks along x at 1 m/s in front of one
+// sensor, at 25 Hz, from FIRST_MS after a fixed instant; notes say that the set lasts four seconds.
 #include <cstdlib>
 #include <iostream>
 

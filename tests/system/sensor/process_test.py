@@ -1,4 +1,4 @@
-"""chorus-sensor as a process: start, mistakes, signals, replays in step."""
+"""chorus-sensor as a process: start, wrong options, signals, synchronised replays."""
 
 import json
 import os
@@ -13,7 +13,7 @@ from sensor_process import SENSOR, Sensor, make_recording, temporary_folder
 
 
 def refused(*options):
-    """Runs chorus-sensor with options it must refuse; exit code and what it says."""
+    """Runs chorus-sensor with options that it must refuse; returns exit code and output."""
     done = subprocess.run([SENSOR, *options], capture_output=True, text=True, timeout=60)
     return done.returncode, done.stderr.strip()
 
@@ -121,10 +121,10 @@ class Process(unittest.TestCase):
                 seen.add(int(answer.json["capturedNanoseconds"]))
             times.append(seen)
         step, period = 40_000_000, 4_000_000_000
-        start = int(float(epoch))  # what a JSON number keeps of it
+        start = int(float(epoch))  # the precision that a JSON number keeps
         for seen in times:
             for captured in seen:
-                # 256 ns: the two doubles on the way
+                # 256 ns, because of the two conversions to double
                 off = (captured - start) % step
                 self.assertLess(min(off, step - off), 600)
         for captured in times[1]:

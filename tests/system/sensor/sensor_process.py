@@ -1,4 +1,4 @@
-"""Starts chorus-sensor on a free port and talks to it."""
+"""Starts chorus-sensor on a free port and sends requests to it."""
 
 import http.client
 import json
@@ -48,7 +48,7 @@ class Sensor:
         self.port = int(self.wait_for_event("sensor serving")["url"].split(":")[2].rstrip("/"))
 
     def wait_for_event(self, name):
-        """The next log line with this event; the process must not end before."""
+        """The next log line with this event; the process must not end before it."""
         for line in self.process.stderr:
             fields = json.loads(line)
             if name in fields.values():
