@@ -104,6 +104,8 @@ struct Person {
   std::vector<SensorView> views;
   /// Probability that left and right are not exchanged; none: the sides were not resolved.
   std::optional<double> sides_confidence = {};
+  /// Nobody sees them: where their middle is expected, world [m].  There are no views then.
+  std::optional<Eigen::Vector3d> carried = {};
 };
 
 struct FusedBody {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/body/bones.h"
 #include "common/body/interpolate.h"
 
 namespace chorus::align {
@@ -11,6 +12,8 @@ namespace {
 /// Added to the longest delay seen so far: a frame this late is still expected.
 constexpr Duration kGrace = std::chrono::milliseconds(15);
 constexpr int kPeriods = 2;  // of a slow sensor: brackets this wide are still interpolated
+
+constexpr double kSlack = 0.1;  // [m] that a body's core jumps by noise alone
 
 /// The frames around an instant; `before` and `after` are the same frame when it was captured then.
 struct Bracket {
@@ -53,13 +56,29 @@ const BodyFrame* body_of(const SensorFrame& frame, BodyId id) {
   return nullptr;
 }
 
-std::vector<BodyFrame> bodies_between(const Bracket& around, Timestamp instant) {
+/// The same person cannot have been there and here.  Bodies of rays tell nothing.
+bool is_somebody_else(const BodyFrame& before, const BodyFrame& after, double reach) {
+  Eigen::Vector3d way = Eigen::Vector3d::Zero();
+  double count = 0.0;
+  for (const JointId id : kCoreJoints) {
+    const Joint& from = before.skeleton[id];
+    const Joint& to = after.skeleton[id];
+    if (!from.seen() || !to.seen()) continue;
+    way += to.position - from.position;
+    count += 1.0;
+  }
+  return count > 0 && way.norm() > count * reach;
+}
+
+std::vector<BodyFrame> bodies_between(const Bracket& around, Timestamp instant,
+                                      const AlignConfig& config) {
   const Duration gap = around.after->captured - around.before->captured;
   const double s = seconds(instant - around.before->captured) / seconds(gap);
+  const double reach = config.max_speed * seconds(gap) + kSlack;
   std::vector<BodyFrame> bodies;
   for (const BodyFrame& earlier : around.before->bodies) {
     const BodyFrame* later = body_of(*around.after, earlier.id);
-    if (!later) continue;
+    if (!later || is_somebody_else(earlier, *later, reach)) continue;
     bodies.push_back({earlier.id, instant, interpolate(earlier.skeleton, later->skeleton, s)});
   }
   return bodies;
@@ -98,7 +117,7 @@ AlignedSensor at(Timestamp instant, Timestamp now, const SensorId& sensor, const
     aligned.bodies = around.before->bodies;
     for (BodyFrame& body : aligned.bodies) body.captured = instant;
   } else if (around.basis == Basis::Interpolated) {
-    aligned.bodies = bodies_between(around, instant);
+    aligned.bodies = bodies_between(around, instant, config);
   }
   return aligned;
 }

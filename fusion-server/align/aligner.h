@@ -2,7 +2,8 @@
 //
 // Positions are interpolated linearly, orientations by sign-aligned normalised LERP. A joint is
 // interpolated only when both frames saw it; its state is the worse of the two.  Bodies are matched
-// by id; a body that only one of the frames has is left out.  Nothing is ever extrapolated.
+// by id; a body that only one of the frames has is left out, as is one that would have moved faster
+// than anybody can: its id went to somebody else between the two.  Nothing is ever extrapolated.
 #pragma once
 
 #include <optional>
@@ -26,6 +27,7 @@ struct AlignConfig {
   /// Where sensors are slow (cameras whose pictures take long), `max_gap` and `patience` grow with
   /// their periods and delays up to this.  If this is less than both, they never grow.
   Duration slowest = std::chrono::milliseconds(2000);
+  double max_speed = 6.0;  ///< Of a body's core joints [m/s].
 
   bool operator==(const AlignConfig&) const = default;
 };

@@ -6,8 +6,10 @@
 namespace chorus::associate {
 namespace {
 
-constexpr double kTooNear = 0.8;  // [m] nobody is tracked at a smaller distance
-constexpr double kGirth = 0.4;    // [m] a person this close to a line of sight blocks it
+constexpr double kTooNear = 0.8;         // [m] nobody is tracked nearer than this
+constexpr double kGirth = 0.4;           // [m] a person this close to a line of sight blocks it
+constexpr std::size_t kMostMissing = 2;  // to each that sees somebody, else it is not confirmed
+constexpr double kOtherSide = 0.5;  // cosine of the angle from which sensors are on different sides
 
 using Plan = Eigen::Vector2d;
 
@@ -32,14 +34,17 @@ void Admission::judge(Track& track) const {
   const auto seen = tracks_.find(track.id);
   if (track.admitted || seen == tracks_.end()) return;
   track.doubted = track.doubted || std::ranges::any_of(observers_, [&](const Observer& observer) {
-                    return misses(observer, track);
+                    return misses(observer, track, track.core);
                   });
-  if (seen->second.size() > 1 || !track.doubted) {
-    track.admitted = seen->second.size() > 1 || track.hits >= config_.confirm_frames;
+  const std::size_t sights = seen->second.size();
+  if (!track.doubted || (sights > 1 && count_missing(track) < kMostMissing * sights)) {
+    track.admitted = sights > 1 || track.hits >= config_.confirm_frames;
     return;
   }
   const SensorId& sensor = seen->second.front().sensor;
-  if (track.hits > 1 && !misplaces(sensor)) track.alone += elapsed_ / alone_in(sensor);
+  const bool nobody = misplaces(sensor) || seen_through(track, track.core);
+  if (track.hits > 1 && !nobody)
+    track.alone += elapsed_ / std::max<std::int64_t>(1, alone_in(sensor));
   track.admitted = track.alone >= config_.alone;
 }
 
@@ -64,15 +69,34 @@ bool Admission::hidden_from(const Observer& observer, const Eigen::Vector3d& pla
   });
 }
 
-/// The observer looks at the track's place but sees no body there that could belong to it.
-bool Admission::misses(const Observer& observer, const Track& track) const {
-  if (!looks_at(observer, track.core)) return false;
+std::size_t Admission::count_missing(const Track& track) const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      observers_, [&](const Observer& observer) { return misses(observer, track, track.core); }));
+}
+
+bool Admission::seen_through(const Track& track, const Eigen::Vector3d& place) const {
+  std::vector<Plan> sides;
+  for (const Observer& observer : observers_) {
+    if (!misses(observer, track, place)) continue;
+    const Plan side =
+        (on_floor(observer.world_from_sensor.translation()) - on_floor(place)).normalized();
+    if (std::ranges::any_of(sides, [&](const Plan& each) { return each.dot(side) < kOtherSide; }))
+      return true;
+    sides.push_back(side);
+  }
+  return false;
+}
+
+/// The observer looks where the track should be, and sees nobody there whom it could be.
+bool Admission::misses(const Observer& observer, const Track& track,
+                       const Eigen::Vector3d& place) const {
+  if (!looks_at(observer, place)) return false;
   const bool sees_somebody =
       std::ranges::any_of(bodies_of(observer.sensor), [&](const Assigned& body) {
-        const bool here = (on_floor(body.core) - on_floor(track.core)).norm() <= config_.gate;
+        const bool here = (on_floor(body.core) - on_floor(place)).norm() <= config_.gate;
         return here && (body.track == track.id || !body.settled);
       });
-  return !sees_somebody && !hidden_from(observer, track.core);
+  return !sees_somebody && !hidden_from(observer, place);
 }
 
 /// Several other sensors see a body in this sensor's view that this sensor does not see.

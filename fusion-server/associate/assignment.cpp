@@ -1,6 +1,7 @@
 #include "fusion-server/associate/assignment.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace chorus::associate {
@@ -8,8 +9,9 @@ namespace {
 
 constexpr std::size_t kFree = 0;  // rows and columns are counted from one; 0: unassigned
 
-/// Shortest augmenting paths with potentials.  The shorter side becomes the rows, so that every row
-/// gets a column; a forbidden pair costs more than all allowed pairs together.
+/// Shortest augmenting paths with potentials.  The shorter side supplies the rows, so that each of
+/// them gets a column; a forbidden pair costs what leaving both alone does, else more than all
+/// allowed pairs together.
 class Hungarian {
  public:
   explicit Hungarian(const CostTable& table)
@@ -17,7 +19,9 @@ class Hungarian {
         turned_(table.rows > table.columns),
         rows_(std::min(table.rows, table.columns)),
         columns_(std::max(table.rows, table.columns)),
-        forbidden_((table.gate + 1.0) * static_cast<double>(columns_ + 1)),
+        forbidden_(std::isfinite(table.unpaired)
+                       ? table.unpaired
+                       : (table.gate + 1.0) * static_cast<double>(columns_ + 1)),
         row_potential_(rows_ + 1, 0.0),
         column_potential_(columns_ + 1, 0.0),
         row_of_(columns_ + 1, kFree) {

@@ -2,6 +2,7 @@
 // where r is the shorter side).
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -13,13 +14,16 @@ struct CostTable {
   std::size_t columns = 0;
   std::vector<double> cost;
   double gate = 0.0;
+  /// What a row or column of the shorter side costs that gets none; infinite: as many allowed pairs
+  /// are made as possible.
+  double unpaired = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] double at(std::size_t row, std::size_t column) const {
     return cost[row * columns + column];
   }
 };
 
-/// The column of each row, or none.  As many allowed pairs as possible; among these the cheapest.
+/// For each row its column, or none.
 [[nodiscard]] std::vector<std::optional<std::size_t>> assign(const CostTable& table);
 
 }  // namespace chorus::associate

@@ -108,6 +108,7 @@ void resolve_sides(std::vector<Person>& people, Timestamp instant, Memory& memor
     const auto track = std::ranges::find(memory.tracks.people, person.id, &associate::Track::id);
     const auto figures = facing::stand_in(person, track->core);
     facing::resolve_sides(person, instant, memory.sides, config);
+    if (person.carried) continue;
     facing::back_to_rays(person, figures);
   }
 }

@@ -85,6 +85,7 @@ void read_align(ConfigReader reader, align::AlignConfig& out) {
   reader.read_ms("patience_ms", out.patience, milliseconds(1), seconds(5));
   reader.read_ms("unsteady_ms", out.unsteady, milliseconds(0), seconds(5));
   reader.read_ms("slowest_ms", out.slowest, milliseconds(0), seconds(3));
+  reader.read("max_speed_m_s", out.max_speed, 0.1, 1000.0);
 }
 
 void read_quality(ConfigReader reader, fusion::QualityLimits& out) {
@@ -99,10 +100,16 @@ void read_association(ConfigReader reader, associate::AssociationConfig& out) {
   reader.read("cluster_m", out.cluster, 0.05, 10.0);
   reader.read("ray_cluster_m", out.ray_cluster, 0.001, 10.0);
   reader.read("confirm_frames", out.confirm_frames, 1, 1000);
+  reader.read("gate_growth_m_s", out.gate_growth, 0.0, 10.0);
   reader.read_s("coast_s", out.coast, seconds(0), seconds(60));
   reader.read("merge_frames", out.merge_frames, 1, 1000);
   reader.read_s("alone_s", out.alone, seconds(0), seconds(60));
   reader.read_deg("look_angle_deg", out.look_angle, 1.0, 90.0);
+  reader.read_s("carry_s", out.carry, seconds(0), seconds(60));
+  reader.read_s("slow_down_s", out.slow_down, seconds(0), seconds(60));
+  reader.read_s("remember_s", out.remember, seconds(0), seconds(3600));
+  reader.read_s("recognise_s", out.recognise, seconds(0), seconds(60));
+  reader.read_s("question_s", out.question, seconds(0), seconds(60));
   reader.read("look_range_m", out.look_range, 0.5, 100.0);
   reader.read("max_range_m", out.bodies.max_range, 1.0, 1000.0);
   reader.read_s("frozen_s", out.bodies.max_frozen, seconds(0), seconds(3600));

@@ -78,6 +78,12 @@ std::vector<Association> ablations() {
   config = whole;
   config.alone = Duration{0};
   all.push_back({"without-waiting", config});
+  config = whole;
+  config.remember = Duration{0};
+  all.push_back({"without-remembering", config});
+  config = whole;
+  config.carry = Duration{0};
+  all.push_back({"without-carrying", config});
   return all;
 }
 

@@ -91,6 +91,7 @@ Eigen::Vector2d true_place(const Workshop& workshop, std::size_t person, Timesta
 }
 
 Claimed claimed(const Person& person) {
+  if (person.carried) return {person.id.value, {person.carried->x(), person.carried->z()}};
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   double count = 0.0;
   for (const SensorView& view : person.views) {

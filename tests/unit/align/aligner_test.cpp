@@ -31,7 +31,7 @@ SensorFrame frame_at(Duration after, double x) {
 History two_frames(Duration gap) {
   History history;
   history.push(frame_at(milliseconds(0), 0.0));
-  history.push(frame_at(gap, 0.3));
+  history.push(frame_at(gap, 0.15));
   return history;
 }
 
@@ -46,13 +46,13 @@ double neck_x(const AlignedSensor& aligned) {
 TEST(Align, ACaptureAtTheInstantIsExact) {
   const AlignedSensor aligned = ask(two_frames(milliseconds(30)), milliseconds(30));
   EXPECT_EQ(aligned.basis, Basis::Exact);
-  EXPECT_DOUBLE_EQ(neck_x(aligned), 0.3);
+  EXPECT_DOUBLE_EQ(neck_x(aligned), 0.15);
 }
 
 TEST(Align, BetweenTwoCapturesPositionsAreLinear) {
   const AlignedSensor aligned = ask(two_frames(milliseconds(30)), milliseconds(10));
   EXPECT_EQ(aligned.basis, Basis::Interpolated);
-  EXPECT_NEAR(neck_x(aligned), 0.1, 1e-12);
+  EXPECT_NEAR(neck_x(aligned), 0.05, 1e-12);
   EXPECT_EQ(aligned.bodies[0].captured, kStart + milliseconds(10));
 }
 
@@ -136,13 +136,22 @@ TEST(Align, ASlowSensorsGapIsBridgedWhereOneFrameIsMissing) {
 
 TEST(Align, ABodyAtOneEndOnlyIsNotShown) {
   History history = two_frames(milliseconds(30));
-  SensorFrame third = frame_at(milliseconds(60), 0.6);
+  SensorFrame third = frame_at(milliseconds(60), 0.3);
   third.bodies.push_back(body_at(third.captured, 2.0, 2));
   history.push(third);
   const AlignedSensor aligned = ask(history, milliseconds(45));
   ASSERT_EQ(aligned.bodies.size(), 1u);
   EXPECT_EQ(aligned.bodies[0].id, BodyId{1});
-  EXPECT_NEAR(neck_x(aligned), 0.45, 1e-12);
+  EXPECT_NEAR(neck_x(aligned), 0.225, 1e-12);
+}
+
+TEST(Align, IsNotInterpolatedAcrossAnIdThatWentToSomebodyElse) {
+  History history;
+  history.push(frame_at(milliseconds(0), 0.0));
+  history.push(frame_at(milliseconds(33), 1.7));
+  EXPECT_TRUE(ask(history, milliseconds(10)).bodies.empty());
+  EXPECT_EQ(ask(history, milliseconds(10)).basis, Basis::Interpolated);
+  EXPECT_EQ(ask(history, milliseconds(33)).bodies.size(), 1u);
 }
 
 TEST(Align, BasisAtAgreesWithTheFullAnswer) {

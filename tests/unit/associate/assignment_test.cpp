@@ -70,5 +70,14 @@ TEST(AssignProperty, EqualsTryingEverything) {
   }
 }
 
+TEST(Assign, LeavesARowAloneWhenThatCostsLess) {
+  // Two pairs cost 1.8, one pair and a row alone 1.1.
+  CostTable table{2, 2, {0.1, 0.9, 0.9, 2.0}, 1.0};
+  EXPECT_EQ(assign(table)[1], 0u);
+  table.unpaired = 1.0;
+  EXPECT_EQ(assign(table)[0], 0u);
+  EXPECT_FALSE(assign(table)[1]);
+}
+
 }  // namespace
 }  // namespace chorus::associate

@@ -87,16 +87,28 @@ TEST(Group, TwoPeopleKeepTheirIdsWhenTheyPass) {
 
 TEST(Group, ATrackOutlivesAShortGapAndIdsAreNeverReused) {
   Room room;
+  room.config.remember = Duration{0};
   room.see_often({view(1, 0, 0)}, 3);
-  room.see_often({}, 20);  // 0.66 s
+  room.see_often({}, 60);  // 2 s
   auto people = room.see({view(1, 0, 0)});
   ASSERT_EQ(people.size(), 1u);
   EXPECT_EQ(people[0].id, PersonId{1});
-  room.see_often({}, 40);  // 1.3 s
+  room.see_often({}, 100);  // 3.3 s
   EXPECT_TRUE(room.tracks.people.empty());
   people = room.see_often({view(1, 0, 0)}, 3);
   ASSERT_EQ(people.size(), 1u);
   EXPECT_EQ(people[0].id, PersonId{2});
+}
+
+TEST(Group, AViewThatIsTooFarOffDoesNotPushAnotherOneAside) {
+  Room room;
+  room.see_often({view(1, 0, 0, 1), view(1, 0.55, 0, 2), view(2, 0, 0), view(2, 0.55, 0, 2)}, 5);
+  // One of two goes, the other steps aside: two pairs would cost more than one and a newcomer.
+  const auto people = room.see({view(1, 0.56, 0, 2), view(1, 1.12, 0, 3), view(2, 0.56, 0, 2)});
+  const auto second = std::ranges::find(people, PersonId{2}, &Person::id);
+  ASSERT_NE(second, people.end());
+  EXPECT_EQ(second->views.size(), 2u);
+  EXPECT_NEAR(second->views[0].skeleton[JointId::Neck].position.x(), 0.56, 1e-9);
 }
 
 TEST(Group, OnePersonSeenByDifferentSensorsInTwoTracksBecomesOne) {

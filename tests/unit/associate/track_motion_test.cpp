@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "fusion-server/associate/person_association.h"
+#include "fusion-server/associate/track_motion.h"
 
 namespace chorus::associate {
 namespace {
@@ -89,6 +90,28 @@ TEST(TrackMotion, NewcomersSeenInPartsAreOnePerson) {
   legs.skeleton[JointId::SpineBase].position.y() = 0.6;
   floor.see({view_at({0, 1.2, 0}), legs});
   EXPECT_EQ(floor.tracks.people.size(), 1u);
+}
+
+TEST(TrackMotion, AViewThatComesAndGoesFakesNoSpeed) {
+  Floor floor;
+  for (int i = 0; i < 60; ++i) {
+    std::vector<SensorView> views{view_at({0, 1, 0})};
+    if (i % 2 == 0) views.push_back(view_at({0.3, 1, 0}, 2));  // registered 0.3 m off
+    floor.see(views);
+    EXPECT_LT(floor.tracks.people.at(0).velocity.norm(), 1e-9) << i;
+  }
+}
+
+TEST(TrackMotion, WhoIsNotSeenSlowsDownAndIsLookedForFartherAway) {
+  AssociationConfig config;
+  Track track;
+  track.velocity = {1.0, 0, 0};
+  const Candidate soon = predict(track, Timestamp{} + std::chrono::milliseconds(100), config);
+  const Candidate late = predict(track, Timestamp{} + std::chrono::seconds(3), config);
+  EXPECT_NEAR(soon.predicted.x(), 0.1, 0.005);
+  EXPECT_LT(late.predicted.x(), 2.0);
+  EXPECT_GT(late.predicted.x(), 1.0);
+  EXPECT_NEAR(late.gate - soon.gate, 2.9 * config.gate_growth, 1e-9);
 }
 
 }  // namespace

@@ -1,0 +1,175 @@
+#include "fusion-server/associate/matching.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "fusion-server/associate/assignment.h"
+#include "fusion-server/associate/track_motion.h"
+
+namespace chorus::associate {
+namespace {
+
+constexpr int kRounds = 3;          // in which sensors hear of each other
+constexpr double kOwnWeight = 1.0;  // of where a track is expected, beside one sensor's view of it
+constexpr double kSizeReach = 0.5;  // [m] of distance that a body larger by a factor of e is worth
+constexpr double kKnown = 1.0;      // [s] of sight, from which a build tells something
+constexpr double kDoubtful = 0.3;   // share of the gate by which a track that waits comes second
+
+/// A view on its way to a track.
+struct Loose {
+  PlacedView view;
+  Spans spans;
+  std::optional<std::size_t> track = {};
+};
+
+using BySensor = std::map<SensorId, std::vector<Loose>>;
+
+/// By how much the body is larger than the track's is known to be, as a logarithm.
+double size_difference(const Spans& spans, const Build& build) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < kSpans; ++i) {
+    if (!spans.length[i] || build.sight[i] < kKnown) continue;
+    sum += *spans.length[i] - build.mean[i];
+    count += 1.0;
+  }
+  return count > 0 ? sum / count : 0.0;
+}
+
+/// Where a track is, as expected and as the other sensors have it.
+class Places {
+ public:
+  explicit Places(const std::vector<Candidate>& candidates) {
+    for (const Candidate& each : candidates) sums_.push_back({each.predicted, kOwnWeight});
+  }
+  void add(const Loose& loose, double sign) {
+    if (!loose.track || loose.view.rays) return;
+    Sum& sum = sums_[*loose.track];
+    sum.place = (sum.weight * sum.place + sign * loose.view.core) / (sum.weight + sign);
+    sum.weight += sign;
+  }
+  [[nodiscard]] const Eigen::Vector3d& at(std::size_t track) const { return sums_[track].place; }
+
+ private:
+  struct Sum {
+    Eigen::Vector3d place;
+    double weight;
+  };
+  std::vector<Sum> sums_;
+};
+
+/// How far a body is from a track, 1 at its gate; not a number when that cannot be told.
+double cost_of(const Loose& loose, const Candidate& candidate, const Eigen::Vector3d& place) {
+  const PlacedView& body = loose.view;
+  if (!body.rays) {
+    const Build& known = candidate.track.before.value_or(candidate.track.build);
+    return std::hypot(horizontal_distance(body.core, place),
+                      kSizeReach * size_difference(loose.spans, known)) /
+               candidate.gate +
+           (candidate.track.admitted ? 0.0 : kDoubtful);
+  }
+  const Eigen::Vector3d shift = candidate.predicted - candidate.track.core;
+  auto off = misfit(body.view, candidate.track.joints, shift);
+  if (!off) off = misfit(body.view, candidate.predicted);
+  return off ? *off / candidate.gate : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Assigns one sensor's bodies to the tracks; whether anything changed.
+bool assign_sensor(std::vector<Loose>& bodies, const std::vector<Candidate>& candidates,
+                   const Places& places) {
+  CostTable table{bodies.size(), candidates.size(), {}, 1.0, 1.0};
+  for (const Loose& body : bodies) {
+    for (std::size_t i = 0; i < candidates.size(); ++i)
+      table.cost.push_back(cost_of(body, candidates[i], places.at(i)));
+  }
+  const auto chosen = assign(table);
+  bool changed = false;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    changed = changed || bodies[i].track != chosen[i];
+    bodies[i].track = chosen[i];
+  }
+  return changed;
+}
+
+BySensor by_sensor(std::vector<PlacedView> views) {
+  BySensor sensors;
+  for (PlacedView& view : views) {
+    Loose loose{std::move(view), {}};
+    loose.spans = spans_of({loose.view}, {});
+    sensors[loose.view.view.sensor].push_back(std::move(loose));
+  }
+  return sensors;
+}
+
+void assign_all(BySensor& sensors, const std::vector<Candidate>& candidates) {
+  Places places(candidates);
+  const Places expected = places;
+  for (auto& [sensor, bodies] : sensors) {
+    assign_sensor(bodies, candidates, expected);
+    for (const Loose& body : bodies) places.add(body, 1.0);
+  }
+  bool changed = sensors.size() > 1;
+  for (int round = 0; round < kRounds && changed; ++round) {
+    changed = false;
+    for (auto& [sensor, bodies] : sensors) {
+      for (const Loose& body : bodies) places.add(body, -1.0);
+      changed = assign_sensor(bodies, candidates, places) || changed;
+      for (const Loose& body : bodies) places.add(body, 1.0);
+    }
+  }
+}
+
+/// Complete linkage: distance to the farthest member; none when the sensor already has a member.
+std::optional<double> linkage(const std::vector<PlacedView>& cluster, const PlacedView& view) {
+  if (has_sensor(cluster, view.view.sensor)) return std::nullopt;
+  double farthest = 0.0;
+  for (const PlacedView& member : cluster) {
+    farthest = std::max(farthest, horizontal_distance(member.core, view.core));
+  }
+  return farthest;
+}
+
+}  // namespace
+
+std::vector<PlacedView> match(std::vector<PlacedView> views, std::vector<Candidate>& candidates) {
+  BySensor sensors = by_sensor(std::move(views));
+  assign_all(sensors, candidates);
+  std::vector<PlacedView> leftovers;
+  for (auto& [sensor, bodies] : sensors) {
+    for (Loose& body : bodies) {
+      auto& home = body.track ? candidates[*body.track].sights : leftovers;
+      home.push_back(std::move(body.view));
+    }
+  }
+  return leftovers;
+}
+
+std::vector<std::vector<PlacedView>> cluster(std::vector<PlacedView> views, double limit) {
+  std::vector<std::vector<PlacedView>> clusters;
+  for (PlacedView& view : views) {
+    std::vector<PlacedView>* nearest = nullptr;
+    double least = limit;
+    for (auto& members : clusters) {
+      const auto distance = linkage(members, view);
+      if (!distance || *distance > least) continue;
+      nearest = &members;
+      least = *distance;
+    }
+    if (nearest) {
+      nearest->push_back(std::move(view));
+    } else {
+      clusters.emplace_back().push_back(std::move(view));
+    }
+  }
+  return clusters;
+}
+
+bool has_sensor(const std::vector<PlacedView>& views, const SensorId& sensor) {
+  return std::ranges::any_of(views, [&](const PlacedView& s) { return s.view.sensor == sensor; });
+}
+
+}  // namespace chorus::associate

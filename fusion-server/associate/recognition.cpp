@@ -1,0 +1,131 @@
+#include "fusion-server/associate/recognition.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace chorus::associate {
+namespace {
+
+constexpr std::size_t kMostMissing = 64;
+constexpr double kGlance = 1.5;       // [s] of sight of all views, from which builds may rule out
+constexpr double kManyViews = 4.0;    // which need that much less time
+constexpr double kImpossible = -4.0;  // log odds at which they do
+constexpr double kContinuity = 1.5;   // log odds that somebody found where expected is who was lost
+constexpr double kUnlikely = -0.5;  // log odds at which somebody lost and found goes without an id
+constexpr Duration kNoBones = std::chrono::seconds(2);  // nobody's bones are waited for longer
+
+bool has_left(const Candidate& candidate) {
+  return candidate.sights.empty() && (candidate.track.named || candidate.track.before);
+}
+
+Missing missing_of(const Track& track) {
+  return {track.id, track.before ? track.lost : track.seen, track.before.value_or(track.build)};
+}
+
+/// Those whom a track that was found then may be.
+std::vector<Missing> missing_before(Timestamp found, const std::vector<Candidate>& candidates,
+                                    const Tracks& tracks) {
+  std::vector<Missing> all = tracks.missing;
+  for (const Candidate& each : candidates) {
+    if (has_left(each)) all.push_back(missing_of(each.track));
+  }
+  std::erase_if(all, [&](const Missing& each) { return each.seen > found; });
+  return all;
+}
+
+/// Long enough to say whether two are one.
+bool is_looked_at(const Build& build, const AssociationConfig& config) {
+  return sight_of(build) * std::max(1.0, build.views / kManyViews) >= seconds(config.recognise);
+}
+
+bool is_glance(const Build& build) { return sight_of(build) * build.views >= kGlance; }
+
+/// The likeliest; `odds`: its log odds.
+struct Likeliest {
+  std::optional<PersonId> id;
+  double odds = 0.0;
+};
+
+Likeliest likeliest_of(const Build& build, const std::vector<Missing>& missing) {
+  Likeliest best;
+  for (const Missing& each : missing) {
+    const double odds = likeness(build, each.build);
+    if (!best.id || odds > best.odds) best = {each.id, odds};
+  }
+  return best;
+}
+
+/// Takes over who was missing.
+void become(Track& track, PersonId id, std::vector<Candidate>& candidates, Tracks& tracks) {
+  for (Missing& each : tracks.missing) {
+    if (each.id == id) track.build.add(each.build);
+  }
+  std::erase_if(tracks.missing, [&](const Missing& each) { return each.id == id; });
+  for (Candidate& each : candidates) {
+    if (each.track.id != id || !has_left(each)) continue;
+    track.build.add(missing_of(each.track).build);
+    each.track.id = PersonId{};  // goes
+  }
+  track.id = id;
+}
+
+/// Whether it is known now who a newcomer is; then the track has the id of that person.
+bool name(Candidate& candidate, std::vector<Candidate>& candidates, Tracks& tracks,
+          const AssociationConfig& config) {
+  Track& track = candidate.track;
+  const auto missing = missing_before(track.found, candidates, tracks);
+  if (missing.empty()) return true;
+  const Likeliest best = likeliest_of(track.build, missing);
+  const bool looked_at = is_looked_at(track.build, config);
+  if (looked_at && best.odds > 0) {
+    become(track, *best.id, candidates, tracks);
+    return true;
+  }
+  const bool new_to_all = is_glance(track.build) && best.odds < kImpossible;
+  return looked_at || new_to_all || track.seen - track.found > kNoBones + config.recognise;
+}
+
+/// Holds somebody who was lost and found against who was lost.
+void question(Track& track, Tracks& tracks, const AssociationConfig& config) {
+  const double odds = kContinuity + likeness(*track.before, track.build);
+  const bool looked_at = is_looked_at(track.build, config);
+  track.named = !is_glance(track.build) || odds > kUnlikely;
+  if ((is_glance(track.build) && odds < kImpossible) || (looked_at && odds < 0)) {
+    tracks.missing.push_back(missing_of(track));
+    track.id = PersonId{tracks.next_id++};
+    track.before.reset();
+    track.named = false;
+    track.found = track.lost;
+  } else if (looked_at) {
+    track.build.add(*std::exchange(track.before, std::nullopt));
+    track.named = true;
+  }
+}
+
+}  // namespace
+
+void miss(const Track& track, Tracks& tracks) {
+  if (!(track.named || track.before) || !track.admitted) return;
+  tracks.missing.push_back(missing_of(track));
+  if (tracks.missing.size() > kMostMissing) tracks.missing.erase(tracks.missing.begin());
+}
+
+void forget(Tracks& tracks, Timestamp instant, const AssociationConfig& config) {
+  std::erase_if(tracks.missing, [&](const Missing& each) {
+    return instant < each.seen || instant - each.seen > config.remember;
+  });
+}
+
+void recognise(std::vector<Candidate>& candidates, Tracks& tracks,
+               const AssociationConfig& config) {
+  for (Candidate& each : candidates) {
+    if (each.sights.empty()) continue;
+    if (each.track.before) question(each.track, tracks, config);
+    if (!each.track.named && !each.track.before && each.track.hits >= config.confirm_frames)
+      each.track.named = name(each, candidates, tracks, config);
+  }
+  std::erase_if(candidates, [](const Candidate& each) { return each.track.id == PersonId{}; });
+}
+
+}  // namespace chorus::associate

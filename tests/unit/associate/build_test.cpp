@@ -1,0 +1,83 @@
+#include "fusion-server/associate/build.h"
+
+#include <cmath>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "common/body/bones.h"
+#include "tests/support/builders.h"
+
+namespace chorus::associate {
+namespace {
+
+using testing::standing_person;
+
+PlacedView view_of(double size) {
+  PlacedView placed;
+  placed.view.skeleton = standing_person();
+  for (Joint& joint : placed.view.skeleton.joints) joint.position *= size;
+  return placed;
+}
+
+Build build_of(double size, double time = 1.0, std::size_t views = 4) {
+  Build build;
+  build.add(spans_of(std::vector<PlacedView>(views, view_of(size)), {}), time);
+  return build;
+}
+
+TEST(Build, OfALargerPersonIsLargerByTheSameInAllLengths) {
+  const Build usual = build_of(1.0);
+  const Build tall = build_of(1.1);
+  for (std::size_t i = 0; i < kSpans; ++i)
+    EXPECT_NEAR(tall.mean[i] - usual.mean[i], std::log(1.1), 1e-9) << i;
+}
+
+TEST(Build, IsTheSameWithLeftAndRightExchanged) {
+  PlacedView view = view_of(1.0);
+  view.view.skeleton[JointId::ElbowLeft].position.y() += 0.1;
+  const Spans spans = spans_of({view}, {});
+  for (const auto& [left, right] : kMirrorPairs)
+    std::swap(view.view.skeleton[left], view.view.skeleton[right]);
+  const Spans exchanged = spans_of({view}, {});
+  for (std::size_t i = 0; i < kSpans; ++i)
+    EXPECT_NEAR(*spans.length[i], *exchanged.length[i], 1e-12) << i;
+}
+
+TEST(Build, GuessedJointsHaveNoLengths) {
+  PlacedView view = view_of(1.0);
+  for (Joint& joint : view.view.skeleton.joints) joint.state = JointState::Inferred;
+  for (const auto& length : spans_of({view}, {}).length) EXPECT_FALSE(length);
+}
+
+TEST(Build, OfRaysIsThatOfWhereTheyMeet) {
+  PlacedView view = view_of(1.0);
+  view.rays = true;
+  const Located met = points_of(standing_person());
+  EXPECT_TRUE(spans_of({view}, met).length[0]);
+  EXPECT_FALSE(spans_of({view}, {}).length[0]);
+}
+
+TEST(Likeness, TellsOneFromAnother) {
+  EXPECT_GT(likeness(build_of(1.0, 30.0), build_of(1.005)), 0.0);
+  EXPECT_LT(likeness(build_of(1.0, 30.0), build_of(1.05)), -4.0);
+  EXPECT_EQ(likeness(build_of(1.0), Build{}), 0.0);
+}
+
+TEST(Likeness, SaysLessTheShorterAndTheFewerTheSights) {
+  const Build known = build_of(1.0, 30.0);
+  EXPECT_LT(likeness(known, build_of(1.04, 1.0)), likeness(known, build_of(1.04, 0.1)));
+  EXPECT_LT(likeness(known, build_of(1.04, 1.0, 4)), likeness(known, build_of(1.04, 1.0, 1)));
+}
+
+TEST(Build, AddsUpByTimeOfSight) {
+  Build both = build_of(1.0, 3.0);
+  both.add(build_of(1.1, 1.0));
+  EXPECT_NEAR(both.mean[0] - build_of(1.0).mean[0], 0.25 * std::log(1.1), 1e-9);
+  EXPECT_NEAR(sight_of(both), 4.0, 1e-9);
+  both.add(build_of(1.0, 600.0));
+  EXPECT_NEAR(sight_of(both), 60.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace chorus::associate

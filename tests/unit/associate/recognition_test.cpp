@@ -1,0 +1,189 @@
+// Who comes, goes and comes back: known again by their build, or not taken for somebody else.
+#include "fusion-server/associate/recognition.h"
+
+#include <algorithm>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "fusion-server/associate/person_association.h"
+#include "tests/support/builders.h"
+
+namespace chorus::associate {
+namespace {
+
+using testing::kFrameInterval;
+using testing::kStart;
+using testing::standing_person;
+
+/// Somebody at a place on the floor, larger than usual by a factor.
+struct Somebody {
+  double x = 0.0;
+  double size = 1.0;
+};
+
+SensorView view_of(const Somebody& who, int sensor, std::uint64_t body) {
+  SensorView view;
+  view.sensor = testing::sensor_id("s" + std::to_string(sensor));
+  view.body = BodyId{body};
+  view.skeleton = standing_person();
+  for (Joint& joint : view.skeleton.joints) {
+    joint.position *= who.size;
+    joint.position.x() += who.x;
+  }
+  return view;
+}
+
+/// Four sensors that all see everybody; what they look at is not known unless asked for.
+struct Room {
+  AssociationConfig config = {};
+  std::vector<Observer> observers = {};
+  Tracks tracks = {};
+  Timestamp instant = kStart;
+
+  std::vector<Person> see(const std::vector<Somebody>& people) {
+    instant += kFrameInterval;
+    Scene scene{instant, {}, observers};
+    for (int sensor = 0; sensor < 4; ++sensor) {
+      for (std::size_t i = 0; i < people.size(); ++i)
+        scene.views.push_back(view_of(people[i], sensor, i + 1));
+    }
+    Grouping grouping = group(std::move(scene), tracks, config);
+    tracks = std::move(grouping.tracks);
+    return std::move(grouping.people);
+  }
+  std::vector<Person> see_for(double time, const std::vector<Somebody>& people) {
+    std::vector<Person> found;
+    for (const Timestamp begun = instant; seconds(instant - begun) < time;) found = see(people);
+    return found;
+  }
+  /// How long it takes until somebody is published who is seen [s].
+  double until_seen(const std::vector<Somebody>& people) {
+    const Timestamp begun = instant;
+    const auto seen = [](const Person& person) { return !person.carried; };
+    while (std::ranges::none_of(see(people), seen) && seconds(instant - begun) < 10.0) {
+    }
+    return seconds(instant - begun);
+  }
+};
+
+constexpr PersonId kFirst{1};
+
+TEST(Recognition, WhoComesBackAfterTwentySecondsIsTheSamePerson) {
+  Room room;
+  EXPECT_EQ(room.see_for(3.0, {{0.0}}).at(0).id, kFirst);
+  EXPECT_TRUE(room.see_for(20.0, {}).empty());
+  EXPECT_TRUE(room.see_for(0.3, {{2.0}}).empty()) << "not before it is known who it is";
+  const auto people = room.see_for(1.0, {{2.0}});
+  ASSERT_EQ(people.size(), 1u);
+  EXPECT_EQ(people[0].id, kFirst);
+}
+
+TEST(Recognition, OfTwoWhoLeftTheRightOneComesBack) {
+  Room room;
+  const auto both = room.see_for(3.0, {{0.0, 1.0}, {2.0, 1.08}});
+  ASSERT_EQ(both.size(), 2u);
+  room.see_for(10.0, {});
+  const auto people = room.see_for(1.5, {{0.0, 1.08}});
+  ASSERT_EQ(people.size(), 1u);
+  EXPECT_EQ(people[0].id, both[1].id);
+}
+
+TEST(Recognition, SomebodyElseGetsAnIdOfTheirOwnAndInheritsNone) {
+  Room room;
+  room.see_for(3.0, {{0.0}});
+  room.see_for(5.0, {});
+  for (int i = 0; i < 60; ++i) {
+    for (const Person& person : room.see({{0.0, 1.08}})) EXPECT_NE(person.id, kFirst) << i;
+  }
+  EXPECT_EQ(room.see({{0.0, 1.08}}).size(), 1u);
+}
+
+TEST(Recognition, NobodyWaitsWhileNobodyIsMissing) {
+  Room room;
+  EXPECT_LE(room.until_seen({{0.0}}), 0.15);
+  const Timestamp begun = room.instant;
+  while (room.see({{0.0}, {2.0, 1.08}}).size() < 2) {
+  }
+  EXPECT_LE(seconds(room.instant - begun), 0.15);
+}
+
+TEST(Recognition, AfterAMinuteNobodyIsRemembered) {
+  Room room;
+  room.see_for(3.0, {{0.0}});
+  room.see_for(64.5, {});
+  EXPECT_LE(room.until_seen({{0.0}}), 0.15);
+  EXPECT_NE(room.see({{0.0}}).at(0).id, kFirst);
+  Room forgetful{.config = {.remember = Duration{0}}};
+  forgetful.see_for(3.0, {{0.0}});
+  forgetful.see_for(5.0, {});
+  EXPECT_LE(forgetful.until_seen({{0.0}}), 0.15);
+}
+
+TEST(Recognition, ContinuityIsQuestionedAfterAGap) {
+  Room room;
+  room.see_for(3.0, {{0.0}});
+  room.see_for(0.5, {});
+  room.see_for(1.5, {{0.0, 1.1}});  // somebody larger comes out
+  const auto people = room.see({{0.0, 1.1}});
+  ASSERT_EQ(people.size(), 1u);
+  EXPECT_NE(people[0].id, kFirst);
+  room.see_for(5.0, {});
+  EXPECT_EQ(room.see_for(2.0, {{0.0}}).at(0).id, kFirst) << "and who was lost is remembered";
+}
+
+TEST(Recognition, WhoIsLostAndFoundKeepsTheIdAllTheTime) {
+  Room room;
+  room.see_for(3.0, {{0.0}});
+  room.see_for(0.5, {});
+  for (int i = 0; i < 60; ++i) {
+    const auto people = room.see({{0.0}});
+    ASSERT_EQ(people.size(), 1u) << i;
+    EXPECT_EQ(people[0].id, kFirst);
+  }
+}
+
+TEST(Carried, SomebodyWhomNobodySeesIsAnsweredForASecond) {
+  Room room;
+  room.see_for(2.0, {{0.0}});
+  const auto people = room.see_for(0.5, {});
+  ASSERT_EQ(people.size(), 1u);
+  ASSERT_TRUE(people[0].carried.has_value());
+  EXPECT_TRUE(people[0].views.empty());
+  EXPECT_NEAR(people[0].carried->x(), 0.0, 0.05);
+  EXPECT_TRUE(room.see_for(0.6, {}).empty());
+}
+
+std::vector<Observer> on_a_ring(const std::vector<int>& places) {
+  std::vector<Observer> observers;
+  for (const int place : places)
+    observers.push_back(
+        {testing::sensor_id("s" + std::to_string(place)), testing::ring_sensor(place, 4)});
+  return observers;
+}
+
+TEST(Carried, WhomSensorsOnDifferentSidesSeeThroughHasLeft) {
+  Room room{.observers = on_a_ring({0, 1, 2, 3})};
+  room.see_for(2.0, {{0.0}});
+  EXPECT_TRUE(room.see_for(0.4, {}).empty());
+  EXPECT_TRUE(room.tracks.people.empty());
+  ASSERT_EQ(room.tracks.missing.size(), 1u);
+  Room one_side{.observers = on_a_ring({0})};
+  one_side.see_for(2.0, {{0.0}});
+  EXPECT_EQ(one_side.see_for(0.4, {}).size(), 1u) << "something may stand in the way";
+}
+
+TEST(Rivals, ASecondBodyOfOneSensorBesideAPersonFoundsNobody) {
+  Room room;
+  room.see_for(2.0, {{0.0}});
+  room.instant += kFrameInterval;
+  Scene scene{room.instant, {}};
+  for (int sensor = 0; sensor < 4; ++sensor) scene.views.push_back(view_of({0.0}, sensor, 1));
+  scene.views.push_back(view_of({0.2}, 2, 2));
+  EXPECT_EQ(group(scene, room.tracks, room.config).tracks.people.size(), 1u);
+  scene.views.push_back(view_of({0.2}, 3, 2));
+  EXPECT_EQ(group(scene, room.tracks, room.config).tracks.people.size(), 2u) << "two see two";
+}
+
+}  // namespace
+}  // namespace chorus::associate
