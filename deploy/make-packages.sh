@@ -46,7 +46,7 @@ page_files() {
   done
 }
 
-# Downloads what our packages depend on and not every Debian has, as apt computes it for an empty system.
+# Downloads the dependencies of our packages that a Debian may lack, as apt finds them for an empty system.
 download_dependencies() {
   local scratch; scratch=$(mktemp -d)
   mkdir -p "$scratch/archives/partial"

@@ -24,8 +24,8 @@ class GltfBuffer {
   std::size_t vectors(std::span<const Eigen::Vector3f> values, ViewTarget target);
   std::size_t quaternions(std::span<const Eigen::Quaternionf> values);   ///< In the order x y z w.
   std::size_t matrices(std::span<const Eigen::Matrix4f> values);         ///< Column by column.
-  std::size_t vertex_joints(std::span<const std::uint8_t> first_joint);  ///< The other three are 0.
-  std::size_t vertex_weights(std::size_t count);  ///< The first joint has all the weight.
+  std::size_t vertex_joints(std::span<const std::uint8_t> first_joint);  ///< Joints 2 to 4 are 0.
+  std::size_t vertex_weights(std::size_t count);  ///< All weight on the first joint.
   std::size_t indices(std::span<const std::uint16_t> values);
 
   /// Adds buffers, bufferViews and accessors to the document and packs both into a GLB.

@@ -41,7 +41,7 @@ struct Guard {
   std::vector<Token> tokens = {};
   bool open = false;  ///< The server listens to more than this host.
 
-  /// Some token is for reading, so every reader needs one.
+  /// At least one token is for reading, so every reader needs one.
   [[nodiscard]] bool knows_readers() const;
   /// Reading needs a token, at least for clients on other hosts.
   [[nodiscard]] bool guards_reading() const { return open || knows_readers(); }

@@ -1,4 +1,4 @@
-// Server-sent events, read from bytes as they come (WHATWG HTML 9.2.6).  No socket.
+// Parses server-sent events from bytes as they arrive (WHATWG HTML 9.2.6).  No socket.
 #pragma once
 
 #include <cstddef>

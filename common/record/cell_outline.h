@@ -36,7 +36,7 @@ struct SensorStay {
   std::vector<std::filesystem::path> files;
   Timestamp first;  ///< First capture time, by the recorder's clock.
   Timestamp last;
-  /// The number that the files state, frames left out included; none when they do not state it.
+  /// The number of frames that the files state, with those left out; none if they state none.
   std::optional<std::uint64_t> frames;
   bool cell = false;  ///< Recorded together with other sensors, even if those are missing here.
 };

@@ -107,7 +107,7 @@ class Template : TemplateText {
     return true;
   }
 
-  /// Reads from after "ch:" of the first property to before the final " .".
+  /// Starts after the "ch:" of the first property; stops before the final " .".
   bool joint(JointResource& joint) {
     if (text("state ch:NotTracked")) return true;
     if (!(text("ray") ? ray(joint) : point(joint)) || !text(" ;\n  ch:")) return false;
@@ -130,7 +130,7 @@ class Template : TemplateText {
            decimal(p.z());
   }
 
-  /// Reads from after "ray".
+  /// Starts after "ray".
   bool ray(JointResource& joint) {
     auto& p = joint.position;
     joint.measurement = Measurement::Ray;
@@ -138,7 +138,7 @@ class Template : TemplateText {
            text(" ; ch:rayZ ") && decimal(p.z()) && std::abs(p.norm() - 1.0) <= kRayTolerance;
   }
 
-  /// Reads from after the name of the first term.
+  /// Starts after the name of the first term.
   bool covariance(Covariance& out) {
     std::array<double, Covariance::kTerms> upper{};
     for (std::size_t i = 0; i < upper.size(); ++i) {

@@ -84,7 +84,7 @@ class JsonTemplate : TemplateText {
     return integer(id) && (!quoted || text("\""));
   }
 
-  /// Reads from after the quote of the first property to after the brace.
+  /// Starts after the first property's opening quote; stops after the closing brace.
   bool joint(JointResource& joint) {
     if (text("state\":\"NotTracked\"}")) return true;
     if (!(text("ray") ? ray(joint) : point(joint)) || !text(",\"")) return false;
@@ -109,7 +109,7 @@ class JsonTemplate : TemplateText {
            decimal(p.z());
   }
 
-  /// Reads a ray; the text up to and including "ray" has been read.
+  /// Starts after "ray".
   bool ray(JointResource& joint) {
     auto& p = joint.position;
     joint.measurement = Measurement::Ray;
@@ -117,7 +117,7 @@ class JsonTemplate : TemplateText {
            text(",\"rayZ\":") && decimal(p.z()) && std::abs(p.norm() - 1.0) <= kRayTolerance;
   }
 
-  /// Reads from after the name of the first term to after the quote of what follows.
+  /// Starts after the name of the first term; stops after the opening quote of the next name.
   bool covariance(Covariance& out) {
     std::array<double, Covariance::kTerms> upper{};
     for (std::size_t i = 0; i < upper.size(); ++i) {

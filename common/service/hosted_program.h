@@ -14,7 +14,7 @@
 
 namespace chorus::service {
 
-/// `Settings`: `live` with a LogConfig `log`, and `at_start`.
+/// `Settings` has a member `live`, with a LogConfig `log`, and a member `at_start`.
 /// `Host`: static Result<std::unique_ptr<Host>> make(const Settings&), which binds nothing yet;
 ///         Result<void> start(); void take(const live part&); void stop();
 ///         and, if it has any to offer, bool alive(); Concerns concerns().

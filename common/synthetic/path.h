@@ -27,7 +27,7 @@ struct PathScript {
   PathKind kind = PathKind::Random;
   std::uint64_t seed = 1;
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< World x, z [m]
-  double reach = 1.2;   ///< Radius of the area, or of the circle, or half the line [m]
+  double reach = 1.2;   ///< Radius of the area or of the circle, or half the line's length [m]
   double speed = 0.9;   ///< Cruising [m/s]
   double stride = 1.3;  ///< Distance per gait cycle at amplitude 1 [m]
   double period = 1.1;  ///< Duration of a gait cycle as recorded [s]

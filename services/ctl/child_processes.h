@@ -20,8 +20,8 @@ struct Child {
   std::vector<std::string> command;
 };
 
-/// Starts all and waits.  SIGINT or SIGTERM to us stops all: success.  When one ends by itself, the
-/// others are stopped: success if it exited with 0, else an error that names it.
+/// Starts all children and waits.  SIGINT or SIGTERM to us stops them: success.  When one ends by
+/// itself, the others are stopped: success if it exited with 0, else an error that names it.
 [[nodiscard]] Result<void> run_children(const std::vector<Child>& children);
 
 }  // namespace chorus::ctl

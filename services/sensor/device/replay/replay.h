@@ -37,8 +37,8 @@ struct ReplayOptions {
 /// Waits until the clock shows an instant; false when it is told to stop before that.
 using WaitUntil = std::function<bool(std::stop_token, Timestamp)>;
 
-/// The times of a replay.  It follows true time, so that people are where they were seen together,
-/// whatever the hosts' clocks say; frames are stamped by the host's clock.
+/// The time of a replay.  Playing follows true time, so that people are where they were seen
+/// together, whatever the hosts' clocks say; frames are stamped by the host's clock.
 struct ReplayClock {
   std::shared_ptr<const Clock> world;
   WaitUntil wait;  ///< Until the world's clock shows it; empty: really waits.

@@ -55,7 +55,7 @@ std::int64_t ReplaySchedule::round_before(Timestamp now) const {
   if (!timing_.loop || now <= timing_.epoch) return 0;
   const double played = static_cast<double>((now - timing_.epoch).count()) * timing_.speed;
   const double rounds = std::floor(played / static_cast<double>(timing_.period.count()));
-  // One round early, because of rounding.
+  // Subtracts a round, because the division may have rounded up.
   return std::max<std::int64_t>(0, static_cast<std::int64_t>(rounds) - 1);
 }
 
