@@ -26,7 +26,7 @@ struct CertificateWishes {
   int days = 800;      ///< Browsers accept at most 825 from a private authority.
 };
 
-/// Writes ca.crt, readable by everybody, and ca.key, only by the owner; never overwrites them.
+/// Writes ca.crt, which everybody may read, and ca.key for the owner only; never overwrites them.
 [[nodiscard]] Result<void> write_authority(const AuthorityWishes& wishes);
 
 /// Writes host.crt, host.key and ca.crt for the services.  The certificate always contains this

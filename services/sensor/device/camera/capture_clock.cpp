@@ -7,7 +7,7 @@ namespace chorus::camera {
 namespace {
 
 constexpr Duration kOldest = std::chrono::seconds(2);
-// Two quartz clocks differ by less; without it we would lag behind a stream with a slow clock.
+// Two quartz clocks drift apart by less; with no allowance we would lag behind a slow stream.
 constexpr double kDrift = 200e-6;
 constexpr Duration kBreak = std::chrono::seconds(2);
 

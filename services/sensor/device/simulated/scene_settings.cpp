@@ -13,7 +13,7 @@ namespace {
 using synthetic::kOccluderKinds;
 using synthetic::Occluder;
 
-constexpr double kFarthest = 100.0;  // of anything in a room from its origin [m]
+constexpr double kFarthest = 100.0;  // distance of anything from the room's origin [m]
 constexpr double kLargest = 20.0;    // longest edge of a thing [m]
 constexpr double kSmallest = 0.01;   // [m]
 constexpr int kMaxSeed = 1'000'000'000;

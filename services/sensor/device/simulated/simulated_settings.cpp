@@ -10,7 +10,7 @@
 namespace chorus::sensor_service {
 namespace {
 
-constexpr double kFarthest = 100.0;  // anything in a room, from the room's origin [m]
+constexpr double kFarthest = 100.0;  // distance of anything from the room's origin [m]
 constexpr int kMaxSeed = 1'000'000'000;
 constexpr std::array<std::string_view, 5> kProfiles{synthetic::kGaussProfile, "A", "B", "C", "D"};
 
