@@ -234,7 +234,7 @@ Result<Motion> motion_from_bvh(const Bvh& bvh) {
       const auto& source = (*sources)[j];
       if (!source) continue;
       if (!(positions[*source].norm() <=
-            kMaxCoordinate))  // also catches NaN from an overflow
+            kMaxCoordinate))  // also refuses NaN, from numbers that overflowed
         return fail(ErrorCode::Malformed, "frame " + std::to_string(i + 1),
                     "a joint is farther than 10 km; is the unit of lengths right?");
       place(body, static_cast<JointId>(j), positions[*source], JointState::Tracked);

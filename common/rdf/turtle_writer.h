@@ -18,7 +18,7 @@ using Prefix = std::pair<std::string, std::string>;  ///< Name without the colon
 struct WriteOptions {
   Syntax syntax = Syntax::Turtle;
   std::vector<Prefix> prefixes = {};  ///< Turtle only.
-  std::string base = {};  ///< N-Triples only: absolute IRI to resolve relative ones.
+  std::string base = {};              ///< N-Triples only: absolute IRI to resolve relative ones.
 };
 
 /// Groups triples by subject in order of first appearance; Turtle has a blank node that is used

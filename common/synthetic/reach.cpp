@@ -8,7 +8,7 @@ namespace chorus::synthetic {
 namespace {
 
 constexpr double kStraightest = 0.98;  // of an arm's length; nobody locks the elbow
-constexpr double kClosest = 0.35;  // least distance of hand and shoulder, likewise
+constexpr double kClosest = 0.35;      // least distance of hand and shoulder, likewise
 
 struct Arm {
   JointId shoulder, elbow, wrist;

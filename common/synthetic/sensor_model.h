@@ -29,9 +29,9 @@ struct Sampling {
 struct FieldOfView {
   double half_width = deg(35);   ///< [rad]
   double half_height = deg(30);  ///< [rad]
-  double margin = deg(8);    ///< Joints this far outside are Inferred; farther, not tracked.
-  double least_range = 0.5;  ///< [m]
-  double most_range = 4.5;   ///< [m]
+  double margin = deg(8);        ///< Joints this far outside are Inferred; farther, not tracked.
+  double least_range = 0.5;      ///< [m]
+  double most_range = 4.5;       ///< [m]
 };
 
 /// White noise along and across the line of sight.

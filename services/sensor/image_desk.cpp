@@ -7,8 +7,8 @@ namespace chorus::sensor_service {
 namespace {
 
 constexpr std::chrono::seconds kDemandLasts{
-    2};                                       // how long one request keeps encoding fast
-constexpr std::chrono::seconds kIdlePace{1};  // longest pause between images otherwise
+    2};                                       // after a request, images are encoded fast this long
+constexpr std::chrono::seconds kIdlePace{1};  // otherwise one image is encoded in this time
 
 }  // namespace
 

@@ -34,7 +34,7 @@ struct CameraSettings {
   bool depth_from_size = false;          ///< Points instead of rays, if the runner supports it.
   std::optional<FloorPlane> floor = {};  ///< From height and pitch, if they are configured.
   std::optional<Intrinsics> intrinsics = {};
-  double fov = 1.13;  ///< Across the image's longer side [rad], if nothing better is known.
+  double fov = 1.13;         ///< Across the image's longer side [rad], if nothing better is known.
   double fov_sigma = 0.105;  ///< Standard deviation of that value [rad].
 };
 
