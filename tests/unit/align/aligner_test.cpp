@@ -80,7 +80,7 @@ History habitual(Duration delay, int frames = 30) {
 
 TEST(Align, ASensorIsWaitedForAsLongAsItsFramesUsuallyTake) {
   const Duration instant = milliseconds(33 * 29 + 10);
-  // One period, its delay, and a little grace.
+  // One period, the delay, and a short grace period.
   EXPECT_EQ(longest_wait(habitual(milliseconds(2))), milliseconds(33 + 2 + 15));
   EXPECT_EQ(ask(habitual(milliseconds(2)), instant, milliseconds(45)).basis, Basis::Pending);
   EXPECT_EQ(ask(habitual(milliseconds(2)), instant, milliseconds(55)).basis, Basis::Lost);
@@ -111,7 +111,7 @@ TEST(Align, AWideGapIsNotBridged) {
   EXPECT_EQ(ask(two_frames(milliseconds(121)), milliseconds(60)).basis, Basis::Lost);
 }
 
-/// Frames every `period`, and one more after the gap.
+/// Frames every `period`, then a gap, then one more frame.
 History then_gap(Duration period, Duration gap) {
   History history;
   for (int i = 0; i < 8; ++i) history.push(frame_at(i * period, 0.0));

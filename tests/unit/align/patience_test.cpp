@@ -1,4 +1,4 @@
-// One bad link does not make everybody wait.
+// One bad link does not delay everybody.
 #include "fusion-server/align/patience.h"
 
 #include <algorithm>
@@ -14,8 +14,8 @@ using std::chrono::milliseconds;
 using testing::kStart;
 using testing::sensor_id;
 
-/// Thirty frames a second whose delay to us goes from `least` to `most` again and again; none
-/// overtakes another.
+/// Thirty frames per second whose delay repeatedly goes from `least` to `most`; none overtakes
+/// another.
 History sensor(Duration least, Duration most, int frames = 60) {
   History history;
   Timestamp before{};
@@ -50,7 +50,7 @@ TEST(Patience, ASteadyOneIsGivenWhatItNeeds) {
   EXPECT_EQ(patience.of(slow).patience, AlignConfig{}.patience);
 }
 
-/// Its last frame but `later` was held up on the way.
+/// All but its last `later` frames have arrived; those were held up on the way.
 History held_up(Duration delay, int later = 5) {
   History history;
   for (int i = 0; i < 60; ++i) {
@@ -91,7 +91,7 @@ TEST(Patience, OnABusyMachineTheWorstOfAllIsUnsteady) {
   EXPECT_EQ(patience.of(bad).patience, *usual_wait(busy));
 }
 
-/// Five frames a second, rays or points, `delay` after their capture.
+/// Five frames per second, rays or points, arriving `delay` after their capture.
 History camera(Duration delay, bool rays = true) {
   History history;
   for (int i = 0; i < 20; ++i) {
@@ -114,7 +114,7 @@ TEST(Patience, GrowsWhereMostAreSlow) {
   const History quick = sensor(milliseconds(2), milliseconds(5));
   const Patience most(
       {{sensor_id("s1"), &quick}, {sensor_id("s2"), &slow}, {sensor_id("s3"), &slow}}, {});
-  // Three halves of a period, its delay and the grace.
+  // 1.5 times (period 200 ms + delay 250 ms + grace 15 ms).
   EXPECT_EQ(most.of(slow).patience, Duration(milliseconds(465)) * 3 / 2);
   EXPECT_EQ(most.extension(), Duration(milliseconds(465)) * 3 / 2 - AlignConfig{}.patience);
   const Patience few(
@@ -165,7 +165,7 @@ TEST(Habit, FramesThatCameAfterLaterOnesTellNothing) {
   }
   ASSERT_EQ(history.frames().size(), 23u);
   EXPECT_LE(history.habit()->late_delay, milliseconds(5));
-  // Just behind frame 19, until frame 22 was there.
+  // From just after frame 19 until frame 22 arrived.
   EXPECT_EQ(history.habit()->longest_wait, milliseconds(3 * 33 + 4));
 }
 

@@ -1,4 +1,4 @@
-// Who is published at once, and who waits: a body of one sensor where others look in vain.
+// Which tracks are published at once, and which wait: bodies that others should see but do not.
 #include "fusion-server/associate/admission.h"
 
 #include <algorithm>
@@ -42,7 +42,7 @@ SensorView view_of(const Body& body) {
   return view;
 }
 
-/// A ring of four sensors at 2.5 m; everybody whom a sensor does not see is missed by it.
+/// A ring of four sensors at 2.5 m; a person whom a sensor does not see counts as missed by it.
 struct Room {
   AssociationConfig config = {};
   std::vector<Observer> observers = all();
@@ -57,7 +57,7 @@ struct Room {
     tracks = std::move(grouping.tracks);
     return std::move(grouping.people);
   }
-  /// The longest time, up to `seconds`, after which nobody but these many is published [s].
+  /// The longest time, up to `seconds`, after which only these many people are published [s].
   double until_more_than(std::size_t people, const std::vector<Body>& bodies, double limit) {
     const Timestamp begun = instant;
     while (see(bodies).size() <= people && seconds(instant - begun) < limit) {
@@ -115,7 +115,7 @@ TEST(Admission, WhereNobodyElseLooksOneSensorIsEnough) {
 
 TEST(Admission, WhoStandsBehindSomebodyIsNotMissed) {
   Room room{.observers = {observer(0), observer(2)}};
-  // Sensor 2 looks along -z: the person at z = 0.8 hides the one at -0.5 from it.
+  // Sensor 2 looks along -z: for it the person at z = 0.8 occludes the one at -0.5.
   const std::vector<Body> front{{0, 0, 0.8, 1}, {2, 0, 0.8, 1}};
   for (int i = 0; i < 10; ++i) room.see(front);
   std::vector<Body> both = front;

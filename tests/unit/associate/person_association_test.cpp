@@ -22,7 +22,7 @@ SensorView view(int sensor, double x, double z, std::uint64_t body = 1) {
   return sight;
 }
 
-/// Feeds instants one frame apart and remembers the tracks.
+/// Processes instants one frame apart and keeps the tracks.
 struct Room {
   Tracks tracks;
   Timestamp instant = kStart;

@@ -1,4 +1,4 @@
-// What no person's body is.
+// Bodies that cannot be a person's.
 #include "fusion-server/associate/plausible.h"
 
 #include <gtest/gtest.h>

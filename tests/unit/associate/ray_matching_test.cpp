@@ -1,4 +1,4 @@
-// People whom only cameras without depth see.
+// People seen only by cameras without depth.
 #include "fusion-server/associate/ray_matching.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ struct Room {
     tracks = grouping.tracks;
     return grouping.people;
   }
-  /// Each camera numbers the bodies in an order of its own.
+  /// Each camera numbers the bodies in its own order.
   std::vector<Person> see(const std::vector<Camera>& cameras,
                           const std::vector<Skeleton<WorldSpace>>& people) {
     std::vector<SensorView> views;
@@ -120,7 +120,7 @@ TEST(RayMatching, IdsStayWhenTwoPassEachOther) {
   }
 }
 
-/// Camera 2 sees both in one line; only the size of the body tells who is behind.
+/// Camera 2 sees both in line; only the size of the body shows which one is behind.
 TEST(RayMatching, OneBehindAnotherIsToldApartBySize) {
   Room room;
   const std::vector people{standing_person({1.2, 0, 0.3}), standing_person({-1.2, 0, 0.3})};

@@ -1,4 +1,4 @@
-// Where a track is looked for: ahead of where it was, and on the floor only.
+// Where a track is expected: ahead along its motion, and on the floor only.
 #include <string>
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ SensorView view_at(const Eigen::Vector3d& place, int sensor = 1) {
   return sight;
 }
 
-/// One instant after another; remembers the tracks.
+/// Processes one instant after another; keeps the tracks.
 struct Floor {
   Tracks tracks;
   Timestamp instant = from_unix_ns(1'790'000'000'000'000'000);
@@ -34,7 +34,7 @@ struct Floor {
     tracks = grouping.tracks;
     return grouping.people;
   }
-  /// Somebody walks along x at `speed` [m/s] for so many instants; where the next one would be.
+  /// A person walks along x at `speed` [m/s] for `count` instants; returns where the next would be.
   double walk(double speed, int instants) {
     for (int i = 0; i < instants; ++i) see({view_at({speed * kFrameSeconds * i, 1, 0})});
     return speed * kFrameSeconds * instants;
@@ -55,7 +55,7 @@ TEST(TrackMotion, SomebodyWhoWalkedIsNotLookedForWhereTheWalkBegan) {
   Floor floor;
   const double x = floor.walk(2.5, 40);
   for (int i = 0; i < 10; ++i) floor.see({});
-  floor.see({view_at({x - 0.3, 1, 0})});  // 1.1 m behind where the walk leads
+  floor.see({view_at({x - 0.3, 1, 0})});  // 1.1 m behind the predicted place
   EXPECT_EQ(floor.tracks.people.size(), 2u);
 }
 

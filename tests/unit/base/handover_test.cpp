@@ -1,4 +1,4 @@
-// The giver never waits; the taker knows what it missed.
+// The giver never waits; the taker learns how much it missed.
 #include "common/base/handover.h"
 
 #include <thread>

@@ -13,7 +13,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// A pipe of so many bytes whose reader is ours to read with, or not.
+/// A pipe of `bytes` bytes, whose reading end the test may read or not.
 class Pipe {
  public:
   explicit Pipe(int bytes = 4096) {
@@ -82,7 +82,7 @@ struct Told {
   std::uint64_t missing = 0;
 };
 
-/// What these whole lines say: lines that came, and lines that are said to be missing.
+/// The number of complete lines, and of lines that are reported missing.
 Told told_in(const std::string& text) {
   Told told;
   std::istringstream lines(text);
@@ -105,7 +105,7 @@ TEST(LineWriter, TellsWhatIsMissing) {
   ASSERT_GT(writer.dropped(), 0u);
   std::string text;
   Told told;
-  while (told.lines + told.missing < kWritten) {  // in one piece, or as the writer noticed
+  while (told.lines + told.missing < kWritten) {  // reported at once or in parts
     text += pipe.read_until("\n");
     told = told_in(text.substr(0, text.rfind('\n') + 1));
   }

@@ -18,7 +18,7 @@ using ::testing::EndsWith;
 using testing::FailsWith;
 using ::testing::HasSubstr;
 
-/// What `write` puts on standard error, without the time stamp that the text format starts with.
+/// What `write` prints to standard error, without the time stamp at the start of text lines.
 template <class Write>
 std::string logged(log::Level least, log::Format format, const Write& write) {
   log::configure(least, format);
@@ -86,7 +86,7 @@ void log_much() {
 }
 
 TEST(LogDeathTest, WhatWaitsIsWrittenAtTheEndHoweverThatComes) {
-  ::testing::FLAGS_gtest_death_test_style = "threadsafe";  // a process whose log begins anew
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";  // re-executes the binary: a fresh log
   EXPECT_EXIT(log_much(); std::exit(0), ::testing::ExitedWithCode(0), "n=1999");
   EXPECT_EXIT(log_much(); std::abort(), ::testing::KilledBySignal(SIGABRT), "n=1999");
 }

@@ -13,7 +13,7 @@ namespace {
 
 struct Lines {
   std::size_t count = 0;
-  std::uint64_t events = 0;  ///< Sum of the counts that the lines report.
+  std::uint64_t events = 0;  ///< Sum of the counts in the lines.
 };
 
 Lines read_lines(const std::string& text) {
@@ -47,7 +47,7 @@ TEST(RateReport, ManyHitsGiveFewLinesAndEveryHitIsCountedOnce) {
       std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now() - start);
   const Lines lines = read_lines(::testing::internal::GetCapturedStderr());
   EXPECT_EQ(lines.events, static_cast<std::uint64_t>(kHits));
-  // The first hit, one a second, and what is left at the end.
+  // The first event, one line per second, and the rest at the end.
   EXPECT_LE(lines.count, 2u + static_cast<std::size_t>(whole_seconds.count()));
 }
 

@@ -60,7 +60,7 @@ TEST(JointCounting, TakesTheMostTrackedJointsWhateverTheFacing) {
   Method method = joint_counting();
   const auto person = person_of({view_of(1, 20, 0, {1, 0, 0}), view_of(2, 21, deg(180), {2, 0, 0}),
                                  view_of(3, 21, 0, {3, 0, 0})});
-  EXPECT_EQ(x_of(method(person, at_frame(0)), Neck), 2);  // of equals the least id
+  EXPECT_EQ(x_of(method(person, at_frame(0)), Neck), 2);  // of equals the smallest id
   EXPECT_FALSE(method(person_of({}), at_frame(0))[Neck].seen());
 }
 
@@ -75,7 +75,7 @@ TEST(Substitution, TakesWhatTheBestSkeletonDoesNotTrackFromTheNextBestThatDoes) 
   const Body body = substitution()(person_of({third, second, best}), at_frame(0));
   EXPECT_EQ(x_of(body, Neck), 1);
   EXPECT_EQ(x_of(body, WristLeft), 2);
-  EXPECT_EQ(x_of(body, FootLeft), 1);  // nobody tracks it: the guess stays
+  EXPECT_EQ(x_of(body, FootLeft), 1);  // nobody tracks it: the inferred one stays
   EXPECT_EQ(body[FootLeft].state, JointState::Inferred);
 }
 
@@ -161,7 +161,7 @@ TEST(ArrivalKalman, StatesTheTimeOfArrivalSoAWalkerIsWhereHeWas) {
   ASSERT_GT(stated.size(), 100u);
   const Stated& last = stated.back();
   EXPECT_EQ(last.instant, at_frame(199) + late);
-  EXPECT_NEAR(x_of(last.body, Neck), 0.04 * 199, 0.01);  // 0.1 s, 100 mm behind its own stamp
+  EXPECT_NEAR(x_of(last.body, Neck), 0.04 * 199, 0.01);  // 0.1 s, 100 mm behind its stamp
 }
 
 TEST(ArrivalKalman, LeavesOutSensorsWithoutAPlace) {
@@ -191,7 +191,7 @@ TEST(NearestNeighbour, DoesNotPredictSoWhoPassesCloserIsTakenForTheOther) {
   NearestNeighbour neighbour;
   for (int i = 0; i < 3; ++i)
     (void)neighbour.group({at_place(1, 0, 0), at_place(1, 1, 0)}, at_frame(i));
-  // Only one is seen, half-way beyond the middle.
+  // Only one sees it, half-way beyond the middle.
   const auto people = neighbour.group({at_place(1, 0.55, 0)}, at_frame(3));
   ASSERT_EQ(people.size(), 1u);
   EXPECT_EQ(people[0].id, PersonId{2});

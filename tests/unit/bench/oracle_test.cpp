@@ -16,7 +16,7 @@ namespace {
 using enum JointId;
 constexpr SharedErrors kApart{};
 
-/// Somebody seen from around, each view erring with its own covariance and bringing it.
+/// A person seen from all around; each view has an error of its own covariance, and states it.
 Person views_of(const std::vector<Eigen::Matrix3d>& squares, std::mt19937& dice) {
   std::normal_distribution<double> unit(0.0, 1.0);
   Person person{PersonId{1}, {}};
@@ -66,7 +66,7 @@ TEST(LinearBound, IsBetterThanAnyFixedWayToCombineOnAverageAndHonest) {
     answers.push_back({at_frame(draw), linear_bound(person, kApart), exact, {}});
     bound += mean_error(answers.back().body, exact);
     mean += mean_error(product(fusion::Method::Mean)(person, at_frame(0)), exact);
-    Person silent = person;  // as it is in the contest: nobody but the bound is told
+    Person silent = person;  // as in the contest: only the bound knows them
     for (SensorView& view : silent.views) {
       for (Joint& joint : view.skeleton.joints) joint.covariance = {};
     }

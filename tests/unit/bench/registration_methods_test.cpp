@@ -55,7 +55,7 @@ TEST(Score, TheEllipseHoldsWhatItsCovarianceSays) {
   Registration solved = true_registration(workshop, workshop.tracks[0].sensor);
   Extrinsics& place = solved.sensors.at(workshop.tracks[1].sensor);
   place.covariance = mm(10) * mm(10) * Eigen::Matrix<double, 6, 6>::Identity();
-  place.world_from_sensor.translation().x() += mm(24);  // 95 % of two dimensions: 2.45 sigma
+  place.world_from_sensor.translation().x() += mm(24);  // 95 % in two dimensions: 2.45 sigma
   EXPECT_EQ(score_of(workshop, solved, all_of(workshop)).covered, 1u);
   place.world_from_sensor.translation().x() += mm(1);
   EXPECT_EQ(score_of(workshop, solved, all_of(workshop)).covered, 0u);

@@ -7,7 +7,7 @@
 namespace chorus::bench {
 namespace {
 
-/// p95 of the method [ms].
+/// 95th percentile of the method's errors [ms].
 double p95_of(const ClockCase& each, const std::vector<NamedClock>& methods, std::size_t method) {
   return clock_errors(each, methods, 1).at(method).p95;
 }
@@ -63,7 +63,7 @@ TEST(Exchange, IsAnsweredWhenTheAnswerIsReady) {
   EXPECT_EQ(exchange_of(link, {now, Duration{0}, ready}).their_sending, ready);
 }
 
-/// Keeps the exchanges that a method is shown.
+/// Records the exchanges that a method is given.
 NamedClock listener(std::vector<ClockExchange>& heard) {
   return {"listener", [&heard] {
             return ClockMethod([&heard](const ClockExchange& each) {
@@ -76,7 +76,7 @@ NamedClock listener(std::vector<ClockExchange>& heard) {
 TEST(ClockErrors, HaveOneRequestUnderWayAtATime) {
   std::vector<ClockExchange> heard;
   ClockCase each = clock_case("wifi");
-  each.network.spike_share = 0.3;  // 60 ms spikes, 33 ms from one turn to the next
+  each.network.spike_share = 0.3;  // spikes of 60 ms, exchanges every 33 ms
   (void)clock_errors(each, {listener(heard)}, 1);
   ASSERT_GT(heard.size(), 1000u);
   for (std::size_t i = 1; i < heard.size(); ++i) {

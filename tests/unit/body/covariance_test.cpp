@@ -30,7 +30,7 @@ TEST(Covariance, TurnsWithTheAxes) {
   const Eigen::Matrix3d quarter =
       Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitY()).toRotationMatrix();
   const Covariance along_z(Eigen::Vector3d(1e-4, 2e-4, 9e-4).asDiagonal().toDenseMatrix());
-  const Eigen::Matrix3d turned = along_z.turned(quarter).matrix();  // z of a is x of b
+  const Eigen::Matrix3d turned = along_z.turned(quarter).matrix();  // z of a becomes x of b
   EXPECT_NEAR(turned(0, 0), 9e-4, 1e-9);
   EXPECT_NEAR(turned(1, 1), 2e-4, 1e-9);
   EXPECT_NEAR(turned(2, 2), 1e-4, 1e-9);

@@ -1,5 +1,5 @@
-// The angles of Otto Eqs. (2) and (3), and the sign that everything after them relies on: positive
-// facing is a turn about +y (up), so a body that turns its chest to its own left turns positively.
+// The angles of Otto Eqs. (2) and (3), and their sign, on which all later stages rely: positive
+// facing is a rotation about +y (up), so a body that turns to its own left turns positively.
 #include "common/body/facing.h"
 
 #include <cmath>
@@ -20,8 +20,8 @@ using testing::standing_person;
 
 constexpr double kExact = 1e-9;
 
-/// A sensor at the origin looks along +z; the person stands at a place and turns away from facing
-/// it.
+/// A sensor at the origin looks along +z; the person stands at `place` and is turned away from
+/// facing it.
 Skeleton<SensorSpace> person_before_sensor(double x, double z, double turned_away) {
   const Eigen::Isometry3d world_from_sensor = sensor_pose({0, 1.2, 0}, 0.0);
   const double towards_sensor = std::atan2(-x, -z);
@@ -46,7 +46,7 @@ TEST(FacingAngle, FollowsTheTurnWithItsSign) {
 }
 
 TEST(FacingAngle, SwappedSidesReadAsTheBack) {
-  // What a frontal tracker does from behind (Otto 3.2): left and right change places.
+  // What a frontal tracker does from behind (Otto 3.2): it exchanges left and right.
   auto body = person_before_sensor(0, 2.5, deg(20));
   std::swap(body[JointId::ShoulderLeft], body[JointId::ShoulderRight]);
   EXPECT_NEAR(facing_angle(body).value(), deg(20) - std::numbers::pi, kExact);

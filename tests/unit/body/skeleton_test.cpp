@@ -17,7 +17,7 @@ using testing::SkeletonNear;
 using testing::standing_person;
 using testing::VectorNear;
 
-// A world skeleton cannot be registered a second time, nor a sensor one reach what wants the world.
+// A world skeleton cannot be registered again, and a sensor skeleton cannot be used as a world one.
 template <class Body>
 concept GoesToWorld = requires(const Eigen::Isometry3d& pose, const Body& body) {
   to_world(pose, body);
@@ -63,7 +63,7 @@ TEST(ToWorld, KeepsLengthsStatesAndAbsentOrientations) {
 }
 
 TEST(ToWorld, TurnsOrientationsWithTheSensor) {
-  // A sensor that looks at the person from the front: +z of the sensor is -z of the world.
+  // A sensor in front of the person: +z of the sensor is -z of the world.
   const Eigen::Isometry3d world_from_sensor = sensor_pose({0, 1, 3}, deg(180));
   const auto seen = to_sensor(world_from_sensor.inverse(), standing_person());
   const Eigen::Vector3d body_forward_in_sensor =

@@ -1,4 +1,4 @@
-// Depth from how large somebody appears: a body that was projected comes back where it was.
+// Depth from apparent size: a projected body is reconstructed at its original place.
 #include "services/sensor/device/camera/apparent_size.h"
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// A body of 17 landmarks, 1.7 m high and 0.5 m wide, about its own middle.
+/// A body of 17 landmarks, 1.7 m high and 0.5 m wide, centred at the origin.
 std::vector<Eigen::Vector3d> body() {
   std::vector<Eigen::Vector3d> shape;
   for (int i = 0; i < 17; ++i)
@@ -92,7 +92,7 @@ TEST(ApparentSize, DepthIsWorseThanDirectionAndTheSizeIsInCommon) {
   EXPECT_EQ(ray.covariance, joint.covariance);
 }
 
-/// An answer with somebody at (0.5, 0, 4) [m], right, down, ahead.
+/// An answer with a person at (0.5, 0, 4) [m]; axes right, down, forward.
 nlohmann::json answer() {
   nlohmann::json pixels = nlohmann::json::array();
   nlohmann::json world = nlohmann::json::array();

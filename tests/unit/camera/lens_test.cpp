@@ -54,7 +54,7 @@ TEST(Lens, WhatIsSentIsShrunkNeverEnlarged) {
 TEST(Lens, APlaceInTheSentPictureShowsWhatTheSamePlaceShowsInTheWhole) {
   const Intrinsics whole{1920, 1080, 1500, 1490, 950, 530, {0.1, -0.05, 0.001, 0, 0}};
   const Intrinsics sent = sent_camera(whole, {256, 144});
-  // The middle of pixel (959, 539) is 959.5 and 539.5 pixels from the corner.
+  // The centre of pixel (959, 539) is 959.5 and 539.5 pixels from the corner.
   const auto there = ray_of({959.0, 539.0}, whole);
   const auto here = ray_of({959.5 / 7.5, 539.5 / 7.5}, sent);
   EXPECT_NEAR((*there - *here).norm(), 0.0, 1e-12);

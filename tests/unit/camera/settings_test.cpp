@@ -64,7 +64,7 @@ TEST(CameraSettings, EverythingIsRead) {
 TEST(CameraSettings, TheFloorLiesAsFarBelowAsTheCameraIsHigh) {
   const auto floor = read(R"({"height_m": 2, "pitch_deg": 30})").settings.floor;
   ASSERT_TRUE(floor);
-  // Straight ahead the line of sight, 30 degrees downwards, meets the floor after 4 m.
+  // Straight ahead, the line of sight points down by 30 degrees and meets the floor after 4 m.
   EXPECT_NEAR(floor->normal.dot(Eigen::Vector3d(0, 0, 4)) + floor->offset, 0.0, 1e-12);
   EXPECT_NEAR(floor->normal.norm(), 1.0, 1e-12);
   EXPECT_GT(floor->normal.y(), 0.0);

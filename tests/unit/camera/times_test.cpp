@@ -1,4 +1,4 @@
-// Capture times, the pace of files, and pauses between tries.
+// Capture times, the playback rate of files, and pauses between attempts.
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ TEST(CapturedByDriver, TheDriversStampCountsUnlessItCannotBeTrue) {
 
 TEST(StreamClock, StepsAreTheStreamsAndTheFastestPictureSetsTheRest) {
   StreamClock clock(50ms);
-  // Pictures every 40 ms that arrive with a delay of 100 ms and a jitter of up to 30 ms.
+  // Pictures every 40 ms that arrive with a delay of 100 ms and up to 30 ms of jitter.
   const Duration jitter[] = {20ms, 0ms, 30ms, 10ms, 25ms};
   std::vector<Timestamp> captured;
   for (int i = 0; i < 5; ++i) {

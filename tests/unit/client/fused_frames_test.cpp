@@ -84,7 +84,7 @@ TEST(FusedFrames, RecordingsGiveTheirFusedTopicOnly) {
   std::filesystem::remove(file);
 }
 
-/// A server whose /frame is whatever a function says.
+/// A server whose /frame is given by a function.
 struct FrameServer {
   explicit FrameServer(std::function<Result<http::DocumentPtr>(int request)> answer)
       : server({}, routes(std::move(answer))) {
@@ -112,7 +112,7 @@ TEST(FusedFrames, WhatAServerSaidIsKeptWhenItFailsLaterAndGapsAreTold) {
     if (request == 2) return fail(ErrorCode::Internal, "frame", "an accident");
     if (request == 3) return http::make_document("application/json", "{", {"3"});
     const int frame = request == 1 ? 1 : 5;
-    // A server that has been restarted may say the same frame under another ETag.
+    // A restarted server may send the same frame with another ETag.
     return http::make_document("application/json", frame_text(frame),
                                {std::to_string(std::min(request, 6))});
   });

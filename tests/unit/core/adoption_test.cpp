@@ -1,4 +1,4 @@
-// A new solve never spoils what was good, and a new sensor moves none of the others.
+// A new solve never degrades a good registration, and a new sensor moves none of the others.
 #include "fusion-server/core/adoption.h"
 
 #include <cmath>
@@ -14,7 +14,7 @@ SensorId id(const char* text) { return *SensorId::parse(text); }
 
 constexpr int kRing = 5;
 
-/// Sensors s1, s2, ... of the ring, in a world that `world_from_ring` moves.
+/// Sensors s1, s2, ... of the ring, in a world moved by `world_from_ring`.
 Registration ring(Verdict verdict, std::vector<int> members,
                   const Eigen::Isometry3d& world_from_ring = Eigen::Isometry3d::Identity()) {
   Registration r;
@@ -153,7 +153,7 @@ TEST(Refusals, AreToldOfSensorsWithoutAPlaceAndLeaveTheVerdict) {
   EXPECT_EQ(verdict_of(current, id("s1")), Verdict::Good);
   EXPECT_EQ(verdict_of(current, id("s5")), Verdict::None);
   EXPECT_EQ(current.verdicts.at(id("s5")).verdict, Verdict::Refused);
-  // Placed later, the old refusal is gone.
+  // Once it is placed, the old refusal is gone.
   const auto wider = adopted(current, ring(Verdict::Good, {1, 2, 5}), SolveKind::Final, true);
   ASSERT_TRUE(wider);
   EXPECT_TRUE(wider->reasons.empty());

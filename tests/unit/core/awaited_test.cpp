@@ -1,4 +1,4 @@
-// Whoever stands in the room is told what to do next, in each state that waits for something.
+// A person in the room is told what to do next, in each state that waits for something.
 #include "fusion-server/core/awaited.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// The pipeline thread's whole world, driven by hand: frames in, snapshots and jobs out.
+// Drives all of the pipeline thread's state by hand: frames in, snapshots and jobs out.
 #include "fusion-server/core/fusion_core.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using testing::sensor_id;
 
 CoreConfig config() { return of_three<CoreConfig>(); }
 
-/// Sensor's view of a person walking a small circle, `t` after the start.
+/// The sensor's view of a person walking in a small circle, `t` after the start.
 SensorFrame sight(int sensor, Duration t) {
   const double angle = 0.6 * chorus::seconds(t);
   const auto person =
@@ -41,8 +41,8 @@ struct Answers : std::vector<Snapshot> {
   Duration worst{0};  ///< Longest time from an instant to its answer.
 };
 
-/// Runs the core from `from` for `length` as the server would: sensors with a phase each, one
-/// millisecond at a time.  `dead` is a sensor that says nothing.
+/// Runs the core from `from` for `length` as the server would: each sensor has its own phase; time
+/// steps by one millisecond.  `dead` is a sensor that delivers nothing.
 Answers run(FusionCore& core, Duration from, Duration length, int dead = -1) {
   Answers out;
   for (Duration t = from; t < from + length; t += milliseconds(1)) {
@@ -81,7 +81,7 @@ TEST(FusionCore, FusesEveryInstantOnceAndKnowsWhoContributed) {
 TEST(FusionCore, AnswersWithoutWaitingForTheDelayWhenAllSensorsHavePassed) {
   FusionCore core(config(), ring());
   (void)run(core, Duration{0}, seconds(1));
-  // One frame interval and the phases, not the 200 ms.
+  // One frame interval and the phases, not the 200 ms of the alignment delay.
   EXPECT_LT(run(core, seconds(1), seconds(1)).worst, milliseconds(50));
 }
 
@@ -89,7 +89,7 @@ TEST(FusionCore, ADeadSensorDelaysOnlyUntilItIsLaterThanItEverWas) {
   FusionCore core(config(), ring());
   (void)run(core, Duration{0}, seconds(1));
   const auto waiting = run(core, seconds(1), milliseconds(200), 1);
-  EXPECT_GT(waiting.worst, milliseconds(35));  // later than it ever was
+  EXPECT_GT(waiting.worst, milliseconds(35));  // later than any frame so far
   EXPECT_LT(waiting.worst, milliseconds(70));
   const auto during = run(core, milliseconds(1200), milliseconds(2800), 1);
   expect_gapless(during);
@@ -116,7 +116,7 @@ TEST(FusionCore, StrangersAndFramesThatGoBackAreRefused) {
   FusionCore core(config(), ring());
   (void)run(core, Duration{0}, milliseconds(500));
   SensorFrame back = sight(0, milliseconds(300));
-  back.sequence = ~std::uint64_t{0};  // a later one of the sensor's
+  back.sequence = ~std::uint64_t{0};  // a later frame of the sensor
   core.take(back);
   EXPECT_EQ(core.refused(sensor_id("s1")), 1u);
   SensorFrame stranger = sight(0, milliseconds(600));
@@ -213,7 +213,7 @@ TEST(FusionCore, CountsBodiesOfSensorsWithoutAPlace) {
   for (int i = 0; i < kSensors; ++i) EXPECT_EQ(core.bodies(sensor_id(name(i)), now), 1u);
   EXPECT_GT(core.share(sensor_id("s1")).in_time, 0.9);
   EXPECT_EQ(core.share(sensor_id("s3")).in_time, 0.0);
-  // A sensor that falls silent has no body any more.
+  // A sensor that falls silent no longer has bodies.
   (void)run(core, seconds(4), seconds(3), 1);
   EXPECT_EQ(core.bodies(sensor_id("s2"), kStart + seconds(7)), 0u);
   EXPECT_EQ(core.bodies(sensor_id("s1"), kStart + seconds(7)), 1u);
@@ -241,7 +241,7 @@ TEST(FusionCore, TheRateMayChangeWhileRunning) {
   EXPECT_GT(after.front().instant, before.back().instant);
 }
 
-/// As run(), but the last sensor's frames come `lateness(i)` after their capture, i counting them.
+/// Result of run_delayed(): as run(), but frame i of the last sensor comes `lateness(i)` late.
 struct Delayed {
   Answers live;
   std::vector<Snapshot> amended;
@@ -258,7 +258,7 @@ Delayed run_delayed(FusionCore& core, Duration length, const Lateness& lateness)
       SensorFrame frame = sight(i, t);
       frame.sequence = static_cast<std::uint64_t>(t / milliseconds(33));
       const Duration late = i == kSensors - 1 ? lateness(frame.sequence) : milliseconds(2);
-      // A connection never overtakes itself.
+      // Frames of one connection never overtake each other.
       Duration comes = t + late;
       for (const auto& [when, other] : on_the_way)
         if (other.sensor == frame.sensor) comes = std::max(comes, when);
@@ -293,7 +293,7 @@ TEST(FusionCore, OneBadLinkCostsTheOthersAtMostThirtyMillisecondsAndIsUsedAfterw
   FusionCore core(config(), ring());
   const Delayed with = run_delayed(core, seconds(10), bad);
   EXPECT_LT(p90(with.ages), before + 0.030);
-  // A second later almost all instants have what it saw, under the ids that were told.
+  // A second later almost all instants include what it saw, under the ids already published.
   std::map<std::uint64_t, const Snapshot*> afterwards;
   for (const Snapshot& snapshot : with.live) afterwards[snapshot.sequence] = &snapshot;
   for (const Snapshot& snapshot : with.amended) {
@@ -335,7 +335,7 @@ TEST(FusionCore, SaysForAWhileThatFramesAreRefused) {
   (void)run(core, Duration{0}, milliseconds(500));
   EXPECT_EQ(core.complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
   SensorFrame back = sight(0, milliseconds(300));
-  back.sequence = ~std::uint64_t{0};  // a later one of the sensor's
+  back.sequence = ~std::uint64_t{0};  // a later frame of the sensor
   core.take(back);
   EXPECT_NE(core.complaint(sensor_id("s1"), kStart + milliseconds(500)), "");
   EXPECT_EQ(core.complaint(sensor_id("s1"), kStart + seconds(4)), "");

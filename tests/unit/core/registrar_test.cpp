@@ -1,4 +1,4 @@
-// Sessions by number: who starts them, what they put into use, what they take back.
+// Sessions by number: who starts them, what they put into use, what they withdraw.
 #include "fusion-server/core/registrar.h"
 
 #include <gmock/gmock.h>
@@ -27,7 +27,7 @@ Registration refused(const std::string& reason = "sensors s1 and s2 disagree") {
   return r;
 }
 
-/// What a coat stand does: all others stand well, the last one cannot be placed.
+/// The effect of a coat stand: all others stand well, only the last sensor cannot be placed.
 Registration all_but_the_last() {
   Registration r = ring(kSensors - 1);
   const std::string reason = "sensor s3 saw nobody walk";
@@ -43,7 +43,7 @@ class Sessions : public ::testing::Test {
   }
   Registrar& registrar() { return *registrar_; }
 
-  /// All sensors see one person for so long; the first job that is due on the way.
+  /// All sensors see one person for `length`; returns the first job that becomes due.
   std::optional<SolveJob> walk(Duration length, int sensors = kSensors) {
     for (const Timestamp end = now_ + length; now_ < end; now_ += milliseconds(33)) {
       for (int i = 0; i < sensors; ++i) {
@@ -73,7 +73,7 @@ TEST_F(Sessions, HaveANumberFromTheStartAndStayReadable) {
   auto job = walk(seconds(20));
   ASSERT_TRUE(job);
   EXPECT_EQ(job->kind, SolveKind::Provisional);
-  EXPECT_EQ(answer(*job, ring()), Outcome::Nothing);  // half a walk does not replace a good one
+  EXPECT_EQ(answer(*job, ring()), Outcome::Nothing);  // half a walk replaces no good registration
   job = walk(seconds(20));
   ASSERT_EQ(job->kind, SolveKind::Final);
   EXPECT_EQ(newest().state, SessionState::Solving);
@@ -223,7 +223,7 @@ TEST_F(Sessions, NobodyWaitsForAProvisionalSolveAtTheEndOfTheWalk) {
   ASSERT_TRUE(job);
   ASSERT_EQ(job->kind, SolveKind::Provisional);
   EXPECT_FALSE(job->stop.stop_requested());
-  ASSERT_FALSE(walk(seconds(3)));  // still being solved when the walk is over
+  ASSERT_FALSE(walk(seconds(3)));  // the solve is still running when the walk ends
   EXPECT_TRUE(job->stop.stop_requested());
   Solution nothing{job->session, job->kind, {}};
   nothing.given_up = true;
@@ -233,7 +233,7 @@ TEST_F(Sessions, NobodyWaitsForAProvisionalSolveAtTheEndOfTheWalk) {
   EXPECT_EQ(last->kind, SolveKind::Final);
 }
 
-/// The ring as a walk finds it whose world is another: turned, and 3 m away.
+/// The ring as seen by a walk whose world is different: rotated, and 3 m away.
 Registration elsewhere(Verdict verdict = Verdict::Good) {
   const auto moved_there = with_origin(ring(kSensors, verdict), {3.0, -1.0, 1.2});
   return *moved_there;

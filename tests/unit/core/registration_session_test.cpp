@@ -22,7 +22,7 @@ SensorFrame frame(const char* sensor, Duration since, std::size_t bodies = 1) {
   return f;
 }
 
-/// Two sensors at 30 Hz for `length`, starting at `from`; what was due on the way.
+/// Two sensors at 30 Hz for `length`, starting at `from`; returns the solves that became due.
 std::vector<SolveKind> walk(RegistrationSession& session, Duration from, Duration length) {
   std::vector<SolveKind> due;
   for (Duration t = from; t < from + length; t += milliseconds(33)) {
@@ -68,7 +68,7 @@ TEST(RegistrationSession, AnEmptyRoomIsNotAWalk) {
   const Duration before = session.elapsed();
   for (int i = 0; i < 300; ++i) session.add(frame("s1", seconds(3) + milliseconds(33 * i), 0));
   EXPECT_EQ(session.elapsed(), before);
-  session.add(frame("s1", seconds(20)));  // back after a pause: the pause does not count
+  session.add(frame("s1", seconds(20)));  // back after a pause, which does not count
   EXPECT_EQ(session.elapsed(), before);
 }
 

@@ -1,4 +1,4 @@
-// Three sensors on a ring, and the registrations that they may have.
+// Three sensors on a ring, and registrations for them.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ inline constexpr int kSensors = 3;
 /// "s1", "s2", "s3".
 [[nodiscard]] inline std::string name(int sensor) { return "s" + std::to_string(sensor + 1); }
 
-/// `Config` with a set of sensors: all three.
+/// `Config` with a set of sensors: all three of them.
 template <class Config>
 [[nodiscard]] Config of_three() {
   Config config;
@@ -21,7 +21,7 @@ template <class Config>
   return config;
 }
 
-/// Version 4; the first `count` of them have a place and this verdict.
+/// Version 4; the first `count` of them have a place, with this verdict.
 [[nodiscard]] inline Registration ring(int count = kSensors, Verdict verdict = Verdict::Good) {
   Registration r;
   r.verdict = verdict;

@@ -1,5 +1,5 @@
-// Cameras whose pictures take long, with the configuration as shipped: they are waited for, and
-// nobody else is made old by them.
+// Cameras whose pictures take long, with the configuration as shipped: they are waited for, without
+// delaying the others.
 #include <algorithm>
 #include <cmath>
 
@@ -18,7 +18,7 @@ using testing::sensor_id;
 
 struct Source {
   Duration period;
-  Duration jitter;  ///< Of the period, and of the delay.
+  Duration jitter;  ///< Of the period and of the delay.
   Duration delay;
   bool rays = true;
 };
@@ -49,7 +49,7 @@ SensorFrame picture(std::size_t i, const Source& source, Duration t) {
   return testing::sensor_frame(name(i), captured, {body});
 }
 
-/// The same sequence for everybody, and different for each sensor.
+/// The same sequence for all runs, and a different one for each sensor.
 Duration uneven(Duration most, std::size_t sensor, std::uint64_t count) {
   return most * static_cast<int>((count * 7919 + sensor * 104'729) % 101) / 100;
 }
@@ -72,13 +72,13 @@ std::vector<SensorFrame> frames_of(const std::vector<Source>& sources, Duration 
 }
 
 struct Outcome {
-  double with_body = 0.0;  ///< Share of the instants.
-  double by_all = 0.0;     ///< The same with every sensor in the neck.
+  double with_body = 0.0;  ///< Fraction of the instants that have a body.
+  double by_all = 0.0;     ///< Fraction in which every sensor sees the neck.
   double age_p90 = 0.0;    ///< [s]
-  double error = 0.0;      ///< Of the neck, the largest [m].
+  double error = 0.0;      ///< Largest error of the neck [m].
 };
 
-/// Of the instants between `settled` and the end; the shares are of all of them.
+/// Over the instants from `settled` to the end; fractions are of all of these.
 Outcome run(const std::vector<Source>& sources, CoreConfig config = {},
             Duration length = seconds(20), Duration settled = seconds(6)) {
   Registration registration;

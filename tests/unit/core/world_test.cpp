@@ -1,4 +1,4 @@
-// The world stays where people put it.
+// The world stays where people have put it.
 #include "fusion-server/core/world.h"
 
 #include <cmath>
@@ -24,7 +24,7 @@ Eigen::Isometry3d along_the_floor(double x, double z, double yaw) {
   return out;
 }
 
-/// Sensors of the ring in a world that `world_from_ring` moves; the first is the master.
+/// Sensors of the ring in a world moved by `world_from_ring`; the first is the master.
 Registration ring(std::vector<int> members,
                   const Eigen::Isometry3d& world_from_ring = Eigen::Isometry3d::Identity()) {
   Registration r;
@@ -111,7 +111,7 @@ TEST(Origin, WhatStoodThereIsAtTheBeginningAndItsFrontIsTheFront) {
                                          before.sensors.at(name(1)).world_from_sensor.inverse();
   EXPECT_LT((new_from_old * Eigen::Vector3d(1.5, 0.3, -2.0) - Eigen::Vector3d(0, 0.3, 0)).norm(),
             1e-9);
-  // Yaw 90 degrees is where +z is turned to +x: one metre that way is one metre to the front.
+  // Yaw 90 degrees turns +z to +x: one metre in that direction is one metre to the front.
   EXPECT_LT((new_from_old * Eigen::Vector3d(2.5, 0.0, -2.0) - Eigen::Vector3d(0, 0, 1)).norm(),
             1e-9);
   EXPECT_LT(apart(*with_origin(*after, {}), *after, 2), 1e-12);

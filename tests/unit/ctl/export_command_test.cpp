@@ -1,4 +1,4 @@
-// chorus export and chorus import on files: what is written, what is refused, what is said.
+// chorus export and chorus import on files: what is written, refused and printed.
 #include <nlohmann/json.hpp>
 
 #include "tests/unit/ctl/program_run.h"
@@ -12,7 +12,7 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 using Json = nlohmann::json;
 
-/// The walk, fused once for all tests of this file.
+/// The walk, fused once for all tests in this file.
 const Cell& fused_cell() {
   static const Cell cell(3.0);
   static const bool fused =
@@ -45,7 +45,7 @@ TEST(ExportCommand, WritesToStandardOutputAndNothingElseThere) {
   const Outcome done =
       run_chorus({"export", cell.file("fused.ndjson"), "--format", "csv", "--out", "-", "--json"});
   ASSERT_EQ(done.code, kExitOk) << done.error;
-  EXPECT_GT(lines_of(done.out).size(), 25u * 80u);  // a row a joint
+  EXPECT_GT(lines_of(done.out).size(), 25u * 80u);  // one row per joint
   const Json summary = Json::parse(done.error);
   EXPECT_EQ(summary.at("persons").size(), 1u);
   EXPECT_NEAR(summary.at("rateHz").get<double>(), 30.0, 0.5);

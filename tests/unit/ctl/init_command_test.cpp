@@ -1,4 +1,4 @@
-// chorus init writes what the services read, and overwrites nothing.
+// chorus init writes what the services read, and overwrites no file.
 #include <filesystem>
 #include <fstream>
 #include <iterator>

@@ -1,4 +1,4 @@
-// `chorus record` against a fusion server of which some things fail.
+// `chorus record` with a fusion server some of whose resources fail.
 #include "fusion-server/client/live_recording.h"
 
 #include <gmock/gmock.h>
@@ -31,7 +31,7 @@ std::string frame_of(const std::string& source, int sequence) {
   return resource::write(frame, resource::Format::Turtle);
 }
 
-/// s1 works and misses a frame, s2 is refused, s3 talks nonsense.
+/// s1 works but misses a frame, s2 is refused, s3 sends nonsense.
 class BrokenCell : public ::testing::Test {
  protected:
   BrokenCell() {

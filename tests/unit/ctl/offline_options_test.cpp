@@ -12,12 +12,12 @@ using chorus::testing::FailsWith;
 using chorus::testing::IsOk;
 using ::testing::HasSubstr;
 
-/// What a command line of these words means; the options of a usage error are those of none.
+/// The options given by a command line of these words; after a usage error, the defaults.
 Result<pipeline::OfflineConfig> config_of(std::vector<std::string> words) {
   OfflineOptions options;
   CLI::App app;
   add_offline_options(app, options);
-  std::reverse(words.begin(), words.end());  // CLI11 takes them from the end
+  std::reverse(words.begin(), words.end());  // CLI11 takes words from the end
   app.parse(words);
   return offline_config(options);
 }

@@ -1,4 +1,4 @@
-// Runs `chorus` in this process and catches what it prints; recordings to run it on.
+// Runs `chorus` in this process and captures its output; recordings as its input.
 #pragma once
 
 #include <string>
@@ -35,12 +35,12 @@ inline Outcome run_chorus(const std::vector<std::string>& words) {
 
 inline constexpr int kRing = 3;
 
-/// Where somebody is who walks in a figure of eight, t in seconds.
+/// Position of a person who walks in a figure of eight, at t seconds.
 inline Eigen::Vector3d walked(double t) {
   return {0.9 * std::sin(0.7 * t), 0.0, 0.8 * std::sin(1.1 * t)};
 }
 
-/// What sensor `index` of three on a circle records of it in so many seconds.
+/// What sensor `index` of three on a circle records of the person in `length` seconds.
 inline record::FrameRecording walk_seen_by(int index, double length) {
   namespace support = chorus::testing;
   const Eigen::Isometry3d place = support::ring_sensor(index, kRing);
@@ -60,7 +60,7 @@ inline record::FrameRecording walk_seen_by(int index, double length) {
   return recording;
 }
 
-/// A folder with the walk as three sensors recorded it.
+/// A folder with the walk, recorded by three sensors.
 class Cell {
  public:
   explicit Cell(double length = 6.0) {

@@ -21,7 +21,7 @@ record::SensorStay stay(const char* sensor, Duration begin, Duration length) {
   return one;
 }
 
-/// As importers note it.
+/// In the form that importers write.
 record::SensorStay imported(const char* sensor, Duration begin, const std::string& time) {
   auto one = stay(sensor, begin, seconds(10));
   one.about.notes = {

@@ -1,4 +1,4 @@
-// A fusion server that says what a test has written down, in this process.
+// A fusion server in this process whose answers a test writes down.
 #pragma once
 
 #include <map>
@@ -18,8 +18,8 @@ class ScriptedServer {
  public:
   using Texts = std::map<std::string, std::vector<std::string>>;
 
-  /// Path -> what it answers, one text after the other, the last for good; a path without any is
-  /// not there yet (503).  `refusal`: of POST /registration.
+  /// Path -> its answers, text by text, the last one for all later requests; a path without texts
+  /// does not exist yet (503).  `refusal`: the one to POST /registration.
   explicit ScriptedServer(Texts texts, std::optional<Error> refusal = std::nullopt)
       : texts_(std::move(texts)), refusal_(std::move(refusal)) {
     auto router = std::make_shared<http::Router>();
@@ -45,7 +45,7 @@ class ScriptedServer {
   [[nodiscard]] std::string url() const {
     return "http://127.0.0.1:" + std::to_string(server_->port()) + "/";
   }
-  /// What was written to it: "POST {...}", "DELETE /registration".
+  /// Requests that wrote: "POST {...}", "DELETE /registration".
   [[nodiscard]] std::vector<std::string> written() const {
     const std::scoped_lock lock(mutex_);
     return written_;

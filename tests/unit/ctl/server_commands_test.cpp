@@ -1,4 +1,4 @@
-// `chorus status` and `chorus register` against a server that says what it is told to.
+// `chorus status` and `chorus register` with a server whose answers are scripted.
 #include <cstdlib>
 
 #include <gmock/gmock.h>

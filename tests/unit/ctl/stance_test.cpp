@@ -1,4 +1,4 @@
-// Where somebody stands who shows the origin of the world.
+// The pose of a person who shows the origin of the world.
 #include "services/ctl/stance.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Somebody at (x, z) who faces `yaw`: the left is to the front as +x is to +z.
+/// A person at (x, z) who faces `yaw`; left relates to front as +x to +z.
 Json body(double x, double z, double yaw, double sure = 0.99) {
   const auto at = [&](double left) {
     return Json{{"x", x + left * std::cos(yaw)}, {"y", 1.0}, {"z", z - left * std::sin(yaw)}};

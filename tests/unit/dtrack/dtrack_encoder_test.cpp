@@ -1,4 +1,4 @@
-// DTrack's lines read back by a parser written from the format's description.
+// DTrack's lines, read by a parser written from the format's description.
 #include "fusion-server/dtrack/dtrack_encoder.h"
 
 #include <charconv>
@@ -20,7 +20,7 @@ using outlet::testing::about_up;
 using outlet::testing::about_x;
 using outlet::testing::about_z;
 
-/// Name of a line -> what follows it.  Every line must end with CR LF.
+/// Name of a line -> the rest of it.  Every line must end with CR LF.
 std::map<std::string, std::string> lines_of(const std::string& datagram) {
   std::map<std::string, std::string> lines;
   std::string rest = datagram;
@@ -39,7 +39,7 @@ std::map<std::string, std::string> lines_of(const std::string& datagram) {
   return lines;
 }
 
-/// The numbers of each [block] of a line; those before the first block come first.
+/// The numbers in each [block] of a line; those before the first block come first.
 std::vector<std::vector<double>> blocks_of(std::string line) {
   std::vector<std::vector<double>> blocks;
   for (char& c : line) {
@@ -118,7 +118,7 @@ TEST(Dtrack, AnAsymmetricPoseIsInMillimetresZUpAndColumnByColumn) {
   ASSERT_EQ(bodies.size(), 1u);
   const Body& body = bodies.at(25 + 3);
   EXPECT_THAT(body.place, VectorNear(Eigen::Vector3d(1000, -3000, 2000), 1e-3));
-  // Our y is the room's z, our z its -y.
+  // Our y is the room's z, and our z is its -y.
   const Eigen::Quaterniond expected = about_x(20) * about_z(30) * about_up(50);
   EXPECT_LT((body.rotation - expected.toRotationMatrix()).norm(), 5e-6);
   const Eigen::Quaterniond turned =
@@ -145,7 +145,7 @@ TEST(Dtrack, BodiesAreWrittenAsCapturesShow) {
 }
 
 TEST(Dtrack, OurParserReadsTheRealCapturesWeKnow) {
-  // Two genuine datagrams: if these did not hold, nor would the tests above mean anything.
+  // Two genuine datagrams: if these could not be read, the tests above would mean nothing.
   const auto bodies = bodies_of(
       "1 [0 1.000][-475.292 -567.632 -53.704 135.5743 5.7618 -3.3069][0.993291 0.111352 0.031199 "
       "0.057393 -0.708916 0.702954 0.100393 -0.696447 -0.710551]");
@@ -161,7 +161,7 @@ TEST(Dtrack, NobodyIsSaidToo) {
   const auto lines = lines_of(encode(frame, {Duration{-5}, true, Room::Normal}));
   EXPECT_EQ(lines.at("6d"), "0");
   EXPECT_EQ(lines.at("6dj"), "6 0");
-  EXPECT_EQ(lines.at("ts2"), "1795246604 1847 0");  // never late by less than nothing
+  EXPECT_EQ(lines.at("ts2"), "1795246604 1847 0");  // latency is never negative
 }
 
 TEST(Dtrack, UntrackedJointsAreLeftOut) {

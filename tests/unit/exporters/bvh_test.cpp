@@ -1,4 +1,4 @@
-// BVH under a decoder of our own, written from the format's description, and under common/motion.
+// BVH, checked by our own decoder, written from the format's description, and by common/motion.
 #include "common/exporters/bvh.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// C3D under a decoder of our own, written from the user guide (c3d.org), and under common/motion.
+// C3D, checked by our own decoder, written from the user guide (c3d.org), and by common/motion.
 #include "common/exporters/c3d.h"
 
 #include <gmock/gmock.h>
@@ -67,7 +67,7 @@ struct Decoded {
   [[nodiscard]] unsigned header_word(std::size_t n) const { return word_at(2 * (n - 1)); }
   [[nodiscard]] float real_at(std::size_t at) const {
     float value = 0;
-    std::memcpy(&value, bytes.data() + at, 4);  // tests run on Intel order
+    std::memcpy(&value, bytes.data() + at, 4);  // tests run on machines with Intel byte order
     return value;
   }
   [[nodiscard]] float real(const std::string& key) const {

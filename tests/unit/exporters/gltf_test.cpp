@@ -1,5 +1,5 @@
-// glTF under a decoder of our own, written from the glTF 2.0 specification: nodes are animated,
-// vertices skinned as a viewer does.  The Khronos validator and three.js judge it in tests/system.
+// glTF, checked by our own decoder, written from the glTF 2.0 specification: it animates nodes and
+// skins vertices as a viewer does. tests/system uses the Khronos validator and three.js.
 #include "common/exporters/gltf.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// Poses for exporter tests: nothing in them is the same mirrored, turned or with two axes swapped.
+// Poses for exporter tests: each would change if mirrored, rotated or with two axes swapped.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@
 
 namespace chorus::exporters {
 
-/// Left arm raised ahead, right knee lifted, head to the left; place and heading are odd numbers.
+/// Left arm raised forwards, right knee lifted, head to the left; irregular place and heading.
 inline Skeleton<WorldSpace> asymmetric_person() {
   Skeleton<WorldSpace> body = testing::standing_person({0.7, 0.0, -1.3}, deg(35));
   const Eigen::Quaterniond world_from_body(Eigen::AngleAxisd(deg(35), Eigen::Vector3d::UnitY()));
@@ -40,7 +40,7 @@ inline Take take_of(const std::vector<std::vector<Skeleton<WorldSpace>>>& person
   return take;
 }
 
-/// The shipped walk at 30 Hz: bones that are rigid, rotations that are human.
+/// The shipped walk at 30 Hz: rigid bones, human rotations.
 inline std::vector<Skeleton<WorldSpace>> walk() {
   const auto& shipped = motion::cmu_walk();
   const auto captured = motion::motion_from_amc(shipped.skeleton, shipped.takes.front()).value();
@@ -50,7 +50,7 @@ inline std::vector<Skeleton<WorldSpace>> walk() {
   return frames;
 }
 
-/// The same with 20 mm of noise on every joint, as fused joints have it; the same every time.
+/// The same with 20 mm of noise on every joint, as for fused joints; the same noise every time.
 inline std::vector<Skeleton<WorldSpace>> breathing_walk() {
   auto frames = walk();
   std::uint32_t state = 1;
@@ -66,7 +66,7 @@ inline std::vector<Skeleton<WorldSpace>> breathing_walk() {
   return frames;
 }
 
-/// Three turns on the spot, five degrees a frame.
+/// Three turns on the spot, five degrees per frame.
 inline std::vector<Skeleton<WorldSpace>> turning() {
   std::vector<Skeleton<WorldSpace>> frames;
   for (int i = 0; i < 216; ++i)

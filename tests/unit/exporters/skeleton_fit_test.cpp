@@ -62,7 +62,7 @@ TEST(SkeletonFit, FollowsAWalkOfRigidBonesWithinMillimetres) {
   const auto fit = fit_skeleton(track);
   ASSERT_THAT(fit, IsOk());
   ASSERT_EQ(fit->poses.size(), track.poses.size());
-  // SpineBase and the spine's joints are weighted means of bone ends: not quite rigid.
+  // SpineBase and the spine's joints are weighted means of bone ends: not entirely rigid.
   EXPECT_LT(fit->residual.rms, mm(8));
   EXPECT_LT(fit->residual.largest, mm(40));
 }

@@ -53,7 +53,7 @@ TEST(TrcExport, HasTheRowsOfMotionAnalysis) {
     EXPECT_EQ(split(lines[row], '\t').size(), 2 + 3 * kJointCount + 1) << "a tab ends each row";
 }
 
-/// As OpenSim's FileAdapter cuts a line: an empty token at its end is none.
+/// Splits a line like OpenSim's FileAdapter: an empty token at its end does not count.
 std::vector<std::string> tokens_of_opensim(const std::string& line) {
   auto tokens = split(line, '\t');
   if (tokens.back().empty()) tokens.pop_back();

@@ -10,7 +10,7 @@
 namespace chorus::facing {
 namespace {
 
-/// A person at `neck` whose chest points back along -z of the sensor, turned by `yaw` about +y.
+/// A person at `neck` whose chest faces the sensor (along -z), turned by `yaw` about +y.
 BodyFrame person(const Eigen::Vector3d& neck, double yaw) {
   BodyFrame body;
   const auto place = [&](JointId id, const Eigen::Vector3d& offset) {
@@ -18,7 +18,7 @@ BodyFrame person(const Eigen::Vector3d& neck, double yaw) {
     body.skeleton[id].state = JointState::Tracked;
   };
   place(JointId::Neck, {0, 0, 0});
-  place(JointId::ShoulderLeft, {-0.2, -0.1, 0});  // facing the sensor, one's left is at -x
+  place(JointId::ShoulderLeft, {-0.2, -0.1, 0});  // when facing the sensor, left is at -x
   place(JointId::ShoulderRight, {0.2, -0.1, 0});
   return body;
 }

@@ -9,7 +9,7 @@ namespace {
 
 const PersonPrior kPrior;
 
-/// `seconds` of the same walking.
+/// Processes `seconds` of the same walking.
 void walk(PersonFilter& filter, double log_odds, double seconds) {
   constexpr double kStep = 0.05;
   for (double t = 0.0; t < seconds; t += kStep) {

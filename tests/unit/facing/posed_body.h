@@ -1,4 +1,4 @@
-// Bodies with a posture, as sensors with habits of their own show them.
+// Bodies with a posture, as shown by sensors with various habits.
 #pragma once
 
 #include <cmath>
@@ -13,12 +13,12 @@
 
 namespace chorus::facing {
 
-/// How far joints are ahead of where they are on somebody who stands like a plank [m].
+/// How far joints are in front of those of a person standing straight as a plank [m].
 struct Posture {
   double knees = 0.0;
   double wrists = 0.0;
   double elbows = 0.0;
-  double shoulders = 0.0;  ///< Arms come along.
+  double shoulders = 0.0;  ///< The arms move with them.
 };
 
 inline constexpr Posture kPlank{};
@@ -63,7 +63,7 @@ inline constexpr Posture kAtWork{0.02, 0.25, -0.02, 0.05};
   return body;
 }
 
-/// Seen by sensor `number`, 3 m away from the origin in the direction of yaw `from`.
+/// The body as seen by sensor `number`, 3 m from the origin in the direction of yaw `from`.
 [[nodiscard]] inline SensorView view_from(int number, double from,
                                           const Skeleton<WorldSpace>& body) {
   SensorView view;
@@ -73,14 +73,14 @@ inline constexpr Posture kAtWork{0.02, 0.25, -0.02, 0.05};
   return view;
 }
 
-/// Left shoulder truly on the left?
+/// Whether the left shoulder is truly on the left.
 [[nodiscard]] inline bool is_right(const SensorView& view, const Skeleton<WorldSpace>& exact) {
   const auto& shown = view.skeleton[JointId::ShoulderLeft].position;
   return (shown - exact[JointId::ShoulderLeft].position).norm() < 0.1;
 }
 
-/// Where a tracker exchanges left and right of somebody who turns away, and where it takes that
-/// back [rad].
+/// The angles at which a tracker exchanges left and right of a person turning away, and exchanges
+/// them back [rad].
 struct Flips {
   double out = deg(130);
   double back = deg(100);
@@ -88,7 +88,7 @@ struct Flips {
 
 inline constexpr Flips kNever{deg(181), deg(181)};
 
-/// Sensors about the origin, each with its habit, before one person.
+/// Sensors around the origin, each with its habit, that see one person.
 class Ring {
  public:
   Ring(std::vector<double> directions, std::vector<Flips> flips)
@@ -96,7 +96,7 @@ class Ring {
         flips_(std::move(flips)),
         rear_(directions_.size(), false) {}
 
-  /// Of a body at the origin that faces `heading`; a habit is followed in the order of the calls.
+  /// Views of a body at the origin that faces `heading`; habits depend on the order of the calls.
   [[nodiscard]] Person look(const Skeleton<WorldSpace>& exact, double heading) {
     Person person{PersonId{1}, {}};
     for (std::size_t s = 0; s < directions_.size(); ++s) {

@@ -9,7 +9,7 @@
 namespace chorus::facing {
 namespace {
 
-const Eigen::Vector3d kAhead = Eigen::Vector3d::UnitZ();  // of body_at heading 0
+const Eigen::Vector3d kAhead = Eigen::Vector3d::UnitZ();  // front of body_at() with heading 0
 
 double odds_of(const Posture& posture) {
   return posture_log_odds({view_from(1, 0, body_at({0, 0, 0}, 0, posture))}, kAhead, {});
@@ -55,7 +55,7 @@ TEST(Posture, ThatStaysTheSameIsHardlyNews) {
   EXPECT_NEAR(posture_news(2.0, -1.0, 1e3, 5.0), 2.0, 1e-9);
   double sum = 0.0;
   for (int i = 0; i < 300; ++i) sum += posture_news(2.0, 2.0, 0.033, 5.0);
-  EXPECT_NEAR(sum, posture_news(2.0, 2.0, 9.9, 5.0), 0.6);  // one long step knows a little less
+  EXPECT_NEAR(sum, posture_news(2.0, 2.0, 9.9, 5.0), 0.6);  // one long step has slightly less
 }
 
 TEST(Posture, OfNobodyOrWithoutDirectionOrWithoutJointsTellsNothing) {

@@ -15,7 +15,7 @@ constexpr Timestamp kStart = from_unix_ns(1'790'000'000'000'000'000);
 constexpr Duration kFrame = std::chrono::milliseconds(33);
 constexpr double kStep = 0.033;  // [s]
 
-/// Every habit that real trackers have shown, and none of them is in the model.
+/// All habits that real trackers have shown; none of them is part of the model.
 const std::vector<std::vector<Flips>> kTrackers{
     {{deg(130), deg(100)}},         {{deg(130), deg(75)}},         {{deg(130), deg(55)}},
     {{deg(110), deg(70)}},          {{deg(97), deg(92)}},          {{deg(140), deg(40)}},
@@ -23,8 +23,8 @@ const std::vector<std::vector<Flips>> kTrackers{
     {{deg(130), deg(100)}, kNever}, {{deg(130), deg(55)}, kNever}, {{deg(97), deg(92)}, kNever},
 };
 
-/// Share of the instants in which some view is wrong, of `seconds` before a ring; `heading` and
-/// `posture` are asked for at every time.
+/// Fraction of the instants with a wrong view, during `seconds` in a ring; `heading` and `posture`
+/// give the person's state at each time.
 template <class Heading, class PostureAt>
 double wrong_share(Ring ring, double seconds, const Heading& heading, const PostureAt& posture) {
   SidesMemory memory;
@@ -106,8 +106,8 @@ TEST(Sides, OutlastHandsBehindTheBack) {
   EXPECT_EQ(wrong_share(Ring({0.0}, {{deg(130), deg(55)}}), 30, standing, hands), 0.0);
 }
 
-/// With nothing but labels, a sensor that exchanges and its mirror image are the same; one that
-/// does not exchange tells them apart at once.
+/// By labels alone, a sensor that exchanges and its mirror image are indistinguishable; a sensor
+/// that does not exchange resolves this at once.
 TEST(Sides, OfAPlankAreToldBySensorsThatLabelRight) {
   for (double heading = 0.0; heading < 2.0 * std::numbers::pi; heading += deg(20)) {
     const auto standing = [&](double) { return wrap_angle(heading); };
@@ -116,7 +116,7 @@ TEST(Sides, OfAPlankAreToldBySensorsThatLabelRight) {
   }
 }
 
-/// Somebody who walks, before one sensor that exchanges sides of everybody seen from behind.
+/// A person walks in front of one sensor that exchanges the sides of everybody seen from behind.
 TEST(Sides, WalkingForwardsPutsAWrongBeginningRight) {
   SidesMemory memory;
   bool right = false;
@@ -127,7 +127,7 @@ TEST(Sides, WalkingForwardsPutsAWrongBeginningRight) {
     right = is_right(person.views[0], exact);
     if (i == 0) {
       EXPECT_FALSE(right);
-    }  // a plank, and the sensor claims that it faces it
+    }  // stands like a plank, and the sensor shows it as facing
   }
   EXPECT_TRUE(right);
   const auto exact = body_at({0, 0, -3}, deg(180));
@@ -187,7 +187,7 @@ TEST(Sides, AreKeptThroughAnInstantInWhichNobodyCanTell) {
   EXPECT_TRUE(is_right(later.views[0], exact));
 }
 
-/// Joints on the way from one body to another.
+/// Joints interpolated between two bodies.
 Skeleton<WorldSpace> between(const Skeleton<WorldSpace>& a, const Skeleton<WorldSpace>& b,
                              double share) {
   Skeleton<WorldSpace> body = a;
@@ -196,12 +196,12 @@ Skeleton<WorldSpace> between(const Skeleton<WorldSpace>& a, const Skeleton<World
   return body;
 }
 
-/// It shows 65 deg until it takes the back for the front, then 120: over three frames the sides
-/// are drawn together and swept the other way round.
+/// It shows 65 deg until it takes the back for the front, then 120: for three frames the sides are
+/// drawn together and swept to the other side.
 TEST(Sides, AreNotDraggedAlongByATrackerThatChangesItsMind) {
   const auto front = body_at({0, 0, 0}, deg(65));
   const auto rear = exchanged(body_at({0, 0, 0}, deg(120)));
-  for (const bool second : {false, true}) {  // and not by one of two that hardly sees any sides
+  for (const bool second : {false, true}) {  // nor with a second view that hardly shows sides
     SidesMemory memory;
     const auto narrow = between(front, exchanged(front), 0.45);
     for (int i = 0; i < 30; ++i) {
@@ -216,8 +216,8 @@ TEST(Sides, AreNotDraggedAlongByATrackerThatChangesItsMind) {
   }
 }
 
-/// Somebody at work turns before a camera that never exchanges anything; then a plank is first seen
-/// from aside of it, at an angle that leaves everything open before anything is known.
+/// A person at work turns in front of a camera that never exchanges sides; then a plank is first
+/// seen from its side, at an angle that leaves everything open before anything is known.
 TEST(Sides, OfALaterPersonAreToldByTheHabitThatAnEarlierOneTaught) {
   const auto plank = body_at({0, 0, 0}, deg(150));
   const auto first_odds = [&](const SidesMemory& from) {
@@ -237,7 +237,7 @@ TEST(Sides, OfALaterPersonAreToldByTheHabitThatAnEarlierOneTaught) {
   EXPECT_GT(first_odds(memory), first_odds({}) + 0.005);
 }
 
-/// Sides that were turned round are held as firmly as they were found.
+/// Sides are held as firmly after a reversal as when they were first found.
 TEST(Sides, ThatTurnedRoundStayWithTheirPosture) {
   SidesMemory memory;
   const auto upright = body_at({0, 0, 0}, deg(180));
@@ -248,7 +248,7 @@ TEST(Sides, ThatTurnedRoundStayWithTheirPosture) {
     const double right = memory.people.at(PersonId{1}).filter.right();
     return is_right(person.views[0], body) ? std::log(right / (1.0 - right)) : -1.0;
   };
-  EXPECT_LT(odds(upright, 0), 0.0);  // believed to face the sensor
+  EXPECT_LT(odds(upright, 0), 0.0);  // assumed to face the sensor
   for (int i = 1; i < 150; ++i) odds(at_work, i);
   const double settled = odds(at_work, 150);
   EXPECT_GT(settled, 1.0);
@@ -262,7 +262,7 @@ TEST(Sides, BeginAnewAfterALongAbsence) {
   resolve_sides(person, kStart, memory, {});
   Person later{PersonId{1}, {view_from(1, 0, exchanged(exact))}};
   resolve_sides(later, kStart + std::chrono::seconds(2), memory, {});
-  EXPECT_FALSE(is_right(later.views[0], exact));  // a lone sensor is believed at first
+  EXPECT_FALSE(is_right(later.views[0], exact));  // a single sensor is believed at first
 }
 
 TEST(Sides, OfABodyWithoutPairsOrWithoutViewsAreNothing) {

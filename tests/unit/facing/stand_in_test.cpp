@@ -7,7 +7,7 @@
 namespace chorus::facing {
 namespace {
 
-/// Shoulders 0.4 m apart on either side of (0, 1.4, 0).
+/// Shoulders 0.4 m apart, symmetric about (0, 1.4, 0).
 SensorView shoulders(const Eigen::Vector3d& eye, const Eigen::Vector3d& left) {
   SensorView view;
   view.eye = eye;

@@ -1,4 +1,4 @@
-// One body over time: what it learns, what it carries, what it smooths.
+// One body over time: what it learns, predicts and smooths.
 #include "fusion-server/fusion/body_filter.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ const std::vector<SensorId> kSensors{sensor(1), sensor(2), sensor(3), sensor(4)}
 constexpr Timestamp kStart = from_unix_ns(1'795'246'200'000'000'000);
 constexpr int kSteps = 90;
 
-/// A standing body, arms out, facing +z.
+/// A standing body with arms stretched out, facing +z.
 Skeleton<WorldSpace> standing() {
   Skeleton<WorldSpace> body;
   const auto put = [&](JointId joint, double x, double y) {
@@ -44,7 +44,7 @@ Skeleton<WorldSpace> standing() {
   return body;
 }
 
-/// From eyes around the body, 3 m away; the first in front of it.
+/// Seen by eyes around the body, 3 m away; the first is in front of it.
 SensorView view_of(int number, const Skeleton<WorldSpace>& body) {
   SensorView view;
   view.sensor = sensor(number);
@@ -61,7 +61,7 @@ Skeleton<WorldSpace> scaled(Skeleton<WorldSpace> body, double by) {
   return body;
 }
 
-/// Limbs turned about the spine, as a sensor that sees the body from the side has them.
+/// Limbs rotated about the spine, as by a sensor that sees the body from the side.
 Skeleton<WorldSpace> turned(Skeleton<WorldSpace> body, double by) {
   for (Joint& joint : body.joints) {
     if (std::abs(joint.position.x()) > 0) joint.position = about_y(by) * joint.position;
@@ -76,7 +76,7 @@ struct Room {
     return memory.fuse({{PersonId{1}, std::move(views)}},
                        {kStart + milliseconds(33) * step, kSensors}, config)[0];
   }
-  /// Everybody sees the same.
+  /// All views are the same.
   FusedBody all_see(int step, const Skeleton<WorldSpace>& body) {
     return at(step, {view_of(1, body), view_of(2, body), view_of(3, body), view_of(4, body)});
   }
@@ -201,7 +201,7 @@ TEST(BodyFilter, RestIsSmoothAndMotionDoesNotLag) {
   auto moving = exact;
   FusedBody body;
   for (int i = 1; i <= 15; ++i) {
-    for (Joint& joint : moving.joints) joint.position.z() += 0.03;  // 0.9 m/s at once
+    for (Joint& joint : moving.joints) joint.position.z() += 0.03;  // a sudden speed of 0.9 m/s
     body = room.all_see(kSteps + i, moving);
   }
   EXPECT_LT(wrist_off(body, moving), 0.012);

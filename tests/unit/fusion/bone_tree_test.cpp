@@ -1,4 +1,4 @@
-// The tree of bones beside the dense solution of the same problem.
+// The tree of bones compared with the dense solution of the same problem.
 #include "fusion-server/fusion/bone_tree.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ Problem random_problem(std::uint32_t seed) {
   return problem;
 }
 
-/// One Gauss-Newton step of Eq. (4), all joints at once; returns places and their covariance.
+/// One Gauss-Newton step of Eq. (4), all joints at once; returns positions and their covariance.
 std::pair<Eigen::VectorXd, Eigen::MatrixXd> dense_step(const Problem& problem) {
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(kSize, kSize);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(kSize);

@@ -1,4 +1,4 @@
-// Cameras without depth around the middle of a room, and what they show of a point.
+// Cameras without depth around the middle of a room, and the rays they show of a point.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace chorus::fusion {
 
-/// On a circle of 3 m, 1.5 m high.
+/// On a circle with a radius of 3 m, 1.5 m high.
 inline Eigen::Vector3d camera_eye(double angle) {
   return {3.0 * std::sin(angle), 1.5, 3.0 * std::cos(angle)};
 }
@@ -23,7 +23,7 @@ inline std::vector<Eigen::Vector3d> camera_ring(int count) {
   return eyes;
 }
 
-/// A ray of one joint whose direction errs by `sigma` [rad] in all directions, and says so.
+/// A ray of one joint whose direction has an isotropic error of `sigma` [rad], and states it.
 class RayDraw {
  public:
   RayDraw(std::uint32_t seed, double sigma) : random_(seed), sigma_(sigma) {}

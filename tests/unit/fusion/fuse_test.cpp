@@ -238,7 +238,7 @@ TEST(FuseProperty, MovingTheWorldMovesTheResult) {
   expect_same_when_moved(tilted,
                          {Method::Otto, Method::Mean, Method::BestView, Method::InverseVariance,
                           Method::BestSkeleton, Method::OttoKalman, Method::PointsAndRays});
-  Eigen::Isometry3d upright(about_y(1.1));  // the body filter knows which way is up
+  Eigen::Isometry3d upright(about_y(1.1));  // the body filter depends on which way is up
   upright.translation() = Eigen::Vector3d(4, -2, 7);
   expect_same_when_moved(upright, {Method::BodyFilter});
 }

@@ -44,7 +44,7 @@ TEST(InverseVariance, OneGrossOutlierAmongFourBarelyPulls) {
 TEST(InverseVariance, InferredCountsLess) {
   std::vector<JointView> views{from({0, 0, 5}, {0, 0, 0}),
                                from({0, 0, 5}, {0.01, 0, 0}, {}, JointState::Inferred)};
-  // Factor 2 in sigma is 4 in weight: 0.01 / (1 + 4).
+  // A factor 2 in sigma is a factor 4 in weight: 0.01 / (1 + 4).
   EXPECT_NEAR(inverse_variance(views, kHuber).joint.position.x(), 0.002, 1e-5);
 }
 
@@ -54,7 +54,7 @@ TEST(InverseVariance, APoseErrorIsStatedButMovesNothing) {
   for (JointView& view : views) view.pose_variance = 0.04 * 0.04;
   const FusedJoint after = inverse_variance(views, kHuber);
   EXPECT_EQ(after.joint.position, before.joint.position);
-  // Two views of 0.04 m and their own noise.
+  // Two views with 0.04 m of pose error and their own noise.
   EXPECT_GT(after.variance, 0.04 * 0.04 / 2);
   EXPECT_GT(after.variance, 2 * before.variance);
 }

@@ -43,14 +43,14 @@ TEST(LeastSquares, ExactRaysMeetInThePoint) {
 }
 
 TEST(LeastSquares, ANearCameraCountsMoreThanAFarOne) {
-  // Two rays across x, one from 1 m and one from 4 m, and one that settles z.
+  // Two rays across x, one from 1 m and one from 4 m, and one that determines z.
   std::vector<JointView> views;
   RayDraw exact(1, 0.0);
   views.push_back(exact({0, 0, -1}, {0, 0, 0}));
   views.push_back(exact({0.1, 0, -4}, {0.1, 0, 0}));
   views.push_back(exact({-2, 0, 0}, {0, 0, 0}));
   for (JointView& view : views) view.covariance = kSigma * kSigma * Eigen::Matrix3d::Identity();
-  // Information goes with 1 / range^2: 0.1 / (1 + 16).
+  // Information is proportional to 1 / range^2: 0.1 / (1 + 16).
   EXPECT_NEAR(least_squares(views, 0.0)->position.x(), 0.1 / 17.0, 2e-4);
 }
 
@@ -135,7 +135,7 @@ TEST(LeastSquares, ACameraThatTheJointIsBehindIsNotBelieved) {
 }
 
 TEST(LeastSquares, ARayMendsTheDepthOfAPoint) {
-  // Its depth sensor looks along z and is blunt; a camera looks along x.
+  // Its depth sensor looks along z and is imprecise there; a camera looks along x.
   const JointView point = point_view({0, 1, 0.10}, {1e-4, 1e-4, 0.01});
   RayDraw exact(1, 0.0);
   JointView ray = exact({-3, 1, 0}, {0, 1, 0});

@@ -1,4 +1,4 @@
-// Methods that remember: best skeleton with hysteresis, Otto's weights in a Kalman filter.
+// Methods with memory: best skeleton with hysteresis, Otto's weights in a Kalman filter.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ using std::chrono::milliseconds;
 const std::vector<SensorId> kSensors{sensor(1), sensor(2)};
 constexpr Timestamp kStart = from_unix_ns(1'795'246'200'000'000'000);
 
-/// A person that fusion sees instant after instant.
+/// A person that is fused instant by instant.
 class Seen {
  public:
   explicit Seen(Method method) { config_.method = method; }
@@ -33,7 +33,7 @@ class Seen {
   Memory memory_;
 };
 
-/// The neck at x, seen by a body that faces its sensor or stands sideways.
+/// The neck at x, in a view whose body faces its sensor or stands sideways.
 SensorView facing_view(int number, double x, double facing) {
   SensorView view = neck_view(number, {x, 1, 0}, 0.5);
   view.facing = facing;

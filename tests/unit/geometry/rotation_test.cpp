@@ -1,4 +1,4 @@
-// The laws of the rotation group, and the totality the header promises.
+// The laws of the rotation group, and that functions are total as the header promises.
 #include "common/geometry/rotation.h"
 
 #include <array>
@@ -19,7 +19,7 @@ using testing::VectorNear;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kDraws = 300;
-constexpr double kExact = 1e-7;  // acos-free formulas: close to double precision
+constexpr double kExact = 1e-7;  // formulas without acos: close to double precision
 
 Eigen::Quaterniond random_rotation(std::mt19937& random) {
   std::normal_distribution<double> normal;
@@ -138,7 +138,7 @@ TEST(Yaw, IsTheAngleOfAboutYAndOfWhereZIsSent) {
     EXPECT_NEAR(wrap_angle(yaw_of(about_y(yaw).toRotationMatrix()) - yaw), 0.0, 1e-12);
     const Eigen::Vector3d ahead = about_y(yaw) * Eigen::Vector3d::UnitZ();
     EXPECT_NEAR(std::atan2(ahead.x(), ahead.z()), wrap_angle(yaw), 1e-12);
-    // Tilting the camera about its own x axis first leaves its heading alone.
+    // Tilting the camera about its own x axis first does not change its heading.
     const Eigen::Quaterniond tilted =
         about_y(yaw) * Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitX()));
     EXPECT_NEAR(wrap_angle(yaw_of(tilted.toRotationMatrix()) - yaw), 0.0, 1e-12);

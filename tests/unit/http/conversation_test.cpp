@@ -1,4 +1,4 @@
-// Requests, answers and publishes in any order, without a socket and without waiting.
+// Requests, answers and publications in any order, without a socket and without waiting.
 #include "common/http/conversation.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ constexpr std::string_view kStream =
 constexpr std::string_view kPost =
     "POST /do HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2\r\n\r\n";
 
-/// Plays the shell: what the conversation orders is done at once, as far as the test lets it.
+/// Plays the shell: executes what the conversation orders immediately, as far as the test permits.
 class ConversationTest : public testing::Test {
  protected:
   ConversationTest() {
@@ -118,7 +118,7 @@ class ConversationTest : public testing::Test {
   bool reading_ = false, writing_ = false, settling_ = false, waiting_ = false;
   bool closed_ = false, half_closed_ = false, upgraded_ = false;
   bool stalled_ = false;              ///< The client does not read.
-  bool publish_before_look_ = false;  ///< A publish comes between the last look and the waiting.
+  bool publish_before_look_ = false;  ///< A publication comes between the last look and the wait.
 };
 
 std::size_t times(std::string_view text, std::string_view part) {

@@ -1,4 +1,4 @@
-// Events out of bytes, however the network cuts them.
+// Events read from bytes, however the network splits them.
 #include "common/http/event_reader.h"
 
 #include <gtest/gtest.h>

@@ -51,7 +51,7 @@ TEST(Negotiation, RealClients) {
                    "application/n-triples;q=0.8,text/turtle;q=0.6"),
             "application/ld+json");  // Comunica
   EXPECT_EQ(chosen("text/html,application/xhtml+xml,application/xml;q=0.9,*/*;q=0.8"),
-            "text/turtle");  // a browser, and no HTML on offer
+            "text/turtle");  // a browser, when no HTML is offered
 }
 
 TEST(Negotiation, CaseSpaceAndParameters) {

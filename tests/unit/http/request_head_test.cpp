@@ -1,4 +1,4 @@
-// What the head reader understands; what it refuses over sockets is in
+// What the head reader accepts; what it refuses over sockets is tested in
 // tests/integration/http/hostile_test.
 #include "common/http/request_head.h"
 
@@ -77,7 +77,7 @@ TEST(RequestHead, NeverReadsOutside) {
   RequestHead head;
   const std::string bytes = "GET / HTTP/1.1\r\nHost: h\r\nContent-Length: 3\r\nAccept: */*\r\n\r\n";
   for (std::size_t size = 0; size < bytes.size(); ++size) {
-    const std::string cut = bytes.substr(0, size);  // Its own memory: ASan sees its end.
+    const std::string cut = bytes.substr(0, size);  // memory of its own: ASan knows its end
     (void)read_head(cut, head);
     (void)find_head_end(cut, 0);
   }

@@ -1,4 +1,4 @@
-// Requests to reactions without a socket; the HTTP checklist is in
+// Requests and reactions without a socket; the HTTP checklist is tested in
 // tests/integration/http/server_test.
 #include "common/http/responder.h"
 

@@ -1,4 +1,4 @@
-// Who is woken by a publish, without a socket.
+// Which clients a publication wakes, without a socket.
 #include "common/http/server_core.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ class Waking : public testing::Test {
     core_ = std::make_shared<ServerCore>(ServerConfig{}, router);
     core_->subscribe();
   }
-  /// How many handlers a publish makes the server's thread run.
+  /// Number of handlers that a publication runs on the server's thread.
   std::size_t publish() {
     live_->publish(make_document("text/plain", "x", {"1"}));
     core_->io.restart();

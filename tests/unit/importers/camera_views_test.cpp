@@ -24,7 +24,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Distance of each joint to the truth, split along and across the sensor's line of sight.
+/// Distance of each joint from the truth, split along and across the sensor's line of sight.
 struct Errors {
   std::vector<double> whole;
   std::vector<double> across;
@@ -61,7 +61,7 @@ TEST(CameraViews, ImportTheShippedFolderInStep) {
   }
 }
 
-/// Ceilings of the committed measurement (tests/bench/accuracy/real_bench.cpp) plus a tenth.
+/// Ceilings: the committed results (tests/bench/accuracy/real_bench.cpp) plus ten percent.
 TEST(CameraViews, LieNearTheTriangulationAndBestAcrossTheLineOfSight) {
   const auto set = import_files(FileFormat::Pose2Sim, {kFolder});
   ASSERT_THAT(set, IsOk());
@@ -112,7 +112,7 @@ TEST(CameraViews, AsRaysPointAtTheTriangulation) {
   }
 }
 
-/// Ours: x to the sensor's left, y up, z ahead.  All four cameras stand upright above the floor.
+/// Our axes: x to the sensor's left, y up, z forward.  All four cameras are upright, above floor.
 TEST(CameraViews, SpeakOurAxes) {
   const auto set = import_files(FileFormat::Pose2Sim, {kFolder});
   ASSERT_THAT(set, IsOk());
@@ -131,7 +131,7 @@ TEST(CameraViews, SpeakOurAxes) {
   EXPECT_LT(truth[JointId::FootRight].position.y(), 0.2);
 }
 
-/// A synthetic body before a synthetic camera comes back exactly, distortion included.
+/// A synthetic body seen by a synthetic camera is recovered exactly, distortion included.
 TEST(LandmarkFit, RecoversAKnownPose) {
   Intrinsics camera;
   camera.fx = camera.fy = 900.0;

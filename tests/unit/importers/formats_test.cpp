@@ -17,7 +17,7 @@ using ::testing::SizeIs;
 constexpr std::int64_t kBoot = 95'833'559'566;
 constexpr std::int64_t kTicksPerSecond = 10'000'000;
 
-/// LabanotationSuite rows 33 ms apart, the first so long after boot; told apart by x.
+/// LabanotationSuite rows 33 ms apart, the first some time after boot; distinguishable by x.
 std::string rows(double seconds_after_boot, double x, int count = 4) {
   std::string text;
   for (int i = 0; i < count; ++i) {

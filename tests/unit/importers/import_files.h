@@ -1,4 +1,4 @@
-// Files for importer tests: written to a folder of their own, shipped ones, shared ones.
+// Files for importer tests: written to a temporary folder, shipped, or shared.
 #pragma once
 
 #include <cstdlib>
@@ -11,7 +11,7 @@ namespace chorus::importers {
 /// The tests run in the repository root.
 inline const std::filesystem::path kShippedRecordings = "tests/data";
 
-/// $CHORUS_SHARED/data or ../shared/data: recordings that may not travel with the repository.
+/// $CHORUS_SHARED/data or ../shared/data: recordings that may not be distributed with the project.
 inline std::filesystem::path shared_recordings() {
   const char* named = std::getenv("CHORUS_SHARED");
   return std::filesystem::path(named != nullptr ? named : "../shared") / "data";

@@ -1,4 +1,4 @@
-// Motion files as recordings: what was exported comes back, as truth and as an ideal sensor's view.
+// Motion files as recordings: exported files are read back, as truth and as an ideal sensor's view.
 #include "common/importers/motion_file.h"
 
 #include <gmock/gmock.h>

@@ -24,7 +24,7 @@ Eigen::Vector2d place_of(const Skeleton<WorldSpace>& body) {
   return {body[SpineBase].position.x(), body[SpineBase].position.z()};
 }
 
-/// Where the body faces, along the floor.
+/// The direction that the body faces, along the floor.
 Eigen::Vector2d forward_of(const Skeleton<WorldSpace>& body) {
   const Eigen::Vector3d left = body[HipLeft].position - body[HipRight].position;
   return Eigen::Vector2d(-left.z(), left.x()).normalized();

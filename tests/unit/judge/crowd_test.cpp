@@ -14,7 +14,7 @@ Eigen::Vector2d neck_at(const synthetic::Person& person, double time) {
   return {neck.x(), neck.z()};
 }
 
-/// Least distance of any two over two minutes.
+/// Least distance between any two people during two minutes.
 double least_distance(const std::vector<synthetic::Person>& people) {
   double least = std::numeric_limits<double>::infinity();
   for (double time = 0; time < 120; time += 0.1) {
@@ -88,7 +88,7 @@ TEST(Screen, HidesWhoCrossesBehindItFromEverySensor) {
     const Eigen::Vector3d through = eye + share * (neck - eye);
     EXPECT_LT(std::abs(through.z()), screen().half.z());
     EXPECT_LT(through.y(), 2.0 * screen().half.y());
-    EXPECT_GT((place.linear() * Eigen::Vector3d::UnitZ()).x(), 0.9);  // looks that way
+    EXPECT_GT((place.linear() * Eigen::Vector3d::UnitZ()).x(), 0.9);  // it looks in that direction
   }
 }
 
@@ -112,7 +112,7 @@ TEST(PeopleAround, AreOppositeToEachOther) {
 
 const Timestamp kBegin = from_unix_ns(1'795'000'000'000'000'000);
 
-/// Who is in the room, so long after the beginning.
+/// The people in the room, some time after the beginning.
 std::vector<bool> inside_at(const std::vector<synthetic::Person>& people, double time) {
   std::vector<bool> inside;
   for (const auto& person : people)

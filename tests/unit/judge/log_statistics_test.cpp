@@ -12,7 +12,7 @@ namespace {
 using enum JointId;
 constexpr Duration kFrame = std::chrono::milliseconds(33);
 
-/// A still body: SpineMid and Neck 0.2 m and 0.6 m over SpineBase.
+/// A body at rest: SpineMid and Neck are 0.2 m and 0.6 m above SpineBase.
 SensorFrame still(std::int64_t number) {
   SensorFrame frame;
   frame.captured = Timestamp(kFrame * number);
@@ -107,7 +107,7 @@ TEST(LogStatistics, KnowsThePaceTheLongestGapAndWhatHasNoOrientation) {
 TEST(LogStatistics, GapsAndEmptyLogsAreSurvived) {
   std::vector<SensorFrame> frames;
   for (int i = 0; i < 60; ++i) {
-    // Every third step is a gap, so no four frames belong together: nothing to measure.
+    // Every third step is a gap, so there are no four successive frames: nothing to measure.
     frames.push_back(still(i + 10 * (i / 3)));
   }
   EXPECT_TRUE(std::isnan(statistics_of(frames).white[index_of(Neck)].x()));

@@ -91,7 +91,7 @@ TEST(BoneVariation, IsTheStandardDeviationOverTheMean) {
     // Thigh: hip to knee 0.1 m long; now 0.09 or 0.11.
     answers[i].body[KneeLeft].position.y() += i % 2 == 0 ? 0.01 : -0.01;
   }
-  // The shank, 0.1 m too, changes with it; six of eight bones do not.
+  // The shank, also 0.1 m long, changes with it; six of eight bones do not.
   EXPECT_NEAR(bone_variation(answers), 2 * 0.1 / 8, 1e-9);
 }
 
@@ -109,7 +109,7 @@ TEST(Jumps, AreNotCountedAcrossAGap) {
     for (Joint& joint : answers[i].body.joints) joint.position.z() += 1;
   }
   EXPECT_EQ(jumps_per_minute(answers), 0);
-  answers.erase(answers.begin() + 9, answers.begin() + 16);  // missing instants are a gap too
+  answers.erase(answers.begin() + 9, answers.begin() + 16);  // missing instants are gaps, too
   EXPECT_EQ(jumps_per_minute(answers), 0);
 }
 
@@ -120,11 +120,11 @@ TEST(LabelErrors, AreInstantsThatFitBetterWithLeftAndRightExchanged) {
       std::swap(answers[i].body[left], answers[i].body[right]);
     }
   }
-  std::swap(answers[20].body[WristLeft], answers[20].body[WristRight]);  // one pair is no body
+  std::swap(answers[20].body[WristLeft], answers[20].body[WristRight]);  // only one pair
   EXPECT_NEAR(label_error_share(answers), 0.25, 1e-12);
 }
 
-/// A person who sways, answered as he was `lag` seconds before.
+/// A person who sways; each answer is the truth of `lag` seconds before.
 Answers swaying(double lag) {
   Answers answers;
   for (int i = 0; i < 250; ++i) {

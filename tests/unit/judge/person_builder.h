@@ -1,4 +1,4 @@
-// Small hand-built people and answers for the tests of baselines and metrics.
+// Small hand-made people and answers for the tests of baselines and metrics.
 #pragma once
 
 #include <chrono>
@@ -30,7 +30,7 @@ inline Joint inferred(const Eigen::Vector3d& position) {
   return joint;
 }
 
-/// Tracks `count` joints, all at `place`, starting with SpineBase; faces its sensor at `facing`.
+/// Tracks `count` joints from SpineBase on, all at `place`; faces its sensor at `facing`.
 inline SensorView view_of(int number, std::size_t count, double facing,
                           const Eigen::Vector3d& place = Eigen::Vector3d::Zero()) {
   SensorView view;
@@ -40,7 +40,7 @@ inline SensorView view_of(int number, std::size_t count, double facing,
   return view;
 }
 
-/// A person who stands at `place` facing +z, left is +x; every joint has its own height.
+/// A person who stands at `place`, facing +z with left at +x; every joint has another height.
 inline Skeleton<WorldSpace> standing(const Eigen::Vector3d& place) {
   Skeleton<WorldSpace> body;
   for (std::size_t i = 0; i < kJointCount; ++i) {

@@ -62,7 +62,7 @@ TEST(LimbLabels, DoNotCountLimbsThatTouch) {
 TEST(BoneLength, IsTheMeanErrorOverTheTrueLength) {
   Answers answers = exact_walk(20, 0.5);
   for (Answer& answer : answers) {
-    // The left thigh, 0.1 m, and no other bone: what hangs below moves with the knee.
+    // Only the left thigh, 0.1 m: the joints below move with the knee.
     for (const JointId id : {KneeLeft, AnkleLeft}) answer.body[id].position.y() += 0.02;
   }
   const double thigh =
@@ -74,7 +74,7 @@ TEST(FootSlide, IsHowFarAnAnkleWandersWhileTheTrueOneStands) {
   Answers answers = exact_walk(100, 0.0);
   for (std::size_t i = 0; i < answers.size(); ++i) {
     answers[i].body[AnkleLeft].position.x() += i % 2 == 0 ? 0.01 : -0.01;
-    answers[i].body[AnkleRight].position.x() += 0.05;  // off, but it stands
+    answers[i].body[AnkleRight].position.x() += 0.05;  // misplaced, but standing still
   }
   EXPECT_NEAR(foot_slide(answers), 0.01 / std::sqrt(2.0), 1e-4);
 }

@@ -1,4 +1,4 @@
-// Skeleton layouts: tables without slips, and joints made of landmarks.
+// Skeleton layouts: tables without mistakes, and joints computed from landmarks.
 #include "common/layout/layout.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ std::string lower(std::string_view text) {
   return low;
 }
 
-/// The same place on the other side of the body: "LShoulder" <-> "RShoulder", "mouth_left" <-> ...
+/// The counterpart on the other side of the body: "LShoulder" <-> "RShoulder", "mouth_left" <-> ...
 std::string mirrored(std::string name) {
   for (const auto& [one, other] : std::map<std::string, std::string>{
            {"LEFT", "RIGHT"}, {"left", "right"}, {"Left", "Right"}}) {

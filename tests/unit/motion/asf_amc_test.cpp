@@ -66,8 +66,8 @@ TEST(Asf, LengthsAreInchesDividedByTheUnit) {
 
 TEST(Amc, ABoneTurnsAboutItsOwnAxisFrame) {
   const AsfSkeleton skeleton = two_bones();
-  // The lower bone's axis frame is turned by 90 deg about y, so its x axis is the world's -z, and
-  // turning it by +90 deg about that axis sends -y to -x.
+  // The lower bone's axis frame is rotated by 90 deg about y, so its x axis is the world's -z, and
+  // rotating by +90 deg about that axis takes -y to -x.
   const auto frames =
       parse_amc(":FULLY-SPECIFIED\n:DEGREES\n1\nroot 1 2 3 0 0 0\nupper 0 0 0\nlower 90\n", "a.amc",
                 skeleton);
@@ -81,7 +81,7 @@ TEST(Amc, ABoneTurnsAboutItsOwnAxisFrame) {
 
 TEST(Amc, RootAnglesTurnAboutFixedAxesXFirst) {
   const AsfSkeleton skeleton = two_bones();
-  // x first: -y goes to -z; then 90 deg about z leaves it there.  The other order would give -x...
+  // x first: -y goes to -z; then 90 deg about z leaves it there.  The other order would give -x or
   // +x.
   const auto frames = parse_amc("1\nroot 0 0 0 90 0 90\nupper 0 0 0\nlower 0\n", "a.amc", skeleton);
   ASSERT_TRUE(frames) << to_string(frames.error());

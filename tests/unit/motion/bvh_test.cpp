@@ -54,7 +54,7 @@ TEST(Bvh, ReadsHierarchyAndFramesInMetres) {
 
 TEST(Bvh, TurnsInTheListedOrder) {
   const auto bvh = parse_bvh(kArm, "arm.bvh").value();
-  // R = Rz(90) Rx(90): +y goes to +z by x, and z leaves it there.
+  // R = Rz(90) Rx(90): x takes +y to +z, and z leaves it there.
   const auto posed = joint_positions(bvh, 1);
   EXPECT_TRUE(posed[1].isApprox(Eigen::Vector3d(0.5, 1.0, 0.1), 1e-9)) << posed[1].transpose();
 }
@@ -105,7 +105,7 @@ TEST(BvhMotion, AFileWithoutABodyIsRefused) {
   EXPECT_EQ(motion.error().code, ErrorCode::Unsupported);
 }
 
-/// Real files of several dialects; they may not be shipped, so they are read where they are.
+/// Real files of several dialects; they may not be distributed, so they are read from elsewhere.
 struct Dialect {
   const char* path;
   double metres_per_unit;
@@ -123,8 +123,8 @@ TEST_P(RealBvh, LooksLikeAPerson) {
   ASSERT_TRUE(bvh) << to_string(bvh.error());
   const auto motion = motion_from_bvh(*bvh);
   ASSERT_TRUE(motion) << to_string(motion.error());
-  // People bend and crouch in some of these, so at least one frame must look upright, and bones
-  // must keep their length in all.
+  // People bend and crouch in some of these, so at least one frame must show an upright person, and
+  // bones must keep their lengths in all.
   int upright = 0;
   const auto length = [](const Skeleton<WorldSpace>& body, JointId a, JointId b) {
     return (body[a].position - body[b].position).norm();

@@ -1,4 +1,4 @@
-// C3D files for tests, in every byte order and number format the user guide (c3d.org) describes.
+// C3D files for tests, in all byte orders and number formats of the user guide (c3d.org).
 #pragma once
 
 #include <array>
@@ -15,13 +15,13 @@ enum class Order { Intel = 84, Dec = 85, Mips = 86 };
 
 struct C3dSpec {
   Order order = Order::Intel;
-  float scale = -1.0f;  ///< Negative: floats.
+  float scale = -1.0f;  ///< Negative: the data are floats.
   std::string units = "mm";
   std::vector<std::string> labels{"HipLeft", "Wand"};
   std::string x_screen = "+X";
   std::string y_screen = "+Y";
   int frames = 2;
-  int analog = 3;  ///< Samples between the frames.
+  int analog = 3;  ///< Analog samples after each frame.
   /// x y z in file units and the fourth word.
   std::function<std::array<double, 4>(int frame, int point)> at = [](int f, int p) {
     return std::array<double, 4>{100.0 + f, -200.0 * p, 1500.25, 2.0};

@@ -192,7 +192,7 @@ TEST(RealC3d, TreadmillWalkStandsUprightWithItsLeftOnTheLeft) {
   EXPECT_GT(height(JointId::SpineShoulder), height(JointId::HipLeft) + 0.3);
   EXPECT_GT(height(JointId::HipLeft), height(JointId::KneeLeft) + 0.3);
   EXPECT_GT(height(JointId::KneeRight), height(JointId::AnkleRight) + 0.25);
-  // Left is where up x forward points; the toes are ahead of the ankles.
+  // Left is the direction of up x forward; the toes are in front of the ankles.
   const Eigen::Vector3d left = body[JointId::HipLeft].position - body[JointId::HipRight].position;
   const Eigen::Vector3d ahead =
       body[JointId::FootLeft].position - body[JointId::AnkleLeft].position;

@@ -20,7 +20,7 @@ using chorus::testing::VectorNear;
 using ::testing::HasSubstr;
 
 /// Pelvis, left upper and lower arm; the person faces +x, the upper arm hangs down, the forearm
-/// points ahead.
+/// points forwards.
 constexpr std::string_view kSuit = R"(<?xml version="1.0"?>
 <mvnx version="4">
  <mvn build="x"/>
@@ -71,7 +71,7 @@ TEST(Mvnx, AheadLeftUpBecomesOurWorld) {
   const auto motion = motion_from_mvnx(parse_mvnx(kSuit, "suit.mvnx").value());
   ASSERT_THAT(motion, IsOk());
   const auto& body = motion->frames[0];
-  // (ahead, left, up) = (z, x, y) of a person who faces +z.
+  // (forward, left, up) = (z, x, y) of a person who faces +z.
   EXPECT_THAT(body[JointId::SpineBase].position, VectorNear(Eigen::Vector3d(0.2, 0.9, 0.1), 1e-9));
   EXPECT_THAT(body[JointId::ShoulderLeft].position,
               VectorNear(Eigen::Vector3d(0.4, 1.4, 0.1), 1e-9));
@@ -86,7 +86,7 @@ TEST(Mvnx, SegmentsTurnJointsSoThatYLiesAlongTheBone) {
   EXPECT_THAT(Eigen::Vector3d(elbow.orientation * Eigen::Vector3d::UnitZ()),
               VectorNear(Eigen::Vector3d::UnitZ(), 1e-6))
       << "its front still faces ahead";
-  // In the T-pose: along the arm to the left, front ahead.
+  // In the T-pose: along the arm to the left, the front forwards.
   const Joint& straight = motion.frames[1][JointId::ElbowLeft];
   EXPECT_THAT(Eigen::Vector3d(straight.orientation * Eigen::Vector3d::UnitY()),
               VectorNear(Eigen::Vector3d::UnitX(), 1e-9));

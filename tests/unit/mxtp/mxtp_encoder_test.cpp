@@ -1,4 +1,4 @@
-// MXTP02 read back by a decoder written from the format's table, not from the encoder.
+// MXTP02 read by a decoder written from the format's table, not from the encoder.
 #include "fusion-server/mxtp/mxtp_encoder.h"
 
 #include <array>
@@ -116,7 +116,7 @@ TEST(Mxtp, TheHeadOfWhomOnlyPartOfTheNeckIsSeenStaysOnIt) {
   EXPECT_NEAR(place_without(JointId::Neck), 1.4, 1e-5);
 }
 
-/// A file of MVN's that has just what a datagram says: the neck's other end is where the head
+/// A file in MVN's format with just the content of a datagram: the neck ends where the head
 /// begins.
 motion::Mvnx file_of(const std::vector<char>& bytes) {
   constexpr std::array kLabels{"Pelvis",
@@ -172,7 +172,7 @@ TEST(Mxtp, IsReadBackByOurOwnImportOfMvn) {
   }
 }
 
-/// One datagram of a pose that looks along our +z, Xsens' +x.
+/// The datagram of a pose that looks along our +z, which is Xsens' +x.
 std::vector<char> facing_x(outlet::TrackerBody body, double yaw_degrees = 0) {
   outlet::testing::move(body, {0, 0, 0}, 180 + yaw_degrees);
   return encode({}, body);
@@ -202,7 +202,7 @@ TEST(Mxtp, ALoweredArmAndARaisedLegTurnTheirSegmentsAlone) {
   outlet::testing::turn(body, {KneeLeft, AnkleLeft, FootLeft}, HipLeft,
                         outlet::testing::about_x(40));
   const auto bytes = facing_x(body);
-  // The left arm falls from +y towards -z; the leg swings from -z towards +x.
+  // The left arm moves from +y towards -z; the leg swings from -z towards +x.
   const Eigen::Quaterniond lowered(Eigen::AngleAxisd(deg(-80), Eigen::Vector3d::UnitX()));
   const Eigen::Quaterniond raised(Eigen::AngleAxisd(deg(-40), Eigen::Vector3d::UnitY()));
   constexpr std::uint32_t kLeftUpperArm = 13, kRightUpperArm = 9, kLeftUpperLeg = 20;

@@ -1,4 +1,4 @@
-// A skeleton's description has the lengths that its person shows, once there are enough frames.
+// A skeleton's description gets the measured lengths of its person once there are enough frames.
 #include "fusion-server/natnet/bone_lengths.h"
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 using outlet::testing::t_pose;
 
 constexpr PersonId kPerson{7};
-constexpr std::size_t kLeftForearm = 8;  // LHand hangs at its end
+constexpr std::size_t kLeftForearm = 8;  // ends at LHand
 constexpr std::size_t kRightForearm = 12;
 
 double length(const std::array<double, 3>& offset) {
@@ -50,7 +50,7 @@ TEST(BoneLengths, AreThoseOfThePersonAfterFiveSeconds) {
   EXPECT_FALSE(lengths.wants(kPerson));
   for (std::size_t i = 1; i < kBoneCount; ++i) {
     EXPECT_NEAR(length((*found)[i]), shown[i].position.norm(), 1e-9) << motive_bones()[i].name;
-    // At rest as before, only longer.
+    // Directions as in the rest pose, only longer.
     EXPECT_NEAR((*found)[i][1] * length(motive_bones()[i].offset),
                 motive_bones()[i].offset[1] * length((*found)[i]), 1e-9);
   }

@@ -1,5 +1,5 @@
-// Motive's bones: names clients look for, a rest they agree on, and a chain that ends where the
-// joints are.
+// Motive's bones: the names that clients look for, the agreed rest pose, and a chain that ends
+// where the joints are.
 #include "fusion-server/natnet/motive_skeleton.h"
 
 #include <map>
@@ -19,7 +19,7 @@ using chorus::testing::VectorNear;
 
 constexpr double kExact = 1e-9;
 
-/// Parents as in Motive's documentation of its skeleton.
+/// Parents according to Motive's documentation of its skeleton.
 const std::map<std::string, std::string> kParents{
     {"Ab", "Hip"},          {"Chest", "Ab"},        {"Neck", "Chest"},  {"Head", "Neck"},
     {"LShoulder", "Chest"}, {"LUArm", "LShoulder"}, {"LFArm", "LUArm"}, {"LHand", "LFArm"},
@@ -50,7 +50,7 @@ Named named(const outlet::TrackerBody& body, Coordinates coordinates) {
   return found;
 }
 
-/// As a client puts them together.
+/// Multiplies the bones along the chain, as clients do.
 MotiveBone in_world(const Named& local, const std::string& bone) {
   const MotiveBone& own = local.at(bone);
   const auto parent = kParents.find(bone);
@@ -60,7 +60,7 @@ MotiveBone in_world(const Named& local, const std::string& bone) {
           own.tracked};
 }
 
-/// T-pose that looks along +z.
+/// T-pose looking along +z.
 outlet::TrackerBody motive_t_pose() {
   outlet::TrackerBody body = t_pose();
   move(body, {0, 0, 0}, 180);
@@ -118,7 +118,7 @@ TEST(MotiveSkeleton, ABoneTurnsItsOwnRestDirectionToItsChild) {
     return global.at(bone).orientation.conjugate() *
            (global.at(child).position - global.at(bone).position).normalized();
   };
-  // Left is +x, ahead is +z: of the asymmetric pose, mirrored or turned axes would show.
+  // Left is +x, forward is +z: with this asymmetric pose, mirrored or rotated axes would show.
   EXPECT_THAT(along("LUArm", "LFArm"), VectorNear(Eigen::Vector3d(1, 0, 0), 1e-6));
   EXPECT_THAT(along("RFArm", "RHand"), VectorNear(Eigen::Vector3d(-1, 0, 0), 1e-6));
   EXPECT_THAT(along("LThigh", "LShin"), VectorNear(Eigen::Vector3d(0, -1, 0), 1e-6));

@@ -1,4 +1,4 @@
-// NatNet's command channel without a socket: what real clients send, and what nobody should.
+// NatNet's command channel without a socket: what real clients send, and what nobody should send.
 #include "fusion-server/natnet/command_desk.h"
 
 #include <fstream>
@@ -33,12 +33,12 @@ std::string captured(const std::string& name) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// The first 16 bits; -1: nothing was said.
+/// The first 16 bits; -1: there is no answer.
 int message_in(const Reply& reply) {
   return reply.bytes.empty() ? -1 : NatNetReader(reply.bytes).one<std::uint16_t>();
 }
 
-/// As a client does that wants frames.
+/// Connects like a client that wants frames.
 void connect(CommandDesk& desk, const Address& from, const Now& now) {
   (void)desk.answer(request(0), from, now);
   (void)desk.answer(request(10), from, now);
@@ -118,7 +118,7 @@ TEST(NatNetCommands, DiscoveryOnlyAsks) {
 
 TEST(NatNetCommands, SloppyClientsAreUnderstood) {
   CommandDesk desk(with_models());
-  // A header alone; "Ping" and NUL; 271 bytes and one more; nothing announced and a byte behind it.
+  // A header alone; "Ping" and NUL; 271 bytes and one more; no payload announced but one byte sent.
   for (const std::string& connect :
        {request(0), request(0, "Ping\0"sv), request(0, std::string(271, '\0')) + '\0',
         request(0) + '\0'}) {
@@ -169,7 +169,7 @@ TEST(NatNetCommands, WhatNobodyKnowsIsUnrecognizedAndAnswersAreNot) {
   for (const int unknown : {15, 55, 99, 101, 127}) {
     EXPECT_EQ(message_in(desk.answer(request(unknown), kSomebody, at(0s))), 100);
   }
-  // Two servers that are given each other's address must not go on for ever.
+  // Two servers that get each other's address must not exchange answers forever.
   for (const int answer : {1, 3, 5, 7, 8, 11, 13, 100}) {
     const Reply reply = desk.answer(request(answer, "12345678"), kSomebody, at(0s));
     EXPECT_EQ(message_in(reply), -1) << answer;
@@ -198,7 +198,7 @@ TEST(NatNetCommands, ClientsAreForgottenUnlessSomethingIsHeardOfThem) {
   EXPECT_EQ(desk.clients(at(10s).steady).size(), 2u);
   EXPECT_EQ(desk.clients(at(11s).steady), std::vector{kSomebody});
   EXPECT_EQ(desk.clients(at(20s).steady), std::vector<Address>{});
-  // A client that outlived the server, or its rest: keeping alive twice is enough.
+  // A client that outlived the server or its own entry: two keep-alives are enough.
   (void)desk.answer(request(10), other, at(21s));
   (void)desk.answer(request(10), other, at(22s));
   EXPECT_EQ(desk.clients(at(22s).steady), std::vector{other});
@@ -244,8 +244,8 @@ TEST(NatNetCommands, AllAnswersTogetherAreLimited) {
     const Address anybody{static_cast<std::uint32_t>(i), 1000};
     said += desk.answer(request(4), anybody, at(i * 1ms)).bytes.size();
   }
-  EXPECT_GT(said, 500'000u);             // the burst ...
-  EXPECT_LE(said, 524'288u + 262'144u);  // ... and a second's worth
+  EXPECT_GT(said, 500'000u);             // the initial allowance ...
+  EXPECT_LE(said, 524'288u + 262'144u);  // ... and that of one second
   EXPECT_EQ(message_in(desk.answer(request(4), kSomebody, at(10s))), 5);
 }
 
@@ -255,7 +255,7 @@ TEST(NatNetCommands, NoiseNeverSurprises) {
   for (int i = 0; i < 200'000; ++i) {
     std::string bytes(noise() % 64, '\0');
     for (char& c : bytes) c = static_cast<char>(noise());
-    if (bytes.size() > 1 && i % 2 == 0) bytes[1] = '\0';  // a message that may have a name
+    if (bytes.size() > 1 && i % 2 == 0) bytes[1] = '\0';  // a message number that may be known
     const Address from{static_cast<std::uint32_t>(noise() % 100),
                        static_cast<std::uint16_t>(noise() % 100)};
     const Reply reply = desk.answer(bytes, from, at(i * 1us));

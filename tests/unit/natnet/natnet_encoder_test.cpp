@@ -1,4 +1,4 @@
-// NatNet frames and model definitions, byte by byte as the format's description has them.
+// NatNet frames and model definitions, byte by byte according to the format's description.
 #include "fusion-server/natnet/natnet_encoder.h"
 
 #include <gtest/gtest.h>
@@ -112,7 +112,7 @@ TEST(NatNetFrame, ABodyOfWhichNothingIsSeenIsFinite) {
     EXPECT_FALSE(each.tracked);
     EXPECT_THAT(each.place, VectorNear(Eigen::Vector3d(0, 0, 0), 0.0));
   }
-  EXPECT_EQ(read.one<std::uint32_t>(), 0u);  // it faces nowhere: no skeleton
+  EXPECT_EQ(read.one<std::uint32_t>(), 0u);  // no known facing: no skeleton
 }
 
 TEST(NatNetFrame, SaysThatModelsHaveChanged) {

@@ -1,4 +1,4 @@
-// Reads NatNet payloads from the format's description; throws std::out_of_range when they end.
+// Reads NatNet payloads by the format's description; throws std::out_of_range at their end.
 #pragma once
 
 #include <cstring>

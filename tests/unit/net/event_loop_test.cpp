@@ -26,7 +26,7 @@ TEST(RunEvents, WhatMustBeUnderWayIsStartedAgain) {
   ::testing::internal::CaptureStderr();
   run_events(io, "failed", [&] {
     const bool first = ++prepared == 1;
-    asio::post(io, [&ran, first] {  // All there is to do, so that nothing else keeps it running.
+    asio::post(io, [&ran, first] {  // The only work, so that nothing else keeps the loop running.
       if (first) throw std::bad_alloc();
       ++ran;
     });

@@ -1,4 +1,4 @@
-// OSC 1.0 read back, from the specification and not from our writer.
+// Reads OSC 1.0, written from the specification and not from our writer.
 #pragma once
 
 #include <cstring>
@@ -26,7 +26,7 @@ class OscReader {
     if (rest_.size() % 4 != 0) throw std::runtime_error("size");
   }
 
-  /// All messages of a packet: one, or those of a bundle.
+  /// All messages in a packet: a single one, or those of a bundle.
   std::vector<OscMessage> packet() {
     if (!rest_.starts_with("#bundle")) return {message()};
     if (text() != "#bundle" || word() != 0 || word() != 1) throw std::runtime_error("bundle");

@@ -1,4 +1,4 @@
-// VMC read back bone by bone: going down the chain gives the joints where they were.
+// VMC read bone by bone: multiplied along the chain they give the original joints.
 #include "fusion-server/osc/vmc_encoder.h"
 
 #include <map>
@@ -122,9 +122,9 @@ TEST(Vmc, KnownTurnsAreUnitysTurns) {
   turn(body, kRightArm, JointId::ShoulderRight, about_up(90));
   move(body, {0, 0, 0}, 30);
   const Poses bones = poses_at(read_osc(encode(&body, {})), "/VMC/Ext/Bone/Pos");
-  EXPECT_THAT(bones.at("LeftUpperArm").q, RotationNear(about_z(90), 1e-6));     // hangs
-  EXPECT_THAT(bones.at("RightUpperArm").q, RotationNear(about_up(-90), 1e-6));  // points ahead
-  EXPECT_THAT(bones.at("Hips").q, RotationNear(about_up(-30), 1e-6));           // left-handed
+  EXPECT_THAT(bones.at("LeftUpperArm").q, RotationNear(about_z(90), 1e-6));     // hangs down
+  EXPECT_THAT(bones.at("RightUpperArm").q, RotationNear(about_up(-90), 1e-6));  // points forwards
+  EXPECT_THAT(bones.at("Hips").q, RotationNear(about_up(-30), 1e-6));           // handedness
 }
 
 TEST(Vmc, SaysThatItIsCalibratedWhenAndThatTheRootStands) {

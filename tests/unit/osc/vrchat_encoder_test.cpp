@@ -1,4 +1,4 @@
-// VRChat's trackers: who has which number, where it is, and which way Euler angles turn it.
+// VRChat's trackers: their numbers, their positions, and the rotations of their Euler angles.
 #include "fusion-server/osc/vrchat_encoder.h"
 
 #include <map>
@@ -29,8 +29,8 @@ Vectors read(const outlet::TrackerBody& body, const Content& content = {}) {
   return all;
 }
 
-/// Unity: about z, then x, then y, in degrees; written down for right-handed matrices, which have
-/// the same form.
+/// Unity: about z, then x, then y, in degrees; written for right-handed matrices, which have the
+/// same form.
 Eigen::Quaterniond unity_euler(const Eigen::Vector3d& degrees) {
   return about_up(degrees.y()) * about_x(degrees.x()) * about_z(degrees.z());
 }

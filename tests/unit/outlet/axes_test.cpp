@@ -1,4 +1,4 @@
-// One asymmetric pose through every protocol's axes, against numbers worked out by hand.
+// One asymmetric pose through every protocol's axes, compared with hand-computed numbers.
 #include "fusion-server/outlet/axes.h"
 
 #include <gtest/gtest.h>
@@ -57,7 +57,7 @@ TEST(Axes, AYawTurnsAboutTheUpAxisOfEveryTarget) {
             1e-9);
   EXPECT_LT(angular_distance(xsens_axes().quaternion(yaw), turn(30, Eigen::Vector3d::UnitZ())),
             1e-9);
-  // Left-handed: the same turn counts the other way round.
+  // Left-handed: the same rotation has the opposite sign.
   EXPECT_LT(angular_distance(unity_axes().quaternion(yaw), turn(-30, Eigen::Vector3d::UnitY())),
             1e-9);
 }
@@ -82,8 +82,8 @@ TEST(Axes, QuaternionsHaveNonNegativeW) {
 struct Angles {
   const char* name;
   Eigen::Vector3d (*of)(const Eigen::Matrix3d&);
-  Eigen::Vector3d given;      ///< What `of` must return [deg]
-  Eigen::Quaterniond turned;  ///< The rotation these angles stand for
+  Eigen::Vector3d given;      ///< Angles that `of` must return [deg]
+  Eigen::Quaterniond turned;  ///< The rotation that these angles describe
 };
 
 class EulerAngles : public ::testing::TestWithParam<Angles> {};

@@ -1,4 +1,4 @@
-// Bone rotations from joint places: the T-pose gives identities, known turns give known rotations.
+// Bone rotations from joint positions: the T-pose gives identities, known turns known rotations.
 #include "fusion-server/outlet/humanoid.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ Quaternion local(const Humanoid& rig, HumanBone bone) {
   return rig[parent_of(bone)].world_from_bone.conjugate() * rig[bone].world_from_bone;
 }
 
-/// Every bone but these has no rotation of its own.
+/// Every other bone must have the identity as its own rotation.
 void expect_only(const Humanoid& rig, const std::map<HumanBone, Quaternion>& turned) {
   for (std::size_t i = 1; i < kHumanBoneCount; ++i) {
     const auto bone = static_cast<HumanBone>(i);
@@ -85,7 +85,7 @@ TEST(Humanoid, TheThumbSaysHowTheHandIsTwisted) {
 
 TEST(Humanoid, TheHeadTurnsAsItsOrientationTurnsAgainstTheShoulders) {
   TrackerBody body = t_pose();
-  for (TrackerJoint& joint : body.joints) joint.orientation = about_up(17);  // whatever they mean
+  for (TrackerJoint& joint : body.joints) joint.orientation = about_up(17);  // to be ignored
   body.joints[index_of(JointId::Head)].orientation = about_up(40) * about_up(17);
   expect_only(humanoid_of(body), {{Head, about_up(40)}});
 }
@@ -118,7 +118,7 @@ TEST(Humanoid, AStraightLimbTakesTheShortestTurnAndABendingOneDoesNotJump) {
   double largest = 0.0;
   Quaternion before = Quaternion::Identity();
   for (double angle = 0; angle <= 60; angle += 0.5) {
-    TrackerBody body = t_pose();  // the elbow bends upwards: a quarter turn of twist in the end
+    TrackerBody body = t_pose();  // the elbow bends upwards: finally a quarter turn of twist
     turn(body, kLeftForearm, JointId::ElbowLeft, about_z(-angle));
     const Quaternion now = humanoid_of(body)[LeftUpperArm].world_from_bone;
     largest = std::max(largest, angular_distance(before, now));

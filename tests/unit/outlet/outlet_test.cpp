@@ -1,4 +1,4 @@
-// An outlet that takes its time costs the pipeline nothing, and what it misses is counted.
+// A slow outlet costs the pipeline nothing, and the frames it misses are counted.
 #include "fusion-server/outlet/outlet.h"
 
 #include <condition_variable>
@@ -13,7 +13,7 @@
 namespace chorus::outlet {
 namespace {
 
-/// What an outlet was given, and a gate that holds it back.
+/// The frames that an outlet was given, and a gate that blocks it.
 struct Log {
   std::mutex mutex;
   std::condition_variable changed;
@@ -21,7 +21,7 @@ struct Log {
   bool entered = false;
   std::vector<std::uint64_t> sequences;
   std::vector<Timestamp> instants;
-  std::vector<std::size_t> slots;  ///< Of all bodies.
+  std::vector<std::size_t> slots;  ///< Of all bodies received.
 };
 
 class SlowOutlet final : public Outlet {

@@ -1,4 +1,4 @@
-// Poses of the rig that humanoid outputs are relative to, made from the T-pose by hand.
+// Poses for the rig of humanoid outputs, made from the T-pose by hand.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace chorus::outlet::testing {
 
-/// Exactly at rest: looks along -z, its left hand at -x, pelvis 0.95 m above the floor at x, z = 0.
+/// Exactly at rest: looks along -z, left hand at -x, pelvis 0.95 m above the floor at x = z = 0.
 /// No joint has an orientation of its own.
 inline outlet::TrackerBody t_pose() {
   using enum JointId;
@@ -47,7 +47,7 @@ inline outlet::TrackerBody t_pose() {
   return body;
 }
 
-/// Turns joints, with what they say of their orientation, about a point.
+/// Rotates joints and their orientations about a point.
 inline void turn(outlet::TrackerBody& body, const std::vector<JointId>& joints, JointId about,
                  const Eigen::Quaterniond& by) {
   const Eigen::Vector3d centre = body[about].position;
@@ -80,7 +80,7 @@ inline Eigen::Quaterniond about_z(double degrees) {
   return about(Eigen::Vector3d::UnitZ(), degrees);
 }
 
-/// The whole body, as it would stand after walking there and turning.
+/// The whole body after walking to `place` and turning.
 inline void move(outlet::TrackerBody& body, const Eigen::Vector3d& by, double yaw_degrees) {
   for (outlet::TrackerJoint& joint : body.joints) {
     joint.position = by + about_up(yaw_degrees) * joint.position;
@@ -88,8 +88,8 @@ inline void move(outlet::TrackerBody& body, const Eigen::Vector3d& by, double ya
   }
 }
 
-/// Left arm down with the forearm raised forward, right arm ahead, left leg forward, the upper body
-/// bent and turned, everything somewhere else: no two axes are alike.
+/// Left arm down with the forearm raised forwards, right arm forwards, left leg forwards, the upper
+/// body bent and twisted, all of it elsewhere: no two axes look alike.
 inline outlet::TrackerBody asymmetric_pose() {
   using enum JointId;
   outlet::TrackerBody body = t_pose();

@@ -1,5 +1,5 @@
-// Persons in the slots they are seated in; every joint gets an orientation; velocities come from
-// what was.
+// People in the slots where they are seated; every joint gets an orientation; velocities follow
+// from the previous frame.
 #include "fusion-server/outlet/tracker_frame.h"
 
 #include <gtest/gtest.h>

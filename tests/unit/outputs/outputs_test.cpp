@@ -1,4 +1,4 @@
-// The configuration's section "outputs": everything off by default, every mistake named.
+// The configuration's section "outputs": all off by default, every mistake reported by name.
 #include "fusion-server/outputs/outputs.h"
 
 #include <gmock/gmock.h>
@@ -114,7 +114,7 @@ TEST(Outputs, MorePersonsHaveASlotAndTargetsEach) {
   }
 }
 
-/// What is said of a configuration that can be read but not be opened.
+/// The error of a configuration that can be read but not opened.
 std::string opening_error(std::string_view text) {
   const auto config = read(text);
   EXPECT_THAT(config, IsOk());
@@ -146,13 +146,13 @@ TEST(Outputs, DtracksGroupHasAnInterfaceAndALimit) {
                             R"("multicast_hops": 256)", R"("multicast_hops": -1)"}) {
     EXPECT_FALSE(read(std::string(R"({"outputs": {"dtrack": {)") + wrong + "}}}")) << wrong;
   }
-  // TEST-NET-1: nobody's.
+  // TEST-NET-1: no host has it.
   EXPECT_THAT(opening_error(R"({"outputs": {"dtrack": {"enabled": true, "source_port": 0,
                   "targets": ["239.1.2.3:5000"], "multicast_address": "192.0.2.1"}}})"),
               AllOf(HasSubstr("outputs.dtrack"), HasSubstr("multicast_address")));
 }
 
-/// A port that is taken, by TCP and by UDP, as long as this lives.
+/// A port that is occupied, by TCP and UDP, for the lifetime of this object.
 class Taken {
  public:
   Taken() : acceptor_(io_, {asio::ip::address_v4::loopback(), 0}), socket_(io_) {

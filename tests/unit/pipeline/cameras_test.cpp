@@ -1,4 +1,4 @@
-// Cameras without depth through the whole pipeline: two to eight of them, known places, rays only.
+// Cameras without depth in the whole pipeline: two to eight of them, known places, rays only.
 #include <algorithm>
 #include <random>
 
@@ -14,7 +14,7 @@ namespace {
 using testing::kFrameInterval;
 using testing::kStart;
 
-/// Two people on one circle, opposite each other, at a walk.
+/// Two people who walk on one circle, opposite each other.
 Skeleton<WorldSpace> walker(int person, double t) {
   const double angle = 0.8 * t + std::numbers::pi * person;
   return testing::standing_person({0.9 * std::sin(angle), 0, 0.9 * std::cos(angle)},
@@ -26,12 +26,12 @@ struct Cell {
   int people = 1;
   double noise = deg(0.3);
   Duration lone_after =
-      std::chrono::hours(1);  ///< From then on only the first camera sees anybody.
+      std::chrono::hours(1);  ///< From this time on only the first camera sees anybody.
 };
 
 SensorId camera_id(int i) { return testing::sensor_id("cam" + std::to_string(i)); }
 
-/// On a ring, a quarter apart or less.
+/// On a ring, at most 90 deg apart.
 Eigen::Isometry3d place_of(const Cell& cell, int i) {
   return testing::ring_sensor(i, std::max(4, cell.cameras), 3.5, 1.5);
 }
@@ -94,7 +94,7 @@ class Pipeline {
   int frame_ = 0;
 };
 
-/// Mean joint error of the person that the body is nearest to [m].
+/// Mean joint error against the person nearest to the body [m].
 double error_of(const FusedBody& body, const Snapshot& snapshot, int people) {
   double least = 1e9;
   for (int k = 0; k < people; ++k) {

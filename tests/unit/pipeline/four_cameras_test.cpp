@@ -1,8 +1,8 @@
 // The bundled real recording: four synchronised cameras, one person balancing on a beam for 1.67 s.
 //
 // A camera knows a joint's direction to 15-35 mm but its depth only to 0.1-0.3 m, and the published
-// truth is the triangulation of the same landmarks.  So the small errors below say that
-// inverse-variance fusion finds the triangulation by itself, not that it is accurate to
+// truth is the triangulation of the same landmarks.  So the small errors below mean that
+// inverse-variance fusion reproduces the triangulation, not that it is accurate to a few
 // millimetres.
 #include <algorithm>
 #include <cmath>
@@ -45,7 +45,7 @@ Recording load(bool rays = false) {
   return recording;
 }
 
-/// What suits single cameras: blunt along the line of sight, bodies up to 1 m apart are one person.
+/// Settings for single cameras: inaccurate depth; bodies up to 1 m apart are one person.
 OfflineConfig camera_config() {
   OfflineConfig config;
   config.rate_hz = kFrameRate;
@@ -60,7 +60,7 @@ RegistrationConfig camera_registration() {
   config.joints = registration::JointChoice::All;
   config.along_ratio = 8.0;
   config.use_floor = false;
-  config.min_spread = 0.0;    // balancing on the spot: the body's own size gives the lever
+  config.min_spread = 0.0;    // balancing on the spot: only the body itself has an extent
   config.max_edge_rms = 0.5;  // depth differs by decimetres
   config.max_speed = 10.0;    // depth jitters at 60 Hz
   return config;

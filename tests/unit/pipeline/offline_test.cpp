@@ -28,7 +28,7 @@ std::vector<WalkTrack> walk(const WalkSpec& spec) {
   return tracks;
 }
 
-/// Mean joint error against the walk; `truth_from_world` takes the result to the truth's world.
+/// Mean joint error against the walk; `truth_from_world` moves the result into the true world.
 double mean_error(const std::vector<Snapshot>& snapshots,
                   const Eigen::Isometry3d& truth_from_world) {
   double sum = 0.0;
@@ -155,7 +155,7 @@ TEST(FuseOffline, SaysWhyTheWalkCouldNotBeRegistered) {
   EXPECT_THAT(fused.error().message, HasSubstr("sensors s0 and s1 never saw the person together"));
 }
 
-/// All tracks as one recording: in the order of capture, whoever saw it.
+/// All tracks as one recording: in the order of capture, regardless of the sensor.
 std::vector<SensorFrame> as_recorded(const std::vector<WalkTrack>& tracks) {
   std::vector<SensorFrame> frames;
   for (const WalkTrack& track : tracks)
@@ -173,7 +173,7 @@ FrameLane lane_of(const std::vector<SensorFrame>& frames, std::size_t& taken) {
 
 TEST(FuseRecordings, OneLaneOfAllSensorsGivesWhatTracksInMemoryGive) {
   auto tracks = walk({.length = 6});
-  // s1 leaves for a while, then everybody does.
+  // s1 is silent for a while, then all are.
   std::erase_if(tracks[1].frames, [](const SensorFrame& frame) {
     return frame.captured > registration::kWalkStart + std::chrono::seconds(2) &&
            frame.captured < registration::kWalkStart + std::chrono::seconds(4);

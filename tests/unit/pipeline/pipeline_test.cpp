@@ -84,7 +84,7 @@ TEST(Step, SeatsItsPeopleOnceForAllOutputs) {
   ASSERT_EQ(last.snapshot.bodies.size(), 2u);
   EXPECT_EQ(last.snapshot.bodies[0].slot, 0u);
   EXPECT_EQ(last.snapshot.bodies[1].slot, 1u);
-  // Nobody is seen for half a second: whoever comes meanwhile does not get their slots.
+  // Nobody is seen for half a second: people who come meanwhile do not get their slots.
   Histories empty = ring_histories({.length = milliseconds(1)});
   for (auto& [name, history] : empty) history = align::History();
   const Timestamp later = last.snapshot.instant + milliseconds(500);

@@ -1,4 +1,4 @@
-// Slots stay with their persons, for all outputs alike.
+// People keep their slots, and all outputs show the same.
 #include "fusion-server/pipeline/seating.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ constexpr Duration kKeep = std::chrono::seconds(1);
 
 using Slots = std::vector<std::pair<std::size_t, std::uint64_t>>;
 
-/// A room that is looked at instant by instant.
+/// A room that is seated instant by instant.
 struct Room {
   Slots at(Duration after, const std::vector<std::uint64_t>& persons) {
     std::vector<FusedBody> bodies(persons.size());
@@ -75,7 +75,7 @@ TEST(Seating, IsKeptAsLongAsAskedToTheInstant) {
   room.at(milliseconds(0), {1});
   EXPECT_EQ(room.at(milliseconds(200), {2}), (Slots{{1, 2}}));
   EXPECT_EQ(room.at(milliseconds(201), {2}), (Slots{{0, 2}}));
-  // A clock that is set back by more than that begins anew, as association does.
+  // A clock that is set back by more than that starts anew, as in association.
   EXPECT_EQ(room.at(milliseconds(-100), {3}), (Slots{{0, 3}}));
 }
 
@@ -97,10 +97,10 @@ TEST(Seating, WhoMovedUpPastAnAwaitedSlotStaysThere) {
   Room room;
   room.front = 1;
   room.at(milliseconds(0), {1, 2});
-  room.at(milliseconds(500), {1});     // 2 is hidden, its slot 1 is kept
+  room.at(milliseconds(500), {1});     // 2 is occluded, its slot 1 stays reserved
   room.at(milliseconds(600), {1, 3});  // 3 waits in slot 2 for slot 1
-  room.at(milliseconds(700), {2, 3});  // 1 leaves, 2 is back
-  room.at(milliseconds(800), {3});     // 2 is hidden again
+  room.at(milliseconds(700), {2, 3});  // 1 has left, 2 is back
+  room.at(milliseconds(800), {3});     // 2 is occluded again
   EXPECT_EQ(room.at(milliseconds(1650), {3}), (Slots{{0, 3}})) << "slot 0 is free now";
   EXPECT_EQ(room.at(milliseconds(2500), {3}), (Slots{{0, 3}}));
 }

@@ -1,4 +1,4 @@
-// What a sensor's answer means, honest or not.
+// How a sensor's answers are interpreted, honest ones or not.
 #include "fusion-server/poll/answer.h"
 
 #include <gtest/gtest.h>
@@ -114,7 +114,7 @@ TEST(FrameAnswer, AFusionServerIsASensorWhateverItIsCalled) {
   ASSERT_NE(read.frame, nullptr) << why(read);
   const auto placed = place_in_time(*read.frame, sensor_id("cell1"), kStart, Duration{0}, {});
   EXPECT_EQ(placed.sensor, sensor_id("cell1"));
-  ASSERT_TRUE(placed.floor);  // its world's floor is y = 0
+  ASSERT_TRUE(placed.floor);  // the floor of its world is y = 0
   EXPECT_EQ(placed.floor->normal, Eigen::Vector3d::UnitY());
   EXPECT_EQ(placed.floor->offset, 0.0);
 }

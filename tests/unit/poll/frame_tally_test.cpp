@@ -1,4 +1,4 @@
-// Counts and rates of what a sensor says, honest or not; and who costs how much.
+// Counts and rates of a sensor's frames, honest or not; and what reading them costs.
 #include "fusion-server/poll/frame_tally.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ TEST(FrameTally, TheRateIsOfArrivalsWhateverTheStampsSay) {
   FrameTally tally;
   for (int i = 0; i < 90; ++i) {
     SensorFrame f = frame(static_cast<std::uint64_t>(i), milliseconds(i * 33));
-    f.captured = kStart + microseconds(i);  // a thousand a millisecond
+    f.captured = kStart + microseconds(i);  // a thousand per millisecond
     tally.note(f);
   }
   EXPECT_NEAR(tally.rate_hz(kStart + milliseconds(89 * 33)), 30.3, 1.0);
@@ -58,7 +58,7 @@ TEST(FrameTally, AFewAtOnceAreNoThousandASecond) {
   EXPECT_LE(tally.rate_hz(kStart + milliseconds(4)), 8.0);
 }
 
-/// A sensor at 30 Hz, one frame after the other.
+/// A sensor at 30 Hz that delivers one frame after the other.
 struct Aging {
   AgeWatch watch = {};
   std::uint64_t sequence = 0;

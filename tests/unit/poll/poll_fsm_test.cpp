@@ -1,4 +1,4 @@
-// The polling loop, without a socket and without a sleep.
+// The polling loop, without a socket and without sleeping.
 #include "fusion-server/poll/poll_fsm.h"
 
 #include <limits>
@@ -199,8 +199,8 @@ TEST(PollFsm, AFloorThatNeverAnswersDoesNotKeepTheFramesAway) {
 }
 
 TEST(PollFsm, NoticesComeOnceAndAtMostOnceASecond) {
-  PollFsm fsm = live(milliseconds(0));                                 // noticed "live" at 0
-  EXPECT_FALSE(fsm.resume(reset(), milliseconds(500), kFull).notice);  // held back
+  PollFsm fsm = live(milliseconds(0));                                 // "live" was logged at 0
+  EXPECT_FALSE(fsm.resume(reset(), milliseconds(500), kFull).notice);  // still held back
   const Step later = fsm.resume(reset(), milliseconds(1200), kFull);
   ASSERT_TRUE(later.notice);
   EXPECT_EQ(later.notice->event, "sensor lost");
@@ -231,7 +231,7 @@ TEST(PollFsm, TheFloorIsAskedForOnBecomingLiveWhenItWasAskedInVain) {
 TEST(PollFsm, AFloorThatIsNotKnownYetIsAskedForAgainSoon) {
   PollFsm fsm = at_first_frame(milliseconds(0));
   (void)fsm.resume(frame(0, "\"1\""), milliseconds(20), kFull);
-  (void)fsm.resume(frame(33, "\"2\""), seconds(11), kFull);  // the floor is due
+  (void)fsm.resume(frame(33, "\"2\""), seconds(11), kFull);  // the floor plane is due
   (void)fsm.resume(FloorAnswered{false}, seconds(11), kFull);
   EXPECT_EQ(send_of(fsm.resume(frame(66, "\"3\""), milliseconds(12100), kFull)).resource,
             Resource::FloorPlane);

@@ -1,4 +1,4 @@
-// Sensor answers and a follower brought to a known point, without a socket and without a sleep.
+// Answers of a sensor, and a follower in a known state, without a socket and without sleeping.
 #pragma once
 
 #include <string>
@@ -28,7 +28,7 @@ inline constexpr double kFull = 0.999999999;  ///< Jitter that keeps the whole b
   return std::get<Sleep>(*step.action).duration;
 }
 
-/// Past the floor plane, with the first request for a frame under way since `now`.
+/// After the floor plane; the first request for a frame has been under way since `now`.
 [[nodiscard]] inline PollFsm at_first_frame(Duration now) {
   PollFsm fsm;
   (void)fsm.resume(Started{}, now, kFull);
@@ -36,7 +36,7 @@ inline constexpr double kFull = 0.999999999;  ///< Jitter that keeps the whole b
   return fsm;
 }
 
-/// Live: one frame delivered, and the long poll for the second under way since `now`.
+/// Live: one frame was delivered; the long poll for the second has been under way since `now`.
 [[nodiscard]] inline PollFsm live(Duration now) {
   PollFsm fsm = at_first_frame(now - std::chrono::milliseconds(20));
   (void)fsm.resume(frame(0, "\"1\""), now, kFull);

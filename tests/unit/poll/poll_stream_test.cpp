@@ -1,4 +1,4 @@
-// Following by event stream, without a socket and without a sleep.
+// Following by event stream, without a socket and without sleeping.
 #include "fusion-server/poll/poll_fsm.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ StreamFrame streamed(std::uint64_t sequence, int ms, bool odd = false) {
   return {sequence, at_ms(ms), odd};
 }
 
-/// Living on a stream since `now`, no request under way: asleep until the clock is due.
+/// Using a stream since `now`, without a request under way: asleep until the clock is due.
 PollFsm streaming(Duration now) {
   PollFsm fsm = live(now);
   (void)fsm.resume(streamed(2, 33), now, kFull);
@@ -52,7 +52,7 @@ TEST(PollFsmStream, ItsFramesAreDeliveredAndTheRequestsOnlyKeepTheClock) {
   const Step clock = fsm.resume(Woke{}, milliseconds(34) + sleep_of(old), kFull);
   EXPECT_EQ(send_of(clock).resource, Resource::Clock);
   const Step hurry =
-      fsm.resume(ClockAnswered{milliseconds(5)}, milliseconds(140), kFull);  // badly known yet
+      fsm.resume(ClockAnswered{milliseconds(5)}, milliseconds(140), kFull);  // not accurate yet
   EXPECT_LE(sleep_of(hurry), milliseconds(100));
   (void)fsm.resume(streamed(3, 66), milliseconds(141), kFull);
   (void)fsm.resume(Woke{}, milliseconds(240), kFull);
@@ -84,7 +84,7 @@ TEST(PollFsmStream, OneThatEndsLeavesThePolling) {
   const Step ended =
       fsm.resume(StreamEnded{{ErrorCode::Unavailable, "x", "broke off"}}, milliseconds(50), kFull);
   EXPECT_EQ(send_of(ended).resource, Resource::Frame);
-  EXPECT_EQ(fsm.state(), SensorState::Live);  // the polling will see
+  EXPECT_EQ(fsm.state(), SensorState::Live);  // polling will decide
   EXPECT_FALSE(fsm.streaming());
   // The next stream waits a second.
   EXPECT_EQ(fsm.resume(frame(99, "\"3\""), milliseconds(80), kFull).stream, StreamOrder::None);
@@ -127,12 +127,12 @@ TEST(PollFsmStream, ARequestThatFailsBesideItCostsTheSensorNothing) {
   EXPECT_EQ(fsm.state(), SensorState::Live);
   EXPECT_EQ(failed.stream, StreamOrder::None);
   EXPECT_TRUE(fsm.streaming());
-  // But with the stream silent it is lost, and the stream with it.
+  // But when the stream falls silent the sensor is lost, and so is the stream.
   (void)fsm.resume(Woke{}, milliseconds(700), kFull);
   const Step lost = fsm.resume(reset(), milliseconds(1700), kFull);
   EXPECT_EQ(fsm.state(), SensorState::Lost);
   EXPECT_EQ(lost.stream, StreamOrder::Close);
-  // Who comes back is streamed from at once.
+  // After coming back it is streamed from at once.
   EXPECT_EQ(fsm.resume(frame(1750, "\"9\""), milliseconds(1750), kFull).stream, StreamOrder::Open);
 }
 
@@ -148,9 +148,9 @@ TEST(PollFsmStream, AnOddFrameMakesTheClockUrgent) {
     ASSERT_EQ(send_of(step).resource, Resource::Clock);
     step = fsm.resume(ClockAnswered{milliseconds(1), true}, now += milliseconds(5), kFull);
   }
-  EXPECT_GE(checks, 3);  // as many as the filter wants before it believes a step
+  EXPECT_GE(checks, 3);  // as many as the filter needs before it accepts a step
   EXPECT_LT(now, milliseconds(100));
-  // A link that is odd all the time does not keep the clock busy.
+  // A link with permanently odd times does not cause permanent clock requests.
   (void)fsm.resume(ClockAnswered{milliseconds(1)}, now, kFull);
   (void)fsm.resume(streamed(4, 950, true), now + milliseconds(10), kFull);
   EXPECT_FALSE(fsm.checking_clock());
@@ -171,7 +171,7 @@ TEST(PollFsmStream, ASensorThatTellsNoTimeIsHardlyAskedForIt) {
   EXPECT_EQ(asked, 0);
 }
 
-/// Streaming at 30 Hz, with a gap of a quarter of a second once; asleep, the newest at `now`.
+/// Streaming at 30 Hz, with a single gap of 250 ms; asleep, the newest frame at `now`.
 PollFsm late_once(Duration now) {
   PollFsm fsm = streaming(now - milliseconds(600));
   for (int i = 3; i <= 10; ++i)

@@ -1,5 +1,5 @@
-// The poller against real sockets on loopback: good, dead, lying and returning sensors side by
-// side.
+// The poller with real sockets on loopback: good, dead, lying and returning sensors at the same
+// time.
 #include "fusion-server/poll/poller.h"
 
 #include <algorithm>
@@ -24,9 +24,9 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using testing::sensor_id;
 
-constexpr auto kPatience = seconds(20);  // a ceiling for loaded machines; nothing waits so long
+constexpr auto kPatience = seconds(20);  // for loaded machines; nothing takes that long
 
-/// A sensor service with frames on demand, or anything else at /frame.
+/// A sensor service that serves frames on demand, or anything else at /frame.
 class FakeSensor {
  public:
   explicit FakeSensor(std::string name, std::uint16_t port = 0,
@@ -53,7 +53,7 @@ class FakeSensor {
   void send(std::uint64_t sequence, Timestamp captured) {
     live_->publish(document(sequence, captured));
   }
-  /// At /frames/{seq} only.
+  /// Serves a frame at /frames/{seq} only.
   void keep(std::uint64_t sequence, Timestamp captured) {
     const std::scoped_lock lock(mutex_);
     kept_[std::to_string(sequence)] = document(sequence, captured);
@@ -124,7 +124,7 @@ class Polling : public ::testing::Test {
     }
     return false;
   }
-  /// Frames one by one, each after the one before has arrived: every one must come, once.
+  /// Publishes frame by frame, each after the previous one arrived: each must come exactly once.
   void expect_every_frame(FakeSensor& sensor, const char* name, int frames) {
     const std::size_t before = count(name);
     for (int i = 0; i < frames; ++i) {
@@ -139,7 +139,7 @@ class Polling : public ::testing::Test {
   std::condition_variable arrived_;
   std::map<SensorId, std::vector<SensorFrame>> frames_;
   std::uint64_t sequence_ = 0;
-  std::optional<std::uint64_t> throws_at_;  ///< Guarded by mutex_: whom deliver() fails at.
+  std::optional<std::uint64_t> throws_at_;  ///< Guarded by mutex_: where deliver() throws.
   std::unique_ptr<Poller> poller_;
 };
 
@@ -152,7 +152,7 @@ TEST_F(Polling, DeliversEveryFrameOnce) {
   EXPECT_EQ(report.frames, 20u);
   EXPECT_EQ(report.missed, 0u);
   ASSERT_TRUE(report.clock);
-  // One host, one clock: whatever is measured, it must be within its own bound.
+  // One host, one clock: the estimate must be zero within its own bound.
   EXPECT_LE(std::chrono::abs(report.clock->ours_minus_theirs), report.clock->uncertainty);
 }
 
@@ -248,7 +248,7 @@ TEST_F(Polling, ASensorWithAnEventStreamIsNotPolled) {
   ASSERT_TRUE(wait_until(streams, "s1"));
   const auto before = s1.requests();
   expect_every_frame(s1, "s1", 50);
-  EXPECT_LT(s1.requests() - before, 25u);  // the clock's
+  EXPECT_LT(s1.requests() - before, 25u);  // requests for the clock
 }
 
 TEST_F(Polling, WhatAStreamLeftOutIsFetched) {
@@ -283,7 +283,7 @@ TEST_F(Polling, OneThatNeverStreamsIsPolled) {
   EXPECT_FALSE(polling.reports().at(0).streaming);
 }
 
-/// A clock that is set while everybody watches.
+/// A clock that is set while it is in use.
 class SetClock final : public Clock {
  public:
   [[nodiscard]] Timestamp now() const override {

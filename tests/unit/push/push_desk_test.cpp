@@ -1,4 +1,4 @@
-// Who holds the sensor, and what people are told about it.
+// Which pusher holds the sensor, and what people are told about it.
 #include "services/sensor/device/bridge/push_desk.h"
 
 #include <gmock/gmock.h>

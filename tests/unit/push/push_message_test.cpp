@@ -1,4 +1,4 @@
-// What programs push, line by line: what is read, and what is said of what is not.
+// What programs push, line by line: what is accepted, and how refusals are worded.
 #include "services/sensor/device/bridge/push_message.h"
 
 #include <string>
@@ -32,7 +32,7 @@ Hello hello_of(const Json& message) {
   return read ? std::get<Hello>(*read) : Hello{};
 }
 
-/// 17 landmarks, all null but those given.
+/// 17 landmarks, all null except those given.
 Json landmarks(const std::map<std::size_t, Json>& given) {
   Json all = Json::array();
   for (std::size_t i = 0; i < 17; ++i) all.push_back(given.contains(i) ? given.at(i) : Json());

@@ -1,4 +1,4 @@
-// A desk whose clocks stand until they are moved.
+// A desk whose clocks only move when the test moves them.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// One program that pushes: its clock, its rate, and what it may not do.
+// One pushing program: its clock, its rate, and what it must not do.
 #include "services/sensor/device/bridge/push_session.h"
 
 #include <gmock/gmock.h>
@@ -29,7 +29,7 @@ class Session : public ::testing::Test {
   explicit Session(BridgeSettings settings = {}) : rig(std::move(settings)) {}
 
   [[nodiscard]] Result<Heard> hear(const std::string& message) { return session.hear(message); }
-  /// The answer of a clock that runs `ahead` of ours, over a way of 2 ms.
+  /// The answer of a clock `ahead` of ours, with a delay of 2 ms in each direction.
   [[nodiscard]] Result<Heard> answer_clock(Duration ahead) {
     const Timestamp asked = rig.clock->now();
     rig.pass(milliseconds(2));
@@ -128,7 +128,7 @@ TEST_F(Session, StampsThatCannotBeTrueChangeNothing) {
   ASSERT_THAT(hear(kHello), IsOk());
   ASSERT_THAT(answer_clock(seconds(0)), IsOk());
   const Timestamp now = rig.clock->now();
-  // Answered before it was asked; held longer than the way took; asked in the future.
+  // Answered before the question; held longer than the round trip; asked in the future.
   EXPECT_THAT(hear(R"({"type":"clock","sent":)" + text(now - seconds(1)) + R"(,"received":)" +
                    text(now) + R"(,"answered":)" + text(now - seconds(1)) + "}"),
               IsOk());
@@ -174,7 +174,7 @@ TEST_F(Session, FramesBeyondTheRateAreLeftOut) {
   int taken = 0;
   int left_out = 0;
   for (int i = 0; i < 300; ++i) {
-    rig.pass(milliseconds(4));  // 250 a second, where 120 may be
+    rig.pass(milliseconds(4));  // 250 per second, where 120 are allowed
     const auto heard = hear(frame_at(rig.clock->now()));
     ASSERT_THAT(heard, IsOk());
     (*heard == Heard::Frame ? taken : left_out) += 1;

@@ -1,4 +1,4 @@
-// Any graph that can be written is read back as it was: random ones, and awkward ones by hand.
+// Any graph that can be written is read back unchanged: random graphs, and awkward hand-made ones.
 #include <random>
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 const std::vector<Prefix> kPrefixes{{"e", "http://e/"}, {"x", "http://e/x#"}};
 
-/// Terms that have made readers and writers stumble.
+/// Terms that have caused errors in readers and writers.
 const std::vector<std::string> kTexts{"",
                                       " ",
                                       "a\"b",

@@ -1,4 +1,4 @@
-// Unicode 15, table 3-7: every row by its first, its last and the bytes next to them.
+// Unicode 15, table 3-7: the first, the last and the neighbouring bytes of every row.
 #include "common/rdf/utf8.h"
 
 #include <array>
@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-/// A character by its number, written without looking at utf8.cpp.
+/// Encodes a character by its number, written without looking at utf8.cpp.
 std::string encoded(unsigned code) {
   const auto byte = [](unsigned value) { return static_cast<char>(value); };
   if (code < 0x80) return {byte(code)};

@@ -1,4 +1,4 @@
-// A cell told without reading it through, and read without holding it.
+// Describes a cell's recording without reading it whole, and reads it without holding it.
 #include "common/record/cell_outline.h"
 
 #include <gmock/gmock.h>

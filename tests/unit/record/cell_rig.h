@@ -1,4 +1,4 @@
-// A cell's recording of two sensors, for whoever reads it.
+// A recording of a cell of two sensors, for tests of its readers.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -8,10 +8,10 @@
 
 namespace chorus::record {
 
-inline constexpr int kCellFrames = 40;  ///< Of each sensor, and fused.
+inline constexpr int kCellFrames = 40;  ///< Of each sensor, and fused ones.
 
-/// A frame as the recorder takes it: 5 ms after its capture by the recorder's clock, which the
-/// sensor's is behind by `applied`.
+/// A frame as the recorder receives it: 5 ms after its capture by the recorder's clock; the
+/// sensor's clock is behind that by `applied`.
 inline RawFrame raw_frame(const char* sensor, std::shared_ptr<const resource::FrameResource> frame,
                           Duration applied = Duration{0}) {
   const Timestamp received = frame->captured + applied + std::chrono::milliseconds(5);
@@ -20,8 +20,8 @@ inline RawFrame raw_frame(const char* sensor, std::shared_ptr<const resource::Fr
           ClockModel{applied, applied, std::chrono::milliseconds(1)}};
 }
 
-/// Sensors s1 and s2 and what was fused of them; the clock of s2 is corrected half-way, from 400
-/// ms to 410.  `seen_by` (sensor, number) makes a sensor's frames, `fused` (number) the fused ones.
+/// Sensors s1 and s2 and their fused frames; the correction of s2's clock changes half-way, from
+/// 400 to 410 ms.  `seen_by` (sensor, number) makes sensor frames, `fused` (number) fused ones.
 template <typename SeenBy, typename Fused>
 void write_cell(const std::filesystem::path& path, const PlacesChanged& places,
                 const SeenBy& seen_by, const Fused& fused) {

@@ -199,7 +199,7 @@ struct PartFile {
   std::string name;
   std::string recording;
   std::string part;
-  int first = 0;  ///< Frame it begins with; it holds ten.
+  int first = 0;  ///< Number of its first frame; it has ten.
 };
 
 void write_part(const std::filesystem::path& folder, const PartFile& part) {
@@ -259,7 +259,7 @@ TEST(CellRecording, APartThatIsWhollyEarlierIsAnErrorAndNotLeftOut) {
       CellWriter::create(folder / "rec/b.mcap", {{{"recording", "r"}, {"part", "2"}}, false});
   for (int i = 0; i < 5; ++i) {
     RawFrame old = raw("s1", i);
-    old.received = kStart + kFrameInterval * (200 + i);  // told late
+    old.received = kStart + kFrameInterval * (200 + i);  // reported late
     ASSERT_TRUE(writer->write(old));
   }
   ASSERT_TRUE(writer->close());

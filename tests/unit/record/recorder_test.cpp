@@ -22,7 +22,7 @@ namespace chorus::record {
 namespace {
 
 using chorus::testing::TemporaryFolder;
-/// Which files this process has asked the disk to keep.
+/// The files that this process has asked the disk to sync.
 class Disk {
  public:
   static Disk& of_test() {
@@ -58,7 +58,7 @@ class Disk {
 }  // namespace
 }  // namespace chorus::record
 
-// In place of the C library's: what is asked for is noted, then done.
+// Replaces the C library's function: records the request, then carries it out.
 extern "C" int fdatasync(int file) {
   chorus::record::Disk::of_test().note(file);
   return static_cast<int>(::syscall(SYS_fdatasync, file));
@@ -144,7 +144,7 @@ TEST(Recorder, AFullQueueDropsTheNewestAndCounts) {
   ASSERT_TRUE(recorder);
   (*recorder)->offer(FusedFrame{kStart, kStart, [&] {
                                   writing.set_value();
-                                  go_on.get_future().wait();  // a disk that hangs
+                                  go_on.get_future().wait();  // simulates a disk that hangs
                                   return *raw(0).frame;
                                 }});
   writing.get_future().wait();
@@ -207,7 +207,7 @@ TEST(Recorder, TwoRunsAreNeverTakenForOne) {
   const TemporaryFolder folder;
   RecorderOptions options = options_in(folder);
   options.folder.clear();
-  options.clock = std::make_shared<FakeClock>(kStart);  // in the very same instant
+  options.clock = std::make_shared<FakeClock>(kStart);  // at exactly the same instant
   for (const char* name : {"b.mcap", "a.mcap"}) {
     options.file = folder / name;
     auto recorder = Recorder::start(options);
@@ -328,7 +328,7 @@ TEST(Recorder, WritesOneFileWhereItIsTold) {
     auto recorder = Recorder::start(options);
     ASSERT_TRUE(recorder);
     for (int i = 0; i < 100; ++i) (*recorder)->offer(raw(i));
-  }  // its end writes the rest
+  }  // closing writes the rest
   const auto cell = read_cell(folder / "mine.mcap");
   ASSERT_TRUE(cell);
   EXPECT_THAT(cell->sensors.at(0).frames, SizeIs(100));

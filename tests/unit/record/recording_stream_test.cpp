@@ -1,4 +1,4 @@
-// A recording message by message: in order, in little memory, without unpacking what nobody wants.
+// A recording read message by message: in order, in little memory, unpacking only what is needed.
 #include "common/record/recording_stream.h"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// Messages of channel 1 ("/a") or 2 ("/b") at a second each, without a chunk around them.
+/// Messages of channel 1 ("/a") or 2 ("/b"), one per second, without a chunk around them.
 struct Entry {
   std::uint16_t channel;
   int second;
@@ -51,7 +51,7 @@ std::string end_of_file() {
   return bytes + std::string(mcap::kMagic);
 }
 
-/// A chunk that says truly when it begins and ends.
+/// A chunk that correctly states when it begins and ends.
 std::string chunk_of(const std::vector<Entry>& entries, std::uint32_t crc = 0) {
   std::string records;
   std::uint64_t first = ~0ull;
@@ -117,7 +117,7 @@ TEST(RecordingStream, RefusesChunksThatAreAllDueAtOnce) {
 }
 
 TEST(RecordingStream, DoesNotUnpackWhatNobodyWants) {
-  // The first chunk is broken; its index says that nothing in it is wanted.
+  // The first chunk is broken; according to its index nothing in it is needed.
   const std::string bytes = head_of_file() + chunk_of({{1, 1}}, 7) + index_of(1, 1) +
                             chunk_of({{1, 2}, {2, 3}}) + index_of(1, 1) + index_of(2, 1) +
                             chunk_of({{1, 4}, {2, 5}}) + end_of_file();

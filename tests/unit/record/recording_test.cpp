@@ -96,7 +96,7 @@ TEST(Recording, AClosedChunkIsInTheFileBeforeClose) {
   auto writer = RecordingWriter::create(folder / "a.mcap");
   const auto channel = writer->add_channel(kFrames);
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(writer->write(*channel, message_at(i, "{}")));
-  const auto read = read_recording(folder / "a.mcap");  // what kill -9 would leave now
+  const auto read = read_recording(folder / "a.mcap");  // what a kill -9 would leave at this time
   ASSERT_TRUE(read);
   EXPECT_TRUE(read->truncated);
   EXPECT_EQ(read->messages.size(), 93u) << "three chunks of one second, 31 frames each";

@@ -35,7 +35,7 @@ TEST(AtPoint, EqualsTheNumericJacobianOfThePointsDisplacement) {
     const Eigen::Vector3d back = small_motion(unit6(axis, -kStep)) * x;
     numeric.block<3, 1>(3, axis) = (ahead - back) / (2.0 * kStep);
   }
-  numeric.topLeftCorner<3, 3>().setIdentity();  // the turn itself stays what it is
+  numeric.topLeftCorner<3, 3>().setIdentity();  // the rotation itself does not change
   EXPECT_LT((at_point(x) - numeric).norm(), 1e-8);
 }
 

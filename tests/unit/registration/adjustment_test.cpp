@@ -10,7 +10,7 @@ namespace {
 
 const std::vector<double> kAngles{0.0, deg(100), deg(220)};
 
-/// Three sensors about one walk, and where they truly stand.
+/// Three sensors around one walk, and their true places.
 struct Scene {
   RegistrationConfig config;
   std::map<SensorId, Walker> walkers;
@@ -66,7 +66,7 @@ TEST(AdjustTogether, FindsTheTruthOfAnExactWalkFromADisplacedStart) {
   }
 }
 
-/// Nothing to gain by moving one sensor alone, as an independent sum over the pairs says.
+/// By an independent sum over the pairs, moving any one sensor does not reduce the cost.
 TEST(AdjustTogether, EndsWhereNoSingleMoveFitsTheWalkBetter) {
   Scene scene = scene_of({.noise = 0.01});
   scene.config.use_floor = false;
@@ -100,7 +100,7 @@ TEST(AdjustTogether, EndsWhereNoSingleMoveFitsTheWalkBetter) {
   }
 }
 
-/// Single cameras: chains of pairs leave the depth open, three rays fix it.
+/// Single cameras: chains of pairs leave the depth open, three rays determine it.
 TEST(AdjustTogether, ThreeBluntSensorsFixWhatEachPairLeavesOpen) {
   double before = 0.0;
   double after = 0.0;
@@ -140,8 +140,8 @@ TEST(AdjustTogether, FloorsHoldTiltAndHeightWhereTheWalkIsCountedForLittle) {
     const Places found = scene.adjust(displaced(scene.truth, 0.02), 0, inflation);
     return difference(found.at(sensor(1)), scene.truth.at(sensor(1))).angle;
   };
-  EXPECT_LT(to_deg(tilt_error(1.0)), 0.5);     // the walk overrules the floor
-  EXPECT_GT(to_deg(tilt_error(1000.0)), 0.6);  // the floor overrules the walk
+  EXPECT_LT(to_deg(tilt_error(1.0)), 0.5);     // the walk outweighs the floor
+  EXPECT_GT(to_deg(tilt_error(1000.0)), 0.6);  // the floor outweighs the walk
 }
 
 TEST(AdjustTogether, ASensorWithTooFewSightsKeepsItsPlace) {
@@ -175,7 +175,7 @@ TEST(AdjustTogether, AlmostEverythingWrongIsNoReasonToMoveFarther) {
 
 TEST(AdjustTogether, FastInstantsAreLeftOut) {
   Scene scene = scene_of({.noise = 0.01});
-  scene.config.max_speed = 0.0;  // everybody is too fast
+  scene.config.max_speed = 0.0;  // everybody counts as too fast
   const Places start = displaced(scene.truth, 0.01);
   EXPECT_EQ(scene.adjust(start).at(sensor(1)).matrix(), start.at(sensor(1)).matrix());
 }

@@ -43,7 +43,7 @@ TEST(FloorFromBody, StandsUnderTheFeetOfAnUprightPerson) {
   EXPECT_FALSE(floor_from_body({sensor(1), {}}));
 }
 
-/// A floor tilted by so many degrees about z, meant right under a sensor at x.
+/// A floor tilted by `degrees` about z, correct right below a sensor at x.
 PlacedFloor tilted_floor(double degrees, double x, double height_error = 0.0) {
   const double angle = deg(degrees);
   const Eigen::Vector3d normal(std::sin(angle), std::cos(angle), 0);
@@ -78,7 +78,7 @@ TEST(WorldFromMaster, PutsTheFloorAtZeroAndTheViewAlongZ) {
   const Eigen::Vector3d view = world.linear() * Eigen::Vector3d::UnitZ();
   EXPECT_NEAR(view.x(), 0.0, 1e-9);
   EXPECT_GT(view.z(), 0.9);
-  const Eigen::Vector3d down_view(0, 0, -1);  // a ceiling sensor: no view direction on the floor
+  const Eigen::Vector3d down_view(0, 0, -1);  // at the ceiling: no view direction on the floor
   EXPECT_TRUE(world_from_master({down_view, 2.5}).matrix().allFinite());
 }
 

@@ -12,7 +12,7 @@ constexpr double kStep = 1e-6;
 const FloorPrior kPrior{0.02, 0.03};
 const Eigen::Vector3d kCentre(0.4, 1.1, 2.6);
 
-/// What the prior measures, in sigmas: two tilts of the up direction and one height.
+/// The prior's residuals, in sigmas: two tilts of the up direction and one height.
 Eigen::Vector3d misfit(const Eigen::Isometry3d& target_from_source, const FloorPrior& prior) {
   const Eigen::Vector3d up = target_from_source.linear().col(1);
   const Eigen::Vector3d foot = target_from_source * Eigen::Vector3d(kCentre.x(), 0, kCentre.z());
@@ -46,7 +46,7 @@ TEST(FloorPrior, StandsATiltedFrameUprightOnTheFloor) {
   for (int i = 0; i < 10; ++i) {
     Normal normal;
     add_prior(normal, kPrior, at, kCentre);
-    normal.information += 1e-9 * Matrix6::Identity();  // yaw and the horizontal place are free
+    normal.information += 1e-9 * Matrix6::Identity();  // yaw, horizontal place: undetermined
     at = small_motion(normal.information.ldlt().solve(normal.right)) * at;
   }
   EXPECT_LT(misfit(at, kPrior).norm(), 1e-6);

@@ -13,7 +13,7 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-/// A lopsided figure on the floor with some bobbing: no turn maps it to itself.
+/// An asymmetric figure on the floor with some vertical motion: no rotation maps it to itself.
 Points walk(std::size_t count) {
   Points points;
   for (std::size_t i = 0; i < count; ++i) {
@@ -30,12 +30,12 @@ Points moved(const Eigen::Isometry3d& by, const Points& points) {
   return out;
 }
 
-/// Displaced by less than the points lie apart.
+/// Displaced by less than the distance between points.
 Eigen::Isometry3d nearly(const Eigen::Isometry3d& at) {
   return small_motion((Vector6() << 0.004, 0.01, -0.004, 0.012, -0.01, 0.008).finished()) * at;
 }
 
-/// Where the middle of the walk lands, against where it should [m].
+/// Distance of the estimated middle of the walk from the true one [m].
 double off_at_the_walk(const Eigen::Isometry3d& found, const Eigen::Isometry3d& truth) {
   const Eigen::Vector3d middle = truth.inverse() * Eigen::Vector3d(0, 1.5, 3);
   return (found * middle - truth * middle).norm();

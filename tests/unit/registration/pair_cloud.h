@@ -1,4 +1,4 @@
-// Correspondences built by hand: a known motion, points about a walk, noise of a known kind.
+// Correspondences made by hand: a known motion, points around a walk, noise of a known kind.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace chorus::registration {
 
-/// Exp(omega, tau) as the estimators apply it: turn about the origin, then shift.
+/// Exp(omega, tau) as the estimators apply it: rotation about the origin, then translation.
 inline Eigen::Isometry3d small_motion(const Vector6& xi) {
   Eigen::Isometry3d step = Eigen::Isometry3d::Identity();
   step.linear() = exp_map(xi.head<3>()).toRotationMatrix();
@@ -30,11 +30,11 @@ inline Vector6 unit6(int axis, double size) { return size * Vector6::Unit(axis);
 
 struct CloudSpec {
   std::size_t instants = 60;
-  std::size_t joints = 3;  ///< Of one instant.
-  double noise = 0.0;      ///< Per axis, of the target's sight [m].
-  double rho = 0.0;        ///< From instant to instant.
-  bool shared = false;     ///< All joints of an instant err alike.
-  double sigma = mm(10);   ///< Stated.
+  std::size_t joints = 3;  ///< Number of joints per instant.
+  double noise = 0.0;      ///< Per axis, of the target's measurement [m].
+  double rho = 0.0;        ///< Correlation of the noise from instant to instant.
+  bool shared = false;     ///< All joints of an instant have the same error.
+  double sigma = mm(10);   ///< Stated standard deviation.
   unsigned seed = 1;
 };
 
@@ -73,7 +73,7 @@ inline std::vector<Pair> pairs_of(const Eigen::Isometry3d& target_from_source,
   const Eigen::Isometry3d source_from_target = target_from_source.inverse();
   std::vector<Pair> pairs;
   for (std::size_t i = 0; i < spec.instants; ++i, wander.next()) {
-    const double t = 0.1 * static_cast<double>(i) + spec.seed;  // somebody walks about
+    const double t = 0.1 * static_cast<double>(i) + spec.seed;  // a person walks about
     const Eigen::Vector3d body(std::sin(1.3 * t), 0.0, 3.0 + std::cos(0.8 * t));
     for (std::size_t j = 0; j < spec.joints; ++j) {
       const Eigen::Vector3d x = body + Eigen::Vector3d(0.1 * static_cast<double>(j % 2),
@@ -87,7 +87,7 @@ inline std::vector<Pair> pairs_of(const Eigen::Isometry3d& target_from_source,
   return pairs;
 }
 
-/// The same correspondences asked the other way round.
+/// The same correspondences with target and source exchanged.
 inline std::vector<Pair> swapped(std::vector<Pair> pairs) {
   for (Pair& pair : pairs) {
     std::swap(pair.x_in_target, pair.x_in_source);

@@ -58,7 +58,7 @@ TEST(RegisterPair, ASlightlyWrongFloorYieldsToTheWalk) {
   const auto edge = register_pair(watch(1, kTarget, {}), watch(2, source, wrong), {});
   ASSERT_TRUE(edge) << edge.error().message;
   const PlaceError off = difference(edge->target_from_source, truth(source));
-  EXPECT_LT(off.angle, deg(0.4));  // half of what trusting the floor would cost
+  EXPECT_LT(off.angle, deg(0.4));  // half of the error from trusting the floor
   EXPECT_LT(off.position, mm(15));
 }
 
@@ -92,7 +92,7 @@ TEST(RegisterPair, MovingBothSensorsChangesNothing) {
 }
 
 TEST(RegisterPair, TheStatedCovarianceIsOfTheRightSize) {
-  const Eigen::Isometry3d source = ring_place(deg(10));  // little bias floor, mostly noise
+  const Eigen::Isometry3d source = ring_place(deg(10));  // small bias, mostly noise
   double squares = 0.0;
   double stated = 0.0;
   constexpr int kRuns = 20;
@@ -108,9 +108,9 @@ TEST(RegisterPair, TheStatedCovarianceIsOfTheRightSize) {
   EXPECT_GT(squares, 0.05 * stated);
 }
 
-/// Normalised error squared over many walks, for the covariance as a whole.
+/// Mean normalised squared error over many walks, a test of the whole covariance.
 TEST(RegisterPair, TheStatedCovarianceNeitherFlattersNorFrightens) {
-  const Eigen::Isometry3d source = ring_place(deg(5));  // hardly any bias floor
+  const Eigen::Isometry3d source = ring_place(deg(5));  // almost no bias
   double nees = 0.0;
   constexpr int kRuns = 40;
   for (unsigned seed = 1; seed <= kRuns; ++seed) {
@@ -121,7 +121,7 @@ TEST(RegisterPair, TheStatedCovarianceNeitherFlattersNorFrightens) {
     const Vector6 xi = motion_of(off);
     nees += xi.dot(edge->covariance.ldlt().solve(xi)) / kRuns;
   }
-  EXPECT_GT(nees, 1.5);  // 6 when all is right; exact floors here know more than the prior says
+  EXPECT_GT(nees, 1.5);  // 6 if consistent; exact floors here are better than the prior assumes
   EXPECT_LT(nees, 9.0);
 }
 
@@ -220,7 +220,7 @@ TEST(RegisterPair, TheIcpBaselineLeavesThePlaceAloneWhereItTakesOutATilt) {
   const WalkSpec spec{.length = 10};
   const Eigen::Isometry3d source = ring_place(deg(45));
   const WalkTrack straight = watch(2, source, spec);
-  WalkTrack sloping = straight;  // necks that seem to rise by 3 deg to one side: ICP tilts
+  WalkTrack sloping = straight;  // necks seem to rise by 3 deg to one side, so ICP tilts
   for (SensorFrame& frame : sloping.frames) {
     for (BodyFrame& body : frame.bodies) {
       Eigen::Vector3d& neck = body.skeleton[JointId::Neck].position;
@@ -232,7 +232,7 @@ TEST(RegisterPair, TheIcpBaselineLeavesThePlaceAloneWhereItTakesOutATilt) {
   const auto plain = register_pair(watch(1, kTarget, spec), straight, baseline);
   const auto tilted = register_pair(watch(1, kTarget, spec), sloping, baseline);
   ASSERT_TRUE(plain && tilted);
-  // About the sensor instead of the middle of the walk it would be off by 75 mm: 1.4 m sin 3 deg.
+  // Rotated about the sensor instead of the middle of the walk: 75 mm off, 1.4 m sin 3 deg.
   EXPECT_LT(difference(tilted->target_from_source, plain->target_from_source).position, mm(25));
 }
 

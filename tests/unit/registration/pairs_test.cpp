@@ -54,7 +54,7 @@ TEST(TrailReader, RefusesWideGapsAndOtherBodies) {
   EXPECT_FALSE(narrow.at(kWalkStart + kFrame));
   TrailReader wide(trail, 2 * kFrame);
   EXPECT_TRUE(wide.at(kWalkStart + kFrame));
-  EXPECT_FALSE(wide.at(kWalkStart + 2 * kFrame + kFrame / 2));  // another body from there on
+  EXPECT_FALSE(wide.at(kWalkStart + 2 * kFrame + kFrame / 2));  // from then on it is another body
   EXPECT_TRUE(wide.at(kWalkStart + 3 * kFrame));
 }
 
@@ -163,7 +163,7 @@ TEST(TrailOf, TakesTrackedJointsOfALoneBodyInTheOrderOfTime) {
   ASSERT_EQ(trail.frames.size(), walk.frames.size() - 3);
   EXPECT_FALSE(trail.frames[3].has(2));  // the head was only inferred
   EXPECT_TRUE(trail.frames[3].has(0));
-  EXPECT_FALSE(trail.frames[4].has(5));  // half a hip pair is none
+  EXPECT_FALSE(trail.frames[4].has(5));  // a hip pair with one joint does not count
   for (std::size_t i = 1; i < trail.frames.size(); ++i) {
     EXPECT_LT(trail.frames[i - 1].captured, trail.frames[i].captured);
   }

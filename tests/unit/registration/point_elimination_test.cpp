@@ -11,7 +11,7 @@ using Places3 = std::vector<Eigen::Isometry3d>;
 
 const Places3 kPlaces{Eigen::Isometry3d::Identity(), some_motion(), tilted_motion()};
 
-/// What three sensors see of a world point, each a little off.
+/// Measurements of a world point by three sensors, each with a small error.
 PointMeasurements sights_of(const Eigen::Vector3d& x, double error) {
   PointMeasurements measurements;
   for (std::size_t i = 0; i < kPlaces.size(); ++i) {
@@ -25,7 +25,7 @@ PointMeasurements sights_of(const Eigen::Vector3d& x, double error) {
 
 const Eigen::Vector3d kX(0.4, 1.3, 2.5);
 
-/// E(T) of the header: the least sum over x.
+/// E(T) of the header: the minimum over x of the sum.
 double energy(const PointMeasurements& measurements, const Places3& places, double along_ratio) {
   const FusedPoint fused = fuse_point(measurements, places, along_ratio);
   double sum = 0.0;
@@ -87,7 +87,7 @@ TEST(FusedPoint, InformationIsSharpAcrossAndBluntAlongTheRay) {
     const Eigen::Vector3d aside = ray.unitOrthogonal();
     EXPECT_NEAR(aside.dot(fused.information[i] * aside), across, 1e-6 * across);
   }
-  const FusedPoint round = fuse_point(measurements, kPlaces, 0.5);  // below one counts as one
+  const FusedPoint round = fuse_point(measurements, kPlaces, 0.5);  // less than one counts as one
   EXPECT_LT((round.information[0] * mm(10) * mm(10) - Eigen::Matrix3d::Identity()).norm(), 1e-9);
 }
 
@@ -100,7 +100,7 @@ TEST(FusedPoint, WorstNormIsTheFarthestSightInSigmas) {
   EXPECT_NEAR(worst_norm(fuse_point(measurements, kPlaces, 1.0)), 8.0 / 3.0, 1e-9);
 }
 
-/// Round errors: S does not depend on the places, so that the derivative is exact.
+/// Isotropic errors: S does not depend on the places, so that the derivative is exact.
 TEST(Elimination, RightHandSideIsTheNumericGradient) {
   const PointMeasurements measurements = sights_of(kX, mm(30));
   const PlaceEquations equations = equations_of(measurements, 1.0);
@@ -115,7 +115,7 @@ TEST(Elimination, RightHandSideIsTheNumericGradient) {
   EXPECT_LT((equations.right + 0.5 * gradient).norm(), 1e-4 * gradient.norm());
 }
 
-/// Nothing left over: Gauss-Newton is exact, with blunt rays too.
+/// Without residuals Gauss-Newton is exact, also with anisotropic errors.
 TEST(Elimination, InformationIsTheNumericHessian) {
   const PointMeasurements measurements = sights_of(kX, 0.0);
   const PlaceEquations equations = equations_of(measurements, 3.0);
@@ -135,7 +135,7 @@ TEST(Elimination, InformationIsTheNumericHessian) {
   EXPECT_LT((equations.information - 0.5 * hessian).norm(), 1e-3 * equations.information.norm());
 }
 
-/// The Schur complement against the full system in which the point is still an unknown.
+/// The Schur complement compared with the full system, in which the point is still an unknown.
 TEST(Elimination, EqualsTheFullSystemWithThePointKept) {
   const PointMeasurements measurements = sights_of(kX, mm(30));
   const FusedPoint fused = fuse_point(measurements, kPlaces, 3.0);

@@ -40,7 +40,7 @@ TEST(Refine, TheOtherWayRoundIsTheInverse) {
   const Refined there = refined(pairs, tilted_motion());
   const Refined back = refined(swapped(pairs), tilted_motion().inverse());
   EXPECT_LT(gap(there.target_from_source * back.target_from_source, Eigen::Isometry3d::Identity()),
-            mm(0.5));  // S is turned with the place, but not differentiated
+            mm(0.5));  // S rotates with the pose, but its derivative is ignored
   const Matrix6 turn = adjoint(there.target_from_source);
   const Matrix6 carried = turn * back.covariance * turn.transpose();
   EXPECT_LT((carried - there.covariance).norm(), 0.05 * there.covariance.norm());
@@ -56,8 +56,8 @@ TEST(Refine, TheOrderOfTheInstantsDoesNotMoveTheResult) {
   EXPECT_NEAR(forward.inflation, backward.inflation, 1e-9);
 }
 
-/// With nothing left over the cost is r^T S^-1 r with S constant, so that its second differences
-/// are twice J^T S^-1 J.
+/// Without residuals the cost is r^T S^-1 r with S constant, so that its second differences are
+/// twice J^T S^-1 J.
 TEST(Refine, InformationIsTheNumericHessianOfTheCost) {
   const auto pairs = pairs_of(tilted_motion(), {.instants = 20});
   Refined at = refined(pairs, tilted_motion());
@@ -90,13 +90,13 @@ TEST(Refine, TheCostCountsEachSensorsDepthForLess) {
   EXPECT_NEAR(cost_of(pair, at, kDepth), 0.5, 1e-12);  // one sigma across
   pair[0].x_in_target = x + Eigen::Vector3d(0, 0, mm(10));
   EXPECT_NEAR(cost_of(pair, at, kDepth), 0.5 / (kDepth * kDepth), 1e-12);
-  pair[0].ray_in_source = Eigen::Vector3d::UnitX();  // now only one of them
+  pair[0].ray_in_source = Eigen::Vector3d::UnitX();  // now only one of them does
   EXPECT_NEAR(cost_of(pair, at, kDepth), 0.5 / (0.5 * (1.0 + kDepth * kDepth)), 1e-12);
   at.weights = {0.0};
   EXPECT_EQ(cost_of(pair, at, kDepth), 0.0);
 }
 
-/// The source looks along the target's z from elsewhere: its ray has to be turned with its place.
+/// The source looks along the target's z from elsewhere: its ray must be rotated with its pose.
 TEST(Refine, TheSourcesDepthIsTakenWhereItLooks) {
   Refined at;
   at.target_from_source.linear() = about_y(deg(90)).toRotationMatrix();
@@ -135,16 +135,16 @@ TEST(Refine, PairsThatGoTogetherCountOnce) {
   };
   const CloudSpec white{.instants = 1000, .noise = mm(10)};
   EXPECT_LT(inflation(white), 1.3);
-  CloudSpec alike = white;  // three joints that err as one
+  CloudSpec alike = white;  // three joints with the same error
   alike.shared = true;
   EXPECT_NEAR(inflation(alike), 3.0, 0.4);
   CloudSpec coloured = white;  // (1 + 0.8) / (1 - 0.8)
   coloured.rho = 0.8;
   EXPECT_NEAR(inflation(coloured), 9.0, 1.8);
-  EXPECT_EQ(inflation({}), 1.0);  // nothing left over, nothing to correlate
+  EXPECT_EQ(inflation({}), 1.0);  // no residuals, no correlation
 }
 
-/// Normalised error squared over many draws: 6 when the covariance is right.
+/// Mean normalised squared error over many draws: 6 if the covariance is right.
 double mean_nees(CloudSpec spec) {
   constexpr unsigned kDraws = 80;
   double sum = 0.0;

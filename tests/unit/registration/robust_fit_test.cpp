@@ -9,7 +9,7 @@
 namespace chorus::registration {
 namespace {
 
-/// A share of the pairs is moved by up to `reach`, each in its own direction.
+/// Moves a fraction of the pairs by up to `reach`, each in its own direction.
 std::vector<Pair> with_outliers(std::vector<Pair> pairs, double share, double reach) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> chance(0.0, 1.0);
@@ -27,7 +27,7 @@ TEST(RobustFit, FindsExactMotionsInBothFreedoms) {
   EXPECT_LT(gap(full->target_from_source, tilted_motion()), 1e-9);
   EXPECT_LT(full->rms, 1e-9);
   EXPECT_EQ(full->inliers, 180u);
-  EXPECT_EQ(full->scale, 0.02);  // perfect pairs: the least scale
+  EXPECT_EQ(full->scale, 0.02);  // perfect pairs: the smallest scale
   const auto yaw = fit_robustly(pairs_of(some_motion(), {}), Freedom::Yaw);
   ASSERT_TRUE(yaw);
   EXPECT_LT(gap(yaw->target_from_source, some_motion()), 1e-9);
@@ -61,7 +61,7 @@ TEST(RobustFit, TheOrderOfThePairsDoesNotMatter) {
   }
 }
 
-/// How far off the fit puts the middle of the walk [m].
+/// Error of the fit at the middle of the walk [m].
 double off_with_outliers(double share, Freedom freedom) {
   const CloudSpec spec{.instants = 100, .noise = mm(8)};
   const auto fit = fit_robustly(with_outliers(pairs_of(some_motion(), spec), share, 3.0), freedom);
@@ -73,7 +73,7 @@ TEST(RobustFit, PairsThatAreWrongInTheirOwnWaysHaveNoSay) {
   for (const Freedom freedom : {Freedom::Yaw, Freedom::Full}) {
     EXPECT_LT(off_with_outliers(0.0, freedom), mm(2));
     EXPECT_LT(off_with_outliers(0.4, freedom), mm(3));
-    EXPECT_LT(off_with_outliers(0.6, freedom), mm(25));  // the cutoff has been doubled by then
+    EXPECT_LT(off_with_outliers(0.6, freedom), mm(25));  // the cutoff has been doubled until then
   }
 }
 
@@ -87,7 +87,7 @@ TEST(RobustFit, WrongPairsWeighNothingAndRightOnesNearlyAll) {
             static_cast<std::size_t>(std::count_if(fit->weights.begin(), fit->weights.end(),
                                                    [](double w) { return w > 0; })));
   const double sum = std::accumulate(fit->weights.begin(), fit->weights.end(), 0.0);
-  EXPECT_NEAR(sum / static_cast<double>(pairs.size()), 0.757, 0.05);  // Tukey of a Gaussian
+  EXPECT_NEAR(sum / static_cast<double>(pairs.size()), 0.757, 0.05);  // Tukey weight for a Gaussian
 }
 
 TEST(RobustFit, StatesTheScaleInThePairsOwnSigmas) {
@@ -139,7 +139,7 @@ TEST(RobustFit, ALineIsEnoughForYawButNotForSixDegreesOfFreedom) {
   ASSERT_TRUE(yaw);
   EXPECT_LT(gap(yaw->target_from_source, some_motion()), 1e-9);
   EXPECT_FALSE(fit_robustly(line, Freedom::Full));
-  EXPECT_FALSE(fit_robustly(pole, Freedom::Yaw));  // nobody can tell which way it turns
+  EXPECT_FALSE(fit_robustly(pole, Freedom::Yaw));  // its rotation cannot be determined
 }
 
 TEST(RobustFit, BrokenCoordinatesAreAnErrorAndNotAPlace) {

@@ -70,8 +70,8 @@ TEST(Solve, TheWorldIsUnderTheMasterAndLevelOnTheCommonFloor) {
   EXPECT_EQ(registration.sensors.at(sensor(2)).error, 0.0);
 }
 
-/// Four sensors side by side along a corridor, 1.2 m apart; each sees 3 m far, the person walks
-/// along it.
+/// Four sensors side by side along a corridor, 1.2 m apart; each sees up to 3 m, and the person
+/// walks along it.
 std::vector<WalkTrack> corridor(double range) {
   const WalkSpec spec{.path =
                           [](double t) {
@@ -198,7 +198,7 @@ TEST(Solve, TheOrderOfTheTracksDoesNotMatterAndASecondTrackOfASensorIsIgnored) {
   }
 }
 
-/// Single cameras, which hardly know depth: all together know what no chain of pairs does.
+/// Single cameras, whose depth is inaccurate: all together determine what no chain of pairs does.
 TEST(Solve, FromThreeSensorsOnAllAreAdjustedTogether) {
   RegistrationConfig config;
   config.along_ratio = 8.0;
@@ -232,7 +232,7 @@ TEST(Solve, TwoSensorsAreNotAdjusted) {
   }
 }
 
-/// Edges of a star: sensor 2 is linked to everybody, the others only through it.
+/// Edges of a star: sensor 2 has an edge to every other, the others only to it.
 TEST(Solve, TheMasterIsWhoReachesMostWithTheLeastError) {
   const PairEstimator star = [](const Walker& target, const Walker& source) {
     PairwiseRegistration edge{target.trail.sensor, source.trail.sensor};
@@ -260,7 +260,7 @@ TEST(Solve, AHeadDownOrBuriedSensorIsRefusedAndNamed) {
   RegistrationConfig config;
   config.master = sensor(0);
   wrong.linear() = Eigen::AngleAxisd(deg(170), Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  auto walk = ring(2, {.length = 1});  // its own floor would say where it is
+  auto walk = ring(2, {.length = 1});  // with its own floor its place would be known
   for (SensorFrame& frame : walk[1].frames) frame.floor.reset();
   const Registration head_down = solve_with(estimate, walk, kWalkStart, config);
   EXPECT_THAT(head_down.reasons, Contains(HasSubstr("sensor s1 would hang head down")));

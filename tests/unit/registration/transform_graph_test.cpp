@@ -8,7 +8,7 @@
 namespace chorus::registration {
 namespace {
 
-/// An exact edge between two known places; only its rms is chosen.
+/// An exact edge between two known places; only its rms is chosen freely.
 PairwiseRegistration edge(int target, int source, const std::vector<Eigen::Isometry3d>& places,
                           double rms) {
   PairwiseRegistration between{sensor(target), sensor(source)};
@@ -87,12 +87,12 @@ TEST(EdgeError, IsFiniteForAnyEdgeAndFallsWithInliersAndSpread) {
 TEST(EdgeError, IsTheStandardErrorAtTheSensorPlusAFloor) {
   PairwiseRegistration one = edge(0, 1, kPlaces, 0.02);
   one.inliers = 400;
-  one.spread = 2.5;  // as wide as the lever is long
+  one.spread = 2.5;  // as wide as the lever arm is long
   EXPECT_NEAR(edge_error(one), 0.002 + 0.02 / 20.0 * std::sqrt(2.0), 1e-12);
 }
 
 TEST(BestChains, ALaterBetterWayReplacesAnEarlierOne) {
-  // 0-3 is known first and poor; 0-1-2-3 is longer and better, and what hangs on 3 profits.
+  // 0-3 is found first and is poor; 0-1-2-3 is longer and better, which also helps all beyond 3.
   const std::vector edges{edge(0, 3, kPlaces, 0.9), edge(0, 1, kPlaces, 0.01),
                           edge(1, 2, kPlaces, 0.01), edge(2, 3, kPlaces, 0.01)};
   const auto chains = best_chains(sensor(0), edges);

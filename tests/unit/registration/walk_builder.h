@@ -1,4 +1,4 @@
-// A walk built by hand: a person whose joints are known in the world, seen by sensors whose places
+// A walk made by hand: a person whose joints are known in the world, seen by sensors whose places
 // are known.
 #pragma once
 
@@ -17,7 +17,7 @@ constexpr Timestamp kWalkStart = from_unix_ns(1'790'000'000'000'000'000);
 
 inline SensorId sensor(int number) { return SensorId::parse("s" + std::to_string(number)).value(); }
 
-/// World place of a sensor at (x, z), 1.8 m high, looking along `yaw` and 15 deg down.
+/// World pose of a sensor at (x, z), 1.8 m high, looking along `yaw` and 15 deg downwards.
 inline Eigen::Isometry3d place(double x, double z, double yaw) {
   Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
   world_from_sensor.linear() =
@@ -31,7 +31,7 @@ inline Eigen::Isometry3d ring_place(double angle, double radius = 3.0) {
   return place(radius * std::sin(angle), radius * std::cos(angle), angle + std::numbers::pi);
 }
 
-/// Where the person stands (on the floor) after t seconds.
+/// Position of the person on the floor after t seconds.
 using Path = std::function<Eigen::Vector2d(double)>;
 
 /// Wanders over about +-1 m with changing speed, below 1 m/s.
@@ -40,7 +40,7 @@ inline Eigen::Vector2d wander(double t) {
           0.7 * std::cos(0.47 * t + 0.5) + 0.3 * std::sin(1.07 * t)};
 }
 
-/// A body of 25 joints over a floor point; heights and widths are roughly human.
+/// A body of 25 joints above a floor point; heights and widths are roughly human.
 inline Skeleton<WorldSpace> person_at(const Eigen::Vector2d& floor, double yaw, double t) {
   struct Part {
     JointId id;
@@ -71,11 +71,11 @@ inline Skeleton<WorldSpace> person_at(const Eigen::Vector2d& floor, double yaw, 
 struct WalkSpec {
   Path path = wander;
   double length = 20.0;  ///< [s]
-  double noise = 0.010;  ///< White, per axis [m].
-  double range = 100.0;  ///< Farther people are not seen [m].
+  double noise = 0.010;  ///< White noise per axis [m].
+  double range = 100.0;  ///< People farther away are not seen [m].
   std::optional<FloorPlane> floor_in_world = FloorPlane{};
   Duration clock_offset{};  ///< Added to the capture stamps.
-  double outliers = 0.0;    ///< Share of frames whose body is elsewhere.
+  double outliers = 0.0;    ///< Fraction of frames whose body is elsewhere.
   unsigned seed = 1;
 };
 
@@ -85,7 +85,7 @@ inline FloorPlane plane_in_sensor(const FloorPlane& in_world,
           in_world.offset + in_world.normal.dot(world_from_sensor.translation())};
 }
 
-/// What a sensor at `world_from_sensor` sees of the walk, 30 Hz, with a phase of its own.
+/// Frames of a sensor at `world_from_sensor` during the walk, at 30 Hz, with a phase of its own.
 inline WalkTrack watch(int number, const Eigen::Isometry3d& world_from_sensor,
                        const WalkSpec& spec) {
   std::mt19937 random(spec.seed * 1000 + static_cast<unsigned>(number));
@@ -113,7 +113,7 @@ inline WalkTrack watch(int number, const Eigen::Isometry3d& world_from_sensor,
   return track;
 }
 
-/// Moves every joint along its line of sight by a depth error that all joints of a frame share.
+/// Moves every joint along its line of sight by a depth error common to all joints of a frame.
 inline WalkTrack with_depth_error(WalkTrack track, double sigma, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, sigma);

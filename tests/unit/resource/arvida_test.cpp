@@ -1,4 +1,4 @@
-// Profile "arvida": what a client finds that follows the published pattern, step by step.
+// Profile "arvida": what a client finds when it follows the published pattern, step by step.
 #include <map>
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ const std::string kVom = "http://vocab.arvida.de/2015/06/vom/vocab#";
 const std::string kSkel = "http://vocab.arvida.de/2015/05/skel/vocab#";
 const std::string kCore = "http://vocab.arvida.de/2015/06/core/vocab#";
 
-/// A graph that is walked from node to node.
+/// A graph for following properties from node to node.
 class Walk {
  public:
   explicit Walk(const FrameResource& frame, Place place = {"frame", "", "http://h/"}) {
@@ -37,7 +37,7 @@ class Walk {
     const auto found = objects_.find({from, verb});
     return found == objects_.end() ? std::vector<Term>{} : found->second;
   }
-  /// The only object; an empty term when there is none or are several.
+  /// The single object; an empty term when there is none, or more than one.
   [[nodiscard]] Term one(const Term& from, const std::string& verb) const {
     const auto found = all(from, verb);
     return found.size() == 1 ? found.front() : Term{};

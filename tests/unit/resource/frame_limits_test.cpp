@@ -1,4 +1,4 @@
-// The largest and the strangest that may be written is still read back; digits are those of printf.
+// The largest and strangest frames that can be written are read back; digits are as by printf.
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -58,7 +58,7 @@ TEST(FrameLimits, ASourceWithAwkwardLettersIsWrittenAndCannotBreakOut) {
     frame.source = source;
     for (const Format format : kFormats) {
       const auto back = read_frame(write(frame, format), format);
-      ASSERT_FALSE(back) << source;  // no sensor may be called that
+      ASSERT_FALSE(back) << source;  // no sensor may have this name
       EXPECT_NE(back.error().context.find("ch:source"), std::string::npos)
           << media_type(format) << ": " << to_string(back.error());
     }
@@ -96,7 +96,7 @@ TEST(FixedPoint, AgreesWithPrintfAtEveryNumberOfDecimals) {
       const double value = std::uniform_real_distribution<double>(-reach, reach)(random);
       char text[64];
       std::snprintf(text, sizeof text, "%.*f", decimals, value);
-      // llrint rounds the product, printf the value: the last digit may differ at a tie.
+      // llrint rounds the product, printf the value: in a tie the last digit may differ.
       EXPECT_NEAR(*read_decimal(*fixed(value, decimals)), std::strtod(text, nullptr),
                   1.01 * std::pow(10.0, -decimals));
       EXPECT_EQ(fixed(value, decimals)->size() - (fixed(value, decimals)->front() == '-' ? 1 : 0),

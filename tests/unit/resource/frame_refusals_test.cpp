@@ -1,4 +1,4 @@
-// One thing wrong in an otherwise good frame: refused, by name, in every format.
+// A single error in an otherwise good frame: refused, by name, in every format.
 #include <functional>
 
 #include <gtest/gtest.h>

@@ -26,7 +26,7 @@ TEST(FrameRoundTrip, EveryFormatKeepsEveryValue) {
       const std::string text = write(frame, format);
       const auto back = read_frame(text, format);
       ASSERT_TRUE(back) << media_type(format) << ": " << to_string(back.error());
-      if (format != Format::NTriples) {  // sets have no order there
+      if (format != Format::NTriples) {  // its sets have no order
         EXPECT_EQ(difference(frame, *back), "") << media_type(format) << " seed " << seed;
       }
       EXPECT_EQ(write(*back, format), text) << "write(read(x)) is stable";
@@ -47,15 +47,15 @@ TEST(FrameRoundTrip, TheParserAndTheTemplateReaderAgree) {
   }
 }
 
-/// A frame whose ids all survive plain JSON; larger ones are written as strings, which the template
-/// leaves to the parser.
+/// A frame whose ids can all be plain JSON numbers; larger ones are written as strings, which the
+/// template reader leaves to the parser.
 FrameResource json_frame(std::uint64_t seed) {
   FrameResource frame = random_frame(seed, kind_of(seed));
   for (std::size_t i = 0; i < frame.bodies.size(); ++i) frame.bodies[i].id = seed + i;
   return frame;
 }
 
-/// The template reader answers only where the parser answers the same.
+/// The template reader only answers where the parser gives the same answer.
 void expect_the_parser_agrees(const std::string& text) {
   const auto fast = read_json_template(text);
   if (!fast) return;

@@ -1,4 +1,4 @@
-// One frame, many ways to write it: what RDF calls the same is read as the same.
+// One frame written in many ways: what is equal in RDF is read as equal.
 #include <algorithm>
 #include <map>
 #include <random>
@@ -28,7 +28,7 @@ Result<FrameResource> read_graph_as(const rdf::Graph& graph,
                     syntax == rdf::Syntax::Turtle ? Format::Turtle : Format::NTriples);
 }
 
-/// Bodies and joints are sets on the wire: compare them in the order of their ids.
+/// Bodies and joints are sets on the wire: sorts them by id for comparison.
 FrameResource sorted(FrameResource frame) {
   std::sort(frame.bodies.begin(), frame.bodies.end(),
             [](const BodyResource& a, const BodyResource& b) { return a.id < b.id; });
@@ -91,7 +91,7 @@ TEST(FrameSpellings, NumbersMayBeDoublesFloatsOrIntegers) {
   EXPECT_FALSE(read_graph_as(textual)) << "a text is no number";
 }
 
-/// The subject of which this is said.
+/// The subject of a triple with this predicate and object.
 rdf::Term subject_with(const rdf::Graph& graph, const std::string& property,
                        const rdf::Term& object) {
   for (const rdf::Triple& triple : graph) {

@@ -15,7 +15,7 @@ using rdf::Term;
 
 double rounded(double value, double unit) { return std::round(value / unit) * unit; }
 
-/// Both missing, or equal but for the last bits, which decimals do not keep.
+/// Both are missing, or equal except for the last bits, which decimals do not preserve.
 bool same(const std::optional<double>& a, const std::optional<double>& b) {
   return a.has_value() == b.has_value() && std::abs(a.value_or(0.0) - b.value_or(0.0)) < 1e-9;
 }
@@ -35,7 +35,7 @@ class Dice {
   std::mt19937_64 random_;
 };
 
-/// A place; in a sensor's frame now and then only a direction.
+/// A position; in a sensor's frame sometimes only a direction.
 Eigen::Vector3d random_position(Dice& dice, JointResource& joint, const FrameResource& frame) {
   Eigen::Vector3d p;
   for (int i = 0; i < 3; ++i) p[i] = rounded(dice.between(-5, 5), 1e-4);
@@ -78,7 +78,7 @@ std::string decimals(double value, int digits) {
   return text;
 }
 
-/// Adds triples about one subject.
+/// Adds triples with the same subject.
 struct About {
   Graph& graph;
   Term subject;
@@ -156,9 +156,9 @@ FrameResource random_frame(std::uint64_t seed, const FrameKind& kind) {
   for (std::size_t b = 0; b < kind.bodies; ++b) {
     BodyResource body;
     body.id = b * 1'000 + dice.number(999);
-    if (kind.fused && b != 2) body.slot = kind.bodies - 1 - b;  // one has no seat
+    if (kind.fused && b != 2) body.slot = kind.bodies - 1 - b;  // one has no slot
     if (kind.fused && b != 1) body.sides_confidence = rounded(dice.between(0, 1), 1e-4);
-    if (b == 1) body.id = 72'057'594'037'928'018;  // as Kinect v2 numbers them: beyond a double
+    if (b == 1) body.id = 72'057'594'037'928'018;  // like Kinect v2 ids: too large for a double
     body.captured =
         dice.chance(0.5) ? frame.captured : frame.captured - Duration(dice.number(30'000'000));
     for (JointResource& joint : body.joints) joint = random_joint(dice, frame);

@@ -14,10 +14,10 @@ struct FrameKind {
   bool fused = false;  ///< World space, variances, contributors.
 };
 
-/// Different for each seed; numbers are already rounded to what the wire carries.
+/// A different frame for each seed; numbers are already rounded as on the wire.
 [[nodiscard]] FrameResource random_frame(std::uint64_t seed, const FrameKind& kind = {});
 
-/// The triples of the compact profile, spelt out one by one from the specification.
+/// The triples of the compact profile, written out one by one from the specification.
 [[nodiscard]] rdf::Graph expected_graph(const FrameResource& frame);
 
 /// Empty when equal, else the first difference.

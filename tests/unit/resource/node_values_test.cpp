@@ -1,4 +1,4 @@
-// Each kind of value that a node may hold, in each format, and what of it comes back.
+// Each kind of value that a node can hold, in each format, and what is read back.
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::json;
 using rdf::Term;
 
-/// The objects of one property of the document itself.
+/// The objects of one property of the document's own node.
 std::vector<Term> said(const Node& node, std::string_view key) {
   std::vector<Term> objects;
   for (const rdf::Triple& triple : graph_of(node)) {

@@ -1,4 +1,4 @@
-// proto/vocab/chorus.ttl against proto/context.jsonld and proto/shapes.ttl.
+// proto/vocab/chorus.ttl compared with proto/context.jsonld and proto/shapes.ttl.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -16,7 +16,7 @@ constexpr std::string_view kRdfs = "http://www.w3.org/2000/01/rdf-schema#";
 
 struct Word {
   bool is_property = false;
-  std::set<std::string> said;  ///< Predicates.
+  std::set<std::string> said;  ///< Predicates used.
 };
 
 std::map<std::string, Word> words() {

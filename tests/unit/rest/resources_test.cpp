@@ -1,4 +1,4 @@
-// The routes of the fusion server, asked without a socket.
+// The routes of the fusion server, called without a socket.
 #include <gtest/gtest.h>
 
 #include "common/base/log.h"
@@ -91,7 +91,7 @@ TEST(SensorResources, ListsEverySensorAndRelaysItsFrame) {
       resource::to_resource(testing::sensor_frame("s2", kStart, {})));
   EXPECT_EQ(ask(router, "/sensors/s2/frame").error().code, ErrorCode::NotFound);
   sensors.relay(sensor_id("s1"), raw);
-  sensors.relay(sensor_id("s2"), raw);  // added after the start: no long poll, but there
+  sensors.relay(sensor_id("s2"), raw);  // added after the start: no long poll, but served
   EXPECT_NE(body(ask(router, "/sensors/s1/frame"), "text/turtle").find("SensorSpace"),
             std::string::npos);
   EXPECT_TRUE(ask(router, "/sensors/s2/frame"));
@@ -132,7 +132,7 @@ TEST(SessionRequest, IsSecondsOrNothing) {
   }
 }
 
-/// A registrar that does what it is asked when the test lets it.
+/// A registrar that carries out requests when the test allows it.
 class Registering : public ::testing::Test {
  protected:
   Registering() : resources_({"run1"}, control()) {
@@ -199,7 +199,7 @@ TEST_F(Registering, TheAnswerNamesASessionThatEverybodyCanReadAtOnce) {
     const std::string session = shown("/registration/sessions/41");
     EXPECT_NE(session.find("\"collecting\""), std::string::npos) << session;
     EXPECT_NE(session.find("\"verdict\": \"None\""), std::string::npos) << "not the old one's";
-    publish();  // news from before the wish was obeyed
+    publish();  // a state from before the request was carried out
   }
   EXPECT_NE(shown("/registration/sessions/40").find("\"Good\""), std::string::npos);
   progress_.commands = 1;
@@ -234,7 +234,7 @@ TEST_F(Registering, DeleteForgetsAndShowsItFromTheAnswerOn) {
   EXPECT_EQ(shown().find("\"s1\""), std::string::npos) << shown();
   EXPECT_NE(shown().find("\"verdict\": \"None\""), std::string::npos);
   EXPECT_NE(shown("/registration/sessions/40").find("\"cancelled\""), std::string::npos);
-  // The next session is nobody's old one.
+  // The next session has an id that none had before.
   EXPECT_EQ(act(http::Method::Post, "/registration")->location, "/registration/sessions/41");
 }
 
@@ -246,7 +246,7 @@ TEST_F(Registering, TheOriginMovesAndIsShownFromTheAnswerOn) {
   ASSERT_TRUE(moved) << to_string(moved.error());
   EXPECT_EQ(moved->status, 200);
   EXPECT_EQ(asked_, "origin 2 -1.5 0 #1; ");
-  publish();  // from before it was carried out
+  publish();  // a state from before it was carried out
   EXPECT_NE(shown().find("\"x\": -2"), std::string::npos) << shown();
   EXPECT_NE(shown().find("\"z\": 1.5"), std::string::npos);
 }

@@ -1,4 +1,4 @@
-// Pixels and the directions they look in.
+// Pixels and their viewing directions.
 #include "common/sensor/pixel_ray.h"
 
 #include <cmath>

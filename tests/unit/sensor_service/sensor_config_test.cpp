@@ -85,7 +85,7 @@ TEST(SensorConfig, AFileThatIsNotThereIsNamed) {
   EXPECT_THAT(to_string(settings.error()), HasSubstr("/no/such.json"));
 }
 
-/// A key of the section of a device counts when that device is chosen.
+/// A key in a device's section only counts when that device is chosen.
 std::string choosing_its_device(const std::string& key, const std::string& text) {
   auto root = ConfigReader::parse(text, "test");
   for (const std::string kind : {"replay", "bridge", "camera"}) {

@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Throws in the middle of its first run, then delivers one frame and waits.
+/// Throws during its first run; then delivers one frame and waits.
 class FragileDevice final : public FrameSource {
  public:
   explicit FragileDevice(std::shared_ptr<std::atomic<int>> runs) : runs_(std::move(runs)) {}

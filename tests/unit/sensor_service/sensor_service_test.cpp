@@ -114,8 +114,8 @@ TEST_F(SensorServiceTest, CapturesThatCannotBeTrueAreRefusedAndCounted) {
   Capture backwards = capture(6);
   backwards.frame.captured = kStart;
   service_.on_capture(std::move(backwards));
-  service_.on_capture(capture(5));          // the same again
-  service_.on_capture(capture(6, {7, 7}));  // two bodies with one id
+  service_.on_capture(capture(5));          // the same frame again
+  service_.on_capture(capture(6, {7, 7}));  // two bodies with the same id
   std::vector<std::uint64_t> crowd(kMaxBodies + 1);
   for (std::size_t i = 0; i < crowd.size(); ++i) crowd[i] = i;
   service_.on_capture(capture(6, crowd));
@@ -233,7 +233,7 @@ TEST_F(SensorServiceTest, ImagesAreEncodedWhileSomebodyAsksAndElseOnceASecond) {
   now_ += std::chrono::hours(1);
   captured(0);
   ASSERT_TRUE(service_.encode_next(stop_.get_token()));  // the first at once
-  stop_.request_stop();  // from here on: true when due, false instead of waiting
+  stop_.request_stop();  // from here on: true when a frame is due, false instead of waiting
   captured(1);
   EXPECT_FALSE(service_.encode_next(stop_.get_token())) << "nobody asked";
   now_ += std::chrono::milliseconds(1001);

@@ -1,4 +1,4 @@
-// deploy/config/fusion.json and everything that may be wrong with one.
+// deploy/config/fusion.json and all mistakes that a configuration may contain.
 #include "fusion-server/server/fusion_settings.h"
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ TEST(FusionConfig, ASensorMayHaveANoiseOfItsOwn) {
   const auto& own = config->live.pipeline.fusion.sensor_noise;
   ASSERT_EQ(own.size(), 1u);
   EXPECT_EQ(own.at(testing::sensor_id("b")).across, 0.2);
-  EXPECT_EQ(own.at(testing::sensor_id("b")).along, 0.05);  // the general one below it
+  EXPECT_EQ(own.at(testing::sensor_id("b")).along, 0.05);  // `along` inherited from the general one
 }
 
 TEST(FusionConfig, EveryMistakeIsNamedAtOnce) {

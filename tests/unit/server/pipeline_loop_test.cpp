@@ -1,4 +1,4 @@
-// The pipeline's thread outlives what its sinks throw.
+// The pipeline's thread survives exceptions from its sinks.
 #include "fusion-server/server/pipeline_loop.h"
 
 #include <condition_variable>
@@ -10,7 +10,7 @@
 namespace chorus::server {
 namespace {
 
-/// Throws at the first snapshot and takes the others.
+/// Throws at the first snapshot and accepts the others.
 class BrokenSink final : public Sink {
  public:
   [[nodiscard]] std::string_view name() const override { return "broken"; }

@@ -1,4 +1,4 @@
-// The stored registration: there after a restart, never half written.
+// The stored registration: available after a restart, never half written.
 #include "fusion-server/server/registration_store.h"
 
 #include <unistd.h>

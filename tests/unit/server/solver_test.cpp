@@ -1,4 +1,4 @@
-// The worker's solver finds what registration::solve finds, and stops when nobody wants it.
+// The worker's solver finds what registration::solve finds, and stops when told to.
 #include "fusion-server/server/solver.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// State has a folder by default, one for each server, and one that cannot be used is told at once.
+// State has a default folder, one per server, and an unusable folder is reported at once.
 #include "fusion-server/server/state_folder.h"
 
 #include <fstream>

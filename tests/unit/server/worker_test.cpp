@@ -1,4 +1,4 @@
-// The thread for what takes long outlives the jobs that break.
+// The thread for slow jobs survives jobs that throw.
 #include "fusion-server/server/worker.h"
 
 #include <future>

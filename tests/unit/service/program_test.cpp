@@ -19,11 +19,11 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// Notes what its shell asks of it.  Sends itself the signals that the shell is to find.
+/// Records the calls of its shell.  Sends itself the signals that the shell must handle.
 class NotingProgram final : public Program {
  public:
   std::vector<std::string> asked;
-  std::vector<int> signals{SIGTERM};  ///< One after each start and reload.
+  std::vector<int> signals{SIGTERM};  ///< One after each start or reload.
   bool starts = true;
   bool throws = false;
   std::function<void()> on_reload = [] {};
@@ -69,7 +69,7 @@ int run(NotingProgram& program, std::vector<const char*> words) {
                      words.data());
 }
 
-/// Of what a run writes to standard error.
+/// What a run writes to standard error.
 std::string complaint_of(NotingProgram& program, const std::vector<const char*>& words) {
   ::testing::internal::CaptureStderr();
   EXPECT_EQ(run(program, words), kExitMistaken);
@@ -128,7 +128,7 @@ TEST(ProgramShell, NamesItselfAndTheMistake) {
   EXPECT_THAT(complaint_of(program, {}), HasSubstr("chorus-noting: 127.0.0.1:1: address in use"));
 }
 
-/// Sets a variable of this process for a while.
+/// Sets an environment variable of this process for the lifetime of the object.
 class Variable {
  public:
   Variable(const char* name, const std::string& value) : name_(name) {

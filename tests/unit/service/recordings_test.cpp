@@ -134,7 +134,7 @@ TEST(Recordings, OfEarlierRunsAreStillThere) {
   EXPECT_EQ(report->frames, 1u);
 }
 
-/// The routes behind a real server.
+/// The routes in a real server.
 class RecordingRoutes : public ::testing::Test {
  protected:
   RecordingRoutes() : recordings_(options_in((folder_ / "rec").string())) {
@@ -167,7 +167,7 @@ TEST_F(RecordingRoutes, StartDescribeStopDownload) {
   for (int i = 0; i < 30; ++i) recordings_.recorder(Stream::Raw)->offer(raw(i));
   const auto recorder = recordings_.recorder(Stream::Any);
   const auto ended = ask("DELETE", "/recordings/walk");
-  // Whether the writer is done by now is its affair; the answer says which.
+  // The writer may or may not be done by now; the answer says which.
   EXPECT_THAT(
       (std::pair(ended.status, nlohmann::json::parse(ended.body).at("state").get<std::string>())),
       AnyOf(Pair(202, "stopping"), Pair(200, "finished")));
@@ -191,7 +191,7 @@ TEST_F(RecordingRoutes, StartDescribeStopDownload) {
 TEST_F(RecordingRoutes, EndingOneWaitsForNobodyAndHalfAFileIsNotHandedOut) {
   ASSERT_EQ(ask("POST", "/recordings/", R"({"name":"walk"})").status, 201);
   const auto recorder = recordings_.recorder(Stream::Any);
-  std::promise<void> disk;  // a slow one: the writer stands still until it is kept
+  std::promise<void> disk;  // a slow one: the writer waits until this is set
   recorder->offer(record::FusedFrame{{}, {}, [slow = disk.get_future().share()] {
                                        slow.wait();
                                        return resource::FrameResource{};

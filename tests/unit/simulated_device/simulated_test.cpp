@@ -25,7 +25,7 @@ Result<std::unique_ptr<FrameSource>> device(std::string_view json, std::string_v
   return made;
 }
 
-/// A clock that is always a little later than when last asked: time flies without anybody waiting.
+/// A clock that is always slightly later than at the last call: time passes without waiting.
 class HastyClock final : public Clock {
  public:
   [[nodiscard]] Timestamp now() const override {
@@ -64,7 +64,7 @@ TEST(Simulated, TwoProcessesSeeTheSamePersonWhereverTheyStand) {
       const auto& body = capture.frame.bodies.at(0).skeleton;
       return Eigen::Vector3d(ring_place(ring, place) * body[JointId::Neck].position);
     };
-    // Captured up to a frame apart, of a person who walks at 0.9 m/s.
+    // Captured up to one frame apart; the person walks at 0.9 m/s.
     EXPECT_LT((in_world(front[i], 0) - in_world(side[i], 1)).norm(), 0.06);
     EXPECT_NE(front[i].frame.captured, side[i].frame.captured);
   }
@@ -142,7 +142,7 @@ TEST(Simulated, SequenceCountsDroppedFramesToo) {
 TEST(Simulated, ImagesAreRenderedOnDemand) {
   auto source = device("{}", "s1", std::make_shared<HastyClock>());
   const auto captures = first_captures(**source, 1);
-  source->reset();  // an image may be asked for after the device is gone
+  source->reset();  // an image may be requested after the device is gone
   const auto depth = captures[0].depth();
   ASSERT_TRUE(depth) << to_string(depth.error());
   EXPECT_EQ(depth->captured, captures[0].frame.captured);
@@ -163,7 +163,7 @@ TEST(Simulated, AClockThatStepsNeitherFreezesNorFloodsIt) {
       arrived.notify_one();
     });
   });
-  // Sets the clock and lets it run on until a frame of about now has come.
+  // Sets the clock and lets it run until a frame of about this time has come.
   const auto delivers_from = [&](Timestamp now) {
     clock->set(now);
     for (int i = 0; i < 2000; ++i) {
@@ -216,13 +216,13 @@ TEST(Simulated, PlaysAMotionFileThatAllSensorsSeeAlike) {
       const auto& body = capture.frame.bodies.at(0).skeleton;
       return Eigen::Vector3d(ring_place(ring, place) * body[JointId::Neck].position);
     };
-    // Captured up to a frame apart, of a person who walks at 1.3 m/s.
+    // Captured up to one frame apart; the person walks at 1.3 m/s.
     EXPECT_LT((in_world(front[i], 0) - in_world(side[i], 1)).norm(), 0.08);
   }
 }
 
-/// Tracked joints of whoever stands in the middle of the ring.  What is nearer is no person:
-/// profile C may take a pillar for one, as its fitter knows no background.
+/// Tracked joints of the person in the middle of the ring.  Nearer bodies are no people: profile C
+/// may take a pillar for one, because its fitter knows no background.
 int tracked_joints(const std::string& profile, const std::string& occluders) {
   constexpr double kNearest = 2.2;  // [m]
   const std::string json = R"({"profile": ")" + profile +

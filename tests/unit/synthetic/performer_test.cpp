@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr const char* kTake = "common/motion/assets/02_01.amc";  // CMU: a few steps straight on
+constexpr const char* kTake = "common/motion/assets/02_01.amc";  // CMU: a few steps straight ahead
 constexpr Duration kStep = std::chrono::milliseconds(1);
 
 std::shared_ptr<const Performance> take() {
@@ -26,8 +26,8 @@ std::string refusal(const MotionFile& file) {
   return read ? "" : to_string(read.error());
 }
 
-/// Somebody of centimetres who sits down by the height of the second frame: twelve joints and a
-/// head, as a BVH file has them.
+/// A person a few centimetres tall who sits down by the height of the second frame: twelve joints
+/// and a head, as in a BVH file.
 std::string small_bvh() {
   const auto limb = [](const std::string& a, const std::string& b, const std::string& c,
                        const std::string& at, const std::string& reach) {
@@ -138,11 +138,11 @@ TEST(Performance, WhatCannotBePlayedIsRefusedWithTheReason) {
 TEST(Performer, NeitherPlaceNorVelocityJumps) {
   const Performer performer(take(), {});
   constexpr double kMaxSpeed = 6.0;           // of a wrist in this walk [m/s]
-  constexpr double kMaxAcceleration = 400.0;  // heels strike; a corner at the ends has 2000 [m/s^2]
+  constexpr double kMaxAcceleration = 400.0;  // heels strike; corners would have 2000 [m/s^2]
   const double dt = seconds(kStep);
   for (const JointId joint : {JointId::SpineBase, JointId::WristRight, JointId::FootLeft}) {
     std::vector<Eigen::Vector3d> way = way_of(performer, joint, kStep);
-    way.insert(way.end(), way.begin(), way.begin() + 100);  // over the loop's end
+    way.insert(way.end(), way.begin(), way.begin() + 100);  // past the end of the loop
     for (std::size_t i = 2; i < way.size(); ++i) {
       EXPECT_LT((way[i] - way[i - 1]).norm(), kMaxSpeed * dt) << i;
       EXPECT_LT((way[i] - 2 * way[i - 1] + way[i - 2]).norm(), kMaxAcceleration * dt * dt) << i;
@@ -197,7 +197,7 @@ TEST(Performer, SeveralPeopleStandApartAndDoNotMoveAlike) {
     const auto one = people[i](t);
     const auto other = people[(i + 1) % people.size()](t);
     EXPECT_GT((one[JointId::Neck].position - other[JointId::Neck].position).norm(), 0.5);
-    // What neither size nor place changes: how the hands stand to each other.
+    // Independent of size and place: the position of the hands relative to each other.
     const auto spread = [](const Skeleton<WorldSpace>& body) {
       const auto between = [&](JointId a, JointId b) {
         return (body[a].position - body[b].position).norm();

@@ -62,7 +62,7 @@ TEST(Depth, ShowsTheChestInFrontAndTheFloorBelow) {
   const int column = static_cast<int>(k.cx - k.fx * chest.x() / chest.z());
   const int row = static_cast<int>(k.cy - k.fy * chest.y() / chest.z());
   EXPECT_NEAR(pixels.at<std::uint16_t>(row, column), to_mm(chest.z() - 0.15), 60);
-  // A corner pixel at the bottom sees the floor: depth from the plane equation.
+  // A corner pixel at the bottom shows the floor: depth from the plane equation.
   const Eigen::Vector3d ray(-(5 - k.cx) / k.fx, -(420 - k.cy) / k.fy, 1);
   const Plane floor = floor_in_sensor(scene.world_from_sensor[0]);
   EXPECT_NEAR(pixels.at<std::uint16_t>(420, 5), to_mm(-floor.offset / floor.normal.dot(ray)), 15);

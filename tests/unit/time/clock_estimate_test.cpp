@@ -1,4 +1,4 @@
-// The other clock, found from stamps alone.
+// The other host's clock, estimated from stamps alone.
 #include "common/time/clock_estimate.h"
 
 #include <random>
@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 
 const Timestamp kT0 = from_unix_ns(1'790'000'000'000'000'000);
 
-/// What both sides would stamp: their clock runs `ahead` of ours.
+/// The stamps of both sides: their clock is `ahead` of ours.
 ClockExchange exchange(Timestamp sent, Duration ahead, Duration there, Duration held,
                        Duration back) {
   return {sent, sent + there + ahead, sent + there + held + ahead, sent + there + held + back};
@@ -77,7 +77,7 @@ TEST(ClockFilter, AStepOfTheOtherClockIsBelievedAtTheThirdContradiction) {
   EXPECT_EQ(filter.at(now)->ours_minus_theirs, -milliseconds(500));
 }
 
-/// Quartzes drift less than the limit, but for ever: what was learnt long ago must go.
+/// Quartz clocks drift less than the limit, but forever: old knowledge must be discarded.
 TEST(ClockFilter, ForgetsTheBestExchangeOnceItIsOlderThanTheWindow) {
   ClockFilter filter;
   filter.add(exchange(kT0, Duration{0}, microseconds(10), Duration{0}, microseconds(10)));
@@ -86,7 +86,7 @@ TEST(ClockFilter, ForgetsTheBestExchangeOnceItIsOlderThanTheWindow) {
     filter.add(exchange(sent, milliseconds(1), milliseconds(5), Duration{0}, milliseconds(5)));
     return filter.at(sent).value();
   };
-  EXPECT_EQ(later(29).ours_minus_theirs, Duration{0});  // ten microseconds beat five milliseconds
+  EXPECT_EQ(later(29).ours_minus_theirs, Duration{0});  // 10 us win against 5 ms
   EXPECT_EQ(later(31).ours_minus_theirs, -milliseconds(1));
   EXPECT_GE(later(32).uncertainty, milliseconds(5));
 }

@@ -13,7 +13,7 @@ namespace {
 using ::testing::HasSubstr;
 using Step = Seal::Step;
 
-/// Carries bytes both ways, `piece` at a time, until neither side has more to say.
+/// Carries bytes in both directions, `piece` at a time, until neither side has more to send.
 struct Wire {
   void carry() {
     for (bool moved = true; moved;) {
@@ -61,7 +61,7 @@ class SealTest : public ::testing::Test {
   [[nodiscard]] Wire wire(const std::string& host, const Identity& identity) const {
     return {Seal::of_client(workshop_.trust(), host), Seal::of_server(identity)};
   }
-  /// What a client objects to.
+  /// The reason why a client refuses.
   [[nodiscard]] std::string objection(Wire wire) const {
     EXPECT_FALSE(wire.shake_hands());
     EXPECT_EQ(wire.client_step, Step::Failed);

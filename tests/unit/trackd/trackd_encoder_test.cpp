@@ -1,4 +1,4 @@
-// trackd's blocks read back at the offsets that other people's readers use.
+// trackd's blocks, read at the offsets used by readers of others.
 #include "fusion-server/trackd/trackd_encoder.h"
 
 #include <sys/mman.h>
@@ -24,7 +24,7 @@ using outlet::testing::about_up;
 using outlet::testing::about_x;
 using outlet::testing::about_z;
 
-// As C programs declare them: no padding anywhere.
+// As declared in C programs: no padding anywhere.
 struct TrackerHeader {
   std::uint32_t version, sensors, offset, size, seconds, microseconds, command;
 };
@@ -144,7 +144,7 @@ TEST(Trackd, WhoIsLostKeepsThePoseAndIsNotCalibrated) {
   EXPECT_EQ(after.frame, before.frame);
 }
 
-/// A block that another process reads, as trackd's readers do.
+/// A block that is read by another process, as by trackd's readers.
 struct SharedBlock {
   explicit SharedBlock(const std::vector<char>& content)
       : size(content.size()),

@@ -1,4 +1,4 @@
-// A flood of requests makes few connections; a client that repeats itself gets one.
+// A flood of requests causes few connections; a client that repeats its request gets one.
 #include "fusion-server/vrpn/request_gate.h"
 
 #include <gtest/gtest.h>
@@ -52,8 +52,8 @@ TEST(RequestGate, MakesFewConnectionsASecond) {
   EXPECT_EQ(made(kNow + std::chrono::hours(9)), 5);
 }
 
-/// 500 requests a second from one address, each for another port, for a minute; what the host that
-/// asks beside it every two seconds gets.
+/// 500 requests per second from one address, each for another port, for a minute; returns what a
+/// second host that asks every two seconds gets.
 struct Flood {
   int flooded = 0;
   int refused = 0;
@@ -104,7 +104,7 @@ TEST(RequestGate, RemembersAFewAddressesAndForgetsThemWhenTheyAreQuiet) {
     return verdict;
   };
   for (int i = 1; i <= 3; ++i) EXPECT_EQ(ask(i, 1, kNow), Verdict::Connect);
-  // All beyond share one allowance.
+  // All beyond the limit share one allowance.
   EXPECT_EQ(ask(4, 1, kNow), Verdict::Connect);
   EXPECT_EQ(ask(5, 1, kNow), Verdict::Connect);
   EXPECT_EQ(ask(6, 1, kNow), Verdict::Refused);

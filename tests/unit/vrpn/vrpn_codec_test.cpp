@@ -1,4 +1,4 @@
-// VRPN's bytes against its published traces, and against a reader that shares no code with ours.
+// VRPN's bytes compared with published traces, and by a reader that shares no code with ours.
 #include "fusion-server/vrpn/vrpn_codec.h"
 
 #include <gtest/gtest.h>

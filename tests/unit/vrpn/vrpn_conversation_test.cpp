@@ -1,4 +1,4 @@
-// One conversation: what the client hears, what it may ask, what ends it.
+// One conversation: what the client receives, what it may request, what ends it.
 #include "fusion-server/vrpn/vrpn_conversation.h"
 
 #include <set>
@@ -29,7 +29,7 @@ std::shared_ptr<const Trackers> trackers() {
   return std::make_shared<const Trackers>(kSlots, true);
 }
 
-/// Two persons; the first one's head has a pose without symmetry, its left foot is hidden.
+/// Two people; the first one's head has an asymmetric pose, its left foot is not tracked.
 outlet::TrackerFrame two_persons() {
   outlet::TrackerFrame frame;
   frame.instant = from_unix_ns(1'700'000'000'123'456'000);
@@ -63,7 +63,7 @@ struct Heard {
     last = conversation.receive(bytes, testing::kStart);
     if (last) decoder.take_stream(*last);
   }
-  /// "Body0 3" for every pose that this client gets.
+  /// "Body0 3" for every pose that this client receives.
   std::multiset<std::string> poses(const Reports& reports) {
     decoder.take_stream(conversation.stream(reports));
     std::multiset<std::string> out;
@@ -92,7 +92,7 @@ TEST(VrpnSession, DescribesEverythingOnceTheCookieIsComplete) {
   for (const std::string_view joint : kJointNames) {
     EXPECT_TRUE(names.contains("Body0_" + std::string(joint))) << joint;
   }
-  // No -3: the server takes no datagrams from clients; no -4: it keeps no logs.
+  // No -3: the server accepts no datagrams from clients; no -4: it keeps no logs.
   EXPECT_EQ(std::set(client.decoder.system_types.begin(), client.decoder.system_types.end()),
             (std::set<std::int32_t>{-2, -1}));
 }
@@ -174,7 +174,7 @@ TEST(VrpnSession, AnswersPingsToOurTrackersOnly) {
   }
   EXPECT_EQ(client.decoder.messages.back().sequence, client.decoder.messages.front().sequence + 1);
   client.say(vrpn_description(-2, 9, "vrpn_Tracker Request_Tracker_To_Room"));
-  client.say(vrpn_message(4, 9, ""));  // the number means something else now
+  client.say(vrpn_message(4, 9, ""));  // the number now has another meaning
   EXPECT_EQ(client.decoder.messages.size(), 2u);
 }
 

@@ -1,4 +1,4 @@
-// The registration on disk: what is written is read, and nothing wrong is believed.
+// The registration on disk: what is written is read back, and nothing wrong is accepted.
 #include "fusion-server/wire/registration_file.h"
 
 #include <gtest/gtest.h>

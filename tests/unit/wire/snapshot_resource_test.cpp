@@ -1,4 +1,4 @@
-// A snapshot on the wire, and the instant between two of them.
+// A snapshot on the wire, and its instant between two captures.
 #include "fusion-server/wire/snapshot_resource.h"
 
 #include <gtest/gtest.h>

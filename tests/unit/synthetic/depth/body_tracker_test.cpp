@@ -18,7 +18,7 @@ using enum JointId;
 
 constexpr TimeOfFlight kQuiet{0, 0, 0, 0, 0, 0.5, 4.5};
 
-/// A room before a level sensor, 1.2 m over the floor; everything in its space.
+/// A room in front of a level sensor, 1.2 m above the floor; all of it in sensor space.
 struct Room {
   View view;
   BodyTracker tracker{DepthCamera{}};
@@ -35,7 +35,7 @@ struct Room {
   }
 };
 
-/// Standing at (x, z) before the sensor, turned by `yaw` from facing it.
+/// A person standing at (x, z) in front of the sensor, turned by `yaw` from facing it.
 Skeleton<SensorSpace> somebody(double x, double z, double yaw = 0.0) {
   WalkerScript script;
   script.path = PathKind::Stand;

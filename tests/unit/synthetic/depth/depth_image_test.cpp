@@ -15,7 +15,7 @@ View empty() {
   return view;
 }
 
-/// A wall across the whole view at this depth.
+/// A wall at this depth across the whole view.
 View wall(double depth) {
   View view = empty();
   kinect::Box box;

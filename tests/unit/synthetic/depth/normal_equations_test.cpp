@@ -5,7 +5,7 @@
 namespace chorus::synthetic::depth {
 namespace {
 
-/// Every node is asked to stay, so that the equations have a solution.
+/// A weak prior keeps every node in place, so that the equations have a solution.
 NormalEquations anchored(double weight) {
   NormalEquations equations;
   for (int node = 0; node < kNodeCount; ++node) {

@@ -37,7 +37,7 @@ TEST(WithSource, TouchesItsOwnParametersOnly) {
   }
 }
 
-/// Distances of seen joints from the truth of their own label [m]; only `source` is on.
+/// Distances of seen joints from the truth of their own labels [m]; only `source` is on.
 struct Effect {
   double worst = 0.0;
   double mean = 0.0;
@@ -84,7 +84,7 @@ TEST(WithSource, AllOffIsThePlainTruth) {
   EXPECT_GT(none.bodies, none.frames * 9 / 10) << "only outside the view is nobody";
 }
 
-/// Everything off but this.
+/// Everything off except this.
 Profile only(Source source) {
   Profile profile = nominal_profile("B");
   for (const Source each : kAllSources) {
@@ -115,7 +115,7 @@ TEST(WithSource, EachAloneDoesItsOwnHarm) {
   EXPECT_LT(clock.worst, 1e-9) << "the stamp errs, not the place";
 }
 
-/// What the source is there to spoil, in whatever unit.
+/// The quantity that this source disturbs, in any unit.
 double harm(Source source, const Effect& effect) {
   if (source == Source::Clock) return effect.clock;
   if (source == Source::Delivery) return -static_cast<double>(effect.bodies);

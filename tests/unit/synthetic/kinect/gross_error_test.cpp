@@ -101,7 +101,7 @@ TEST(Ghost, NoneWhenSwitchedOff) {
   EXPECT_FALSE(ghost(gross, 1.0, {}).has_value()) << "a ghost that lasts no time";
 }
 
-/// Two people who touch and part `contacts` times; how often their ids were exchanged.
+/// Two people touch and part `contacts` times; returns how often their ids were exchanged.
 int swaps(double probability, int contacts) {
   IdBook book({1, 0, 0}, 2);
   const GrossError gross = with_swap(probability);

@@ -14,7 +14,7 @@ namespace {
 constexpr double kFrame = 0.033;
 using enum JointId;
 
-/// One axis of a long run.
+/// One axis over a long run.
 std::vector<double> run_of(double tau, int length) {
   SmoothNoise noise;
   std::vector<double> values;
@@ -97,7 +97,7 @@ TEST(ShownState, ChangesInRunsNotPerFrame) {
     before = now;
   }
   EXPECT_NEAR(static_cast<double>(inferred) / kFrames, 0.3, 0.05);
-  // Per frame it would change 2 * 0.3 * 0.7 of the times.
+  // Drawn anew for each frame, it would change 2 * 0.3 * 0.7 of the times.
   EXPECT_LT(changes, 0.42 * kFrames / 5);
   EXPECT_GT(changes, 100);
 }
@@ -113,7 +113,7 @@ TEST(ShownState, HiddenJointsAreMostlyInferredAndAVisibleCoreNever) {
   EXPECT_NEAR(hidden / 3000.0, visibility.inferred_occluded, 0.04);
 }
 
-/// A person standing 2.5 m before the sensor, all joints at this speed.
+/// A person standing 2.5 m in front of the sensor, with all joints at this speed.
 struct Setting {
   Skeleton<SensorSpace> body;
   Stand stand;
@@ -164,7 +164,7 @@ Profile quiet() {
   return profile;
 }
 
-/// The setting's body with one draw of errors, a second after the draw began.
+/// The setting's body with one draw of errors, one second after its beginning.
 Skeleton<SensorSpace> with_errors(const Setting& setting, const Profile& profile,
                                   std::uint64_t seed) {
   ColouredState state;
@@ -174,7 +174,7 @@ Skeleton<SensorSpace> with_errors(const Setting& setting, const Profile& profile
   return body;
 }
 
-/// Root mean square distance from the truth, all joints hidden by this share [m].
+/// rms distance from the truth while this fraction of every joint is hidden [m].
 double hidden_by(double share, JointId id) {
   const Profile profile = quiet();
   Setting setting(0.0);

@@ -135,7 +135,7 @@ TEST(KinectSensor, AnOccluderBetweenMakesItLoseThePerson) {
   EXPECT_LT(bodies(hidden), bodies(free) / 2);
 }
 
-/// Does the body fit better with left and right exchanged?
+/// Whether the body fits better with left and right exchanged.
 bool is_exchanged(const Skeleton<SensorSpace>& body, const Skeleton<SensorSpace>& exact) {
   double better = 0.0;
   for (std::size_t i = 0; i < kJointCount; ++i) {
@@ -147,9 +147,9 @@ bool is_exchanged(const Skeleton<SensorSpace>& body, const Skeleton<SensorSpace>
   return better > 0;
 }
 
-/// Errors of the seen joints of a minute, each over the root of the mean square that it confides.
+/// Errors of the seen joints during a minute, each divided by the rms error that it states.
 struct Honesty {
-  double square = 0.0;  ///< Mean per axis: 1 is honest.
+  double square = 0.0;  ///< Mean per axis: 1 is consistent.
   double count = 0.0;
 };
 
@@ -233,7 +233,7 @@ TEST(KinectSensor, OfProfileDHasOneScaleForAllBonesOfAFrameAndNeverExchangesLabe
 
 TEST(KinectSensor, WhomItFindsAgainFromBehindItTakesToFaceIt) {
   Scene scene = room();
-  // Turned by 100 deg: between the way back and the way out, where only the past would tell.
+  // Turned by 100 deg: between the angles of exchange, where only the past decides.
   scene.people = {[](Duration) {
     return testing::standing_person({0, 0, 2.0}, deg(180) + deg(100));
   }};

@@ -16,7 +16,7 @@ nlohmann::json file() {
   return nlohmann::json::parse(text, nullptr, true, true);
 }
 
-/// The unit is the end of the name.
+/// The unit at the end of the name.
 double si(const std::string& name, double value) {
   if (name.ends_with("_deg")) return value * std::acos(-1.0) / 180.0;
   if (name.ends_with("_mm") || name.ends_with("_ms")) return value * 1e-3;
@@ -61,7 +61,7 @@ TEST(Profile, NominalValuesAreTheFilesInMetresRadiansSeconds) {
 }
 
 TEST(Profile, NoTwoBindingsShareAField) {
-  // A draw gives every parameter that has an interval a value of its own.
+  // A draw gives a new value to every parameter that has an interval.
   const nlohmann::json written = file();
   std::set<double> values;
   std::size_t drawn = 0;
@@ -110,9 +110,9 @@ TEST(Profile, TheSameSeedGivesTheSameDraw) {
   EXPECT_TRUE(differs);
 }
 
-// Frozen after calibration.  Whoever changes a number or a line of the model changes every
-// published result: say so in docs/benchmarks/model.md, run the benchmarks again, then pin the new
-// hash here.
+// Frozen after calibration.  A change of any number or line of the model changes every published
+// result: then say so in docs/benchmarks/model.md, run the benchmarks again, and pin the new hash
+// here.
 TEST(Profile, IsFrozen) { EXPECT_EQ(frozen_hash(), "c1ea3e765d7c"); }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// One walking person before a sensor, for tests of the sensor model as a whole.
+// One person walking in front of a sensor, for tests of the whole sensor model.
 #pragma once
 
 #include "common/synthetic/kinect/error_source.h"

@@ -10,10 +10,10 @@ namespace {
 using enum JointId;
 const ColouredError kColoured = nominal_profile("A").coloured;
 
-/// What a sensor at this angle around a person makes of the neck; world space.
+/// The neck as measured by a sensor at this angle around a person; world space.
 Eigen::Vector3d seen_from(double around, const Eigen::Vector2d& place, const SharedKeys& keys) {
   SharedError error;
-  // The body looks along the world's +z; the sensor's own axes are turned by `around`.
+  // The body looks along the world's +z; the sensor's own axes are rotated by `around`.
   error.look({around, -around, place}, kColoured, keys);
   return Eigen::AngleAxisd(around, Eigen::Vector3d::UnitY()) * error.of(Neck, kColoured);
 }

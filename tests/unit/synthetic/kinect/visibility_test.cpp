@@ -10,7 +10,7 @@ namespace {
 
 using enum JointId;
 
-/// Somebody 2.5 m before a level sensor 1 m high; 0 = facing it.
+/// A person 2.5 m in front of a level sensor at a height of 1 m; 0 = facing it.
 Skeleton<SensorSpace> person(double facing, double x = 0.0, double distance = 2.5) {
   const Eigen::Isometry3d world_from_sensor = testing::sensor_pose({0, 1, 0}, 0.0);
   return to_sensor(world_from_sensor.inverse(),
