@@ -26,9 +26,9 @@ namespace chorus::core {
 [[nodiscard]] Result<Registration> extended(const Registration& current,
                                             const Registration& candidate, SolveKind kind);
 
-/// The registration to use after this solve, in the world of the current one (world.h); on an error
-/// the current one stays.  `hold`: sensors that stand well stay where they are even if the candidate
-/// as a whole is equally good.
+/// The registration to use after this solve, in the world of the current one (world.h); on an
+/// error the current one stays.  `hold`: sensors that stand well stay where they are even if the
+/// candidate as a whole is equally good.
 [[nodiscard]] Result<Registration> adopted(const Registration& current,
                                            const Registration& candidate, SolveKind kind,
                                            bool hold);
