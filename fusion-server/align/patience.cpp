@@ -9,8 +9,14 @@ constexpr int kWorse = 2;  // a spread this many times the median sensor's is un
 /// How many cameras are needed for a body: one camera without depth makes none.
 constexpr std::size_t kCameras = 2;
 
-/// 1.5 times what the median sensor needs, because sensors differ.
-Duration with_slack(Duration wait) { return wait * 3 / 2; }
+/// Sensors differ, and so do the frames of one.
+constexpr int kSlack = 2;
+
+/// How slow a sensor is by its nature: the usual step between its captures and the least delay.  A
+/// busy computer, which delays all of them, does not change it.
+Duration slowness(const History& history) {
+  return history.period().value_or(Duration{0}) + history.habit()->least_delay;
+}
 
 /// The sensor that is waited for however slow others are: the median, of two the quicker one.  If
 /// none has depth, at least the second, because one camera alone makes no body.
@@ -32,20 +38,21 @@ Patience::Patience(const std::map<SensorId, const History*>& histories, const Al
       patience_(config.patience),
       common_(config.patience),
       steady_(config.unsteady) {
+  std::vector<Duration> slow;
   std::vector<Duration> waits;
   std::vector<Duration> spreads;
   bool rays = true;
   for (const auto& [sensor, history] : histories) {
     if (!history->habit()) continue;
+    slow.push_back(slowness(*history));
     waits.push_back(*usual_wait(*history));
     spreads.push_back(history->habit()->spread());
     rays = rays && history->rays_only();
   }
   if (waits.empty()) return;
   const std::size_t place = middle(waits.size(), rays);
-  const Duration needed = at_place(waits, place);
-  patience_ = std::max(patience_, std::min(with_slack(needed), config.slowest));
-  common_ = std::min(patience_, needed);
+  patience_ = std::max(patience_, std::min(kSlack * at_place(slow, place), config.slowest));
+  common_ = std::min(patience_, at_place(waits, place));
   steady_ = std::max(steady_, kWorse * at_place(spreads, place));
   all_needed_ = rays && waits.size() <= kCameras;
 }

@@ -114,13 +114,19 @@ TEST(Patience, GrowsWhereMostAreSlow) {
   const History quick = sensor(milliseconds(2), milliseconds(5));
   const Patience most(
       {{sensor_id("s1"), &quick}, {sensor_id("s2"), &slow}, {sensor_id("s3"), &slow}}, {});
-  // 1.5 times (period 200 ms + delay 250 ms + grace 15 ms).
-  EXPECT_EQ(most.of(slow).patience, Duration(milliseconds(465)) * 3 / 2);
-  EXPECT_EQ(most.extension(), Duration(milliseconds(465)) * 3 / 2 - AlignConfig{}.patience);
+  // Twice a period and the delay.
+  EXPECT_EQ(most.of(slow).patience, milliseconds(900));
+  EXPECT_EQ(most.extension(), milliseconds(900) - AlignConfig{}.patience);
   const Patience few(
       {{sensor_id("s1"), &quick}, {sensor_id("s2"), &quick}, {sensor_id("s3"), &slow}}, {});
   EXPECT_EQ(few.of(slow).patience, AlignConfig{}.patience);
   EXPECT_EQ(few.extension(), Duration{0});
+}
+
+TEST(Patience, DoesNotGrowBecauseTheComputerIsBusy) {
+  const History busy = sensor(milliseconds(5), milliseconds(150));
+  const Patience patience({{sensor_id("s1"), &busy}, {sensor_id("s2"), &busy}}, {});
+  EXPECT_EQ(patience.extension(), Duration{0});
 }
 
 TEST(Patience, OfTwoCamerasBothAreNeeded) {
