@@ -4,8 +4,8 @@
 #   tests/run.sh --sanitize address|thread [ctest arguments]
 #     the unit, integration and fusion-system tests instead, built with that sanitizer (presets asan and tsan)
 #   tests/run.sh --workshop
-#   instead: makes the packages, installs them into fresh Debian roots without network, and tests them; then uses five of these as
-#    hosts of a workshop, each with its own network (as root, minutes)
+#     instead: makes the packages, installs them into fresh Debian roots without network, and tests them; then uses five of these as
+#     hosts of a workshop, each with its own network (as root, minutes)
 # CHORUS_JOBS=N limits the build (default: all cores, but no more than the memory can feed).
 # CHORUS_TARGETS="base.file_test ..." builds only these with --sanitize; then choose the same tests by -R.
 set -euo pipefail

@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kTooNear = 0.8;         // [m] nobody is tracked nearer than this
 constexpr double kGirth = 0.4;           // [m] a person this close to a line of sight blocks it
-constexpr std::size_t kMostMissing = 2;  // to each that sees somebody, else it is not confirmed
-constexpr double kOtherSide = 0.5;  // cosine of the angle from which sensors are on different sides
+constexpr std::size_t kMostMissing = 2;  // per sensor that sees it; with more it is not admitted
+constexpr double kOtherSide = 0.5;  // cosine of the least angle between sensors on different sides
 
 using Plan = Eigen::Vector2d;
 
@@ -87,7 +87,7 @@ bool Admission::seen_through(const Track& track, const Eigen::Vector3d& place) c
   return false;
 }
 
-/// The observer looks where the track should be, and sees nobody there whom it could be.
+/// The observer looks at the track's expected place, but sees no body that could belong to it.
 bool Admission::misses(const Observer& observer, const Track& track,
                        const Eigen::Vector3d& place) const {
   if (!looks_at(observer, place)) return false;

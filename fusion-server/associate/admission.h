@@ -27,14 +27,14 @@ class Admission {
             Duration elapsed, const AssociationConfig& config);
 
   /// Sets `admitted` when a second sensor sees the track, and not twice as many miss it; or when it
-  /// is confirmed and no sensor that looks there has missed it; or when it has been alone for
-  /// config.alone.  That time runs n times as slowly while its sensor has n such bodies, and stands
-  /// still while its sensor misses somebody whom others see where it looks: then the body is taken
-  /// to be that person, misplaced; and while others see through it.
+  /// is confirmed and no sensor that looks there has missed it; or when one sensor alone has seen
+  /// it for config.alone.  That time runs n times slower while its sensor has n such bodies, and
+  /// stops while its sensor misses a person whom others see in its view (the body is then taken for
+  /// that person, misplaced), and while others see through it.
   void judge(Track& track) const;
 
   /// Sensors on different sides look at `place` and see nobody there who could be that track:
-  /// nothing can hide it from all of them.
+  /// nothing can occlude it from all of them.
   [[nodiscard]] bool seen_through(const Track& track, const Eigen::Vector3d& place) const;
 
  private:

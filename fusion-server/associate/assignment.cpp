@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::size_t kFree = 0;  // rows and columns are counted from one; 0: unassigned
 
-/// Shortest augmenting paths with potentials.  The shorter side supplies the rows, so that each of
-/// them gets a column; a forbidden pair costs what leaving both alone does, else more than all
+/// Shortest augmenting paths with potentials.  The shorter side becomes the rows, so that every row
+/// gets a column; a forbidden pair costs as much as leaving both unpaired, or else more than all
 /// allowed pairs together.
 class Hungarian {
  public:

@@ -14,8 +14,8 @@ struct CostTable {
   std::size_t columns = 0;
   std::vector<double> cost;
   double gate = 0.0;
-  /// What a row or column of the shorter side costs that gets none; infinite: as many allowed pairs
-  /// are made as possible.
+  /// Cost of a row or column of the shorter side that is left unpaired; infinite: as many allowed
+  /// pairs as possible are made.
   double unpaired = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] double at(std::size_t row, std::size_t column) const {
@@ -23,7 +23,7 @@ struct CostTable {
   }
 };
 
-/// For each row its column, or none.
+/// The column of each row, or none.
 [[nodiscard]] std::vector<std::optional<std::size_t>> assign(const CostTable& table);
 
 }  // namespace chorus::associate

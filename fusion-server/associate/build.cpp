@@ -8,7 +8,7 @@
 namespace chorus::associate {
 namespace {
 
-constexpr double kMostSight = 60.0;  // [s] older sights fade
+constexpr double kMostSight = 60.0;  // [s] older observations fade
 
 struct Span {
   std::array<JointId, 2> left;
@@ -33,8 +33,8 @@ constexpr double kOwnLength = 0.010;
 constexpr double kOwnInOneView = 0.036;
 constexpr double kOthersSize = 0.050;
 constexpr double kOthersLength = 0.020;
-constexpr double kSizeShare = 0.5;  // of the variance of a mean of as many independent lengths
-constexpr double kSlowly = 0.3;     // [s] of sight, below which the variance grows
+constexpr double kSizeShare = 0.5;  // fraction of the variance of a mean over independent lengths
+constexpr double kSlowly = 0.3;     // [s] of sight; with less, the variance grows
 
 double squared(double value) { return value * value; }
 
@@ -76,8 +76,8 @@ double variance_of(const Build& build, std::size_t span) {
   return (squared(kOwnLength) + by_views) * (1.0 + kSlowly / build.sight[span]);
 }
 
-/// Of `count` normal deviations with that sum of squares: how much likelier is `variance` than one
-/// that is larger by `more`, as a logarithm.
+/// For `count` normal deviations with this sum of squares: the log likelihood ratio of `variance`
+/// against one that is larger by `more`.
 double odds_of(double squares, double count, double variance, double more) {
   const double larger = variance + more;
   return 0.5 * (count * std::log(larger / variance) - squares / variance + squares / larger);

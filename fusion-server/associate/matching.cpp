@@ -13,13 +13,13 @@
 namespace chorus::associate {
 namespace {
 
-constexpr int kRounds = 3;          // in which sensors hear of each other
-constexpr double kOwnWeight = 1.0;  // of where a track is expected, beside one sensor's view of it
-constexpr double kSizeReach = 0.5;  // [m] of distance that a body larger by a factor of e is worth
-constexpr double kKnown = 1.0;      // [s] of sight, from which a build tells something
-constexpr double kDoubtful = 0.3;   // share of the gate by which a track that waits comes second
+constexpr int kRounds = 3;          // after each, sensors use each other's matches
+constexpr double kOwnWeight = 1.0;  // of a track's expected place, against one sensor's view of it
+constexpr double kSizeReach = 0.5;  // [m] cost of a body that is larger by a factor of e
+constexpr double kKnown = 1.0;      // [s] of sight; from then on a build is informative
+constexpr double kDoubtful = 0.3;   // fraction of the gate added to the cost of unpublished tracks
 
-/// A view on its way to a track.
+/// A view that is being matched.
 struct Loose {
   PlacedView view;
   Spans spans;
@@ -28,7 +28,7 @@ struct Loose {
 
 using BySensor = std::map<SensorId, std::vector<Loose>>;
 
-/// By how much the body is larger than the track's is known to be, as a logarithm.
+/// Log ratio of the body's size to the track's known size.
 double size_difference(const Spans& spans, const Build& build) {
   double sum = 0.0;
   double count = 0.0;
@@ -40,7 +40,7 @@ double size_difference(const Spans& spans, const Build& build) {
   return count > 0 ? sum / count : 0.0;
 }
 
-/// Where a track is, as expected and as the other sensors have it.
+/// Places of the tracks, as predicted and as seen by the other sensors.
 class Places {
  public:
   explicit Places(const std::vector<Candidate>& candidates) {
@@ -62,7 +62,7 @@ class Places {
   std::vector<Sum> sums_;
 };
 
-/// How far a body is from a track, 1 at its gate; not a number when that cannot be told.
+/// Distance of a body from a track, in units of its gate; NaN when it cannot be told.
 double cost_of(const Loose& loose, const Candidate& candidate, const Eigen::Vector3d& place) {
   const PlacedView& body = loose.view;
   if (!body.rays) {
@@ -78,7 +78,7 @@ double cost_of(const Loose& loose, const Candidate& candidate, const Eigen::Vect
   return off ? *off / candidate.gate : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Assigns one sensor's bodies to the tracks; whether anything changed.
+/// Assigns one sensor's bodies to the tracks; returns whether anything changed.
 bool assign_sensor(std::vector<Loose>& bodies, const std::vector<Candidate>& candidates,
                    const Places& places) {
   CostTable table{bodies.size(), candidates.size(), {}, 1.0, 1.0};

@@ -1,10 +1,10 @@
-// Which body of which sensor is which track, and which bodies of different sensors are one
-// newcomer.
+// Matches the bodies of all sensors with tracks, and clusters the bodies of newcomers across
+// sensors.
 //
-// The total cost over all sensors is made least, each body that nobody gets costing as much as the
-// farthest that somebody could: a pair too many is no better than a pair too bad.  A sensor's
-// bodies are assigned one-to-one, by their distance from where a track is expected and from where
-// the other sensors show it, in turn until nothing changes.
+// Minimises the total cost over all sensors, in which an unmatched body costs as much as the
+// farthest allowed match: an extra pair is no better than a bad one.  Each sensor's bodies are
+// assigned one-to-one, by their distance from the expected place of a track and from where the
+// other sensors see it; sensor by sensor, until nothing changes.
 #pragma once
 
 #include "fusion-server/associate/association_config.h"
@@ -12,11 +12,11 @@
 
 namespace chorus::associate {
 
-/// Hands the views to the candidates; returns those that fit none.
+/// Adds the views to the candidates they fit; returns those that fit none.
 [[nodiscard]] std::vector<PlacedView> match(std::vector<PlacedView> views,
                                             std::vector<Candidate>& candidates);
 
-/// Views within `limit` [m] of each other, none of the same sensor.
+/// Groups of views within `limit` [m] of each other, at most one per sensor.
 [[nodiscard]] std::vector<std::vector<PlacedView>> cluster(std::vector<PlacedView> views,
                                                            double limit);
 

@@ -14,8 +14,8 @@ namespace chorus::associate {
 namespace {
 
 constexpr std::size_t kMaxTracks = 256;                      // Four times what a frame holds.
-constexpr Duration kCoastUnknown = std::chrono::seconds(1);  // of tracks that nobody was told of
-constexpr Duration kGone = std::chrono::milliseconds(200);   // seen through for so long: has left
+constexpr Duration kCoastUnknown = std::chrono::seconds(1);  // of tracks that were never published
+constexpr Duration kGone = std::chrono::milliseconds(200);   // seen through for this long: has left
 
 /// Ordered by sensor and body, so that the result does not depend on the order of arrival.
 std::vector<PlacedView> placed_views(std::vector<SensorView> views) {
@@ -36,7 +36,7 @@ bool is_settled(const Track& track, const AssociationConfig& config) {
   return track.admitted && track.hits >= config.confirm_frames;
 }
 
-/// Those who are still looked for; those who are not are missing.
+/// The tracks that are still looked for; the others become missing.
 std::vector<Candidate> expected(Tracks& tracks, Timestamp instant,
                                 const AssociationConfig& config) {
   std::vector<Candidate> candidates;
@@ -55,8 +55,8 @@ std::vector<Candidate> expected(Tracks& tracks, Timestamp instant,
   return candidates;
 }
 
-/// A body of one sensor beside somebody in whom that sensor has one already is a second sight of
-/// them, as long as no other sensor has two there.
+/// Ignores a new body near a person of whom its sensor already has a body: it is a second detection
+/// of them, as long as no other sensor has two there.
 void drop_rivals(std::vector<std::vector<PlacedView>>& newcomers,
                  const std::vector<Candidate>& candidates, double limit) {
   std::erase_if(newcomers, [&](const std::vector<PlacedView>& members) {
@@ -105,7 +105,7 @@ void merge_doubles(std::vector<Candidate>& candidates, const AssociationConfig& 
   }
 }
 
-/// Those who are not where several sensors look have left.
+/// Removes people who are not where several sensors look: they have left.
 void leave(std::vector<Candidate>& candidates, const Admission& admission, Duration elapsed,
            Tracks& tracks) {
   std::erase_if(candidates, [&](Candidate& candidate) {
@@ -142,7 +142,7 @@ void keep_the_best(std::vector<Person>& people) {
             [](const Person& a, const Person& b) { return a.id < b.id; });
 }
 
-/// Somebody with their views; whom nobody sees, where they are expected.
+/// A person with their views; one whom nobody sees is placed where they are expected.
 Person person_of(Candidate& candidate) {
   Person person{candidate.track.id, {}};
   if (candidate.sights.empty()) person.carried = candidate.predicted;
@@ -155,7 +155,7 @@ std::vector<Person> published(std::vector<Candidate>& candidates, Timestamp inst
   std::vector<Person> people;
   for (Candidate& candidate : candidates) {
     const Track& track = candidate.track;
-    const bool placed = instant - track.seen <= config.carry;  // a single ray body places nobody
+    const bool placed = instant - track.seen <= config.carry;  // a single ray body gives no place
     if (placed && track.named && is_settled(track, config)) people.push_back(person_of(candidate));
   }
   keep_the_best(people);
@@ -189,7 +189,7 @@ std::vector<Candidate> found(std::vector<std::vector<PlacedView>> people, std::u
   return candidates;
 }
 
-/// Out of the views that fit nobody.
+/// Founds people from the views that fit no track.
 std::vector<Candidate> newcomers(std::vector<PlacedView> views,
                                  const std::vector<Candidate>& candidates, std::uint64_t& next_id,
                                  const AssociationConfig& config) {

@@ -1,13 +1,13 @@
 // Which bodies of which sensors are the same person, now and over time.
 //
-// Per instant: where tracks are expected is matched with the bodies of all sensors, together
-// (matching.h); bodies left over are clustered across sensors into new people.  Two tracks on one
-// spot that never share a sensor are one person and become the older one.  A person whom only one
-// sensor sees where others look is not published at once (admission.h).  Whoever is not seen is
-// looked for where they should be; whoever left is remembered, and known again by their build
-// (recognition.h).  Bodies of cameras without depth, whose joints are rays, are matched by how far
-// their rays pass the joints of a track (ray_matching.h); a single one founds nobody, and does not
-// keep anybody alive.  Ids are never reused.
+// At each instant, the expected places of tracks are matched with the bodies of all sensors jointly
+// (matching.h); the remaining bodies are clustered across sensors into new people.  Two tracks on
+// one spot that never share a sensor are one person; the older one stays.  A person whom only one
+// sensor sees where others look is not published at once (admission.h).  People who are not seen
+// are looked for where they should be; those who left are remembered and recognised by their build
+// (recognition.h).  Ray bodies of cameras without depth are matched by how far their rays pass from
+// the joints of a track (ray_matching.h); one alone starts no track and keeps none alive.  Ids are
+// never reused.
 #pragma once
 
 #include <vector>
@@ -19,8 +19,8 @@
 namespace chorus::associate {
 
 struct Grouping {
-  /// Confirmed, admitted and named people, in id order, seen or carried; at most as many as a frame
-  /// holds, and then those that several sensors see.
+  /// Confirmed, admitted and named people, ordered by id, seen or predicted; at most as many as a
+  /// frame holds, preferring those whom several sensors see.
   std::vector<Person> people;
   Tracks tracks;
 };

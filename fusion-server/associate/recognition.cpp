@@ -8,12 +8,12 @@ namespace chorus::associate {
 namespace {
 
 constexpr std::size_t kMostMissing = 64;
-constexpr double kGlance = 1.5;       // [s] of sight of all views, from which builds may rule out
-constexpr double kManyViews = 4.0;    // which need that much less time
-constexpr double kImpossible = -4.0;  // log odds at which they do
-constexpr double kContinuity = 1.5;   // log odds that somebody found where expected is who was lost
-constexpr double kUnlikely = -0.5;  // log odds at which somebody lost and found goes without an id
-constexpr Duration kNoBones = std::chrono::seconds(2);  // nobody's bones are waited for longer
+constexpr double kGlance = 1.5;       // [s] of sight in all views, until builds exclude people
+constexpr double kManyViews = 4.0;    // with this many views that much less is needed
+constexpr double kImpossible = -4.0;  // log odds at which they are excluded
+constexpr double kContinuity = 1.5;   // prior log odds that one found where expected is the lost
+constexpr double kUnlikely = -0.5;    // log odds at which a person lost and found loses the id
+constexpr Duration kNoBones = std::chrono::seconds(2);  // nobody's build is waited for longer
 
 bool has_left(const Candidate& candidate) {
   return candidate.sights.empty() && (candidate.track.named || candidate.track.before);
@@ -23,7 +23,7 @@ Missing missing_of(const Track& track) {
   return {track.id, track.before ? track.lost : track.seen, track.before.value_or(track.build)};
 }
 
-/// Those whom a track that was found then may be.
+/// The missing people whom a track found at that time may be.
 std::vector<Missing> missing_before(Timestamp found, const std::vector<Candidate>& candidates,
                                     const Tracks& tracks) {
   std::vector<Missing> all = tracks.missing;
@@ -34,14 +34,14 @@ std::vector<Missing> missing_before(Timestamp found, const std::vector<Candidate
   return all;
 }
 
-/// Long enough to say whether two are one.
+/// Whether the build was seen long enough to decide whether two people are the same.
 bool is_looked_at(const Build& build, const AssociationConfig& config) {
   return sight_of(build) * std::max(1.0, build.views / kManyViews) >= seconds(config.recognise);
 }
 
 bool is_glance(const Build& build) { return sight_of(build) * build.views >= kGlance; }
 
-/// The likeliest; `odds`: its log odds.
+/// The likeliest person; `odds`: their log odds.
 struct Likeliest {
   std::optional<PersonId> id;
   double odds = 0.0;
@@ -56,7 +56,7 @@ Likeliest likeliest_of(const Build& build, const std::vector<Missing>& missing) 
   return best;
 }
 
-/// Takes over who was missing.
+/// The track takes over a missing person's id.
 void become(Track& track, PersonId id, std::vector<Candidate>& candidates, Tracks& tracks) {
   for (Missing& each : tracks.missing) {
     if (each.id == id) track.build.add(each.build);
@@ -65,12 +65,12 @@ void become(Track& track, PersonId id, std::vector<Candidate>& candidates, Track
   for (Candidate& each : candidates) {
     if (each.track.id != id || !has_left(each)) continue;
     track.build.add(missing_of(each.track).build);
-    each.track.id = PersonId{};  // goes
+    each.track.id = PersonId{};  // this one is removed
   }
   track.id = id;
 }
 
-/// Whether it is known now who a newcomer is; then the track has the id of that person.
+/// Whether it is known now who a newcomer is; if so, the track has that person's id.
 bool name(Candidate& candidate, std::vector<Candidate>& candidates, Tracks& tracks,
           const AssociationConfig& config) {
   Track& track = candidate.track;
@@ -86,7 +86,7 @@ bool name(Candidate& candidate, std::vector<Candidate>& candidates, Tracks& trac
   return looked_at || new_to_all || track.seen - track.found > kNoBones + config.recognise;
 }
 
-/// Holds somebody who was lost and found against who was lost.
+/// Compares the build of a person lost and found with that of the lost one.
 void question(Track& track, Tracks& tracks, const AssociationConfig& config) {
   const double odds = kContinuity + likeness(*track.before, track.build);
   const bool looked_at = is_looked_at(track.build, config);

@@ -1,9 +1,9 @@
-// Who somebody is who came, or came back: told by their build.
+// Decides by their build who a person is who has appeared or come back.
 //
-// While somebody is missing, a newcomer gets no id before it is known whether they are that person:
-// after AssociationConfig::recognise of sight at the latest, sooner when their builds differ so
-// much that they cannot be.  Somebody lost and found keeps the id meanwhile, and loses it to
-// whoever was lost when they turn out to be somebody else.
+// While people are missing, a newcomer gets no id until it is known whether they are one of them:
+// after AssociationConfig::recognise of sight at the latest, sooner if their builds differ too
+// much.  A person lost and found keeps the id meanwhile, and gives it back to the lost person if
+// the builds show that they are different people.
 #pragma once
 
 #include "fusion-server/associate/association_config.h"
@@ -11,14 +11,14 @@
 
 namespace chorus::associate {
 
-/// Into `tracks.missing`, unless it never got an id that anybody knows.
+/// Adds the track to `tracks.missing`, unless its id was never published.
 void miss(const Track& track, Tracks& tracks);
 
-/// Forgets those who have been away for too long.
+/// Forgets people who have been missing for too long.
 void forget(Tracks& tracks, Timestamp instant, const AssociationConfig& config);
 
-/// Answers what can be answered now.  Candidates that turn out to be somebody else's continuation
-/// take over the id, and the one that it is taken from goes.
+/// Decides whatever can be decided now.  A candidate that turns out to be a missing person takes
+/// over that person's id; a track that had the id until then is removed.
 void recognise(std::vector<Candidate>& candidates, Tracks& tracks, const AssociationConfig& config);
 
 }  // namespace chorus::associate

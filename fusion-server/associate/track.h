@@ -10,14 +10,14 @@
 
 namespace chorus::associate {
 
-/// A body of a sensor as it was at an instant: what motion is told from.
+/// A sensor's body at an instant, from which motion is computed.
 struct Footprint {
   SensorId sensor;
   BodyId body;
   std::array<std::optional<Eigen::Vector3d>, kCoreJoints.size()> core;  ///< World [m].
 };
 
-/// Memory of one person.
+/// What is remembered of one person.
 struct Track {
   PersonId id;
   Timestamp found;                                     ///< First instant with a view.
@@ -25,26 +25,26 @@ struct Track {
   int hits = 0;                                        ///< Number of instants with a view.
   Eigen::Vector3d core = Eigen::Vector3d::Zero();      ///< Mean of the core joints, world [m].
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
-  std::vector<Footprint> footprints = {};              ///< Of the instant when it was seen.
+  std::vector<Footprint> footprints = {};              ///< At the instant when it was last seen.
   int shadowed = 0;  ///< Consecutive instants on an older track's spot without a common sensor.
   Located joints;    ///< Where its joints were then; known while cameras show rays.
   bool admitted = false;  ///< It may be published; once admitted, always.
   bool doubted = false;   ///< Another sensor looked at its place and saw nobody.
   Duration alone{0};      ///< How long only one sensor has seen it since then.
-  Duration through{0};    ///< How long sensors have seen through the place where it should be.
-  Build build = {};       ///< Since it was found, or found again.
-  /// It was lost and found: how whoever was lost was built, and when that was.  Whether the two are
-  /// one is not known yet.
+  Duration through{0};    ///< How long sensors have seen through its expected place.
+  Build build = {};       ///< Measured since it was found, or found again.
+  /// Set if it was lost and found: the build of the lost person, and when it was lost.  Whether the
+  /// two are the same person is not known yet.
   std::optional<Build> before = {};
   Timestamp lost = {};
-  /// The id is its own as far as is known: it is nobody of those who left, or one of them.
+  /// The id is final as far as is known: the person is no missing one, or a recognised one.
   bool named = false;
 };
 
-/// Somebody who left, or who has not been found for so long.
+/// A person who left, or who was not found for too long.
 struct Missing {
   PersonId id;
-  Timestamp seen;  ///< Last.
+  Timestamp seen;  ///< When last seen.
   Build build;
 };
 
@@ -52,7 +52,7 @@ struct Tracks {
   std::uint64_t next_id = 1;
   Timestamp instant;  ///< The last instant that was grouped.
   std::vector<Track> people;
-  std::vector<Missing> missing = {};  ///< In the order in which they left.
+  std::vector<Missing> missing = {};  ///< In the order of leaving.
 };
 
 /// A track while its instant is being processed.

@@ -10,10 +10,10 @@
 namespace chorus::associate {
 namespace {
 
-constexpr double kVelocityBlend = 0.2;  // share of the newest difference; smooths 30 Hz to ~0.15 s
-constexpr double kFastest = 4.0;  // [m/s] a sprint; keeps one wild view from throwing the track
-constexpr double kKnown = 0.5;    // [s] of sight, from which a build can be held against another
-constexpr double kLongest = 0.1;  // [s] that an instant's sight stands for
+constexpr double kVelocityBlend = 0.2;  // exponential smoothing factor; ~0.15 s at 30 Hz
+constexpr double kFastest = 4.0;        // [m/s] a sprint; limits the harm of one wrong view
+constexpr double kKnown = 0.5;          // [s] of sight, from which builds can be compared
+constexpr double kLongest = 0.1;        // [s] the longest time that one instant counts for
 
 /// Mean of the views that have a place, else where the rays meet; nothing for a single ray body.
 std::optional<Eigen::Vector3d> centre_of(const Candidate& candidate) {
@@ -45,7 +45,7 @@ std::vector<Footprint> footprints_of(const std::vector<PlacedView>& sights) {
   return prints;
 }
 
-/// Mean way of the joints that the same bodies have in both; nothing: they have none in common.
+/// Mean displacement of the joints that the same bodies have in both; nothing: there are none.
 std::optional<Eigen::Vector3d> way_between(const std::vector<Footprint>& before,
                                            const std::vector<Footprint>& now) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -79,7 +79,7 @@ void update_velocity(Track& track, std::vector<Footprint> prints, const Eigen::V
   track.footprints = std::move(prints);
 }
 
-/// Whoever is found after a gap has to show that they are who was lost.
+/// A person found after a gap must be checked against the lost one.
 void question(Track& track, Timestamp instant, const AssociationConfig& config) {
   if (track.hits == 0 || instant - track.seen <= config.question) return;
   if (!track.before && sight_of(track.build) >= kKnown) {

@@ -17,7 +17,7 @@ import time
 import unittest
 from pathlib import Path
 
-import installed_root  # as a module: its tests are not ours
+import installed_root  # not `from ... import`: its tests must not run here
 from installed_root import PACKAGES, ROOT, ROOT_TAR
 
 GUIDE = (ROOT / "docs/guide/workshop.md").read_text(encoding="utf-8")
@@ -47,13 +47,13 @@ def run(*command, **options):
 
 
 def commands_of_guide():
-    """The lines of the guide that are typed, in order."""
+    """The lines of the guide that users type, in order."""
     return [line.strip().split("   #")[0] for line in GUIDE.splitlines()
             if re.match(r"    (deploy/workshop\.sh|sudo sh -c)", line)]
 
 
 class Host:
-    """A root with processes, a network and a name of its own, until it is closed."""
+    """A Debian root with its own processes, network and host name, until it is closed."""
 
     def __init__(self, name, address, folder, switch, pristine=ROOT_TAR):
         self.name, self.address, self.root = name, address, folder / name
@@ -80,7 +80,7 @@ class Host:
         (self.root / path).chmod(0o755)
 
     def enter(self):
-        """What ssh root@host is to a real one."""
+        """The command that replaces ssh root@host."""
         return ["nsenter", "-t", self.pid, "-m", "-n", "-u", "-p", "env", "-i", "PATH=/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin",
                 "LC_ALL=C.UTF-8", "DEBIAN_FRONTEND=noninteractive", "chroot", str(self.root), "bash", "-c"]
 
@@ -120,7 +120,7 @@ class Workshop(unittest.TestCase):
 
     @classmethod
     def write_inventory(cls):
-        """The guide's own, with sensors that need no hardware: the one file that is edited."""
+        """The guide's inventory, but with sensors that need no hardware: the only file that is edited."""
         text = re.search(r"\n((?:    .*\n)+)", GUIDE[GUIDE.index("`inventory.json`"):]).group(1)
         inventory = json.loads(text)
         for sensor in inventory["sensors"]:
@@ -137,7 +137,7 @@ class Workshop(unittest.TestCase):
 
     @classmethod
     def follow(cls, line, check=False):
-        """A command of the guide, where it says that it is typed."""
+        """Runs a command of the guide on the host where the guide types it."""
         if line.startswith("sudo"):
             return cls.hosts["fusion"].do(line.removeprefix("sudo "), check=check)
         command = line.replace("deploy/", f"{ROOT}/deploy/").replace("inventory.json", str(cls.folder / "inventory.json"))
@@ -149,7 +149,7 @@ class Workshop(unittest.TestCase):
         return re.search(r'"token": "([0-9a-f]+)", "role": "read"', (self.hosts["fusion"].root / "etc/chorus/fusion.json").read_text()).group(1)
 
     def client(self, *command, check=True):
-        """On the client's network, with the programs of this machine: it needs none of ours."""
+        """Runs a program of this machine in the client's network; the client needs none of our packages."""
         done = subprocess.run(["nsenter", "-t", self.hosts["client"].pid, "-n", *map(str, command)], capture_output=True, text=True,
                               check=False, timeout=60)
         if check:
@@ -164,7 +164,7 @@ class Workshop(unittest.TestCase):
         print(f"\nlaid out and checked four hosts in {self.laid_out_after:.0f} s", file=sys.stderr)
         self.assertIn("laid out; next:", self.said[0], self.said[0][-3000:])
         wrong = [line for line in self.said[1].splitlines() if line.startswith("WRONG")]
-        # Nothing keeps the time of this machine, and nobody has walked yet.
+        # Nothing synchronises the clock of this machine, and nobody has walked yet.
         unexpected = [line for line in wrong if not re.match("WRONG  (clock:|chorus-fusion: )", line)]
         self.assertEqual(unexpected, [], self.said[1])
         for sensor in ("s1", "s2", "s3"):

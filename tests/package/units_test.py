@@ -9,7 +9,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 UNITS = sorted((ROOT / "deploy/package").glob("*.service"))
-MOST_EXPOSED = 2.0  # of ten; systemd calls up to 2 and a little more OK
+MOST_EXPOSED = 2.0  # exposure, of ten; systemd calls values up to about 2 OK
 
 
 def analyze(*arguments):

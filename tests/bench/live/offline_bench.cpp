@@ -39,7 +39,7 @@ struct OfflineCase {
   const char* name;
   int people;
   double share;             ///< Fraction of the length.
-  double least_real_times;  ///< The claim.
+  double least_real_times;  ///< Claimed least ratio of recorded time to run time.
 };
 constexpr std::array kCases{OfflineCase{"six-sensors", 1, 1.0, 150.0},
                             OfflineCase{"six-sensors-six-people", 6, 0.25, 30.0}};

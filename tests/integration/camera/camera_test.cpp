@@ -26,7 +26,7 @@ constexpr double kRate = 25.0;
 constexpr int kPictures = 25;
 constexpr double kFocal = 300.0;
 
-/// Centre of the red square in picture i [px from the left edge]; it moves by 8 px per picture.
+/// Centre of the red square in picture i [px from the left edge]; it moves to the right by 8 px per
 /// picture.
 double red_at(int i) { return 60.0 + 8.0 * i; }
 
