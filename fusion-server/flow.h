@@ -115,6 +115,8 @@ struct FusedBody {
   std::array<std::uint64_t, kJointCount> contributors{};  ///< Bit i: Snapshot::sensors[i].
   std::optional<std::size_t> slot;              ///< Its number in every output; none: no slot.
   std::optional<double> sides_confidence = {};  ///< Copied from Person.
+  /// For how long nobody has seen them [s]: they are where they are expected.  None: seen.
+  std::optional<double> carried_for = {};
 };
 
 /// The state of one sensor at this instant, for /sensors/ and the viewer.

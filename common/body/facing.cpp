@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "common/body/bones.h"
 #include "common/geometry/rotation.h"
 
 namespace chorus {
@@ -14,6 +15,11 @@ std::optional<Eigen::Vector3d> forward_of(const Joint& left, const Joint& right)
   to_left.y() = 0;
   if (to_left.norm() < 1e-6) return std::nullopt;
   return to_left.normalized().cross(Eigen::Vector3d::UnitY()).eval();
+}
+
+std::optional<double> bearing_of(const Joint& joint) {
+  if (!joint.seen()) return std::nullopt;
+  return std::atan2(joint.position.x(), joint.position.z());
 }
 
 }  // namespace
@@ -30,9 +36,16 @@ std::optional<double> facing_angle(const Skeleton<SensorSpace>& body) {
 }
 
 std::optional<double> bearing_angle(const Skeleton<SensorSpace>& body) {
-  const Joint& neck = body[JointId::Neck];
-  if (!neck.seen()) return std::nullopt;
-  return std::atan2(neck.position.x(), neck.position.z());
+  return bearing_of(body[JointId::Neck]);
+}
+
+std::optional<double> axis_bearing_angle(const Skeleton<SensorSpace>& body) {
+  std::optional<double> farthest;
+  for (const JointId id : kCoreJoints) {
+    const auto bearing = bearing_of(body[id]);
+    if (bearing && (!farthest || std::abs(*bearing) > std::abs(*farthest))) farthest = bearing;
+  }
+  return farthest;
 }
 
 std::optional<double> neck_distance(const Skeleton<SensorSpace>& body) {

@@ -17,6 +17,9 @@ namespace chorus {
 /// Horizontal angle of the neck off the optical axis; none when the neck is not seen.
 [[nodiscard]] std::optional<double> bearing_angle(const Skeleton<SensorSpace>& body);
 
+/// The same of the joint on the centre axis that is farthest off; none when none of them is seen.
+[[nodiscard]] std::optional<double> axis_bearing_angle(const Skeleton<SensorSpace>& body);
+
 /// Distance from the sensor to the neck [m]; none when the neck is not seen.
 [[nodiscard]] std::optional<double> neck_distance(const Skeleton<SensorSpace>& body);
 

@@ -12,7 +12,8 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 Standing standing_of(const BodyFrame& body) {
   return {neck_distance(body.skeleton).value_or(kUnknown),
           facing_angle(body.skeleton).value_or(kUnknown),
-          bearing_angle(body.skeleton).value_or(kUnknown)};
+          bearing_angle(body.skeleton).value_or(kUnknown),
+          axis_bearing_angle(body.skeleton).value_or(kUnknown)};
 }
 
 }  // namespace chorus::facing

@@ -14,7 +14,9 @@ namespace chorus::facing {
 struct Standing {
   double distance = std::numeric_limits<double>::quiet_NaN();  ///< Sensor to neck; d of Eq. (1).
   double facing = std::numeric_limits<double>::quiet_NaN();    ///< phi of Eq. (2).
-  double bearing = std::numeric_limits<double>::quiet_NaN();   ///< alpha of Eq. (3).
+  double bearing = std::numeric_limits<double>::quiet_NaN();   ///< alpha of Eq. (3), of the neck.
+  /// The same of the farthest joint of the centre axis.
+  double axis_bearing = std::numeric_limits<double>::quiet_NaN();
 };
 
 [[nodiscard]] Standing standing_of(const BodyFrame& body);

@@ -1,10 +1,13 @@
 #include "fusion-server/fusion/fuse.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "fusion-server/fusion/carry.h"
 
 namespace chorus::fusion {
 
-Memory::Memory(const Memory& other) : config_(other.config_) {
+Memory::Memory(const Memory& other) : config_(other.config_), last_(other.last_) {
   for (const auto& [key, estimator] : other.estimators_) {
     estimators_.emplace(key, estimator->clone());
   }
@@ -17,22 +20,36 @@ Memory& Memory::operator=(const Memory& other) {
 
 std::vector<FusedBody> Memory::fuse(const std::vector<Person>& people, const Instant& instant,
                                     const FusionConfig& config) {
-  if (!(config == config_)) estimators_.clear();
+  if (!(config == config_)) *this = Memory();
   config_ = config;
   std::vector<FusedBody> bodies;
   for (const Person& person : people) {
-    const Method method = method_for(person, config);
-    auto& estimator = estimators_[{person.id, method}];
-    if (!estimator) estimator = begin(method, config);
-    bodies.push_back(estimator->fuse(person, instant));
+    bodies.push_back(fuse(person, instant));
     bodies.back().sides_confidence = person.sides_confidence;
   }
   return bodies;
 }
 
+FusedBody Memory::fuse(const Person& person, const Instant& instant) {
+  const auto last = last_.find(person.id);
+  const bool known = person.carried && last != last_.end();
+  const Method method = known ? last->second.method : method_for(person, config_);
+  auto& estimator = estimators_[{person.id, method}];
+  if (!estimator) estimator = begin(method, config_);
+  FusedBody body = estimator->fuse(person, instant);
+  if (!person.carried) last_[person.id] = {body, instant.at, method};
+  if (!known) return body;
+  const Duration unseen = instant.at - last->second.at;
+  const bool predicted = std::ranges::any_of(body.skeleton.joints, &Joint::seen);
+  if (!predicted) body = carry(last->second.body, unseen, *person.carried);
+  body.carried_for = seconds(unseen);
+  return body;
+}
+
 void Memory::keep_only(const std::set<PersonId>& tracked) {
   std::erase_if(estimators_,
                 [&](const auto& entry) { return !tracked.contains(entry.first.first); });
+  std::erase_if(last_, [&](const auto& entry) { return !tracked.contains(entry.first); });
 }
 
 FusedBody fuse(const Person& person, const std::vector<SensorId>& sensors,

@@ -25,15 +25,25 @@ class Memory {
   Memory& operator=(Memory&&) noexcept = default;
   ~Memory() = default;
 
-  /// One body per person, in the order of `people`, each fused by method_for() it.  When the
-  /// configuration changes, all memory is cleared.
+  /// One body per person, in the order of `people`, each fused by method_for() it.  Somebody whom
+  /// nobody sees is carried: predicted by a method that does, else moved as they last were.  When
+  /// the configuration changes, all memory is cleared.
   [[nodiscard]] std::vector<FusedBody> fuse(const std::vector<Person>& people,
                                             const Instant& instant, const FusionConfig& config);
   /// Forgets people who are no longer tracked.
   void keep_only(const std::set<PersonId>& tracked);
 
  private:
+  /// As it was when somebody saw it.
+  struct Last {
+    FusedBody body;
+    Timestamp at;
+    Method method = {};
+  };
+  [[nodiscard]] FusedBody fuse(const Person& person, const Instant& instant);
+
   FusionConfig config_;
+  std::map<PersonId, Last> last_;
   std::map<std::pair<PersonId, Method>, std::unique_ptr<Estimator>> estimators_;
 };
 

@@ -18,6 +18,8 @@ enum class Method {
   BestView,         ///< Only the view of highest weight; in a tie, that with more tracked joints.
   InverseVariance,  ///< Anisotropic inverse variance along and across the line of sight, robust.
   BestSkeleton,     ///< One view alone; switches only after `hysteresis`.  Has memory.
+  JointCounting,    ///< Only the view with the most tracked joints.
+  Substitution,     ///< The best skeleton, untracked joints from other views.  Has memory.
   OttoKalman,       ///< A Kalman filter per joint with Otto's weights in R.  Has memory.
   PointsAndRays,    ///< Robust least squares over points and rays of cameras.  Has memory.
   BodyFilter,       ///< One body over time: bones, common errors of a view.  Has memory.
@@ -33,7 +35,7 @@ struct FusionConfig {
   PoseError pose_error;         ///< InverseVariance: part of the covariance it states.
   double common_sigma = 0.004;  ///< Error common to all sensors [m]; added to stated variances.
   double huber = 1.5;  ///< [standard deviations]; robust loss: InverseVariance, PointsAndRays.
-  /// BestSkeleton: how long another view must be better before it takes over.
+  /// BestSkeleton, Substitution: how long another view must be better before it takes over.
   Duration hysteresis = std::chrono::milliseconds(300);
   /// OttoKalman: standard deviation of a view of weight 1 [m].
   double kalman_sigma = 0.020;

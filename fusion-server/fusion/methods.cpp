@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 
-#include "fusion-server/fusion/best_skeleton.h"
 #include "fusion-server/fusion/body_filter.h"
 #include "fusion-server/fusion/joint_wise.h"
 #include "fusion-server/fusion/otto_kalman.h"
 #include "fusion-server/fusion/points_and_rays.h"
+#include "fusion-server/fusion/selection.h"
 
 namespace chorus::fusion {
 namespace {
@@ -18,6 +18,8 @@ constexpr std::array kMethods{
     MethodRow{Method::Mean, "mean", joint_wise},
     MethodRow{Method::BestView, "best-view", joint_wise},
     MethodRow{Method::BestSkeleton, "best-skeleton", best_skeleton},
+    MethodRow{Method::JointCounting, "joint-counting", joint_counting},
+    MethodRow{Method::Substitution, "substitution", substitution},
     MethodRow{Method::OttoKalman, "otto-kalman", otto_kalman},
     MethodRow{Method::PointsAndRays, "points-and-rays", points_and_rays},
     MethodRow{Method::BodyFilter, "body-filter", body_filter},

@@ -10,12 +10,16 @@
 
 namespace chorus::fusion {
 
+/// Which bearing Eq. (3) takes: the paper's text says that of the centre-axis joints.
+enum class BearingOf { Neck, CentreAxis };
+
 /// Where each heuristic is 1 and where it reaches zero; the published values by default.
 struct QualityLimits {
   double best_distance = 2.5;    ///< d of Eq. (1) at which the weight is 1 [m]
   double distance_reach = 1.0;   ///< |d - best_distance| at which it is 0 [m]
   double max_facing = deg(30);   ///< |phi| of Eq. (2) at which it is 0 [rad]
   double max_bearing = deg(25);  ///< |alpha| of Eq. (3) at which it is 0 [rad]
+  BearingOf bearing_of = BearingOf::Neck;
 
   bool operator==(const QualityLimits&) const = default;
 };

@@ -43,7 +43,8 @@ std::vector<AlignedSensor> align_all(const Inputs& in, const Histories& historie
 }
 
 /// 5.2.2: how the body stands relative to its sensor, still in sensor space.
-SensorView view_of(const AlignedSensor& from, const BodyFrame& body) {
+SensorView view_of(const AlignedSensor& from, const BodyFrame& body,
+                   const fusion::QualityLimits& limits) {
   const facing::Standing seen = facing::standing_of(body);
   SensorView view;
   view.sensor = from.sensor;
@@ -51,20 +52,21 @@ SensorView view_of(const AlignedSensor& from, const BodyFrame& body) {
   view.basis = from.basis;
   view.distance = seen.distance;
   view.facing = seen.facing;
-  view.bearing = seen.bearing;
+  view.bearing = limits.bearing_of == fusion::BearingOf::Neck ? seen.bearing : seen.axis_bearing;
   return view;
 }
 
 /// 5.2.3: moves bodies into the world; those of sensors without a place are left out.
 std::vector<SensorView> views_in_world(const std::vector<AlignedSensor>& aligned,
-                                       const Registration& registration) {
+                                       const Registration& registration,
+                                       const fusion::QualityLimits& limits) {
   std::vector<SensorView> views;
   for (const AlignedSensor& sensor : aligned) {
     const auto place = registration.sensors.find(sensor.sensor);
     if (place == registration.sensors.end()) continue;
     const Eigen::Isometry3d& world_from_sensor = place->second.world_from_sensor;
     for (const BodyFrame& body : sensor.bodies) {
-      SensorView view = view_of(sensor, body);
+      SensorView view = view_of(sensor, body, limits);
       view.skeleton = to_world(world_from_sensor, body.skeleton);
       view.eye = world_from_sensor.translation();
       views.push_back(std::move(view));
@@ -90,8 +92,9 @@ std::vector<associate::Observer> observers_of(const std::vector<AlignedSensor>& 
 }
 
 associate::Scene scene_of(const Inputs& in, const std::vector<AlignedSensor>& aligned,
-                          const Registration& registration) {
-  return {in.instant, views_in_world(aligned, registration), observers_of(aligned, registration)};
+                          const Registration& registration, const PipelineConfig& config) {
+  return {in.instant, views_in_world(aligned, registration, config.quality),
+          observers_of(aligned, registration)};
 }
 
 /// All people still tracked, whether seen now or not.
@@ -105,10 +108,10 @@ std::set<PersonId> ids_of(const associate::Tracks& tracks) {
 void resolve_sides(std::vector<Person>& people, Timestamp instant, Memory& memory,
                    const facing::SidesConfig& config) {
   for (Person& person : people) {
+    if (person.carried) continue;
     const auto track = std::ranges::find(memory.tracks.people, person.id, &associate::Track::id);
     const auto figures = facing::stand_in(person, track->core);
     facing::resolve_sides(person, instant, memory.sides, config);
-    if (person.carried) continue;
     facing::back_to_rays(person, figures);
   }
 }
@@ -183,13 +186,13 @@ void drop_settled(std::vector<Awaited>& awaited, const Inputs& in, const Histori
 
 associate::Scene scene_at(const Inputs& in, const Histories& histories,
                           const Registration& registration, const PipelineConfig& config) {
-  return scene_of(in, align_all(in, histories, registration, config), registration);
+  return scene_of(in, align_all(in, histories, registration, config), registration, config);
 }
 
 Perceived perceive(const Inputs& in, const Histories& histories, const Registration& registration,
                    const Memory& memory, const PipelineConfig& config) {
-  const auto aligned = align_all(in, histories, registration, config);  // 5.2.4
-  auto grouped = associate::group(scene_of(in, aligned, registration),  // 5.2.2, 5.2.3
+  const auto aligned = align_all(in, histories, registration, config);          // 5.2.4
+  auto grouped = associate::group(scene_of(in, aligned, registration, config),  // 5.2.2, 5.2.3
                                   memory.tracks, config.association);
   Perceived perceived;
   perceived.memory = {std::move(grouped.tracks), memory.sides, memory.fusion, memory.seating};

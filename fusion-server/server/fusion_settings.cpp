@@ -93,23 +93,26 @@ void read_quality(ConfigReader reader, fusion::QualityLimits& out) {
   reader.read("distance_reach_m", out.distance_reach, 0.1, 20.0);
   reader.read_deg("max_facing_deg", out.max_facing, 1.0, 180.0);
   reader.read_deg("max_bearing_deg", out.max_bearing, 1.0, 180.0);
+  auto bearing_of = static_cast<std::size_t>(out.bearing_of);
+  reader.read_choice("bearing_of", bearing_of, {"neck", "centre-axis"});
+  out.bearing_of = static_cast<fusion::BearingOf>(bearing_of);
 }
 
 void read_association(ConfigReader reader, associate::AssociationConfig& out) {
   reader.read("gate_m", out.gate, 0.05, 10.0);
+  reader.read("gate_growth_m_s", out.gate_growth, 0.0, 10.0);
   reader.read("cluster_m", out.cluster, 0.05, 10.0);
   reader.read("ray_cluster_m", out.ray_cluster, 0.001, 10.0);
   reader.read("confirm_frames", out.confirm_frames, 1, 1000);
-  reader.read("gate_growth_m_s", out.gate_growth, 0.0, 10.0);
   reader.read_s("coast_s", out.coast, seconds(0), seconds(60));
-  reader.read("merge_frames", out.merge_frames, 1, 1000);
-  reader.read_s("alone_s", out.alone, seconds(0), seconds(60));
-  reader.read_deg("look_angle_deg", out.look_angle, 1.0, 90.0);
   reader.read_s("carry_s", out.carry, seconds(0), seconds(60));
   reader.read_s("slow_down_s", out.slow_down, seconds(0), seconds(60));
   reader.read_s("remember_s", out.remember, seconds(0), seconds(3600));
   reader.read_s("recognise_s", out.recognise, seconds(0), seconds(60));
   reader.read_s("question_s", out.question, seconds(0), seconds(60));
+  reader.read("merge_frames", out.merge_frames, 1, 1000);
+  reader.read_s("alone_s", out.alone, seconds(0), seconds(60));
+  reader.read_deg("look_angle_deg", out.look_angle, 1.0, 90.0);
   reader.read("look_range_m", out.look_range, 0.5, 100.0);
   reader.read("max_range_m", out.bodies.max_range, 1.0, 1000.0);
   reader.read_s("frozen_s", out.bodies.max_frozen, seconds(0), seconds(3600));

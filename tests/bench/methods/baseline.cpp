@@ -3,15 +3,14 @@
 #include <array>
 
 #include "tests/bench/methods/averaging.h"
-#include "tests/bench/methods/selection.h"
 
 namespace chorus::bench::baselines {
 
 std::span<const Baseline> all() {
   static constexpr std::array kAll{
-      Baseline{"best-skeleton", best_skeleton},
-      Baseline{"joint-counting", joint_counting},
-      Baseline{"substitution", substitution},
+      Baseline{"best-skeleton", [] { return product(fusion::Method::BestSkeleton); }},
+      Baseline{"joint-counting", [] { return product(fusion::Method::JointCounting); }},
+      Baseline{"substitution", [] { return product(fusion::Method::Substitution); }},
       Baseline{"flip-fixed-mean", [] { return product(fusion::Method::Mean); }},
       Baseline{"tracked-mean", tracked_mean},
       Baseline{"otto", [] { return product(fusion::Method::Otto); }},

@@ -2,8 +2,7 @@
 //
 // All of them get the same views as ours: the same alignment, registration, facing and association
 // (pipeline::perceive), so left and right are corrected for all of them: therefore the mean is
-// called flip-fixed-mean.  Otto's mean and Kalman filter, the plain mean and the heaviest view are
-// the product's own methods; only what the product lacks is implemented here.
+// called flip-fixed-mean.  Only what the product lacks is implemented here.
 #pragma once
 
 #include <functional>

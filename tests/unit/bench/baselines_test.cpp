@@ -9,7 +9,6 @@
 #include "tests/bench/methods/averaging.h"
 #include "tests/bench/methods/kalman.h"
 #include "tests/bench/methods/nearest_neighbour.h"
-#include "tests/bench/methods/selection.h"
 #include "tests/unit/judge/person_builder.h"
 
 namespace chorus::bench::baselines {
@@ -20,64 +19,6 @@ using enum JointId;
 Person person_of(std::vector<SensorView> views) { return {PersonId{1}, std::move(views)}; }
 
 double x_of(const Body& body, JointId joint) { return body[joint].position.x(); }
-
-TEST(SkeletonScore, IsTheTrackedSharePlusHowSquarelyTheBodyFacesTheSensor) {
-  EXPECT_DOUBLE_EQ(skeleton_score(view_of(1, 25, 0.0)), 2.0);
-  EXPECT_NEAR(skeleton_score(view_of(1, 5, deg(90))), 0.2 + 0.5, 1e-12);
-  EXPECT_NEAR(skeleton_score(view_of(1, 25, deg(180))), 1.0, 1e-12);
-  EXPECT_DOUBLE_EQ(skeleton_score(view_of(1, 0, std::numeric_limits<double>::quiet_NaN())), 0.5);
-}
-
-TEST(BestSkeleton, ChangesHandsOnlyAfterAnotherViewWasBetterForTheWholeHysteresis) {
-  Method method = best_skeleton();
-  const auto first = person_of({view_of(1, 25, 0, {1, 0, 0}), view_of(2, 20, 0, {2, 0, 0})});
-  const auto second = person_of({view_of(1, 20, 0, {1, 0, 0}), view_of(2, 25, 0, {2, 0, 0})});
-  EXPECT_EQ(x_of(method(first, at_frame(0)), Neck), 1);
-  EXPECT_EQ(x_of(method(second, at_frame(1)), Neck), 1);
-  EXPECT_EQ(x_of(method(second, at_frame(8)), Neck), 1);  // 280 ms
-  EXPECT_EQ(x_of(method(second, at_frame(9)), Neck), 2);  // 320 ms
-}
-
-TEST(BestSkeleton, ARivalThatWasWorseInBetweenBeginsAgain) {
-  Method method = best_skeleton();
-  const auto first = person_of({view_of(1, 25, 0, {1, 0, 0}), view_of(2, 20, 0, {2, 0, 0})});
-  const auto second = person_of({view_of(1, 20, 0, {1, 0, 0}), view_of(2, 25, 0, {2, 0, 0})});
-  (void)method(first, at_frame(0));
-  (void)method(second, at_frame(1));
-  (void)method(first, at_frame(5));
-  EXPECT_EQ(x_of(method(second, at_frame(9)), Neck), 1);
-}
-
-TEST(BestSkeleton, AViewThatIsGoneIsReplacedAtOnceAndNobodyGivesNoBody) {
-  Method method = best_skeleton();
-  (void)method(person_of({view_of(1, 25, 0, {1, 0, 0}), view_of(2, 20, 0, {2, 0, 0})}),
-               at_frame(0));
-  EXPECT_EQ(x_of(method(person_of({view_of(2, 20, 0, {2, 0, 0})}), at_frame(1)), Neck), 2);
-  EXPECT_FALSE(method(person_of({}), at_frame(2))[Neck].seen());
-}
-
-TEST(JointCounting, TakesTheMostTrackedJointsWhateverTheFacing) {
-  Method method = joint_counting();
-  const auto person = person_of({view_of(1, 20, 0, {1, 0, 0}), view_of(2, 21, deg(180), {2, 0, 0}),
-                                 view_of(3, 21, 0, {3, 0, 0})});
-  EXPECT_EQ(x_of(method(person, at_frame(0)), Neck), 2);  // of equals the smallest id
-  EXPECT_FALSE(method(person_of({}), at_frame(0))[Neck].seen());
-}
-
-TEST(Substitution, TakesWhatTheBestSkeletonDoesNotTrackFromTheNextBestThatDoes) {
-  auto best = view_of(1, 25, 0, {1, 0, 0});
-  best.skeleton[WristLeft] = inferred({1, 0, 0});
-  best.skeleton[FootLeft] = inferred({1, 0, 0});
-  auto second = view_of(2, 25, deg(60), {2, 0, 0});
-  second.skeleton[FootLeft] = inferred({2, 0, 0});
-  auto third = view_of(3, 25, deg(90), {3, 0, 0});
-  third.skeleton[FootLeft] = Joint{};
-  const Body body = substitution()(person_of({third, second, best}), at_frame(0));
-  EXPECT_EQ(x_of(body, Neck), 1);
-  EXPECT_EQ(x_of(body, WristLeft), 2);
-  EXPECT_EQ(x_of(body, FootLeft), 1);  // nobody tracks it: the inferred one stays
-  EXPECT_EQ(body[FootLeft].state, JointState::Inferred);
-}
 
 TEST(TrackedMean, LeavesGuessesOutWhereSomebodyTracks) {
   auto one = view_of(1, 25, 0, {1, 0, 0});

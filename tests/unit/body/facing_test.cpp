@@ -101,5 +101,16 @@ TEST(NeckDistance, IsMeasuredFromTheSensor) {
   EXPECT_EQ(neck_distance(body), std::nullopt);
 }
 
+TEST(AxisBearing, IsThatOfTheFarthestJointOfTheCentreAxis) {
+  auto body = person_before_sensor(0.0, 2.5, 0.0);
+  body[JointId::Head].position = {0.5, 0.4, 2.5};
+  body[JointId::HandLeft].position = {2.0, 0.0, 2.5};
+  EXPECT_NEAR(axis_bearing_angle(body).value(), std::atan2(0.5, 2.5), kExact);
+  EXPECT_NEAR(bearing_angle(body).value(), 0.0, kExact);
+  body[JointId::SpineBase].position = {-0.6, -0.3, 2.5};
+  EXPECT_NEAR(axis_bearing_angle(body).value(), std::atan2(-0.6, 2.5), kExact);
+  EXPECT_FALSE(axis_bearing_angle(Skeleton<SensorSpace>{}).has_value());
+}
+
 }  // namespace
 }  // namespace chorus

@@ -118,6 +118,40 @@ TEST(FusionMemory, ABodyIsAsSureOfItsSidesAsThePerson) {
   EXPECT_EQ(memory.fuse({person}, {kStart, kSensors}, {})[0].sides_confidence, 0.75);
 }
 
+/// Somebody whom nobody sees, expected at x.
+Person expected_at(double x) {
+  Person person{PersonId{1}, {}};
+  person.carried = Eigen::Vector3d(x, 1, 0);
+  return person;
+}
+
+TEST(FusionMemory, CarriesSomebodyWhomNobodySees) {
+  Seen seen(Method::Mean);
+  const FusedBody last = seen.at(milliseconds(0), {neck_view(1, {0, 1, 0}, 0.5)});
+  EXPECT_FALSE(last.carried_for);
+  const auto after = [&](Duration time) {
+    return seen.memory_.fuse({expected_at(0.3)}, {kStart + time, kSensors}, seen.config_)[0];
+  };
+  const FusedBody body = after(milliseconds(300));
+  EXPECT_NEAR(body.carried_for.value(), 0.3, 1e-9);
+  EXPECT_NEAR(body.skeleton[JointId::Neck].position.x(), 0.3, 1e-12);
+  EXPECT_EQ(body.skeleton[JointId::Neck].state, JointState::Inferred);
+  EXPECT_EQ(body.contributors[index_of(JointId::Neck)], 0u);
+  EXPECT_GT(body.variance[index_of(JointId::Neck)], last.variance[index_of(JointId::Neck)]);
+  EXPECT_GT(after(milliseconds(900)).variance[index_of(JointId::Neck)],
+            body.variance[index_of(JointId::Neck)]);
+}
+
+TEST(FusionMemory, LeavesItToAMethodThatPredicts) {
+  Seen seen(Method::OttoKalman);
+  for (int i = 0; i < 30; ++i)
+    (void)seen.at(milliseconds(33 * i), {neck_view(1, {0.033 * i, 1, 0}, 0.5)});
+  const auto bodies = seen.memory_.fuse({expected_at(5.0)},
+                                        {kStart + milliseconds(33 * 32), kSensors}, seen.config_);
+  EXPECT_TRUE(bodies[0].carried_for);
+  EXPECT_NEAR(bodies[0].skeleton[JointId::Neck].position.x(), 1.05, 0.05);
+}
+
 TEST(ErrorModel, BelievesAMeasurementThatBringsItsCovariance) {
   SensorView view = neck_view(1, {0, 1, 0}, 0.5, {0, 1, 5});
   const auto errors = line_of_sight_errors({.along = 0.1, .across = 0.01}, {});

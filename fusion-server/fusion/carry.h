@@ -1,0 +1,14 @@
+// A body that nobody sees any more, where the person is expected.
+#pragma once
+
+#include "fusion-server/flow.h"
+
+namespace chorus::fusion {
+
+/// The last body, moved on the floor so that its middle is at `middle` (world [m]); `unseen`: for
+/// how long.  Its joints are inferred, nobody contributes to them, and their covariance grows with
+/// time.
+[[nodiscard]] FusedBody carry(const FusedBody& last, Duration unseen,
+                              const Eigen::Vector3d& middle);
+
+}  // namespace chorus::fusion

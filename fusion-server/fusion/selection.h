@@ -1,0 +1,23 @@
+// The methods that trust one view at a time, as Otto et al. 2.4 list them.
+//
+// best-skeleton: the view of the highest score (view_score.h), whole.  It changes hands only after
+// another has been better for FusionConfig::hysteresis, or when it is gone, so that the body does
+// not flicker between two equal views.
+// joint-counting: the view with the most tracked joints, whole.
+// substitution: the best skeleton, but a joint that it does not track comes from the best view that
+// tracks it.
+// Of equals the least sensor id is taken.
+#pragma once
+
+#include <memory>
+
+#include "fusion-server/fusion/estimator.h"
+#include "fusion-server/fusion/fusion_config.h"
+
+namespace chorus::fusion {
+
+[[nodiscard]] std::unique_ptr<Estimator> best_skeleton(const FusionConfig& config);
+[[nodiscard]] std::unique_ptr<Estimator> joint_counting(const FusionConfig& config);
+[[nodiscard]] std::unique_ptr<Estimator> substitution(const FusionConfig& config);
+
+}  // namespace chorus::fusion
