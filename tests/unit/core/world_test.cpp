@@ -111,7 +111,7 @@ TEST(Origin, WhatStoodThereIsAtTheBeginningAndItsFrontIsTheFront) {
                                          before.sensors.at(name(1)).world_from_sensor.inverse();
   EXPECT_LT((new_from_old * Eigen::Vector3d(1.5, 0.3, -2.0) - Eigen::Vector3d(0, 0.3, 0)).norm(),
             1e-9);
-  // Yaw 90 degrees turns +z to +x: one metre in that direction is one metre to the front.
+  // Yaw 90 degrees turns +z to +x, so moving 1 m along the old +x gives new z = 1.
   EXPECT_LT((new_from_old * Eigen::Vector3d(2.5, 0.0, -2.0) - Eigen::Vector3d(0, 0, 1)).norm(),
             1e-9);
   EXPECT_LT(apart(*with_origin(*after, {}), *after, 2), 1e-12);
