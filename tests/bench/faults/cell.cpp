@@ -133,7 +133,8 @@ std::string Cell::write_places() const {
 std::string Cell::polled() const {
   nlohmann::json list = nlohmann::json::array();
   const auto add = [&](const std::string& id, std::uint16_t port) {
-    list.push_back({{"id", id}, {"url", fmt::format("http://127.0.0.1:{}/", port)}});
+    const char* const scheme = plan_.secure ? "https" : "http";
+    list.push_back({{"id", id}, {"url", fmt::format("{}://127.0.0.1:{}/", scheme, port)}});
   };
   for (int i = 0; i < plan_.sensors; ++i) {
     const auto link = links_.find(i);

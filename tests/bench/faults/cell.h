@@ -41,6 +41,7 @@ struct CellPlan {
   std::map<int, LinkModel> links = {};   ///< Links in front of these sensors.
   std::optional<PacketModel> path = {};  ///< Network between all sensors and the server.
   Settings fusion = {};
+  bool secure = false;                  ///< The server asks the sensors by https.
   ChildSurroundings surroundings = {};  ///< Those of chorus-fusion.
   bool placed = true;     ///< Extrinsics are given; else the sensors' places are unknown.
   bool stored = false;    ///< Given in the server's own state folder, not as registration.file.
@@ -54,6 +55,8 @@ class Cell {
   [[nodiscard]] static Result<Cell> start(CellPlan plan);
 
   [[nodiscard]] Result<void> start_sensor(int index);
+  /// For its next start.
+  void change_sensor(int index, Settings settings) { plan_.of_sensor[index] = std::move(settings); }
   [[nodiscard]] Result<void> start_fusion();
   /// Waits until every placed sensor contributes to one body.
   [[nodiscard]] Result<void> settle() const;
@@ -69,6 +72,8 @@ class Cell {
     return sensor_ports_.at(static_cast<std::size_t>(index));
   }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_.path(); }
+  /// The list "sensors" of the server, JSON.
+  [[nodiscard]] std::string polled() const;
   /// s1, s2, ... and the honest neighbours that have a place.
   [[nodiscard]] std::vector<std::string> placed() const;
 
@@ -84,7 +89,6 @@ class Cell {
   [[nodiscard]] Result<void> take_ports();
   [[nodiscard]] Result<void> lead_through_path(int index);
   std::string write_places() const;
-  [[nodiscard]] std::string polled() const;
 
   CellPlan plan_;
   ScratchFolder folder_;  // destroyed last

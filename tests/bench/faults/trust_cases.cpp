@@ -1,0 +1,178 @@
+// Certificates that expire and are renewed, a token that is wrong, and a second tracker that reads
+// the same sensors.
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "common/tls/authority.h"
+#include "tests/bench/faults/trial.h"
+#include "tests/support/free_port.h"
+
+namespace chorus::bench {
+namespace {
+
+constexpr int kSensors = 3;
+constexpr double kReturn = 1.5;  // after it has been put right [s]
+constexpr double kPatience = 8.0;
+
+/// An authority, and files of sensors that it vouches for.
+class Authority {
+ public:
+  Authority() { write("ca.crt", authority_.certificate); }
+
+  void certify(int sensor, const tls::Validity& validity = tls::for_days(30)) const {
+    const auto issued = tls::new_certificate(authority_, {"127.0.0.1"}, validity).value();
+    write(fmt::format("{}.crt", sensor), issued.certificate);
+    write(fmt::format("{}.key", sensor), issued.key);
+  }
+  [[nodiscard]] static tls::Validity past() {
+    tls::Validity validity = tls::for_days(1);
+    validity.from -= std::chrono::hours(72);
+    validity.until -= std::chrono::hours(48);
+    return validity;
+  }
+  [[nodiscard]] Settings of_sensor(int sensor) const {
+    return {"http.tls.certificate=" + path(fmt::format("{}.crt", sensor)),
+            "http.tls.key=" + path(fmt::format("{}.key", sensor))};
+  }
+  [[nodiscard]] CellPlan plan() const {
+    CellPlan plan;
+    plan.sensors = kSensors;
+    plan.secure = true;
+    plan.fusion = {"poll.ca=" + path("ca.crt")};
+    for (int i = 0; i < kSensors; ++i) {
+      certify(i);
+      plan.of_sensor[i] = of_sensor(i);
+    }
+    return plan;
+  }
+
+ private:
+  [[nodiscard]] std::string path(const std::string& name) const {
+    return (folder_.path() / name).string();
+  }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(path(name)) << text;
+  }
+
+  ScratchFolder folder_ = ScratchFolder::make().value();
+  tls::Issued authority_ = tls::new_authority("faults", tls::for_days(30)).value();
+};
+
+/// Until what the server says of the sensor holds this text.
+bool says(const Cell& cell, const std::string& sensor, const std::string& text) {
+  return wait_until(kPatience, [&] {
+    return cell.told_of(sensor).value("lastError", "").find(text) != std::string::npos;
+  });
+}
+
+void check_return(Trial& trial, const Watch& watch, const Cell& cell, Timestamp since) {
+  (void)wait_until(kPatience,
+                   [&] { return std::isfinite(recovery(watch.seen(), since, cell.placed())); });
+  trial.check_recovery(recovery(watch.seen(), since, cell.placed()), kReturn);
+}
+
+Result<void> certificate_expired(Trial& trial) {
+  const Authority authority;
+  auto cell = Cell::start(authority.plan());
+  if (!cell) return pass(cell);
+  const Watch watch(cell->port());
+  wait_for(1.0);
+  const Timestamp begun = now();
+  cell->sensor(1).kill();
+  authority.certify(1, Authority::past());
+  if (auto started = cell->start_sensor(1); !started) return started;
+  trial.check(says(*cell, "s2", "has expired"), "/sensors/s2 says that it has expired");
+  wait_for(2.0);
+  trial.check_others(*cell, account_of(watch.seen(), begun, now()), {"s1", "s3"});
+  authority.certify(1);
+  const Timestamp renewed = now();
+  cell->sensor(1).send(SIGHUP);
+  check_return(trial, watch, *cell, renewed);
+  return {};
+}
+
+/// Connections that are open stay open, and new ones get the new certificate.
+Result<void> certificates_renewed(Trial& trial) {
+  const Authority authority;
+  auto cell = Cell::start(authority.plan());
+  if (!cell) return pass(cell);
+  const Watch watch(cell->port());
+  wait_for(1.0);
+  const Timestamp begun = now();
+  for (int i = 0; i < kSensors; ++i) {
+    authority.certify(i);
+    cell->sensor(i).send(SIGHUP);
+  }
+  wait_for(4.0);
+  trial.check_others(*cell, account_of(watch.seen(), begun, now()), cell->placed());
+  return {};
+}
+
+Result<void> wrong_token(Trial& trial) {
+  auto cell = Cell::start({.sensors = kSensors});
+  if (!cell) return pass(cell);
+  const Watch watch(cell->port());
+  wait_for(1.0);
+  const Timestamp begun = now();
+  cell->sensor(1).kill();
+  cell->change_sensor(1, {R"(http.tokens=[{"token":"abcdefabcdef","role":"read"}])"});
+  if (auto started = cell->start_sensor(1); !started) return started;
+  trial.check(says(*cell, "s2", "token"), "/sensors/s2 says that a token is missing");
+  wait_for(2.0);
+  trial.check_others(*cell, account_of(watch.seen(), begun, now()), {"s1", "s3"});
+  cell->sensor(1).kill();
+  cell->change_sensor(1, {});
+  if (auto started = cell->start_sensor(1); !started) return started;
+  check_return(trial, watch, *cell, now());
+  return {};
+}
+
+Result<void> two_servers(Trial& trial) {
+  auto cell = Cell::start({.sensors = kSensors});
+  if (!cell) return pass(cell);
+  const Watch watch(cell->port());
+  wait_for(1.0);
+  const Timestamp begun = now();
+  const std::uint16_t port = testing::free_port();
+  const std::string places = (cell->folder() / "state" / "registration.json").string();
+  const auto second = ChildProcess::start(
+      "chorus-fusion",
+      {"--config", "deploy/config/fusion.json", "--set", fmt::format("http.port={}", port), "--set",
+       "sensors=" + cell->polled(), "--set", "viewer_dir=", "--set", "state_dir=", "--set",
+       "registration.file=" + places});
+  if (!second) return pass(second);
+  if (!wait_until(kPatience, [&] { return ask_port(port, {"GET", "/healthz"}).status != 0; }))
+    return fail(ErrorCode::Timeout, "the second chorus-fusion", "it does not answer");
+  const Watch other(port);
+  wait_for(2.0);
+  const Timestamp both = now();
+  wait_for(4.0);
+  const Account account = account_of(other.seen(), both, now());
+  trial.check(account.lost == 0, fmt::format("the second server loses {} instants", account.lost));
+  for (const std::string& name : cell->placed()) {
+    trial.check(account.share_of(name) >= 95.0,
+                fmt::format("{} is in {:.0f} % of its frames", name, account.share_of(name)));
+  }
+  trial.check_others(*cell, account_of(watch.seen(), begun, now()), cell->placed());
+  return {};
+}
+
+}  // namespace
+
+FaultCases trust_cases() {
+  return {
+      {"certificate-expired", "one of three comes back with a certificate of last week",
+       certificate_expired},
+      {"certificates-renewed", "all three get new certificates while they run",
+       certificates_renewed},
+      {"wrong-token", "one of three comes back and wants a token that the server has not",
+       wrong_token},
+      {"two-servers", "a second server reads the same sensors", two_servers},
+  };
+}
+
+}  // namespace chorus::bench
