@@ -13,6 +13,19 @@
 namespace chorus::fusion {
 namespace {
 
+constexpr double kHabit = 5.0;        // [s] over which the views' habits are learned
+constexpr double kUsualScale = 0.01;  // differences in size that noise alone makes
+constexpr double kFirstAgreement = 0.25;
+
+/// A mean that follows slowly.
+struct Habit {
+  double value = 0.0;
+
+  void follow(const std::optional<double>& now, double passed) {
+    if (now) value += std::min(1.0, passed / kHabit) * (*now - value);
+  }
+};
+
 using MotionFilters = std::array<MotionFilter, kJointCount>;
 
 MotionFilter motion_filter(JointId joint, const BodyModel& model) {
@@ -45,6 +58,9 @@ class BodyFilter final : public Estimator {
     }
     whole = hold_bones(whole, lengths_.held(config_.body));
     if (config_.body.bias_rate > 0) sighted.learn(biases_, whole, passed);
+    agreement_.follow(sighted.disagreement(whole), passed);
+    scale_square_.follow(sighted.scale_square(), passed);
+    middle_ = middle_of(whole);
     return joint_by_joint(person.id, [&](JointId joint) {
       const std::size_t j = index_of(joint);
       if (!whole[j].placed) return FusedJoint{};
@@ -86,10 +102,16 @@ class BodyFilter final : public Estimator {
             true};
   }
 
+  /// What all views have in common is in no view's covariance.
   void state(FusedJoint& fused, const PlacedJoint& place) const {
-    const double common = config_.common_sigma * config_.common_sigma;
+    const BodyModel& model = config_.body;
+    const double wider = model.agreement > 0 ? agreement_.value / model.agreement : 1.0;
+    const double uneven = std::max(0.0, scale_square_.value - kUsualScale * kUsualScale);
+    const double reach = middle_ ? (place.position - *middle_).squaredNorm() : 0.0;
+    const double common = config_.common_sigma * config_.common_sigma +
+                          model.proportion * model.proportion * uneven * reach;
     fused.joint.position = place.position;
-    state_covariance(fused, place.covariance + common * Eigen::Matrix3d::Identity());
+    state_covariance(fused, wider * place.covariance + common * Eigen::Matrix3d::Identity());
   }
 
   FusionConfig config_;
@@ -98,6 +120,9 @@ class BodyFilter final : public Estimator {
   Biases biases_;
   MotionFilters filters_;
   std::array<double, kJointCount> slow_{};  ///< Variance of a joint when last seen [m^2].
+  Habit agreement_{kFirstAgreement};
+  Habit scale_square_;
+  std::optional<Eigen::Vector3d> middle_;  ///< Of the trunk.
   std::optional<Timestamp> last_;
 };
 

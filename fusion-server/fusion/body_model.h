@@ -31,6 +31,12 @@ struct BodyModel {
   double limb = 4.0;
   /// Fraction of one instant's stated standard deviation that is independent at the next instant.
   double white = 0.25;
+  /// Stated errors only, 0: unused.  Sensors that differ in scale also have wrong proportions: this
+  /// fraction of that difference, times a joint's distance from the trunk.
+  double proportion = 0.7;
+  /// And the mean squared residual, in variances, of views that disagree no more than usual: the
+  /// stated variances are multiplied by what is found over this.
+  double agreement = 0.21;
   /// How long a joint that nobody sees is predicted.
   Duration carry = std::chrono::seconds(1);
 

@@ -147,6 +147,30 @@ void SightedBody::learn(Biases& biases, const PlacedBody& body, double passed) c
   }
 }
 
+std::optional<double> SightedBody::disagreement(const PlacedBody& body) const {
+  constexpr double kAxes = 3.0;
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const Sights& sights = sights_[j];
+    if (!determined(j) || !sights.round || sights.views.size() < 2) continue;
+    for (std::size_t v = 0; v < sights.views.size(); ++v) {
+      const Eigen::Vector3d off = sights.views[v].joint.position - body[j].position;
+      sum += sights.trust[v] * off.squaredNorm() / (kAxes * sights.variance[v]);
+      count += 1.0;
+    }
+  }
+  if (count == 0.0) return std::nullopt;
+  return sum / count;
+}
+
+std::optional<double> SightedBody::scale_square() const {
+  if (misfits_.size() < 2) return std::nullopt;
+  double sum = 0.0;
+  for (const Misfit& misfit : misfits_) sum += misfit.scale * misfit.scale;
+  return sum / static_cast<double>(misfits_.size());
+}
+
 FusedJoint SightedBody::shown(JointId joint) const {
   const Sights& sights = sights_[index_of(joint)];
   FusedJoint fused;

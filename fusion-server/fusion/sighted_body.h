@@ -5,6 +5,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "fusion-server/fusion/bone_tree.h"
@@ -34,6 +35,11 @@ class SightedBody {
   [[nodiscard]] bool determined(std::size_t joint) const;
   /// Updates the biases from the points' residuals against `body`, `passed` [s] after the last.
   void learn(Biases& biases, const PlacedBody& body, double passed) const;
+  /// Mean squared residual between the points and `body`, per axis, in the points' variances; none
+  /// without a joint that two views have.
+  [[nodiscard]] std::optional<double> disagreement(const PlacedBody& body) const;
+  /// Mean square of the views' scale errors; none with fewer than two views.
+  [[nodiscard]] std::optional<double> scale_square() const;
   /// State, orientation and contributors of a joint; its position is not set.
   [[nodiscard]] FusedJoint shown(JointId joint) const;
 

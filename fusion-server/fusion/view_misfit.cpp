@@ -24,18 +24,6 @@ struct Centres {
   const PlacedBody& body;
 };
 
-std::optional<Eigen::Vector3d> middle_of(const PlacedBody& body) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double count = 0.0;
-  for (const JointId id : kCoreJoints) {
-    if (!body[index_of(id)].placed) continue;
-    sum += body[index_of(id)].position;
-    count += 1.0;
-  }
-  if (count == 0.0) return std::nullopt;
-  return Eigen::Vector3d(sum / count);
-}
-
 bool in_core(std::size_t joint) {
   return std::ranges::find(kCoreJoints, static_cast<JointId>(joint)) != kCoreJoints.end();
 }
@@ -100,6 +88,18 @@ double turn_sigma(const SeenBody& seen, const Centres& at, const BodyModel& mode
 }
 
 }  // namespace
+
+std::optional<Eigen::Vector3d> middle_of(const PlacedBody& body) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double count = 0.0;
+  for (const JointId id : kCoreJoints) {
+    if (!body[index_of(id)].placed) continue;
+    sum += body[index_of(id)].position;
+    count += 1.0;
+  }
+  if (count == 0.0) return std::nullopt;
+  return Eigen::Vector3d(sum / count);
+}
 
 Misfit misfit_of(const SeenBody& seen, const PlacedBody& body, const Misfit& before,
                  const BodyModel& model) {

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "common/body/skeleton.h"
 #include "fusion-server/fusion/body_model.h"
@@ -27,6 +28,9 @@ struct Misfit {
   double scale = 0.0;
   double turn = 0.0;  ///< About +y [rad].
 };
+
+/// Mean of the core joints that have a place; none without any.
+[[nodiscard]] std::optional<Eigen::Vector3d> middle_of(const PlacedBody& body);
 
 /// The most likely misfit, given the places of the joints, by one step from `before`; robust
 /// against outlying joints.

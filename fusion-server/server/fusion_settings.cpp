@@ -142,6 +142,8 @@ void read_body(ConfigReader reader, fusion::BodyModel& out) {
   reader.read("moving_m2_s3", out.moving, 1e-3, 1e4);
   reader.read("limb", out.limb, 0.1, 100.0);
   reader.read("white", out.white, 1e-3, 1.0);
+  reader.read("proportion", out.proportion, 0.0, 10.0);
+  reader.read("agreement", out.agreement, 0.0, 10.0);
   reader.read_ms("carry_ms", out.carry, milliseconds(0), seconds(1));
 }
 
