@@ -218,6 +218,25 @@ TEST(BodyFilter, OneViewThatJumpsMovesNobodyByAJump) {
   EXPECT_LT((body.skeleton[Head].position - before.skeleton[Head].position).norm(), 0.015);
 }
 
+TEST(BodyFilter, SensorsThatDifferInSizeAreSaidToErrByMoreFarFromTheTrunk) {
+  const auto variance = [](double scale, double proportion) {
+    Room room;
+    room.config.body.proportion = proportion;
+    const auto large = scaled(standing(), 1.0 + scale);
+    const auto small = scaled(standing(), 1.0 - scale);
+    FusedBody body;
+    for (int i = 0; i < kSteps; ++i) {
+      body = room.at(i, {view_of(1, large), view_of(2, small), view_of(3, standing())});
+    }
+    return std::pair{body.variance[index_of(AnkleLeft)], body.variance[index_of(SpineMid)]};
+  };
+  const auto [far, near] = variance(0.06, 0.7);
+  const auto [far_unasked, near_unasked] = variance(0.06, 0.0);
+  EXPECT_GT(far, 1.3 * far_unasked);
+  EXPECT_LT(near, 1.1 * near_unasked);
+  EXPECT_NEAR(variance(0.0, 0.7).first, variance(0.0, 0.0).first, 1e-9);
+}
+
 TEST(BodyFilter, ARayDrawsAJointAndAloneDoesSoOnlyForAWhile) {
   Room room;
   const Eigen::Vector3d neck(0, 1.4, 0.3);
