@@ -1,0 +1,170 @@
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "common/body/bones.h"
+#include "common/http/client.h"
+#include "common/http/status.h"
+#include "common/time/clock.h"
+#include "tests/bench/camera/camera_cases.h"
+#include "tests/bench/live/child_process.h"
+#include "tests/judge/statistics.h"
+#include "tests/support/free_port.h"
+
+namespace chorus::bench {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using Json = nlohmann::json;
+
+constexpr double kTakeSeconds = 100.0 / kTruthHz;
+constexpr double kJoin = 0.3;  // [s] around the end of the take, where bodies jump to its beginning
+constexpr auto kPatience = seconds(120);
+constexpr auto kSettling = seconds(6);
+constexpr double kWatched = 30.0;  // [s]
+
+struct Cell {
+  std::vector<ChildProcess> processes;  ///< The fusion server last.
+  std::uint16_t port = 0;
+};
+
+Result<Cell> start(const std::string& model, int cameras) {
+  Cell cell;
+  std::string list;
+  for (int i = 1; i <= cameras; ++i) {
+    const std::uint16_t port = testing::free_port();
+    auto sensor = ChildProcess::start(
+        "chorus-sensor", {"--config", fmt::format("{}/cam0{}.json", kFourVideos, i), "--set",
+                          fmt::format("http.port={}", port), "--set",
+                          "device.camera.model=" + model, "--set", "device.camera.max_rate_hz=30"});
+    if (!sensor) return pass(sensor);
+    cell.processes.push_back(std::move(*sensor));
+    list += fmt::format(R"({}{{"id":"cam0{}","url":"http://127.0.0.1:{}/"}})", i > 1 ? "," : "", i,
+                        port);
+  }
+  cell.port = testing::free_port();
+  auto fusion = ChildProcess::start(
+      "chorus-fusion",
+      {"--config", "deploy/config/fusion.json", "--set", fmt::format("http.port={}", cell.port),
+       "--set", "sensors=[" + list + "]", "--set", "viewer_dir=", "--set", "state_dir=", "--set",
+       fmt::format("registration.file={}/registration.json", kFourVideos), "--set",
+       "registration.auto=false"});
+  if (!fusion) return pass(fusion);
+  cell.processes.push_back(std::move(*fusion));
+  return cell;
+}
+
+std::optional<Json> get(const Cell& cell, const char* path) {
+  const auto answer = http::fetch({"127.0.0.1", cell.port, path},
+                                  {"GET", path, {{"Accept", "application/json"}}, {}});
+  if (!answer || answer->status != http::status::kOk) return std::nullopt;
+  auto document = Json::parse(answer->body, nullptr, false);
+  if (document.is_discarded()) return std::nullopt;
+  return document;
+}
+
+Skeleton<WorldSpace> body_of(const Json& body) {
+  Skeleton<WorldSpace> skeleton;
+  for (const auto& [name, stated] : body.at("joints").items()) {
+    const auto id = joint_named(name);
+    if (!id || !stated.contains("x")) continue;
+    Joint& joint = skeleton[*id];
+    joint.position = Eigen::Vector3d(stated.at("x").get<double>(), stated.at("y").get<double>(),
+                                     stated.at("z").get<double>());
+    joint.state =
+        stated.value("state", "") == "Tracked" ? JointState::Tracked : JointState::Inferred;
+    if (stated.value("state", "") == "NotTracked") joint.state = JointState::NotTracked;
+  }
+  return skeleton;
+}
+
+struct Watched {
+  Agreement agreement;
+  std::vector<double> ages;  ///< Of frames when they came [s].
+  double frames = 0.0;
+  double with_body = 0.0;
+};
+
+void take(const Json& frame, const importers::ImportedSet& set, Watched& out) {
+  const std::int64_t captured = std::stoll(frame.at("capturedNanoseconds").get<std::string>());
+  out.frames += 1.0;
+  out.ages.push_back(chorus::seconds(SystemClock().now() - from_unix_ns(captured)));
+  const auto& bodies = frame.at("bodies");
+  if (!bodies.empty()) out.with_body += 1.0;
+  // Sensors begin their rounds at whole multiples of the take's length since 1970.
+  constexpr std::int64_t kTakeNs = 100 * 1'000'000'000LL / 60;
+  const double at = static_cast<double>(captured % kTakeNs) * 1e-9;
+  if (at < kJoin || at > kTakeSeconds - kJoin) return;
+  const auto& truth = set.truth.at(static_cast<std::size_t>(at * kTruthHz)).skeleton;
+  if (bodies.empty()) return out.agreement.missed(truth);
+  out.agreement.add(body_of(bodies.front()), truth);
+}
+
+Result<Watched> watch(const Cell& cell, const importers::ImportedSet& set) {
+  const auto begun = std::chrono::steady_clock::now();
+  const auto since = [&] { return std::chrono::steady_clock::now() - begun; };
+  while (since() < kPatience) {
+    const auto frame = get(cell, "/frame");
+    if (frame && !frame->at("bodies").empty()) break;
+    std::this_thread::sleep_for(milliseconds(100));
+  }
+  std::this_thread::sleep_for(kSettling);
+  Watched out;
+  std::int64_t last = 0;
+  const auto end =
+      std::chrono::steady_clock::now() + milliseconds(static_cast<std::int64_t>(1000 * kWatched));
+  while (std::chrono::steady_clock::now() < end) {
+    const auto frame = get(cell, "/frame");
+    const std::int64_t sequence = frame ? frame->at("sequence").get<std::int64_t>() : last;
+    if (sequence != last) take(*frame, set, out);
+    last = sequence;
+    std::this_thread::sleep_for(milliseconds(10));
+  }
+  if (out.frames > 0.0) return out;
+  return fail(ErrorCode::Timeout, "chorus-fusion", "it answered nothing");
+}
+
+Result<void> measure(Report& report, const std::string& model, int cameras,
+                     const importers::ImportedSet& set) {
+  const auto cell = start(model, cameras);
+  if (!cell) return pass(cell);
+  const auto watched = watch(*cell, set);
+  if (!watched) return pass(watched);
+  const std::string name = fmt::format("four-views-live-{}-of-{}", model, cameras);
+  watched->agreement.report(report, name);
+  report.row(name, "with_body_percent", 100.0 * watched->with_body / watched->frames, "%");
+  report.row(name, "age_p50_ms", 1e3 * percentile(watched->ages, 0.5), "ms");
+  report.row(name, "age_p90_ms", 1e3 * percentile(watched->ages, 0.9), "ms");
+  double rate = 0.0;
+  const Json listed = get(*cell, "/sensors/").value_or(Json::object());
+  const Json sensors = listed.value("sensors", Json::object());
+  for (const Json& sensor : sensors) rate += sensor.value("rateHz", 0.0) / cameras;
+  report.row(name, "camera_hz", rate, "Hz");
+  return {};
+}
+
+}  // namespace
+
+Result<void> live_views(Report& report) {
+  importers::ImportOptions options;
+  options.rays = true;
+  const auto set = importers::import_files(importers::FileFormat::Pose2Sim, {kFourViews}, options);
+  if (!set) return pass(set);
+  for (const char* model : {"movenet", "blazepose-lite"}) {
+    for (const int cameras : {2, 4}) {
+      if (auto done = measure(report, model, cameras, *set); !done) return done;
+    }
+  }
+  report.note(
+      "four-views-live: chorus-sensor, runner and chorus-fusion as shipped, published places and "
+      "lenses; all cameras share this computer.  Instants within 0.3 s of where the take begins "
+      "again are not compared: nobody jumps.");
+  return {};
+}
+
+}  // namespace chorus::bench
