@@ -1,11 +1,10 @@
-#include <cmath>
-#include <limits>
-
 #include <algorithm>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "common/base/units.h"
+#include "fusion-server/fusion/point_filter.h"
 #include "tests/bench/methods/averaging.h"
 #include "tests/bench/methods/kalman.h"
 #include "tests/bench/methods/nearest_neighbour.h"
@@ -15,6 +14,7 @@ namespace chorus::bench::baselines {
 namespace {
 
 using enum JointId;
+using fusion::PointFilter;
 
 Person person_of(std::vector<SensorView> views) { return {PersonId{1}, std::move(views)}; }
 
