@@ -76,6 +76,10 @@ class ArvidaFrame {
       pen_.put(" ;\n  ch:sidesConfidence ");
       pen_.put_decimal(writable_confidence(*body.sides_confidence), kConfidenceDecimals);
     }
+    if (body.carried_for) {
+      pen_.put(" ;\n  ch:carriedFor ");
+      pen_.put_decimal(writable_time(*body.carried_for), kTimeDecimals);
+    }
     std::string_view before = " ;\n  skel:skeletonJoint <";
     for (const std::string_view joint : kJointNames) {
       pen_.put(before);

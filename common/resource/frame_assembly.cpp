@@ -7,6 +7,7 @@
 #include "common/body/bones.h"
 #include "common/rdf/utf8.h"
 #include "common/resource/frame_facts.h"
+#include "common/resource/frame_parts.h"
 #include "common/sensor/limits.h"
 
 namespace chorus::resource {
@@ -151,6 +152,10 @@ Result<BodyResource> read_body(const Facts& facts, const SubjectFacts& subject,
   body.sides_confidence = number(subject, Number::SidesConfidence);
   if (body.sides_confidence && !(*body.sides_confidence >= 0.0 && *body.sides_confidence <= 1.0)) {
     return refuse(subject, "sidesConfidence", "is not between 0 and 1");
+  }
+  body.carried_for = number(subject, Number::CarriedFor);
+  if (body.carried_for && !(*body.carried_for >= 0.0 && *body.carried_for <= kLongestCarry)) {
+    return refuse(subject, "carriedFor", "is not between 0 and 3600 s");
   }
   const auto captured = time_of(subject);
   if (!captured) return pass(captured);

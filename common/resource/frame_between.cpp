@@ -34,6 +34,7 @@ FrameResource between(const FrameResource& a, const FrameResource& b, Timestamp 
     mixed.captured = instant;
     mixed.slot = body.slot;
     mixed.sides_confidence = body.sides_confidence;
+    mixed.carried_for = body.carried_for;
     for (std::size_t j = 0; j < kJointCount; ++j) {
       mixed.joints[j] = joint_between(body.joints[j], later->joints[j], s);
     }

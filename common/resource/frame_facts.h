@@ -34,11 +34,12 @@ enum class Number : std::uint8_t {
   Cyy,
   Cyz,
   Czz,
-  SidesConfidence
+  SidesConfidence,
+  CarriedFor
 };
-inline constexpr std::array<std::string_view, 18> kNumberNames{
-    "x",    "y",    "z",   "qx",  "qy",  "qz",  "qw",  "variance", "rayX",
-    "rayY", "rayZ", "cxx", "cxy", "cxz", "cyy", "cyz", "czz",      "sidesConfidence"};
+inline constexpr std::array<std::string_view, 19> kNumberNames{
+    "x",    "y",   "z",   "qx",  "qy",  "qz",  "qw",  "variance",        "rayX",      "rayY",
+    "rayZ", "cxx", "cxy", "cxz", "cyy", "cyz", "czz", "sidesConfidence", "carriedFor"};
 
 /// How far the length of a quaternion may be from 1; all zero means "not given".
 inline constexpr double kUnitTolerance = 0.1;

@@ -93,6 +93,11 @@ class JsonFrame {
       pen_.put_decimal(writable_confidence(*body.sides_confidence), kConfidenceDecimals);
       pen_.put(linked_ ? "\"" : "");
     }
+    if (body.carried_for) {
+      pen_.put(linked_ ? ",\"carriedFor\":\"" : ",\"carriedFor\":");
+      pen_.put_decimal(writable_time(*body.carried_for), kTimeDecimals);
+      pen_.put(linked_ ? "\"" : "");
+    }
     put_times(body.captured);
   }
 

@@ -68,8 +68,10 @@ class Reading {
       const std::size_t body = add_subject(object, "a body");
       facts_[frame].bodies.push_back(body);
       read_common(body, object);
-      constexpr auto kConfidence = static_cast<std::size_t>(Number::SidesConfidence);
-      number(body, object, kNumberNames[kConfidence], facts_[body].numbers[kConfidence]);
+      for (const Number each : {Number::SidesConfidence, Number::CarriedFor}) {
+        const auto i = static_cast<std::size_t>(each);
+        number(body, object, kNumberNames[i], facts_[body].numbers[i]);
+      }
       read_joints(body, object);
     }
   }

@@ -63,6 +63,7 @@ class JsonTemplate : TemplateText {
       return false;
     if (text(",\"slot\":") && !slot(frame_.bodies, body.slot)) return false;
     if (text(",\"sidesConfidence\":") && !confidence(body.sides_confidence)) return false;
+    if (text(",\"carriedFor\":") && !carried_for(body.carried_for)) return false;
     const auto twin = std::ranges::find(frame_.bodies, id, &BodyResource::id);
     if (&*twin != &body || !captured(body.captured)) return false;
     for (std::size_t i = 0; i < kJointCount; ++i) {

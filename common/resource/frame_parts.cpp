@@ -31,6 +31,8 @@ bool writable(const Covariance& covariance) {
 
 double writable_confidence(double value) { return value > 0.0 ? std::min(value, 1.0) : 0.0; }
 
+double writable_time(double value) { return value > 0.0 ? std::min(value, kLongestCarry) : 0.0; }
+
 WritableJoint writable(const JointResource& joint) {
   WritableJoint out;
   if (joint.state == JointState::NotTracked || !plausible(joint)) return out;

@@ -19,6 +19,8 @@ inline constexpr int kQuaternionDecimals = 5;
 inline constexpr int kVarianceDecimals = 8;
 inline constexpr int kConfidenceDecimals = 4;
 inline constexpr int kRayDecimals = 6;
+inline constexpr int kTimeDecimals = 3;
+inline constexpr double kLongestCarry = 3600.0;  ///< [s]
 
 /// The terms of a covariance on the wire, in the order of Covariance::term().
 inline constexpr std::array<std::string_view, Covariance::kTerms> kCovarianceNames{
@@ -38,6 +40,9 @@ struct WritableJoint {
 
 /// Clamps to [0, 1]; NaN counts as no confidence.
 [[nodiscard]] double writable_confidence(double value);
+
+/// Within [0, kLongestCarry]; what is no number is no time.
+[[nodiscard]] double writable_time(double value);
 
 /// The text in quotes, with the escapes that Turtle and JSON share; broken UTF-8 is replaced.
 [[nodiscard]] std::string quoted(std::string_view text);

@@ -47,6 +47,7 @@ constexpr std::array kRows{
     Row{"bodyId", Property::BodyId},
     Row{"captured", Property::Captured},
     Row{"capturedNanoseconds", Property::CapturedNanoseconds},
+    Row{"carriedFor", Property::Number, Number::CarriedFor},
     Row{"contributor", Property::Contributor},
     Row{"cxx", Property::Number, Number::Cxx},
     Row{"cxy", Property::Number, Number::Cxy},

@@ -32,6 +32,9 @@ struct BodyResource {
   std::optional<std::size_t> slot;  ///< Fused: its slot in every output, below kMaxBodies.
   /// Fused: probability that left and right are not exchanged, [0, 1].
   std::optional<double> sides_confidence;
+  /// Fused: for how long no sensor has seen the person, who is where they are expected [s]; none:
+  /// seen.
+  std::optional<double> carried_for;
   Timestamp captured;
   std::array<JointResource, kJointCount> joints;
 };

@@ -95,6 +95,10 @@ class TurtleFrame {
       pen_.put(" ;\n  ch:sidesConfidence ");
       pen_.put_decimal(writable_confidence(*body.sides_confidence), kConfidenceDecimals);
     }
+    if (body.carried_for) {
+      pen_.put(" ;\n  ch:carriedFor ");
+      pen_.put_decimal(writable_time(*body.carried_for), kTimeDecimals);
+    }
     put_times(body.captured);
   }
 

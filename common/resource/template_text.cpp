@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/resource/frame_parts.h"
 #include "common/sensor/limits.h"
 
 namespace chorus::resource {
@@ -21,9 +22,15 @@ bool plain(char c) {
 
 }  // namespace
 
-bool TemplateText::confidence(std::optional<double>& out) {
+bool TemplateText::confidence(std::optional<double>& out) { return decimal_up_to(1.0, out); }
+
+bool TemplateText::carried_for(std::optional<double>& out) {
+  return decimal_up_to(kLongestCarry, out);
+}
+
+bool TemplateText::decimal_up_to(double most, std::optional<double>& out) {
   double value = 0.0;
-  if (!decimal(value) || !(value >= 0.0 && value <= 1.0)) return false;
+  if (!decimal(value) || !(value >= 0.0 && value <= most)) return false;
   out = value;
   return true;
 }

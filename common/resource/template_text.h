@@ -52,6 +52,9 @@ class TemplateText {
   /// A decimal in [0, 1].
   bool confidence(std::optional<double>& out);
 
+  /// A decimal in [0, kLongestCarry].
+  bool carried_for(std::optional<double>& out);
+
   /// A decimal such as "-1.2345", at most kMaxCoordinate in size: the nearest double.
   bool decimal(double& out);
 
@@ -71,6 +74,8 @@ class TemplateText {
   bool subset(const std::vector<std::string>& names, std::string_view comma, std::uint64_t& bits);
 
  private:
+  bool decimal_up_to(double most, std::optional<double>& out);
+
   const char* at_;
   const char* const end_;
   std::string_view iso_;  ///< The last time read; most repeat it.

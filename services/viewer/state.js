@@ -73,7 +73,9 @@ export function stateOf(known) {
   const places = ofTheRegistration(registration);
   if (places?.sentence) return missing ? { ...places, sentence: `${places.sentence} ${missing.sentence}` } : places;
   const people = frame.bodies?.length ?? 0;
-  const seen = people === 0 ? 'Nobody is in sight.' : `Live: ${many(people, 'person', 'people')}.`;
+  const carried = (frame.bodies ?? []).filter((body) => body.carriedFor !== undefined).length;
+  const present = many(people, 'person', 'people') + (carried > 0 ? ` (${carried} out of sight)` : '');
+  const seen = people === 0 ? 'Nobody is in sight.' : `Live: ${present}.`;
   if (missing) return { ...missing, sentence: `${seen} ${missing.sentence}` };
   if (places) return { tone: 'warn', sentence: `${seen} The places are provisional.`, next: registration.reasons?.[0] ?? '' };
   const unplaced = Object.keys(registration.unplaced ?? {});
@@ -82,7 +84,7 @@ export function stateOf(known) {
       next: Object.values(registration.unplaced)[0].reasons?.[0] ?? '' };
   }
   if (people === 0) return { tone: 'calm', sentence: seen, next: 'Walk to where a sensor can see you.' };
-  return { tone: 'good', sentence: `Live: ${many(people, 'person', 'people')}, ${many(Object.keys(sensors).length, 'sensor', 'sensors')}.`, next: '' };
+  return { tone: 'good', sentence: `Live: ${present}, ${many(Object.keys(sensors).length, 'sensor', 'sensors')}.`, next: '' };
 }
 
 /// The lowest certainty of left and right over all people; a dash when unknown.

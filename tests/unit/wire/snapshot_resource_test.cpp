@@ -23,6 +23,7 @@ Snapshot snapshot(std::uint64_t sequence, double x) {
   body.id = {7};
   body.slot = 3;
   body.sides_confidence = 0.875;
+  body.carried_for = 0.25;
   body.skeleton = testing::standing_person({x, 0, 0});
   body.variance.fill(1e-4);
   body.contributors.fill(0b11);
@@ -40,6 +41,7 @@ TEST(SnapshotResource, SaysWorldSpaceSensorsAndContributors) {
   ASSERT_EQ(frame.bodies.size(), 1u);
   EXPECT_EQ(frame.bodies[0].slot, 3u);
   EXPECT_EQ(frame.bodies[0].sides_confidence, 0.875);
+  EXPECT_EQ(frame.bodies[0].carried_for, 0.25);
   const auto& neck = frame.bodies[0].joints[index_of(JointId::Neck)];
   EXPECT_EQ(neck.contributors, 0b11u);
   EXPECT_EQ(neck.variance, 1e-4);
