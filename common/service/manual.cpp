@@ -32,6 +32,16 @@ std::string roff(std::string_view text) {
   return out;
 }
 
+/// A list of choices may continue on the next line after each comma.
+std::string breakable(const std::string& list) {
+  std::string out;
+  for (const char c : list) {
+    out += c;
+    if (c == ',') out += "\\:";
+  }
+  return out;
+}
+
 std::string first_line(std::string_view text) {
   return std::string(text.substr(0, text.find('\n')));
 }
@@ -48,7 +58,7 @@ Commands commands_of(const CLI::App& app) {
 std::string spelling(const CLI::Option& option) {
   std::string out = "\\fB" + roff(option.get_name(option.get_positional(), true)) + "\\fR";
   if (option.get_items_expected_max() > 0 && !option.get_type_name().empty())
-    out += " \\fI" + roff(option.get_type_name()) + "\\fR";
+    out += " \\fI" + breakable(roff(option.get_type_name())) + "\\fR";
   return out;
 }
 

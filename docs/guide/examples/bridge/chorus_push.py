@@ -120,7 +120,7 @@ class WebSocketWay:
 
     TEXT, CLOSE, PING, PONG = 1, 8, 9, 10
 
-    def __init__(self, url, token, ca):
+    def __init__(self, url, token, ca=None):
         parts = urllib.parse.urlsplit(url)
         secure = parts.scheme == "wss"
         self.socket = socket.create_connection((parts.hostname, parts.port or (443 if secure else 80)), TIMEOUT_S)
