@@ -30,7 +30,11 @@ std::vector<BodyFrame> bodies_of(const LandmarkFrame& frame, Timestamp captured,
     ++unfitted;
     return {};
   }
-  return {{kOnlyBody, captured, {layout::joints_of(layout::kMediapipe, *landmarks)}}};
+  BodyFrame body{kOnlyBody, captured, {layout::joints_of(layout::kMediapipe, *landmarks)}};
+  if (!form.rays) {
+    for (Joint& joint : body.skeleton.joints) joint.covariance = fit_error(joint);
+  }
+  return {std::move(body)};
 }
 
 Result<Landmarks> read_truth_landmarks(const nlohmann::json& points, const std::string& at) {

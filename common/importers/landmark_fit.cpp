@@ -95,6 +95,20 @@ Result<Landmarks> fit_landmarks(const DetectedLandmarks& detected, const Intrins
   return landmarks;
 }
 
+Covariance fit_error(const Joint& joint) {
+  constexpr double kAcross = 0.025;  // [m]
+  constexpr double kOfRange = 0.06;  // of the distance
+  constexpr double kInferred = 2.0;  // times as much
+  const double range = joint.position.norm();
+  if (!joint.seen() || !(range > 0.0)) return {};
+  const double factor = joint.state == JointState::Inferred ? kInferred : 1.0;
+  const Eigen::Vector3d ray = joint.position / range;
+  const double across = std::pow(factor * kAcross, 2);
+  const double along = std::pow(factor * kOfRange * range, 2) + across;
+  return Covariance(Eigen::Matrix3d(across * Eigen::Matrix3d::Identity() +
+                                    (along - across) * ray * ray.transpose()));
+}
+
 Landmarks landmark_rays(const DetectedLandmarks& detected, const Intrinsics& intrinsics) {
   Landmarks landmarks;
   for (std::size_t i = 0; i < kLandmarkCount; ++i) {

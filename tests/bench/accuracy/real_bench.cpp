@@ -31,9 +31,6 @@ constexpr double kBestCameraMm = 140;  // and the best single camera
 
 constexpr double kNoWorseMm = 5;
 
-/// Accuracy of the importer's depth and bearing, from the same recording (see landmark_fit.h).
-constexpr fusion::NoiseModel kCameraNoise{0.25, 0.025, 3.0};
-
 using Truth = std::vector<importers::TruthFrame>;
 
 /// Fused joints with the true ones.
@@ -131,20 +128,18 @@ FusedScore score(const pipeline::OfflineResult& result, const Eigen::Isometry3d&
 struct Case {
   const char* name;
   Method method;
-  fusion::NoiseModel noise;
 };
 
-const Case kCases[] = {{"mean", Method::Mean, {}},
-                       {"otto", Method::Otto, {}},
-                       {"best-view", Method::BestView, {}},
-                       {"inverse-variance", Method::InverseVariance, {}},
-                       {"inverse-variance-camera-noise", Method::InverseVariance, kCameraNoise}};
+const Case kCases[] = {{"mean", Method::Mean},
+                       {"otto", Method::Otto},
+                       {"best-view", Method::BestView},
+                       {"inverse-variance", Method::InverseVariance},
+                       {"body-filter", Method::BodyFilter}};
 
 pipeline::OfflineConfig config_for(const Case& each) {
   pipeline::OfflineConfig config;
   config.rate_hz = kRateHz;
   config.pipeline.fusion.method = each.method;
-  config.pipeline.fusion.noise = each.noise;
   // Views of one person differ by up to half a metre in depth; there is only one person.
   config.pipeline.association.gate = 1.5;
   config.pipeline.association.cluster = 1.5;
@@ -248,7 +243,7 @@ Result<double> add_rays(Report& report, double mean_mm) {
     const std::vector views(set->recordings.begin(),
                             set->recordings.begin() + static_cast<std::ptrdiff_t>(cameras));
     const auto result = pipeline::fuse_offline(tracks_of(views), published,
-                                               config_for({"rays", Method::PointsAndRays, {}}));
+                                               config_for({"rays", Method::PointsAndRays}));
     if (!result) return pass(result);
     const FusedScore fused = score(*result, Eigen::Isometry3d::Identity(), set->truth);
     const std::string name = fmt::format("published-rays-{}-cameras", cameras);

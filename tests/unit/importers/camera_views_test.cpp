@@ -125,6 +125,10 @@ TEST(CameraViews, SpeakOurAxes) {
     const auto& body = view.frames[0].bodies.at(0).skeleton;
     EXPECT_GT(body[JointId::Head].position.y(), body[JointId::SpineBase].position.y() + 0.4);
     EXPECT_GT(body[JointId::SpineBase].position.z(), 2.0);
+    const Joint& hip = body[JointId::SpineBase];
+    const Eigen::Vector3d ray = hip.position.normalized();
+    ASSERT_TRUE(hip.covariance.known());
+    EXPECT_GT(ray.dot(hip.covariance.matrix() * ray), 0.01) << "a decimetre along the ray";
   }
   const auto& truth = set->truth[0].skeleton;
   EXPECT_NEAR(truth[JointId::Head].position.y(), 1.55, 0.05);
@@ -160,6 +164,21 @@ TEST(LandmarkFit, RecoversAKnownPose) {
     EXPECT_EQ((*landmarks)[16].state, JointState::Inferred);
     EXPECT_EQ((*landmarks)[15].state, JointState::Tracked);
   }
+}
+
+TEST(LandmarkFit, DepthIsWorseThanDirection) {
+  Joint joint;
+  joint.position = {0.0, 0.0, 4.0};
+  EXPECT_FALSE(fit_error(joint).known()) << "not seen";
+  joint.state = JointState::Tracked;
+  const Eigen::Matrix3d straight = fit_error(joint).matrix();
+  EXPECT_NEAR(std::sqrt(straight(0, 0)), 0.025, 1e-6);
+  EXPECT_NEAR(std::sqrt(straight(2, 2)), std::hypot(0.24, 0.025), 1e-6);
+  joint.position = {4.0, 0.0, 0.0};
+  joint.state = JointState::Inferred;
+  const Eigen::Matrix3d aside = fit_error(joint).matrix();
+  EXPECT_NEAR(std::sqrt(aside(0, 0)), 2.0 * std::hypot(0.24, 0.025), 1e-6);
+  EXPECT_NEAR(std::sqrt(aside(2, 2)), 0.05, 1e-6);
 }
 
 TEST(LandmarkFit, RefusesSightsThatFitNoBody) {
