@@ -64,7 +64,7 @@ class ImportOwn(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("is it a video?", errors)
 
-    @unittest.skipUnless(RUNNER.is_dir(), "needs npm ci in services/pose-runner/")
+    @unittest.skipUnless(RUNNER.is_dir(), "runs after npm ci in services/pose-runner/")
     def test_videos_become_rays_close_to_what_another_network_saw(self):
         cameras = ["cam01", "cam02"]
         lenses = [word for camera in cameras for word in ("--intrinsics", VIDEOS / f"{camera}.json")]
