@@ -114,9 +114,10 @@ Step PollFsm::beside_stream(const FrameAnswered& answer, Duration now) {
     taken_beside_.push_back(*answer.captured);
     if (taken_beside_.size() > kMaxBeside) taken_beside_.pop_front();
   }
-  Step step = go_on(now);
+  const Duration interval = news ? timings_.min_interval : timings_.idle_interval;
+  const Duration pause = std::max(sent_at_ + interval - now, answer.rest);
+  Step step = pause > Duration{0} ? Step{Sleep{pause}} : go_on(now);
   step.deliver = news;
-  if (answer.rest > Duration{0}) step.action = Sleep{answer.rest};
   return step;
 }
 

@@ -194,6 +194,16 @@ TEST(PollFsmStream, TheNewestFrameIsAskedForBesideAStreamThatIsHeldUp) {
   EXPECT_EQ(send_of(newest).etag, "\"13\"") << "and the one after it";
 }
 
+TEST(PollFsmStream, AServerThatIgnoresPreferIsNotAskedInCirclesBesideTheStream) {
+  PollFsm fsm = late_once(seconds(1));
+  (void)fsm.resume(Woke{}, seconds(1) + milliseconds(80), kFull);
+  const Step same = fsm.resume(frame(330, "\"11\""), seconds(1) + milliseconds(81), kFull);
+  EXPECT_FALSE(same.deliver);
+  EXPECT_EQ(sleep_of(same), milliseconds(9)) << "the idle interval, from the request on";
+  const Step dead = fsm.resume(Woke{}, seconds(4), kFull);
+  EXPECT_EQ(dead.stream, StreamOrder::Close) << "a stream this silent is given up";
+}
+
 TEST(PollFsmStream, WhatTheStreamBringsAfterItIsLateAndNothingComesTwice) {
   PollFsm fsm = late_once(seconds(1));
   (void)fsm.resume(Woke{}, seconds(1) + milliseconds(80), kFull);
