@@ -111,14 +111,6 @@ std::vector<Hypothesis> hypotheses_of(const std::vector<PlacedView>& views, doub
 
 }  // namespace
 
-Located points_of(const Skeleton<WorldSpace>& body) {
-  Located points;
-  for (std::size_t i = 0; i < kJointCount; ++i) {
-    if (body.joints[i].seen()) points[i] = body.joints[i].position;
-  }
-  return points;
-}
-
 Located locate(const std::vector<PlacedView>& views) {
   Located body;
   for (std::size_t i = 0; i < kJointCount; ++i) {
@@ -135,24 +127,6 @@ Located locate(const std::vector<PlacedView>& views) {
     body[i] = points > 0 ? std::optional<Eigen::Vector3d>(sum / points) : meeting_point(rays);
   }
   return body;
-}
-
-std::optional<Eigen::Vector3d> middle_of(const Located& body) {
-  const auto mean_of = [&](const auto& joints) -> std::optional<Eigen::Vector3d> {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    double count = 0.0;
-    for (const auto& place : joints) {
-      if (!place) continue;
-      sum += *place;
-      count += 1.0;
-    }
-    if (count == 0.0) return std::nullopt;
-    return Eigen::Vector3d(sum / count);
-  };
-  std::vector<std::optional<Eigen::Vector3d>> core;
-  for (const JointId id : kCoreJoints) core.push_back(body[index_of(id)]);
-  if (auto mean = mean_of(core)) return mean;
-  return mean_of(body);
 }
 
 std::optional<double> misfit(const SensorView& view, const Located& body,

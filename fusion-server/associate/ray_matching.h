@@ -6,26 +6,17 @@
 // (epipolar consistency), preferring hypotheses that more cameras support.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 
+#include "common/body/located.h"
 #include "fusion-server/associate/placed_view.h"
 #include "fusion-server/associate/plausible.h"
 
 namespace chorus::associate {
 
-/// Positions of a person's joints, as far as known; world [m].
-using Located = std::array<std::optional<Eigen::Vector3d>, kJointCount>;
-
-/// The joints of the body that have a position.
-[[nodiscard]] Located points_of(const Skeleton<WorldSpace>& body);
-
 /// Per joint the mean of the points, or the point where two or more rays meet.
 [[nodiscard]] Located locate(const std::vector<PlacedView>& views);
-
-/// Mean of the core joints, or of all joints if no core joint is located; nothing if none is.
-[[nodiscard]] std::optional<Eigen::Vector3d> middle_of(const Located& body);
 
 /// Median distance of a view's rays from the joints of a body that has moved by `shift` [m];
 /// nothing when they have fewer than three joints in common.

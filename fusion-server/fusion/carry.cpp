@@ -1,8 +1,6 @@
 #include "fusion-server/fusion/carry.h"
 
-#include <algorithm>
-
-#include "common/body/bones.h"
+#include "common/body/located.h"
 #include "fusion-server/fusion/joint_filters.h"
 
 namespace chorus::fusion {
@@ -10,30 +8,12 @@ namespace {
 
 constexpr double kDrift = 0.4;  // [m/s] per axis, by which somebody goes another way than expected
 
-/// Of the core joints, of all if none of these is seen.
-Eigen::Vector3d middle_of(const Skeleton<WorldSpace>& body) {
-  Eigen::Vector3d core = Eigen::Vector3d::Zero();
-  Eigen::Vector3d all = Eigen::Vector3d::Zero();
-  double cores = 0.0;
-  double count = 0.0;
-  for (const JointId id : kCoreJoints) {
-    if (!body[id].seen()) continue;
-    core += body[id].position;
-    cores += 1.0;
-  }
-  for (const Joint& joint : body.joints) {
-    if (!joint.seen()) continue;
-    all += joint.position;
-    count += 1.0;
-  }
-  return cores > 0 ? Eigen::Vector3d(core / cores) : Eigen::Vector3d(all / std::max(1.0, count));
-}
-
 }  // namespace
 
 FusedBody carry(const FusedBody& last, Duration unseen, const Eigen::Vector3d& middle) {
   FusedBody body = last;
-  Eigen::Vector3d way = middle - middle_of(last.skeleton);
+  const auto last_middle = middle_of(points_of(last.skeleton));
+  Eigen::Vector3d way = middle - last_middle.value_or(middle);
   way.y() = 0.0;
   const double drift = kDrift * seconds(unseen);
   for (std::size_t i = 0; i < kJointCount; ++i) {

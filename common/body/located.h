@@ -1,0 +1,20 @@
+// A body by the places of its joints alone.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "common/body/skeleton.h"
+
+namespace chorus {
+
+/// Positions of a person's joints, as far as known; world [m].
+using Located = std::array<std::optional<Eigen::Vector3d>, kJointCount>;
+
+/// The joints of the body that have a position.
+[[nodiscard]] Located points_of(const Skeleton<WorldSpace>& body);
+
+/// Mean of the core joints, or of all joints if no core joint is located; nothing if none is.
+[[nodiscard]] std::optional<Eigen::Vector3d> middle_of(const Located& body);
+
+}  // namespace chorus
