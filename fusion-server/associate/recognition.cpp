@@ -15,8 +15,10 @@ constexpr double kContinuity = 1.5;   // prior log odds that one found where exp
 constexpr double kUnlikely = -0.5;    // log odds at which a person lost and found loses the id
 constexpr Duration kNoBones = std::chrono::seconds(2);  // nobody's build is waited for longer
 
+/// Not those whose id somebody has just been given back: they are about to be erased.
 bool has_left(const Candidate& candidate) {
-  return candidate.sights.empty() && (candidate.track.named || candidate.track.before);
+  return candidate.track.id != PersonId{} && candidate.sights.empty() &&
+         (candidate.track.named || candidate.track.before);
 }
 
 Missing missing_of(const Track& track) {
@@ -92,7 +94,7 @@ void question(Track& track, Tracks& tracks, const AssociationConfig& config) {
   const bool looked_at = is_looked_at(track.build, config);
   track.named = !is_glance(track.build) || odds > kUnlikely;
   if ((is_glance(track.build) && odds < kImpossible) || (looked_at && odds < 0)) {
-    tracks.missing.push_back(missing_of(track));
+    miss(track, tracks);
     track.id = PersonId{tracks.next_id++};
     track.before.reset();
     track.named = false;

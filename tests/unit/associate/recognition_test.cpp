@@ -143,6 +143,42 @@ TEST(Recognition, WhoIsLostAndFoundKeepsTheIdAllTheTime) {
   }
 }
 
+/// A track as it is after `time` of sight by four sensors; one that has left if `gone`.
+Candidate candidate(std::uint64_t id, double size, bool gone) {
+  Candidate out;
+  out.track.id = PersonId{id};
+  out.track.hits = 100;
+  out.track.found = gone ? kStart : kStart + std::chrono::seconds(10);
+  out.track.seen = gone ? kStart + std::chrono::seconds(5) : kStart + std::chrono::seconds(15);
+  out.track.admitted = out.track.named = gone;
+  std::vector<PlacedView> views;
+  for (int sensor = 0; sensor < 4; ++sensor) views.push_back({view_of({0.0, size}, sensor, 1)});
+  out.track.build.add(spans_of(views, {}), 5.0);
+  if (!gone) out.sights = views;
+  return out;
+}
+
+TEST(Recognition, OfTwoAlikeWhoComeAtOnceOneIsTheLostPersonAndNobodyVanishes) {
+  Tracks tracks;
+  tracks.next_id = 10;
+  std::vector<Candidate> candidates{candidate(1, 1.0, true), candidate(2, 1.0, false),
+                                    candidate(3, 1.0, false)};
+  recognise(candidates, tracks, {});
+  ASSERT_EQ(candidates.size(), 2u);
+  EXPECT_EQ(candidates[0].track.id, PersonId{1});
+  EXPECT_EQ(candidates[1].track.id, PersonId{3});
+}
+
+TEST(Recognition, AnIdThatNobodyHasSeenIsNotMissed) {
+  Tracks tracks;
+  tracks.next_id = 10;
+  std::vector<Candidate> candidates{candidate(2, 1.2, false)};
+  candidates[0].track.before = candidate(1, 1.0, true).track.build;
+  recognise(candidates, tracks, {});
+  EXPECT_EQ(candidates[0].track.id, PersonId{10}) << "somebody else";
+  EXPECT_TRUE(tracks.missing.empty()) << "it was never published";
+}
+
 TEST(Carried, SomebodyWhomNobodySeesIsAnsweredForASecond) {
   Room room;
   room.see_for(2.0, {{0.0}});
