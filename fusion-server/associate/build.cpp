@@ -85,14 +85,15 @@ double odds_of(double squares, double count, double variance, double more) {
 
 }  // namespace
 
-Spans spans_of(const std::vector<PlacedView>& views, const Located& met) {
+Spans spans_of(std::span<const PlacedView> views, const Located& met) {
   std::array<Mean, kSpans> means;
   for (const PlacedView& each : views) {
     if (!each.rays) add_lengths(means, tracked_points(each.view.skeleton));
   }
   if (std::ranges::all_of(views, &PlacedView::rays)) add_lengths(means, met);
   Spans spans;
-  spans.views = static_cast<double>(views.size());
+  const auto points = std::ranges::count(views, false, &PlacedView::rays);
+  spans.views = static_cast<double>(points > 0 ? points : std::ssize(views));
   for (std::size_t i = 0; i < kSpans; ++i) {
     if (means[i].count > 0) spans.length[i] = means[i].sum / means[i].count;
   }

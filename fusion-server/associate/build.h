@@ -6,6 +6,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "fusion-server/associate/placed_view.h"
@@ -24,7 +25,7 @@ struct Spans {
 
 /// Mean over the views that track both ends.  Ray views have no lengths; where there are only
 /// those, the points in `met`, where their rays meet, are used.
-[[nodiscard]] Spans spans_of(const std::vector<PlacedView>& views, const Located& met);
+[[nodiscard]] Spans spans_of(std::span<const PlacedView> views, const Located& met);
 
 struct Build {
   std::array<double, kSpans> mean{};   ///< [ln m]

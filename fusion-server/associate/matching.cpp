@@ -66,7 +66,8 @@ class Places {
 double cost_of(const Loose& loose, const Candidate& candidate, const Eigen::Vector3d& place) {
   const PlacedView& body = loose.view;
   if (!body.rays) {
-    const Build& known = candidate.track.before.value_or(candidate.track.build);
+    const Track& track = candidate.track;
+    const Build& known = track.before ? *track.before : track.build;
     return std::hypot(horizontal_distance(body.core, place),
                       kSizeReach * size_difference(loose.spans, known)) /
                candidate.gate +
@@ -99,7 +100,7 @@ BySensor by_sensor(std::vector<PlacedView> views) {
   BySensor sensors;
   for (PlacedView& view : views) {
     Loose loose{std::move(view), {}};
-    loose.spans = spans_of({loose.view}, {});
+    loose.spans = spans_of({&loose.view, 1}, {});
     sensors[loose.view.view.sensor].push_back(std::move(loose));
   }
   return sensors;

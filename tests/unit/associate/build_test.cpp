@@ -36,10 +36,10 @@ TEST(Build, OfALargerPersonIsLargerByTheSameInAllLengths) {
 TEST(Build, IsTheSameWithLeftAndRightExchanged) {
   PlacedView view = view_of(1.0);
   view.view.skeleton[JointId::ElbowLeft].position.y() += 0.1;
-  const Spans spans = spans_of({view}, {});
+  const Spans spans = spans_of(std::vector{view}, {});
   for (const auto& [left, right] : kMirrorPairs)
     std::swap(view.view.skeleton[left], view.view.skeleton[right]);
-  const Spans exchanged = spans_of({view}, {});
+  const Spans exchanged = spans_of(std::vector{view}, {});
   for (std::size_t i = 0; i < kSpans; ++i)
     EXPECT_NEAR(*spans.length[i], *exchanged.length[i], 1e-12) << i;
 }
@@ -47,15 +47,23 @@ TEST(Build, IsTheSameWithLeftAndRightExchanged) {
 TEST(Build, GuessedJointsHaveNoLengths) {
   PlacedView view = view_of(1.0);
   for (Joint& joint : view.view.skeleton.joints) joint.state = JointState::Inferred;
-  for (const auto& length : spans_of({view}, {}).length) EXPECT_FALSE(length);
+  for (const auto& length : spans_of(std::vector{view}, {}).length) EXPECT_FALSE(length);
 }
 
 TEST(Build, OfRaysIsThatOfWhereTheyMeet) {
   PlacedView view = view_of(1.0);
   view.rays = true;
   const Located met = points_of(standing_person());
-  EXPECT_TRUE(spans_of({view}, met).length[0]);
-  EXPECT_FALSE(spans_of({view}, {}).length[0]);
+  EXPECT_TRUE(spans_of(std::vector{view}, met).length[0]);
+  EXPECT_FALSE(spans_of(std::vector{view}, {}).length[0]);
+}
+
+TEST(Build, IsOfPointsAloneWhereThereAreAny) {
+  std::vector<PlacedView> views(3, view_of(1.0));
+  views[1].rays = views[2].rays = true;
+  EXPECT_EQ(spans_of(views, points_of(standing_person())).views, 1.0);
+  views[0].rays = true;
+  EXPECT_EQ(spans_of(views, points_of(standing_person())).views, 3.0);
 }
 
 TEST(Likeness, TellsOneFromAnother) {
