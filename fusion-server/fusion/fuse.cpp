@@ -37,11 +37,11 @@ FusedBody Memory::fuse(const Person& person, const Instant& instant) {
   auto& estimator = estimators_[{person.id, method}];
   if (!estimator) estimator = begin(method, config_);
   FusedBody body = estimator->fuse(person, instant);
-  if (!person.carried) last_[person.id] = {body, instant.at, method};
+  const bool placed = std::ranges::any_of(body.skeleton.joints, &Joint::seen);
+  if (!person.carried && placed) last_[person.id] = {body, instant.at, method};
   if (!known) return body;
   const Duration unseen = instant.at - last->second.at;
-  const bool predicted = std::ranges::any_of(body.skeleton.joints, &Joint::seen);
-  if (!predicted) body = carry(last->second.body, unseen, *person.carried);
+  if (!placed) body = carry(last->second.body, unseen, *person.carried);
   body.carried_for = seconds(unseen);
   return body;
 }

@@ -142,6 +142,18 @@ TEST(FusionMemory, CarriesSomebodyWhomNobodySees) {
             body.variance[index_of(JointId::Neck)]);
 }
 
+TEST(FusionMemory, ABodyWithoutJointsIsNotWhatIsCarried) {
+  Seen seen(Method::Mean);
+  (void)seen.at(milliseconds(0), {neck_view(1, {0, 1, 0}, 0.5)});
+  SensorView nothing = neck_view(1, {0, 1, 0}, 0.5);
+  for (Joint& joint : nothing.skeleton.joints) joint = {};
+  (void)seen.at(milliseconds(200), {nothing});
+  const FusedBody body = seen.memory_.fuse({expected_at(0.3)},
+                                           {kStart + milliseconds(300), kSensors}, seen.config_)[0];
+  EXPECT_TRUE(body.skeleton[JointId::Neck].seen());
+  EXPECT_NEAR(body.carried_for.value(), 0.3, 1e-9) << "since there was a place";
+}
+
 TEST(FusionMemory, LeavesItToAMethodThatPredicts) {
   Seen seen(Method::OttoKalman);
   for (int i = 0; i < 30; ++i)
