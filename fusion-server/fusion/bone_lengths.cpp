@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fusion-server/fusion/joint_view.h"
+
 namespace chorus::fusion {
 namespace {
 
@@ -20,11 +22,6 @@ std::array<std::size_t, kBones.size()> other_sides() {
   return other;
 }
 
-double variance_of(const PlacedJoint& joint) {
-  constexpr double kAxes = 3.0;
-  return joint.covariance.trace() / kAxes;
-}
-
 }  // namespace
 
 void BoneLengths::learn(const PlacedBody& seen, double passed, const BodyModel& model) {
@@ -34,7 +31,8 @@ void BoneLengths::learn(const PlacedBody& seen, double passed, const BodyModel& 
     const PlacedJoint& parent = seen[index_of(kBones[b].parent)];
     const PlacedJoint& child = seen[index_of(kBones[b].child)];
     if (!parent.placed || !child.placed) continue;
-    const double weight = time / (variance_of(parent) + variance_of(child));
+    const double weight =
+        time / (mean_variance(parent.covariance) + mean_variance(child.covariance));
     Learned& bone = bones_[b];
     bone.weight = fade * bone.weight + weight;
     const double length = (child.position - parent.position).norm();

@@ -34,6 +34,7 @@ class Tree {
     for (std::size_t j = 0; j < kJointCount; ++j) {
       nodes_[j] = {information_[j], information_[j] * seen_[j].position};
     }
+    follows_.fill(false);
     for (std::size_t b = kBones.size(); b-- > 0;) eliminate(b, bones[b]);
     place_roots();
     for (std::size_t b = 0; b < kBones.size(); ++b) place_child(b);
@@ -58,13 +59,14 @@ class Tree {
     const Eigen::Matrix3d spread = (nodes_[c].information + stiff).inverse();
     Follower& follower = followers_[b];
     follower = {true, spread, spread * stiff, spread * (nodes_[c].right + push)};
+    follows_[c] = true;
     nodes_[p].information += stiff - stiff * spread * stiff;
     nodes_[p].right += stiff * follower.offset - push;
   }
 
   void place_roots() {
     for (std::size_t j = 0; j < kJointCount; ++j) {
-      if (!seen_[j].placed) continue;
+      if (!seen_[j].placed || follows_[j]) continue;
       body_[j].covariance = nodes_[j].information.inverse();
       body_[j].position = body_[j].covariance * nodes_[j].right;
     }
@@ -86,6 +88,7 @@ class Tree {
   std::array<Eigen::Matrix3d, kJointCount> information_;
   std::array<Node, kJointCount> nodes_;
   std::array<Follower, kBones.size()> followers_;
+  std::array<bool, kJointCount> follows_{};  ///< Placed after its parent, by its follower.
 };
 
 }  // namespace

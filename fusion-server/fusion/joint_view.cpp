@@ -1,6 +1,9 @@
 #include "fusion-server/fusion/joint_view.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
 
 #include "common/sensor/limits.h"
 #include "fusion-server/fusion/weight.h"
@@ -56,6 +59,12 @@ std::vector<JointView> points_and_rays_of(JointId joint, const Person& person,
 }
 
 double mean_variance(const Eigen::Matrix3d& covariance) { return covariance.trace() / kAxes; }
+
+double largest_sigma(const Eigen::Matrix3d& covariance) {
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(covariance, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
+}
 
 void state_covariance(FusedJoint& fused, const Eigen::Matrix3d& covariance) {
   fused.variance = mean_variance(covariance);

@@ -45,4 +45,7 @@ void state_covariance(FusedJoint& fused, const Eigen::Matrix3d& covariance);
 /// Mean variance per axis [m^2].
 [[nodiscard]] double mean_variance(const Eigen::Matrix3d& covariance);
 
+/// Standard deviation along the least certain axis [m].
+[[nodiscard]] double largest_sigma(const Eigen::Matrix3d& covariance);
+
 }  // namespace chorus::fusion

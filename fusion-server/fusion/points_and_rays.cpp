@@ -5,8 +5,6 @@
 #include <cmath>
 #include <optional>
 
-#include <Eigen/Eigenvalues>
-
 #include "common/geometry/rotation.h"
 #include "fusion-server/fusion/joint_filters.h"
 #include "fusion-server/fusion/least_squares.h"
@@ -16,13 +14,6 @@ namespace {
 
 bool any_point(std::span<const JointView> views) {
   return std::ranges::any_of(views, [](const JointView& view) { return view.joint.seen(); });
-}
-
-/// Standard deviation along the least certain axis [m].
-double largest_sigma(const Eigen::Matrix3d& covariance) {
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(covariance, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
 }
 
 FusedJoint finish(std::span<const JointView> views, const LeastSquares& found, double common) {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-
 #include "common/geometry/rotation.h"
 #include "fusion-server/fusion/least_squares.h"
 
@@ -16,13 +14,6 @@ constexpr int kFirstWeighings = 5;  // re-weightings of a joint's views, startin
 constexpr int kWeighings = 2;       // the same, starting from the previous round's result
 
 Eigen::Matrix3d round_covariance(double variance) { return variance * Eigen::Matrix3d::Identity(); }
-
-/// Standard deviation along the least certain axis [m].
-double largest_sigma(const Eigen::Matrix3d& covariance) {
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(covariance, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
-}
 
 }  // namespace
 
@@ -165,10 +156,15 @@ std::optional<double> SightedBody::disagreement(const PlacedBody& body) const {
 }
 
 std::optional<double> SightedBody::scale_square() const {
-  if (misfits_.size() < 2) return std::nullopt;
   double sum = 0.0;
-  for (const Misfit& misfit : misfits_) sum += misfit.scale * misfit.scale;
-  return sum / static_cast<double>(misfits_.size());
+  double count = 0.0;
+  for (std::size_t v = 0; v < seen_.size(); ++v) {
+    if (std::ranges::none_of(seen_[v].variance, [](double each) { return each > 0; })) continue;
+    sum += misfits_[v].scale * misfits_[v].scale;  // rays alone have no size
+    count += 1.0;
+  }
+  if (count < 2.0) return std::nullopt;
+  return sum / count;
 }
 
 FusedJoint SightedBody::shown(JointId joint) const {

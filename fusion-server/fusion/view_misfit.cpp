@@ -8,6 +8,7 @@
 
 #include "common/body/bones.h"
 #include "common/geometry/rotation.h"
+#include "fusion-server/fusion/joint_filters.h"
 
 namespace chorus::fusion {
 namespace {
@@ -24,17 +25,13 @@ struct Centres {
   const PlacedBody& body;
 };
 
-bool in_core(std::size_t joint) {
-  return std::ranges::find(kCoreJoints, static_cast<JointId>(joint)) != kCoreJoints.end();
-}
-
 /// The end of the spine that a joint is connected to.
 std::size_t axis_of(std::size_t joint) {
   static const auto kAxis = [] {
     std::array<std::size_t, kJointCount> axis{};
     for (std::size_t j = 0; j < kJointCount; ++j) {
       auto id = static_cast<JointId>(j);
-      while (std::ranges::find(kCoreJoints, id) == kCoreJoints.end()) id = parent_of(id);
+      while (!in_trunk(id)) id = parent_of(id);
       axis[j] = index_of(id);
     }
     return axis;
@@ -48,7 +45,7 @@ Eigen::Matrix<double, 3, 2> slopes_at(std::size_t joint, const Centres& at) {
   Eigen::Matrix<double, 3, 2> slopes = Eigen::Matrix<double, 3, 2>::Zero();
   slopes.col(0) = place - at.middle;
   const std::size_t axis = axis_of(joint);
-  if (!in_core(joint) && at.body[axis].placed) {
+  if (!in_trunk(static_cast<JointId>(joint)) && at.body[axis].placed) {
     const Eigen::Vector3d lever = place - at.body[axis].position;
     slopes.col(1) = Eigen::Vector3d(lever.z(), 0.0, -lever.x());
   }
@@ -60,7 +57,7 @@ Eigen::Vector3d mended_at(std::size_t joint, const SeenBody& seen, const Centres
                           const Misfit& misfit) {
   Eigen::Vector3d place = seen.place[joint];
   const std::size_t axis = axis_of(joint);
-  if (!in_core(joint) && at.body[axis].placed) {
+  if (!in_trunk(static_cast<JointId>(joint)) && at.body[axis].placed) {
     const Eigen::Vector3d& about = at.body[axis].position;
     place = about + about_y(-misfit.turn) * (place - about);
   }
