@@ -66,6 +66,7 @@ void Stream::Secret::shake(const Sealed& done) {
 }
 
 void Stream::Secret::read(asio::mutable_buffer room, Done done) {
+  if (!socket.is_open()) return done(asio::error::operation_aborted, 0);
   const auto heard = seal.read(span_of(room));
   switch (heard.step) {
     case tls::Seal::Step::Done:
@@ -175,7 +176,8 @@ error_code Stream::end_saying() {
 void Stream::close() {
   error_code ignored;
   socket().close(ignored);
-  secret_.reset();
+  // Operations that this cancels still refer to its socket; they end before it does.
+  if (secret_) asio::post(get_executor(), [old = std::move(secret_)] {});
 }
 
 }  // namespace chorus::net
