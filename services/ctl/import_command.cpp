@@ -16,6 +16,7 @@
 #include "fusion-server/wire/registration_file.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
+#include "services/ctl/number_range.h"
 #include "services/ctl/text_file.h"
 #include "services/ctl/video_import.h"
 
@@ -283,7 +284,7 @@ Run add_import(CLI::App& options) {
       ->capture_default_str();
   options
       .add_option("--rate", arguments->rate_hz, "Pictures of a video that are looked at, a second")
-      ->check(CLI::Range(0.1, 1000.0))
+      ->check(number_range(0.1, 1000.0))
       ->capture_default_str();
   options.add_flag("--rays", arguments->rays,
                    "Of camera landmarks only their directions, without the depth of a fit");
