@@ -2,6 +2,7 @@
 """Tests the rules of tests/mutate.py on a file of ten lines; nothing is built."""
 
 import itertools
+import json
 import sys
 import unittest
 from pathlib import Path
@@ -9,7 +10,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent))
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from mutate import named_mutants, wanted_draws  # noqa: E402
+from mutate import CHECKOUT, NAMED, named_mutants, wanted_draws  # noqa: E402
 from rules import RULES, Mutant, broken_lines, drawn, mutants_of, whole_statement  # noqa: E402
 from schema import merged, rewritten  # noqa: E402
 
@@ -85,6 +86,11 @@ class Named(unittest.TestCase):
             entry = {"name": "n", "file": "a.cpp", "line": line, "broken": ";", "breaks": ""}
             with self.assertRaisesRegex(SystemExit, "'n'"):
                 named_mutants([entry], lambda file: "x();\nx();\n")
+
+    def test_every_named_line_is_still_in_the_code(self):
+        entries = json.loads(NAMED.read_text())
+        self.assertEqual(len(named_mutants(entries, lambda file: (CHECKOUT / file).read_text())), len(entries))
+        self.assertEqual(len(entries), 40)
 
 
 class Schema(unittest.TestCase):
