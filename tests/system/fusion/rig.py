@@ -97,7 +97,8 @@ class Rig(unittest.TestCase):
         self.folder = tempfile.TemporaryDirectory()
 
     def tearDown(self):
-        failed = any(error for _, error in getattr(self._outcome, "errors", []))
+        result = self._outcome.result
+        failed = any(test is self for test, _ in result.failures + result.errors)
         for process in self.processes:
             if failed:
                 print(f"--- {process.child.args[0]}\n{process.text()[-3000:]}")
