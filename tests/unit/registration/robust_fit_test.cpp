@@ -77,6 +77,17 @@ TEST(RobustFit, PairsThatAreWrongInTheirOwnWaysHaveNoSay) {
   }
 }
 
+/// A start from the plain mean would be so far off that no pair is left to go on with.
+TEST(RobustFit, AThirdThatIsFarOffTheSameWayHasNoSay) {
+  std::vector<Pair> pairs = pairs_of(some_motion(), {.instants = 100, .noise = mm(8)});
+  for (std::size_t i = 0; i < pairs.size(); i += 3) pairs[i].x_in_target.x() += 5.0;
+  for (const Freedom freedom : {Freedom::Yaw, Freedom::Full}) {
+    const auto fit = fit_robustly(pairs, freedom);
+    ASSERT_TRUE(fit);
+    EXPECT_LT(gap(fit->target_from_source, some_motion()), 0.01);
+  }
+}
+
 TEST(RobustFit, WrongPairsWeighNothingAndRightOnesNearlyAll) {
   std::vector<Pair> pairs = pairs_of(some_motion(), {.noise = mm(10)});
   pairs[4].x_in_target.x() += 0.5;
