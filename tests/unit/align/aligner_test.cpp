@@ -154,6 +154,13 @@ TEST(Align, IsNotInterpolatedAcrossAnIdThatWentToSomebodyElse) {
   EXPECT_EQ(ask(history, milliseconds(33)).bodies.size(), 1u);
 }
 
+TEST(Align, JointsThatAreNotSeenDoNotHideThatAnIdWentToSomebodyElse) {
+  History history;
+  history.push(frame_at(milliseconds(0), 0.0));  // of these bodies, the neck alone is seen
+  history.push(frame_at(milliseconds(33), 0.8));
+  EXPECT_TRUE(ask(history, milliseconds(10)).bodies.empty());
+}
+
 TEST(Align, BasisAtAgreesWithTheFullAnswer) {
   const History history = two_frames(milliseconds(30));
   for (int ms = -10; ms < 200; ms += 5) {

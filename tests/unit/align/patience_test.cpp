@@ -2,6 +2,8 @@
 #include "fusion-server/align/patience.h"
 
 #include <algorithm>
+#include <map>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -41,6 +43,17 @@ TEST(Patience, OneUnsteadySensorIsWaitedForNoLongerThanTheOthersNeed) {
   EXPECT_EQ(patience.of(bad).patience, *usual_wait(good));
   EXPECT_LT(patience.of(bad).patience, milliseconds(60));
   EXPECT_EQ(patience.of(good).patience, AlignConfig{}.patience);
+}
+
+TEST(Patience, TheOrderOfTheSensorsDoesNotMatter) {
+  const History good = sensor(milliseconds(2), milliseconds(5));
+  const History bad = sensor(milliseconds(0), milliseconds(150));
+  for (int place = 1; place <= 4; ++place) {
+    std::map<SensorId, const History*> histories;
+    for (int i = 1; i <= 4; ++i)
+      histories[sensor_id("s" + std::to_string(i))] = i == place ? &bad : &good;
+    EXPECT_EQ(Patience(histories, {}).of(bad).patience, *usual_wait(good)) << place;
+  }
 }
 
 TEST(Patience, ASteadyOneIsGivenWhatItNeeds) {

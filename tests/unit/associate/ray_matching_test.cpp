@@ -63,6 +63,19 @@ Eigen::Vector3d core_of_track(const Room& room, std::size_t i) {
   return room.tracks.people[i].core;
 }
 
+TEST(Locate, PutsAJointInTheMiddleOfItsPointsAndAsksNoRays) {
+  PlacedView left;
+  PlacedView right;
+  PlacedView ray;
+  left.view.skeleton = standing_person({0.1, 0, 0});
+  right.view.skeleton = standing_person({0.3, 0, 0});
+  ray.view = seen_by(kTwo[0], standing_person({2.0, 0, 0}), 1);
+  const Located body = locate({left, ray, right});
+  const Eigen::Vector3d neck = standing_person({0.2, 0, 0})[JointId::Neck].position;
+  ASSERT_TRUE(body[static_cast<std::size_t>(JointId::Neck)]);
+  EXPECT_LT((*body[static_cast<std::size_t>(JointId::Neck)] - neck).norm(), 1e-12);
+}
+
 TEST(RayMatching, TwoCamerasMakeOnePersonAtItsPlace) {
   Room room;
   std::vector<Person> people;

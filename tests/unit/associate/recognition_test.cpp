@@ -41,10 +41,12 @@ struct Room {
   Tracks tracks = {};
   Timestamp instant = kStart;
 
+  int sensors = 4;
+
   std::vector<Person> see(const std::vector<Somebody>& people) {
     instant += kFrameInterval;
     Scene scene{instant, {}, observers};
-    for (int sensor = 0; sensor < 4; ++sensor) {
+    for (int sensor = 0; sensor < sensors; ++sensor) {
       for (std::size_t i = 0; i < people.size(); ++i)
         scene.views.push_back(view_of(people[i], sensor, i + 1));
     }
@@ -77,6 +79,15 @@ TEST(Recognition, WhoComesBackAfterTwentySecondsIsTheSamePerson) {
   const auto people = room.see_for(1.0, {{2.0}});
   ASSERT_EQ(people.size(), 1u);
   EXPECT_EQ(people[0].id, kFirst);
+}
+
+TEST(Recognition, OneSensorAloneNeedsNoLongerThanIsConfigured) {
+  Room room{.sensors = 1};
+  EXPECT_EQ(room.see_for(3.0, {{0.0}}).at(0).id, kFirst);
+  room.see_for(10.0, {});
+  const double took = room.until_seen({{0.0}});
+  EXPECT_LE(took, seconds(room.config.recognise) + 0.15);
+  EXPECT_GE(took, seconds(room.config.recognise) - 0.05) << "nor less: four would";
 }
 
 TEST(Recognition, OfTwoWhoLeftTheRightOneComesBack) {
