@@ -55,6 +55,16 @@ TEST(Sides, OfAViewFromBehindAreExchangedBackByTheOthers) {
   EXPECT_NEAR(std::abs(person.views[2].facing), deg(180), 1e-9);
 }
 
+TEST(Sides, AreRememberedAsTheMeanOfTheViewsInMetres) {
+  const auto exact = body_at({0, 0, 0}, 0);
+  Person person{PersonId{1}, {view_from(1, deg(0), exact), view_from(2, deg(60), exact)}};
+  SidesMemory memory;
+  for (int i = 0; i < 10; ++i) resolve_sides(person, kStart + i * kFrame, memory, {});
+  const Spans& spans = memory.people.at(PersonId{1}).spans;
+  const Spans truth = spans_of(exact);
+  for (std::size_t i = 0; i < spans.size(); ++i) EXPECT_LT((spans[i] - truth[i]).norm(), 1e-6) << i;
+}
+
 TEST(Sides, AnExchangedViewLosesItsOrientationsTheOthersKeepThem) {
   const auto exact = body_at({0, 0, 0}, 0);
   Person person{PersonId{1},
