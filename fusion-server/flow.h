@@ -70,6 +70,12 @@ struct SensorVerdict {
   std::vector<std::string> reasons;  ///< Why it is not good, as sentences for people.
 };
 
+/// How far one sensor's clock is off, as seen from the walk.
+struct ClockOffset {
+  Duration added{0};  ///< Added to its capture times, they are by the common clock.
+  Duration sigma{0};  ///< Standard deviation; zero for the sensor whose clock is the common one.
+};
+
 /// The places of all sensors; replaced as a whole, stored, versioned.
 struct Registration {
   std::uint64_t version = 0;
@@ -81,6 +87,8 @@ struct Registration {
   /// For each sensor that took part in a walk, whether it has a place or not.
   std::map<SensorId, SensorVerdict> verdicts;
   std::vector<PairwiseRegistration> edges;
+  /// Found from the walk because some sensor's clock was not known; empty when all were.
+  std::map<SensorId, ClockOffset> clocks = {};
 };
 
 /// One sensor's view of one person at the common instant, with everything that fusion needs to know

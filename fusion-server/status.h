@@ -29,7 +29,7 @@ struct SensorStatus {
   double awaited = 0.0;           ///< Fraction of instants that waited for it to the end.
   std::optional<Duration> clock_offset;  ///< Our clock minus the sensor's.
   std::optional<Duration> clock_uncertainty;
-  bool clock_corrected = false;  ///< The offset is larger than its uncertainty, so it is applied.
+  bool clock_corrected = false;  ///< The offset is added to its capture times.
   std::uint64_t frames = 0;      ///< Delivered since start.
   std::uint64_t missed = 0;      ///< Gaps in the sensor's own sequence that were not filled.
   std::uint64_t refused = 0;     ///< Frames that went back in time or had an implausible time.

@@ -39,6 +39,15 @@ Result<Duration> read_shift(std::string_view text) {
   return Duration(*ns);
 }
 
+double read_clock_sigma(std::string_view text) {
+  const auto json = parse_json(text).value_or(nlohmann::json());
+  const auto said = json.is_object() ? json.find("uncertaintyNanoseconds") : json.end();
+  if (said == json.end() || !said->is_string()) return kUnknownClock;
+  const auto ns = parse_number<std::int64_t>(said->get_ref<const std::string&>());
+  if (!ns || *ns < 0) return kUnknownClock;
+  return std::min(kUnknownClock, clock_sigma(ClockEstimate{Duration{0}, Duration(*ns)}));
+}
+
 bool moved(Timestamp& t, const std::optional<Duration>& by) {
   std::int64_t ns = 0;
   const std::int64_t shift = by ? by->count() : 0;
@@ -124,6 +133,7 @@ Sorting::Item Sorting::kept(Stream& stream, SensorFrame frame) const {
     return std::nullopt;
   }
   frame.floor = stream.floor;
+  frame.clock_sigma = stream.clock_sigma;
   if (!stream.newest || frame.captured > *stream.newest) {
     stream.newest = frame.captured;
     ++stream.kept;
@@ -179,6 +189,7 @@ Result<void> Sorting::take_state(const MessageView& message, const Topic& topic)
     const auto shift = read_shift(message.data);
     if (!shift) return fail(ErrorCode::Malformed, where(), shift.error().message);
     (*stream)->shift = *shift;
+    (*stream)->clock_sigma = read_clock_sigma(message.data);
     return {};
   }
   const auto floor = read_floor_json(message.data);

@@ -11,6 +11,7 @@
 
 #include "common/record/cell_stream.h"
 #include "common/record/recording_stream.h"
+#include "common/time/clock_estimate.h"
 
 namespace chorus::record {
 
@@ -27,6 +28,9 @@ struct Topic {
 
 /// The time that a clock model adds to capture times.
 [[nodiscard]] Result<Duration> read_shift(std::string_view text);
+
+/// How exact it says that is, as a standard deviation [s]; kUnknownClock when it does not say.
+[[nodiscard]] double read_clock_sigma(std::string_view text);
 
 /// False, with `t` unchanged, when the sum is beyond the times that we can represent.
 [[nodiscard]] bool moved(Timestamp& t, const std::optional<Duration>& by);
@@ -69,6 +73,7 @@ class Sorting {
     Line line;
     std::optional<FloorPlane> floor;
     std::optional<Duration> shift;  ///< None: the times are already in our clock.
+    double clock_sigma = kUnknownClock;
     std::size_t kept = 0;
     std::optional<Timestamp> newest;  ///< Of the frames that were kept.
     std::size_t left_out = 0;

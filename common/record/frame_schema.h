@@ -68,7 +68,7 @@ inline constexpr std::string_view kClockSchema = R"({
   "properties": {
     "sensor": {"type": "string"},
     "appliedNanoseconds": {"type": "string", "description": "added to its capture times"},
-    "oursMinusTheirsNanoseconds": {"type": "string", "description": "the estimate; applied when it exceeds its uncertainty"},
+    "oursMinusTheirsNanoseconds": {"type": "string", "description": "the estimate when applied was last changed"},
     "uncertaintyNanoseconds": {"type": "string"}
   }
 })";

@@ -24,6 +24,14 @@ struct SensorFrame {
   Timestamp received;          ///< When this process got it, by its own clock.
   std::vector<BodyFrame> bodies;
   std::optional<FloorPlane> floor;
+  /// How far the capture time may be off the other sensors' clocks, as a standard deviation [s].
+  double clock_sigma = 0.0;
 };
+
+/// Moves a frame and its bodies in time.
+inline void move_in_time(SensorFrame& frame, Duration by) {
+  frame.captured += by;
+  for (BodyFrame& body : frame.bodies) body.captured += by;
+}
 
 }  // namespace chorus

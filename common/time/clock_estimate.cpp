@@ -1,7 +1,9 @@
 #include "common/time/clock_estimate.h"
 
 #include <algorithm>
-#include <cstdlib>
+#include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "common/base/parse.h"
 
@@ -12,9 +14,30 @@ namespace {
 constexpr std::int64_t kMinNs = 1'000'000'000'000'000'000;
 constexpr std::int64_t kMaxNs = 9'000'000'000'000'000'000;
 
+constexpr double kTolerance = 50e-6;     // [s] by which stamps may contradict each other
+constexpr double kMostCounted = 1000.0;  // exchanges; older ones fade from the mean
+constexpr double kScatter = 4.0;         // least delays err by about the mean excess / exchanges
+
 bool plausible(Timestamp t) {
   const std::int64_t ns = to_unix_ns(t);
   return ns >= kMinNs && ns <= kMaxNs;
+}
+
+/// False for what cannot have happened, and for what would tell nothing.
+bool possible(const ClockExchange& exchange, Duration max_uncertainty) {
+  if (!plausible(exchange.sent) || !plausible(exchange.received) ||
+      !plausible(exchange.their_receipt) || !plausible(exchange.their_sending)) {
+    return false;
+  }
+  const Duration held = exchange.their_sending - exchange.their_receipt;
+  const Duration round_trip = exchange.received - exchange.sent;
+  if (held < Duration{0} || round_trip < held) return false;
+  return (round_trip - held) / 2 <= max_uncertainty;
+}
+
+Duration theirs_minus_ours(const ClockExchange& exchange) {
+  return (exchange.their_receipt - exchange.sent) / 2 +
+         (exchange.their_sending - exchange.received) / 2;
 }
 
 }  // namespace
@@ -30,62 +53,120 @@ std::optional<ServerStamps> parse_server_stamps(std::string_view header) {
   return stamps;
 }
 
-Duration ClockFilter::grown(const Sample& sample, Timestamp now) const {
-  const double age = std::max(0.0, seconds(now - sample.received));
-  return sample.uncertainty + from_seconds(age * limits_.drift);
+void ClockFilter::start_at(const ClockExchange& exchange) {
+  origin_ = exchange.sent;
+  base_ = theirs_minus_ours(exchange);
+  corridor_ = {};
+  rate_ = mean_delay_ = exchanges_ = 0.0;
+  last_.reset();
 }
 
-const ClockFilter::Sample* ClockFilter::best(Timestamp now) const {
-  const auto it = std::min_element(
-      samples_.begin(), samples_.end(),
-      [&](const Sample& a, const Sample& b) { return grown(a, now) < grown(b, now); });
-  return it == samples_.end() ? nullptr : &*it;
+ClockFilter::Corridor ClockFilter::with(Corridor corridor, const ClockExchange& exchange) const {
+  corridor.there.add(
+      {since_origin(exchange.sent), seconds(exchange.their_receipt - exchange.sent - base_)});
+  corridor.back.add({since_origin(exchange.received),
+                     seconds(exchange.received - exchange.their_sending + base_)});
+  return corridor;
+}
+
+/// The rate with the largest likelihood under exponential delays, a Laplace prior on the rate: the
+/// maximum of a concave function made of straight pieces is at one of its corners.
+double ClockFilter::widest(const Corridor& corridor) const {
+  const double least_mean = 1e-6;  // [s] so that equal delays do not make the prior void
+  const double excess = std::max(least_mean, mean_delay_ - corridor.width(rate_));
+  const double believed = excess / (limits_.usual_rate * std::max(1.0, exchanges_));
+  const auto value = [&](double rate) { return corridor.width(rate) - believed * std::abs(rate); };
+  double best = 0.0;
+  double most = value(0.0);
+  const auto consider = [&](double rate) {
+    rate = std::clamp(rate, -limits_.max_rate, limits_.max_rate);
+    if (const double here = value(rate); here > most) {
+      most = here;
+      best = rate;
+    }
+  };
+  for (const auto& [hull, sign] : {std::pair{&corridor.there, 1.0}, {&corridor.back, -1.0}}) {
+    const auto& points = hull->points();
+    for (std::size_t i = 1; i < points.size(); ++i)
+      consider(sign * (points[i].value - points[i - 1].value) /
+               (points[i].time - points[i - 1].time));
+  }
+  return best;
+}
+
+/// Whether some line lies between all requests and all answers.
+bool ClockFilter::open(const Corridor& corridor) const {
+  if (corridor.there.empty() || corridor.back.empty()) return true;
+  return corridor.width(widest(corridor)) > -kTolerance;
+}
+
+void ClockFilter::accept(Corridor corridor, const ClockExchange& exchange) {
+  corridor_ = std::move(corridor);
+  const double oldest = since_origin(exchange.received - limits_.window);
+  corridor_.there.forget_before(oldest);
+  corridor_.back.forget_before(oldest);
+  const Duration held = exchange.their_sending - exchange.their_receipt;
+  const double delay = seconds(exchange.received - exchange.sent - held);
+  exchanges_ = std::min(exchanges_ + 1.0, kMostCounted);
+  mean_delay_ += (delay - mean_delay_) / exchanges_;
+  rate_ = widest(corridor_);
+  last_ = exchange.received;
+}
+
+/// Keeps as much of the past as agrees with what contradicted it.
+void ClockFilter::follow_step() {
+  const std::vector<ClockExchange> news = std::exchange(pending_, {});
+  const auto fits = [&] {
+    Corridor corridor = corridor_;
+    for (const ClockExchange& each : news) corridor = with(std::move(corridor), each);
+    return open(corridor);
+  };
+  while (!corridor_.there.empty() && !corridor_.back.empty() && !fits()) {
+    corridor_.there.forget_half();
+    corridor_.back.forget_half();
+    exchanges_ *= 0.5;
+  }
+  if (corridor_.there.empty() || corridor_.back.empty()) start_at(news.front());
+  for (const ClockExchange& each : news) accept(with(corridor_, each), each);
 }
 
 void ClockFilter::add(const ClockExchange& exchange) {
-  if (!plausible(exchange.sent) || !plausible(exchange.received) ||
-      !plausible(exchange.their_receipt) || !plausible(exchange.their_sending)) {
+  if (!possible(exchange, limits_.max_uncertainty)) return;
+  if (last_ && exchange.received < *last_) {  // our clock was set
+    pending_.clear();
+    last_.reset();
+  }
+  if (!last_) start_at(exchange);
+  Corridor next = with(corridor_, exchange);
+  if (open(next)) {
+    pending_.clear();
+    accept(std::move(next), exchange);
     return;
   }
-  const Duration held = exchange.their_sending - exchange.their_receipt;
-  const Duration round_trip = exchange.received - exchange.sent;
-  if (held < Duration{0} || round_trip < held) return;  // impossible; the sums below could overflow
-  const Duration delay = round_trip - held;
-  if (delay / 2 > limits_.max_uncertainty) return;
-  const Duration theirs_minus_ours = (exchange.their_receipt - exchange.sent) / 2 +
-                                     (exchange.their_sending - exchange.received) / 2;
-  const Sample sample{exchange.received, -theirs_minus_ours, delay / 2};
-  const Timestamp now = exchange.received;
-  if (!samples_.empty() && now < samples_.back().received) samples_.clear();  // our clock was set
-  if (const Sample* held_best = best(now)) {
-    const Duration apart =
-        std::chrono::abs(sample.ours_minus_theirs - held_best->ours_minus_theirs);
-    const bool contradicts = apart > sample.uncertainty + grown(*held_best, now);
-    contradictions_ = contradicts ? contradictions_ + 1 : 0;
-    if (contradictions_ >= limits_.steps_to_restart) {
-      samples_.clear();
-      contradictions_ = 0;
-    } else if (contradicts) {
-      return;  // an outlier until the next ones agree with it
-    }
-  }
-  // A later sample with less uncertainty makes an older, worse one useless for good.
-  while (!samples_.empty() && grown(samples_.back(), now) >= sample.uncertainty)
-    samples_.pop_back();
-  samples_.push_back(sample);
-  while (now - samples_.front().received > limits_.window) samples_.pop_front();
+  pending_.push_back(exchange);  // an outlier, until the next ones agree with it
+  if (static_cast<int>(pending_.size()) >= limits_.steps_to_restart) follow_step();
 }
 
 std::optional<ClockEstimate> ClockFilter::at(Timestamp now) const {
-  const Sample* sample = best(now);
-  if (sample == nullptr) return std::nullopt;
-  return ClockEstimate{sample->ours_minus_theirs, grown(*sample, now)};
+  if (!last_) return std::nullopt;
+  const double there = corridor_.there.least(rate_);
+  const double back = corridor_.back.least(-rate_);
+  const double width = std::max(0.0, there + back);
+  const double age = std::max(0.0, seconds(now - *last_));
+  const double theirs_minus_ours = 0.5 * (there - back) + rate_ * since_origin(now);
+  const double scatter = kScatter * std::max(0.0, mean_delay_ - width) / exchanges_;
+  return ClockEstimate{-base_ - from_seconds(theirs_minus_ours),
+                       from_seconds(0.5 * width + scatter + age * limits_.wander), rate_};
+}
+
+double clock_sigma(const std::optional<ClockEstimate>& estimate) {
+  return estimate ? seconds(estimate->uncertainty) / std::numbers::sqrt3 : kUnknownClock;
 }
 
 Duration correction(const std::optional<ClockEstimate>& estimate) {
   if (!estimate) return Duration{0};
-  const Duration magnitude = std::chrono::abs(estimate->ours_minus_theirs);
-  return magnitude > estimate->uncertainty ? estimate->ours_minus_theirs : Duration{0};
+  using Step = std::chrono::duration<std::int64_t, std::ratio<1, 100'000>>;
+  return std::chrono::round<Step>(estimate->ours_minus_theirs);
 }
 
 }  // namespace chorus

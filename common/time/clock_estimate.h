@@ -1,17 +1,21 @@
 // How far another host's clock differs from ours, from the stamps on each answer (Cristian 1989).
 //
-// We stamp sending (t0) and receipt (t3); the other side stamps its receipt (t1) and sending (t2):
-//   theirs - ours = ((t1 - t0) + (t2 - t3)) / 2,   |error| <= ((t3 - t0) - (t2 - t1)) / 2.
-// A long poll may wait any time between t1 and t2.  Network delay is one-sided noise, so the
-// exchange with the least delay wins (minimum filter over a sliding window).
+// We stamp sending (t0) and receipt (t3); the other side stamps its receipt (t1) and sending (t2).
+// With theirs - ours = a + r t, all requests have t1 - t0 = a + r t0 + delay and all answers
+// t2 - t3 = a + r t3 - delay.  Delays vary to one side only, so both least delays are found, each
+// in its own direction, with one common rate (Moon, Skelly and Towsley 1999; Zhang, Liu and Xia
+// 2002): the rate that leaves the widest corridor between requests and answers, weighed against a
+// small one. The clock is the middle of the corridor; how much longer requests take than answers at
+// least cannot be seen.  A long poll may wait any time between t1 and t2.
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "common/base/duration.h"
+#include "common/time/delay_hull.h"
 #include "common/time/timestamp.h"
 
 namespace chorus {
@@ -25,12 +29,22 @@ struct ClockExchange {
 
 struct ClockEstimate {
   Duration ours_minus_theirs{0};  ///< Add this to their stamps to get ours.
-  Duration uncertainty{0};        ///< Bound of the error; grows by drift since the exchange.
+  Duration uncertainty{0};        ///< Bound of the error: half of the least round trip, and more.
+  double rate = 0.0;              ///< By which their clock runs faster than ours [s/s].
 };
 
+/// Standard deviation of a clock about which nobody says anything [s].
+inline constexpr double kUnknownClock = 0.5;
+
+/// Standard deviation of a corrected stamp [s]: as if the error were uniform within its bound.
+[[nodiscard]] double clock_sigma(const std::optional<ClockEstimate>& estimate);
+
 struct ClockFilterLimits {
-  Duration window = std::chrono::seconds(30);
-  double drift = 100e-6;  ///< Twice that of an unsynchronised quartz (20-50 ppm).
+  Duration window = std::chrono::seconds(40);
+  /// No two clocks' rates differ by more: 500 ppm while one is set, 390 ppm of a device.
+  double max_rate = 1000e-6;
+  double usual_rate = 100e-6;  ///< Rates beyond need evidence.
+  double wander = 10e-6;       ///< Growth of the uncertainty without exchanges [s/s].
   /// Exchanges with a larger uncertainty are ignored.
   Duration max_uncertainty = std::chrono::milliseconds(250);
   /// This many contradictory exchanges in a row mean that a clock was set.
@@ -54,24 +68,37 @@ class ClockFilter {
   [[nodiscard]] std::optional<ClockEstimate> at(Timestamp now) const;
 
   /// The last exchange contradicts the estimate; the next ones show whether a clock was set.
-  [[nodiscard]] bool doubtful() const noexcept { return contradictions_ > 0; }
+  [[nodiscard]] bool doubtful() const noexcept { return !pending_.empty(); }
 
  private:
-  struct Sample {
-    Timestamp received;
-    Duration ours_minus_theirs;
-    Duration uncertainty;
+  /// Least delays both ways, in seconds since `origin_` and beside `base_`.
+  struct Corridor {
+    DelayHull there;  ///< t1 - t0 at t0.
+    DelayHull back;   ///< t3 - t2 at t3.
+    [[nodiscard]] double width(double rate) const { return there.least(rate) + back.least(-rate); }
   };
-  [[nodiscard]] Duration grown(const Sample& sample, Timestamp now) const;
-  [[nodiscard]] const Sample* best(Timestamp now) const;
+
+  void start_at(const ClockExchange& exchange);
+  [[nodiscard]] double since_origin(Timestamp t) const { return seconds(t - origin_); }
+  [[nodiscard]] Corridor with(Corridor corridor, const ClockExchange& exchange) const;
+  [[nodiscard]] double widest(const Corridor& corridor) const;
+  [[nodiscard]] bool open(const Corridor& corridor) const;
+  void accept(Corridor corridor, const ClockExchange& exchange);
+  void follow_step();
 
   ClockFilterLimits limits_;
-  std::deque<Sample> samples_;  ///< Oldest first; uncertainty rises, so the first is the best.
-  int contradictions_ = 0;
+  Timestamp origin_;
+  Duration base_{0};  ///< Theirs minus ours, roughly.
+  Corridor corridor_;
+  double rate_ = 0.0;
+  double mean_delay_ = 0.0;  ///< Of both ways together [s].
+  double exchanges_ = 0.0;   ///< That mean_delay_ stands for.
+  std::optional<Timestamp> last_;
+  std::vector<ClockExchange> pending_;  ///< Contradictory ones, until it is clear what they are.
 };
 
-/// What to add to the sensor's capture times: the estimate, if it is larger than its own
-/// uncertainty; otherwise zero.
+/// What to add to the sensor's capture times: the estimate, to 10 us, so that it changes about once
+/// a second and not with every frame; zero without one.
 [[nodiscard]] Duration correction(const std::optional<ClockEstimate>& estimate);
 
 }  // namespace chorus

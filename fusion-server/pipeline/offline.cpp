@@ -95,7 +95,7 @@ bool covered(const Snapshot& snapshot) {
 class Replay {
  public:
   Replay(OfflineInput input, const Registration& registration, const OfflineConfig& config)
-      : frames_(std::move(input.lanes), input.sensors),
+      : frames_(std::move(input.lanes), input.sensors, registration.clocks),
         registration_(registration),
         config_(config),
         grid_(config.rate_hz) {}

@@ -37,7 +37,8 @@ using TakeSnapshot = std::function<Result<void>(Snapshot)>;
 [[nodiscard]] Result<Registration> register_recordings(OfflineInput input,
                                                        const OfflineConfig& config);
 
-/// Fuses every instant that any sensor covers, with a few seconds of frames in memory.
+/// Fuses every instant that any sensor covers, with a few seconds of frames in memory.  What the
+/// registration says about clocks is added to the capture times.
 [[nodiscard]] Result<void> fuse_recordings(OfflineInput input, const Registration& registration,
                                            const OfflineConfig& config, const TakeSnapshot& take);
 

@@ -18,7 +18,9 @@ constexpr std::size_t kNoLane = std::numeric_limits<std::size_t>::max();
 
 }  // namespace
 
-RecordedFrames::RecordedFrames(std::vector<FrameLane> lanes, const std::vector<SensorId>& sensors) {
+RecordedFrames::RecordedFrames(std::vector<FrameLane> lanes, const std::vector<SensorId>& sensors,
+                               std::map<SensorId, ClockOffset> clocks)
+    : clocks_(std::move(clocks)) {
   for (FrameLane& lane : lanes) lanes_.push_back({std::move(lane)});
   for (const SensorId& sensor : sensors) streams_[sensor].lane = kNoLane;
 }
@@ -31,6 +33,8 @@ Result<void> RecordedFrames::read_one(std::size_t number) {
     lane.ended = true;
     return {};
   }
+  const auto clock = clocks_.find((*frame)->sensor);
+  if (clock != clocks_.end()) move_in_time(**frame, clock->second.added);
   lane.newest = std::max(lane.newest, (*frame)->captured);
   newest_ = std::max(newest_, lane.newest);
   const auto [entry, fresh] = streams_.try_emplace((*frame)->sensor);

@@ -23,8 +23,10 @@ struct FrameLane {
 /// Merges several lanes by sensor.  Keeps a few seconds of frames in memory, not whole recordings.
 class RecordedFrames {
  public:
-  /// `sensors`: those known in advance; others are added with their first frame.
-  RecordedFrames(std::vector<FrameLane> lanes, const std::vector<SensorId>& sensors);
+  /// `sensors`: those known in advance; others are added with their first frame.  `clocks`: what
+  /// was found about their clocks; it is added to their capture times.
+  RecordedFrames(std::vector<FrameLane> lanes, const std::vector<SensorId>& sensors,
+                 std::map<SensorId, ClockOffset> clocks = {});
 
   /// Reads until every lane has passed `instant` by kAhead, or has ended.  Refuses a sensor that is
   /// in two lanes, and sensors whose clocks are too far apart to be merged.
@@ -58,6 +60,7 @@ class RecordedFrames {
   [[nodiscard]] std::optional<Timestamp> waiting_after(Timestamp instant) const;
 
   std::vector<Lane> lanes_;
+  std::map<SensorId, ClockOffset> clocks_;
   std::map<SensorId, Stream> streams_;
   std::size_t bodies_ = 0;  ///< Number of bodies in waiting frames.
   Timestamp newest_ = Timestamp::min();

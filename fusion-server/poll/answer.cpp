@@ -95,11 +95,11 @@ std::optional<ClockExchange> exchange_of(const http::ClientResponse& response) {
 }
 
 SensorFrame place_in_time(const resource::FrameResource& frame, const SensorId& sensor,
-                          Timestamp received, Duration shift,
+                          Timestamp received, const std::optional<ClockEstimate>& clock,
                           const std::optional<FloorPlane>& floor) {
   SensorFrame placed = resource::to_sensor_frame(frame, sensor, received);
-  placed.captured += shift;
-  for (BodyFrame& body : placed.bodies) body.captured += shift;
+  move_in_time(placed, correction(clock));
+  placed.clock_sigma = clock_sigma(clock);
   placed.floor = frame.space == resource::SpaceKind::World ? FloorPlane{} : floor;
   return placed;
 }

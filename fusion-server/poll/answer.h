@@ -33,9 +33,10 @@ struct FrameAnswer {
 /// The four time stamps, if the answer has a Chorus-Clock header.
 [[nodiscard]] std::optional<ClockExchange> exchange_of(const http::ClientResponse& response);
 
-/// The frame with times shifted to our clock by `shift`, and its floor: y = 0 in world space.
+/// The frame with times moved to our clock, and its floor: y = 0 in world space.
 [[nodiscard]] SensorFrame place_in_time(const resource::FrameResource& frame,
-                                        const SensorId& sensor, Timestamp received, Duration shift,
+                                        const SensorId& sensor, Timestamp received,
+                                        const std::optional<ClockEstimate>& clock,
                                         const std::optional<FloorPlane>& floor);
 
 /// Why the pipeline cannot use a frame with this time: it is in the future, or very old.

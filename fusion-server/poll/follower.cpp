@@ -251,7 +251,7 @@ void Follower::take_event(std::string_view text) {
 
 SensorFrame Follower::placed(const Arrival& arrival) const {
   const auto clock = clock_.at(arrival.received);
-  return place_in_time(*arrival.raw, sensor_.id, arrival.received, correction(clock), floor_);
+  return place_in_time(*arrival.raw, sensor_.id, arrival.received, clock, floor_);
 }
 
 std::optional<Error> Follower::untimely_now(const Arrival& arrival) const {

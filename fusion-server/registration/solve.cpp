@@ -14,6 +14,7 @@
 #include "fusion-server/registration/adjoint.h"
 #include "fusion-server/registration/adjustment.h"
 #include "fusion-server/registration/pair_registration.h"
+#include "fusion-server/registration/time_offset.h"
 #include "fusion-server/registration/transform_graph.h"
 
 namespace chorus::registration {
@@ -332,7 +333,13 @@ Registration solve(const std::vector<WalkTrack>& walk, Timestamp now,
   const PairEstimator estimate = [&](const Walker& target, const Walker& source) {
     return register_walkers(target, source, config);
   };
-  return solve_with(estimate, walk, now, config);
+  const WalkClocks clocks = clocks_of(walk, config);
+  if (clocks.offsets.empty()) return solve_with(estimate, walk, now, config);
+  std::vector<WalkTrack> in_step = walk;
+  bring_in_step(in_step, clocks);
+  Registration found = solve_with(unless_open(estimate, clocks), in_step, now, config);
+  found.clocks = clocks.offsets;
+  return found;
 }
 
 }  // namespace chorus::registration

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "fusion-server/registration/pair_registration.h"
+#include "fusion-server/registration/time_offset.h"
 
 namespace chorus::server {
 namespace {
@@ -80,7 +81,9 @@ std::map<SensorId, Walker> walkers_of(const std::vector<WalkTrack>& walk,
 }
 
 Registration solve_pairs_first(const core::SolveJob& job, Timestamp now) {
-  const std::vector<WalkTrack> walk = core::assembled(job.walk);
+  std::vector<WalkTrack> walk = core::assembled(job.walk);
+  const registration::WalkClocks clocks = registration::clocks_of(walk, job.config);
+  registration::bring_in_step(walk, clocks);
   const auto walkers = walkers_of(walk, job.config);
   std::vector<Pair> pairs = pairs_of(walkers);
   on_all_cores(pairs.size(), [&](std::size_t i) {
@@ -95,7 +98,10 @@ Registration solve_pairs_first(const core::SolveJob& job, Timestamp now) {
     if (found != solved.end() && found->second->edge) return *found->second->edge;
     return Result<PairwiseRegistration>(fail(ErrorCode::Unavailable, "registration", "given up"));
   };
-  return registration::solve_with(look_up, walk, now, job.config);
+  Registration found =
+      registration::solve_with(registration::unless_open(look_up, clocks), walk, now, job.config);
+  found.clocks = clocks.offsets;
+  return found;
 }
 
 }  // namespace

@@ -21,6 +21,10 @@ using nlohmann::json;
 constexpr JsonLimits kLimits{4U << 20U, 16};
 constexpr double kMaxPlace = 1000.0;    // [m]
 constexpr double kMaxNormError = 0.01;  // written with 5 digits
+constexpr const char* kClockOffset = "clockOffsetMilliseconds";
+constexpr const char* kClockUncertainty = "clockUncertaintyMilliseconds";
+constexpr double kMillisecond = 1e3;
+constexpr double kMaxClockOffset = 1e5;  // [ms]
 
 Error wrong(std::string where, std::string what) {
   return {ErrorCode::Malformed, "registration: " + std::move(where), std::move(what)};
@@ -165,6 +169,24 @@ Result<Extrinsics> extrinsics_of(const json& object, const std::string& where) {
   return out;
 }
 
+/// The offset of a sensor's clock, if one was found from the walk.
+Result<void> read_clock(const json& object, const std::string& where, const SensorId& sensor,
+                        Registration& out) {
+  if (!object.contains(kClockOffset)) return {};
+  const auto added = number(object, where, kClockOffset, kMaxClockOffset);
+  const auto sigma = number(object, where, kClockUncertainty, kMaxClockOffset, 0.0);
+  if (!added) return pass(added);
+  if (!sigma) return pass(sigma);
+  out.clocks[sensor] = {from_seconds(*added / kMillisecond),
+                        from_seconds(std::abs(*sigma) / kMillisecond)};
+  return {};
+}
+
+void add_clock(json& object, const ClockOffset& clock) {
+  object[kClockOffset] = kMillisecond * seconds(clock.added);
+  object[kClockUncertainty] = kMillisecond * seconds(clock.sigma);
+}
+
 Result<PairwiseRegistration> edge_of(const json& object) {
   if (!object.is_object()) return tl::unexpected(wrong("edges", "objects are wanted"));
   PairwiseRegistration edge;
@@ -200,6 +222,7 @@ Result<void> read_sensors(const json& root, Registration& out) {
     auto place = extrinsics_of(object, "sensors." + name);
     if (!place) return pass(place);
     if (place->chain.empty()) place->chain = {*id};
+    if (auto ok = read_clock(object, "sensors." + name, *id, out); !ok) return ok;
     out.sensors.emplace(std::move(*id), std::move(*place));
   }
   return {};
@@ -283,6 +306,9 @@ std::string write_registration(const Registration& registration) {
     } else {
       unplaced[id.str()] = verdict_json(own);
     }
+  }
+  for (const auto& [id, clock] : registration.clocks) {
+    if (sensors.contains(id.str())) add_clock(sensors[id.str()], clock);
   }
   json edges = json::array();
   for (const PairwiseRegistration& edge : registration.edges) {

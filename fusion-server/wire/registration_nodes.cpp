@@ -53,6 +53,19 @@ Node sensor_node(const SensorId& id, const Extrinsics& place) {
   return node;
 }
 
+/// The offset of its clock, where one was found from the walk.
+void add_clock(Node& node, const Registration& registration, const SensorId& id) {
+  const auto clock = registration.clocks.find(id);
+  if (clock == registration.clocks.end()) return;
+  constexpr int kDigits = 3;
+  constexpr double kMillisecond = 1e3;
+  const auto put = [&](const char* key, Duration value) {
+    node.properties.emplace_back(key, Decimal{kMillisecond * seconds(value), kDigits});
+  };
+  put("clockOffsetMilliseconds", clock->second.added);
+  put("clockUncertaintyMilliseconds", clock->second.sigma);
+}
+
 Node edge_node(const PairwiseRegistration& edge) {
   constexpr int kDigits = 4;
   return {"_",
@@ -178,6 +191,7 @@ Node registration_node(const Registration& registration, const RegistrationProgr
   std::vector<Node> sensors;
   for (const auto& [id, place] : registration.sensors) {
     sensors.push_back(sensor_node(id, place));
+    add_clock(sensors.back(), registration, id);
     const auto own = registration.verdicts.find(id);
     add_verdict(sensors.back(), own != registration.verdicts.end()
                                     ? own->second

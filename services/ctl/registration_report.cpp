@@ -1,6 +1,10 @@
 #include "services/ctl/registration_report.h"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -12,6 +16,8 @@
 
 namespace chorus::ctl {
 namespace {
+
+constexpr double kSigmas95 = 1.96;
 
 std::string yaw_shown(const nlohmann::json& sensor) {
   const Eigen::Quaterniond q(client::number_at(sensor, "qw"), client::number_at(sensor, "qx"),
@@ -28,6 +34,30 @@ std::string chain_shown(const nlohmann::json& sensor) {
   return text.empty() ? "-" : text;
 }
 
+/// "the clocks of s2 and s5 differ by 212 ms +- 4" for each clock that the walk had to tell.
+std::string clocks_shown(const nlohmann::json& registration) {
+  std::vector<std::pair<std::string, double>> clocks;
+  std::map<std::string, double> sigmas;
+  for (const auto& [name, sensor] : client::part_at(registration, "sensors").items()) {
+    const double offset = client::number_at(sensor, "clockOffsetMilliseconds");
+    if (!std::isfinite(offset)) continue;
+    clocks.emplace_back(name, offset);
+    sigmas[name] = client::number_at(sensor, "clockUncertaintyMilliseconds");
+  }
+  // The common clock is that of the sensor with an exact one.
+  const auto common =
+      std::ranges::find_if(clocks, [&](const auto& each) { return sigmas[each.first] == 0.0; });
+  if (common == clocks.end()) return {};
+  std::string text;
+  for (const auto& [name, offset] : clocks) {
+    if (name == common->first) continue;
+    text += fmt::format("  the clocks of {} and {} differ by {:.0f} ms +- {:.0f}\n",
+                        printable(common->first), printable(name), std::abs(offset),
+                        std::ceil(kSigmas95 * sigmas[name]));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string registration_report(const nlohmann::json& registration) {
@@ -38,6 +68,7 @@ std::string registration_report(const nlohmann::json& registration) {
   text += "\n";
   for (const std::string& reason : lines_at(registration, "reasons")) text += "  " + reason + "\n";
   for (const std::string& next : lines_at(registration, "awaits")) text += "  next: " + next + "\n";
+  text += clocks_shown(registration);
   const std::string problem = client::text_at(registration, "storeProblem", "");
   if (!problem.empty()) text += "  not stored: " + printable(problem) + "\n";
   std::vector<std::vector<std::string>> rows{

@@ -43,9 +43,18 @@ std::vector<registration::WalkTrack> with_corrected_clocks(const Workshop& works
       const ClockExchange exchange = exchange_of(link, {free, Duration{0}, frame.received});
       free = exchange.received;
       filter.add(exchange);
-      frame.captured += correction(filter.at(exchange.received));
-      for (BodyFrame& body : frame.bodies) body.captured = frame.captured;
+      const auto clock = filter.at(exchange.received);
+      move_in_time(frame, correction(clock));
+      frame.clock_sigma = clock_sigma(clock);
     }
+  }
+  return tracks;
+}
+
+std::vector<registration::WalkTrack> without_clocks(const Workshop& workshop) {
+  std::vector<registration::WalkTrack> tracks = workshop.tracks;
+  for (registration::WalkTrack& track : tracks) {
+    for (SensorFrame& frame : track.frames) frame.clock_sigma = kUnknownClock;
   }
   return tracks;
 }

@@ -39,4 +39,7 @@ struct Request {
 [[nodiscard]] std::vector<registration::WalkTrack> with_corrected_clocks(const Workshop& workshop,
                                                                          const Network& network);
 
+/// The tracks of sensors that say nothing about their clocks.
+[[nodiscard]] std::vector<registration::WalkTrack> without_clocks(const Workshop& workshop);
+
 }  // namespace chorus::bench

@@ -19,8 +19,8 @@ struct NamedClock {
   std::function<ClockMethod()> make;  ///< Makes a new one without exchanges.
 };
 
-/// The server's method, and those it is compared with: one stamp half a round trip ago, the mean or
-/// median of Cristian's offsets, and what NTP achieves.
+/// The server's method, and those it is compared with: the least delay of the last 30 s, one stamp
+/// half a round trip ago, the mean or median of Cristian's offsets, and what NTP achieves.
 [[nodiscard]] std::vector<NamedClock> clock_methods();
 /// The server's method, and variants that leave one part out.
 [[nodiscard]] std::vector<NamedClock> clock_ablations();
@@ -46,7 +46,8 @@ struct ClockErrors {
   double rms = 0.0;
   double p95 = 0.0;
   double p99 = 0.0;
-  double deviation = 0.0;  ///< Standard deviation: a constant error does not count.
+  double deviation = 0.0;   ///< Standard deviation: a constant error does not count.
+  double after_step = 0.0;  ///< The largest from 10 s after a step on; 0: there is no step.
 };
 
 /// Errors of one draw, in the order of the methods.

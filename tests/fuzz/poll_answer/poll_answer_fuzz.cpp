@@ -84,7 +84,7 @@ void check_answer(std::string_view bytes) {
   const SensorId sensor = SensorId::parse("s1").value();
   const auto answer = poll::read_frame_answer(*response, sensor);
   if (answer.frame) {
-    const auto frame = poll::place_in_time(*answer.frame, sensor, Timestamp{}, Duration{}, {});
+    const auto frame = poll::place_in_time(*answer.frame, sensor, Timestamp{}, {}, {});
     require(frame.bodies.size() <= kMaxBodies);
   }
   (void)poll::read_floor_answer(*response);

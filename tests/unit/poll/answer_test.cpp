@@ -112,7 +112,7 @@ TEST(FrameAnswer, AFusionServerIsASensorWhateverItIsCalled) {
   fused.sensors = {"s1", "s2"};
   const auto read = read_frame_answer(turtle(fused), sensor_id("cell1"));
   ASSERT_NE(read.frame, nullptr) << why(read);
-  const auto placed = place_in_time(*read.frame, sensor_id("cell1"), kStart, Duration{0}, {});
+  const auto placed = place_in_time(*read.frame, sensor_id("cell1"), kStart, {}, {});
   EXPECT_EQ(placed.sensor, sensor_id("cell1"));
   ASSERT_TRUE(placed.floor);  // the floor of its world is y = 0
   EXPECT_EQ(placed.floor->normal, Eigen::Vector3d::UnitY());
@@ -122,10 +122,12 @@ TEST(FrameAnswer, AFusionServerIsASensorWhateverItIsCalled) {
 TEST(PlaceInTime, ShiftsCaptureTimesOfFrameAndBodiesAndAddsTheFloor) {
   const FloorPlane floor{Eigen::Vector3d::UnitY(), 1.2};
   const auto shift = std::chrono::milliseconds(-250);
-  const auto placed = place_in_time(frame("s1"), sensor_id("s1"), kStart, shift, floor);
+  const ClockEstimate clock{shift, std::chrono::milliseconds(1)};
+  const auto placed = place_in_time(frame("s1"), sensor_id("s1"), kStart, clock, floor);
   EXPECT_EQ(placed.captured, kStart + shift);
   ASSERT_EQ(placed.bodies.size(), 1u);
   EXPECT_EQ(placed.bodies[0].captured, kStart + shift);
+  EXPECT_EQ(placed.clock_sigma, clock_sigma(clock));
   EXPECT_EQ(placed.floor->offset, 1.2);
   EXPECT_EQ(placed.received, kStart);
 }

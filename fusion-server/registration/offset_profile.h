@@ -1,0 +1,59 @@
+// How well each offset between two sensors' clocks fits the walk that both saw.
+//
+// For an offset d the source's stamps are moved by d, and the middle of the body's axis is compared
+// at equal times, fitted by yaw and translation (all points of the axis, with six degrees of
+// freedom, where a floor is missing).  Derived in docs/papers/registration.md, Section 10.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "fusion-server/registration/pair_registration.h"
+#include "fusion-server/registration/student_fit.h"
+
+namespace chorus::registration {
+
+/// The fit at one offset.
+struct OffsetFit {
+  double offset = 0.0;  ///< Added to the source's stamps [s].
+  StudentFit walk;
+};
+
+/// The offset of a pair, from the walk alone.
+struct PairOffset {
+  double offset = 0.0;  ///< Added to the source's stamps, they are by the target's clock [s].
+  double sigma = 0.0;   ///< [s]; as large as the search where the walk does not tell.
+};
+
+/// A walk reduced to what a profile needs.
+[[nodiscard]] Walker offset_walker(const WalkTrack& walk, const RegistrationConfig& config);
+
+/// Two walks, prepared to be fitted at many offsets.
+class OffsetProfile {
+ public:
+  /// Both by offset_walker().  Searches offsets up to `range` [s] to either side.
+  OffsetProfile(const Walker& target, const Walker& source, const RegistrationConfig& config,
+                double range);
+
+  /// None when the sensors saw too little of the person together.
+  [[nodiscard]] std::optional<PairOffset> best() const;
+  /// Where the source sensor is for the target at this offset [m]; none when too little is left.
+  [[nodiscard]] std::optional<Eigen::Vector3d> place_at(double offset) const;
+
+ private:
+  [[nodiscard]] Points points_at(const Trail& source, double offset) const;
+  [[nodiscard]] std::optional<OffsetFit> fit(const Trail& source, double offset) const;
+  [[nodiscard]] std::vector<OffsetFit> sweep(const Trail& source, double middle, double reach,
+                                             double step) const;
+
+  double range_;
+  Duration max_gap_;
+  Trail target_;
+  Trail source_;
+  Trail inner_;  ///< The part of the source that stays in the target's time at every offset.
+  bool levelled_ = false;
+  Eigen::Isometry3d level_from_target_ = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d level_from_source_ = Eigen::Isometry3d::Identity();
+};
+
+}  // namespace chorus::registration

@@ -1,0 +1,40 @@
+// Fits under multivariate Student-t errors, by expectation-maximisation: robust, and with a
+// likelihood that can be compared.  Derived in docs/papers/registration.md, Section 10.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+namespace chorus::registration {
+
+/// Corresponding points; those of one frame are next to each other.
+struct Points {
+  std::vector<Eigen::Vector3d> target;
+  std::vector<Eigen::Vector3d> source;
+  std::vector<std::size_t> frame;  ///< Of the source.
+};
+
+/// One frame's -2 log likelihood.
+struct Loss {
+  std::size_t frame = 0;
+  double value = 0.0;
+};
+
+/// How well something fits.
+struct StudentFit {
+  Eigen::Isometry3d target_from_source = Eigen::Isometry3d::Identity();
+  std::vector<Loss> losses;  ///< In order of frames.
+  double inflation = 1.0;    ///< Correlation: frames per independent frame.
+};
+
+/// Yaw and translation, or six degrees of freedom if not levelled.
+[[nodiscard]] std::optional<StudentFit> fit_place(const Points& points, bool levelled);
+
+/// Values per independent value: the sum of the autocorrelation over all lags, up to the first
+/// where it is about zero.
+[[nodiscard]] double inflation_of(const std::vector<Eigen::Vector3d>& series);
+
+}  // namespace chorus::registration

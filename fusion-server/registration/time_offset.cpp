@@ -1,0 +1,200 @@
+#include "fusion-server/registration/time_offset.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+#include <Eigen/Cholesky>
+
+#include "common/base/median.h"
+#include "fusion-server/registration/offset_interval.h"
+#include "fusion-server/registration/offset_profile.h"
+
+namespace chorus::registration {
+namespace {
+
+constexpr double kKnown = 0.002;       // [s] a pair known this well is not searched: 2 mm of walk
+constexpr double kMostSearched = 1.1;  // [s]
+constexpr double kSearchSigmas = 4.0;
+constexpr double kLeastSigma = 0.001;  // [s] of a pair: what views differ in is no time
+constexpr double kExact = 1e-4;        // [s] a clock that is known exactly
+constexpr double kOutlier = 3.0;       // sigmas from which a pair counts less and less
+constexpr int kIterations = 10;
+constexpr double kMaxSpread = 0.05;  // [m] of the place, over what is open of the offset
+
+/// One pair's measurement: offset of source minus that of target.
+struct Measured {
+  std::size_t target;
+  std::size_t source;
+  OffsetProfile profile;
+  std::optional<PairOffset> offset;  ///< None: it saw too little.
+};
+
+struct Network {
+  std::vector<SensorId> sensors;
+  std::vector<double> priors;  ///< Sigma of each clock [s].
+  std::vector<Measured> pairs;
+  Eigen::VectorXd offsets;
+  Eigen::MatrixXd covariance;
+
+  [[nodiscard]] double between(const Measured& pair) const {
+    return offsets[at(pair.source)] - offsets[at(pair.target)];
+  }
+  [[nodiscard]] double sigma_between(std::size_t a, std::size_t b) const {
+    const double variance =
+        covariance(at(a), at(a)) + covariance(at(b), at(b)) - 2.0 * covariance(at(a), at(b));
+    return std::sqrt(std::max(0.0, variance));
+  }
+  static Eigen::Index at(std::size_t sensor) { return static_cast<Eigen::Index>(sensor); }
+};
+
+/// The sigma that half of the frames state at most.
+double prior_of(const WalkTrack& track) {
+  if (track.frames.empty()) return kExact;
+  std::vector<double> stated;
+  stated.reserve(track.frames.size());
+  for (const SensorFrame& frame : track.frames) stated.push_back(frame.clock_sigma);
+  return std::max(kExact, median(std::move(stated)));
+}
+
+/// The pairs that are worth a search, each searched.
+void measure(Network& network, const std::vector<Walker>& walkers,
+             const RegistrationConfig& config) {
+  for (std::size_t target = 0; target < walkers.size(); ++target) {
+    for (std::size_t source = target + 1; source < walkers.size(); ++source) {
+      const double sigma = std::hypot(network.priors[target], network.priors[source]);
+      if (sigma < kKnown) continue;
+      const double range = std::min(kMostSearched, kSearchSigmas * sigma);
+      OffsetProfile profile(walkers[target], walkers[source], config, range);
+      const auto offset = profile.best();
+      network.pairs.push_back({target, source, std::move(profile), offset});
+    }
+  }
+}
+
+double weight_of(const Network& network, const Measured& pair) {
+  if (!pair.offset) return 0.0;
+  const double sigma = std::hypot(pair.offset->sigma, kLeastSigma);
+  const double off = (pair.offset->offset - network.between(pair)) / (kOutlier * sigma);
+  return 1.0 / (sigma * sigma) / (1.0 + off * off);
+}
+
+/// One step of re-weighted least squares over all pairs and priors.
+void solve(Network& network) {
+  const auto size = Network::at(network.sensors.size());
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(size);
+  for (std::size_t i = 0; i < network.priors.size(); ++i)
+    information(Network::at(i), Network::at(i)) = 1.0 / (network.priors[i] * network.priors[i]);
+  for (const Measured& pair : network.pairs) {
+    const double weight = weight_of(network, pair);
+    const auto target = Network::at(pair.target);
+    const auto source = Network::at(pair.source);
+    information(target, target) += weight;
+    information(source, source) += weight;
+    information(target, source) -= weight;
+    information(source, target) -= weight;
+    const double measured = pair.offset ? pair.offset->offset : 0.0;
+    right[source] += weight * measured;
+    right[target] -= weight * measured;
+  }
+  network.covariance = information.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+  network.offsets = network.covariance * right;
+}
+
+/// How far the source's place moves while the offset goes through what is open of it [m]; infinite
+/// when that cannot be seen.
+double place_spread(const Network& network, const Measured& pair) {
+  const double middle = network.between(pair);
+  const double sigma = network.sigma_between(pair.target, pair.source);
+  if (sigma < kKnown) return 0.0;
+  std::vector<Eigen::Vector3d> places;
+  for (const double share : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
+    const auto place = pair.profile.place_at(middle + share * kSigmas95 * sigma);
+    if (!place) return std::numeric_limits<double>::infinity();
+    places.push_back(*place);
+  }
+  double spread = 0.0;
+  for (const Eigen::Vector3d& a : places) {
+    for (const Eigen::Vector3d& b : places) spread = std::max(spread, (a - b).norm());
+  }
+  return spread;
+}
+
+Error cannot_tell(const SensorId& target, const SensorId& source) {
+  const std::string both = fmt::format("sensors {} and {}", target.str(), source.str());
+  return {ErrorCode::Unavailable, both,
+          fmt::format("walk straight once: the clocks of {} cannot be told from a circle or from "
+                      "standing",
+                      both)};
+}
+
+/// All offsets against the clock that is known best, of equals the first.
+std::map<SensorId, ClockOffset> against_the_best(const Network& network) {
+  const auto least = std::ranges::min_element(network.priors);
+  const auto best = static_cast<std::size_t>(least - network.priors.begin());
+  std::map<SensorId, ClockOffset> offsets;
+  for (std::size_t i = 0; i < network.sensors.size(); ++i) {
+    const double added = network.offsets[Network::at(i)] - network.offsets[Network::at(best)];
+    offsets[network.sensors[i]] = {from_seconds(added),
+                                   from_seconds(network.sigma_between(best, i))};
+  }
+  return offsets;
+}
+
+bool all_known(const std::vector<WalkTrack>& walk) {
+  return std::ranges::all_of(
+      walk, [](const WalkTrack& track) { return std::hypot(prior_of(track), kExact) < kKnown; });
+}
+
+}  // namespace
+
+WalkClocks clocks_of(const std::vector<WalkTrack>& walk, const RegistrationConfig& config) {
+  WalkClocks clocks;
+  if (config.method == PairMethod::IcpOnly || all_known(walk)) return clocks;
+  Network network;
+  std::vector<Walker> walkers;
+  for (const WalkTrack& track : walk) {
+    if (std::ranges::find(network.sensors, track.sensor) != network.sensors.end()) continue;
+    network.sensors.push_back(track.sensor);
+    network.priors.push_back(prior_of(track));
+    walkers.push_back(offset_walker(track, config));
+  }
+  measure(network, walkers, config);
+  network.offsets = Eigen::VectorXd::Zero(Network::at(network.sensors.size()));
+  for (int i = 0; i < kIterations; ++i) solve(network);
+  clocks.offsets = against_the_best(network);
+  for (const Measured& pair : network.pairs) {
+    if (place_spread(network, pair) <= kMaxSpread) continue;
+    const SensorId& target = network.sensors[pair.target];
+    const SensorId& source = network.sensors[pair.source];
+    clocks.open.emplace(std::pair{target, source}, cannot_tell(target, source));
+  }
+  return clocks;
+}
+
+void bring_in_step(std::vector<WalkTrack>& walk, const WalkClocks& clocks) {
+  for (WalkTrack& track : walk) {
+    const auto found = clocks.offsets.find(track.sensor);
+    if (found == clocks.offsets.end()) continue;
+    for (SensorFrame& frame : track.frames) move_in_time(frame, found->second.added);
+  }
+}
+
+PairEstimator unless_open(PairEstimator estimate, const WalkClocks& clocks) {
+  if (clocks.open.empty()) return estimate;
+  return [estimate = std::move(estimate), open = clocks.open](
+             const Walker& target, const Walker& source) -> Result<PairwiseRegistration> {
+    auto edge = estimate(target, source);
+    const SensorId& a = target.trail.sensor;
+    const SensorId& b = source.trail.sensor;
+    auto found = open.find({a, b});
+    if (found == open.end()) found = open.find({b, a});
+    if (edge && found != open.end()) return tl::unexpected(found->second);
+    return edge;
+  };
+}
+
+}  // namespace chorus::registration

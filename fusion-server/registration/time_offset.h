@@ -1,0 +1,37 @@
+// The walk by one clock: how far the sensors' clocks differ, seen from the motion.
+//
+// Every pair of sensors whose clocks are not known measures their offset (offset_profile.h); what
+// each clock states about itself is the prior.  Weighted least squares over the network of all
+// pairs gives one offset per sensor.  A pair is refused when the walk leaves its place open within
+// what the network leaves open of its offset.  Derived in docs/papers/registration.md, Section 10.
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fusion-server/registration/pair_registration.h"
+
+namespace chorus::registration {
+
+/// What the walk says about the clocks.
+struct WalkClocks {
+  /// For every sensor, if some clock is not known: all against the one that is known best.  Empty
+  /// when all are known.
+  std::map<SensorId, ClockOffset> offsets;
+  /// Target and source of pairs whose place depends on an offset that the walk leaves open, and
+  /// why.
+  std::map<std::pair<SensorId, SensorId>, Error> open;
+};
+
+[[nodiscard]] WalkClocks clocks_of(const std::vector<WalkTrack>& walk,
+                                   const RegistrationConfig& config);
+
+/// Moves every stamp to the common clock.
+void bring_in_step(std::vector<WalkTrack>& walk, const WalkClocks& clocks);
+
+/// The same estimator, but pairs whose clocks are open are refused.
+[[nodiscard]] PairEstimator unless_open(PairEstimator estimate, const WalkClocks& clocks);
+
+}  // namespace chorus::registration

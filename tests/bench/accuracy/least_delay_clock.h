@@ -1,0 +1,31 @@
+// What the server did before: the exchange with the least delay of the last 30 s, without a model
+// of the rate, applied only where it is larger than its own uncertainty.
+#pragma once
+
+#include <deque>
+
+#include "common/time/clock_estimate.h"
+
+namespace chorus::bench {
+
+class LeastDelayClock {
+ public:
+  void add(const ClockExchange& exchange);
+  /// What is added to their stamps.
+  [[nodiscard]] Duration correction(Timestamp now) const;
+
+ private:
+  struct Sample {
+    Timestamp received;
+    Duration ours_minus_theirs;
+    Duration uncertainty;
+  };
+  [[nodiscard]] static Duration grown(const Sample& sample, Timestamp now);
+  [[nodiscard]] const Sample* best(Timestamp now) const;
+  [[nodiscard]] bool contradicts(const Sample& sample);
+
+  std::deque<Sample> samples_;  ///< Oldest first; uncertainty rises, so the first is the best.
+  int contradictions_ = 0;
+};
+
+}  // namespace chorus::bench
