@@ -1,0 +1,128 @@
+#include "fusion-server/fusion/motion_filter.h"
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "fusion-server/fusion/point_filter.h"
+
+namespace chorus::fusion {
+namespace {
+
+constexpr Timestamp kStart = from_unix_ns(1'790'000'000'000'000'000);
+constexpr MotionFilter::Densities kDensities{0.001, 10.0};
+constexpr double kSigma = 0.01;     // [m]
+constexpr double kStep = 1.0 / 30;  // [s]
+
+Timestamp at_step(int i) { return kStart + from_seconds(kStep * i); }
+
+/// At rest for a second; then away at a constant speed [m/s].
+double place(int i, double speed) { return i < 30 ? 0.0 : speed * kStep * (i - 30); }
+
+/// Over many draws, at each of 60 steps.
+struct Errors {
+  std::vector<double> squared = std::vector<double>(60, 0.0);   ///< Mean, per axis [m^2].
+  std::vector<double> variance = std::vector<double>(60, 0.0);  ///< Mean stated one.
+};
+
+template <class Filter, class Variance>
+Errors errors_of(const Filter& fresh, double speed, const Variance& variance) {
+  constexpr int kDraws = 400;
+  Errors errors;
+  std::mt19937 random(11);
+  std::normal_distribution<double> noise(0.0, kSigma);
+  for (int draw = 0; draw < kDraws; ++draw) {
+    Filter filter = fresh;
+    for (int i = 0; i < 60; ++i) {
+      const Eigen::Vector3d truth(place(i, speed), 0, 0);
+      const Eigen::Vector3d seen =
+          truth + Eigen::Vector3d(noise(random), noise(random), noise(random));
+      filter.update(at_step(i), seen, kSigma * kSigma);
+      const auto [position, stated] = variance(filter, at_step(i));
+      errors.squared[i] += (position - truth).squaredNorm() / 3 / kDraws;
+      errors.variance[i] += stated / kDraws;
+    }
+  }
+  return errors;
+}
+
+Errors of_mixed(double speed, const MotionFilter::Densities& densities = kDensities) {
+  return errors_of(MotionFilter(densities), speed, [](const MotionFilter& filter, Timestamp at) {
+    const auto motion = filter.at(at).value();
+    return std::pair(motion.position, motion.variance);
+  });
+}
+
+Errors of_single(double speed, double density) {
+  return errors_of(PointFilter(density), speed, [](const PointFilter& filter, Timestamp at) {
+    return std::pair(*filter.at(at), filter.position_variance());
+  });
+}
+
+double rms(const Errors& errors, int from, int to) {
+  double sum = 0.0;
+  for (int i = from; i < to; ++i) sum += errors.squared[i];
+  return std::sqrt(sum / (to - from));
+}
+
+double stated(const Errors& errors, int from, int to) {
+  double sum = 0.0;
+  for (int i = from; i < to; ++i) sum += errors.variance[i];
+  return std::sqrt(sum / (to - from));
+}
+
+TEST(MotionFilter, IsNearlyAsSmoothAtRestAsTheStiffFilter) {
+  const Errors mixed = of_mixed(0.0);
+  EXPECT_LT(rms(mixed, 20, 30), 0.7 * rms(of_single(0.0, kDensities.moving), 20, 30));
+  EXPECT_LT(rms(mixed, 20, 30), 1.6 * rms(of_single(0.0, kDensities.resting), 20, 30));
+}
+
+TEST(MotionFilter, FollowsAStartAsQuicklyAsTheAgileFilterAndIsSmootherAfterwards) {
+  for (const double speed : {0.5, 1.0, 2.0}) {  // [m/s]
+    const Errors mixed = of_mixed(speed);
+    const Errors agile = of_single(speed, kDensities.moving);
+    EXPECT_LT(rms(mixed, 30, 33), 1.1 * rms(agile, 30, 33)) << speed;
+    EXPECT_LT(rms(mixed, 33, 40), 1.0 * rms(agile, 33, 40)) << speed;
+    EXPECT_LT(rms(mixed, 40, 60), 0.75 * rms(agile, 40, 60)) << speed;
+  }
+}
+
+TEST(MotionFilter, StatesItsErrorsAlsoWhileItDoesNotKnowWhetherThePointMoves) {
+  const Errors start = of_mixed(0.5);
+  EXPECT_GT(stated(start, 30, 33), 0.85 * rms(start, 30, 33));
+  for (const double speed : {0.0, 1.0}) {
+    const Errors errors = of_mixed(speed);
+    EXPECT_GT(stated(errors, 20, 30), 0.95 * rms(errors, 20, 30));
+    EXPECT_LT(stated(errors, 20, 30), 1.25 * rms(errors, 20, 30));
+    EXPECT_LT(stated(errors, 40, 60), 1.25 * rms(errors, 40, 60));
+  }
+}
+
+TEST(MotionFilter, IsTheSingleFilterWhereBothDensitiesAreEqual) {
+  const Errors mixed = of_mixed(1.0, {3.0, 3.0});
+  const Errors single = of_single(1.0, 3.0);
+  for (int i = 0; i < 60; ++i) {
+    EXPECT_NEAR(std::sqrt(mixed.squared[i]), std::sqrt(single.squared[i]), 2e-4) << i;
+    EXPECT_NEAR(mixed.variance[i], single.variance[i], 1e-9) << i;
+  }
+}
+
+TEST(MotionFilter, AnUnseenPointSlowsDownAndIsLessAndLessSure) {
+  MotionFilter filter(kDensities);
+  EXPECT_FALSE(filter.at(kStart));
+  for (int i = 0; i < 60; ++i) filter.update(at_step(i), {0.05 * i, 0, 0}, 1e-6);  // 1.5 m/s
+  const auto seen = filter.at(at_step(59)).value();
+  const auto soon = filter.at(at_step(62)).value();
+  const auto late = filter.at(at_step(59 + 90)).value();
+  EXPECT_NEAR(seen.velocity.x(), 1.5, 0.05);
+  EXPECT_NEAR(soon.position.x(), 0.05 * 62, 0.03);
+  EXPECT_NEAR(late.position.x() - seen.position.x(), 1.5 * 0.4, 0.05);  // the time constant
+  EXPECT_LT(late.velocity.x(), 0.01);
+  EXPECT_LT(seen.variance, soon.variance);
+  EXPECT_LT(soon.variance, late.variance);
+}
+
+}  // namespace
+}  // namespace chorus::fusion
