@@ -34,7 +34,7 @@ const camera = new Camera(element('video'), { changed: cameraChanged, picture: (
 let pace = new Pace();
 let looker = null;
 let link = null;
-let said = ''; // the hello that the sensor has
+let said = {}; // the hello that the sensor has
 let complained = 0;
 let looked = 0;
 let awake = null;
@@ -77,8 +77,9 @@ function introduce(picture, sent) {
   const { image, name, ...model } = looker.hello;
   const label = camera.label().replace(/[^ -~]/g, '').trim() || 'a camera';
   const hello = { ...model, name: `${label}, ${name}`.slice(0, 64), ...lens };
-  if (link && said !== JSON.stringify(hello)) link.say(hello);
-  said = JSON.stringify(hello);
+  if (said.name !== hello.name) disconnect(); // a connection keeps its name
+  if (link && JSON.stringify(said) !== JSON.stringify(hello)) link.say(hello);
+  said = hello;
   link ??= new Link({ root: ROOT, token, hello, changed: linkChanged, complain });
   return true;
 }

@@ -54,7 +54,7 @@ export function stateOf(known) {
   const next = known.slept > 0 ? `This device was asleep for ${Math.round(known.slept)} s: let its screen stay on.` : '';
   if (known.people === null) return { tone: 'warn', sentence: 'Looking at the first picture …', next };
   if (known.people === 0) return { tone: 'calm', sentence: 'Live: nobody is in sight.', next: next || 'Whole bodies are found best, not against a window.' };
-  return { tone: 'good', sentence: `Live: ${many(known.people, 'person', 'people')}, ${known.rate.toFixed(1)} pictures a second.`, next };
+  return { tone: 'good', sentence: `Live: ${many(known.people, 'person', 'people')}, ${known.rate.toFixed(1)} Hz.`, next };
 }
 
 /// What getUserMedia's failure means.

@@ -14,8 +14,8 @@ const known = (changes) => ({
 const said = (changes) => { const { tone, sentence } = stateOf(known(changes)); return `${tone}: ${sentence}`; };
 
 test('good is only what is seen, taken and pushed', () => {
-  assert.equal(said({}), 'good: Live: one person, 8.2 pictures a second.');
-  assert.equal(said({ people: 3 }), 'good: Live: 3 people, 8.2 pictures a second.');
+  assert.equal(said({}), 'good: Live: one person, 8.2 Hz.');
+  assert.equal(said({ people: 3 }), 'good: Live: 3 people, 8.2 Hz.');
   assert.equal(said({ people: 0 }), 'calm: Live: nobody is in sight.');
   assert.equal(said({ running: false }), 'calm: Ready.');
   assert.equal(said({ people: null }), 'warn: Looking at the first picture …');

@@ -123,6 +123,18 @@ test('a lens that is only guessed makes rays less sure at the edge', async () =>
   await until('the new lens is known', async () => width((await joints(phone)).Head) > 1.5 * calibrated);
 });
 
+test('another model says hello anew', async () => {
+  const taken = async (name, layout) => {
+    const { pusher } = await workshop.json(`${phone.url}push`);
+    return pusher.name.endsWith(name) && pusher.layout === layout && pusher.frames > 1;
+  };
+  await page.selectOption('#model', 'movenet');
+  await until('MoveNet is pushed', () => taken('MoveNet MultiPose', 'coco_17'));
+  await page.selectOption('#model', 'blazepose-lite');
+  await until('BlazePose is pushed', () => taken('BlazePose lite', 'mediapipe_33'));
+  await headline(/^Live: one person/);
+});
+
 test('a camera that is lost, or gives nothing more, comes back', async () => {
   await page.evaluate(() => document.getElementById('video').srcObject.getVideoTracks()[0].dispatchEvent(new Event('ended')));
   await headline(/^The camera is gone\.$/);
