@@ -17,7 +17,7 @@ let page;
 const foreign = [];
 const complaints = [];
 
-const bridge = (id) => ({ id, device: { kind: 'bridge', bridge: { page: true } } });
+const bridge = (id) => ({ id, device: { kind: 'bridge', bridge: { page: true, yields_after_s: 20 } } }); // a busy computer is no silent pusher
 const headline = (text, on = page) => on.waitForFunction(
   (source) => new RegExp(source).test(document.getElementById('headline').textContent), text.source, { timeout: 60000 });
 const next = (on = page) => on.textContent('#next');
