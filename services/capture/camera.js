@@ -50,7 +50,7 @@ export class Camera {
   /// To be called about once a second while this page is seen: notices a camera that stands still, and opens a lost one again.
   watch(now) {
     if (this.state === 'on' && now - this.seen > SILENT_MS) this.#set('silent');
-    this.#again(false, now);
+    else this.#again(false, now);
   }
 
   /// After a pause in which no pictures could come.
