@@ -37,6 +37,7 @@ export class Camera {
       else stream.getTracks().forEach((track) => track.stop());
     } catch (error) {
       if (turn === this.turn) this.#set(id && error?.name === 'OverconstrainedError' ? 'absent' : cameraStateOf(error));
+      if (this.state === 'denied') this.#whenAllowed(turn);
     }
     return undefined;
   }
@@ -74,6 +75,14 @@ export class Camera {
   #again(plugged, now = performance.now()) {
     const missing = ['busy', 'lost', 'none', 'absent', 'silent'].includes(this.state);
     if (missing && (plugged || now - this.tried > AGAIN_MS)) this.open(this.id);
+  }
+
+  /// Opens it as soon as the person has changed his mind, in browsers that tell.
+  async #whenAllowed(turn) {
+    const permission = await navigator.permissions?.query({ name: 'camera' }).catch(() => null);
+    permission?.addEventListener('change', () => {
+      if (turn === this.turn && permission.state === 'granted') this.open(this.id);
+    });
   }
 
   #release() {

@@ -28,14 +28,15 @@ export function lensOfCalibration(calibration, picture, sent) {
     throw new Error(`The calibration is for pictures of ${calibration.width} x ${calibration.height}, and the camera gives ${picture.width} x ${picture.height}.`);
   }
   const [x, y] = [sent.width / calibration.width, sent.height / calibration.height];
-  const { fx, fy, cx, cy, distortion } = calibration;
+  const { fx, fy, cx, cy, distortion, focal_sigma_percent: percent = 0 } = calibration;
   return {
     intrinsics: { ...sent, fx: fx * x, fy: fy * y, cx: (cx + 0.5) * x, cy: (cy + 0.5) * y, ...(distortion && { distortion }) },
-    focalSigma: 0,
+    focalSigma: percent / 100,
   };
 }
 
-/// A file with the keys of device.camera.intrinsics, or a sensor's configuration that has them.  Throws what is wrong.
+/// A file with the keys of device.camera.intrinsics (and focal_sigma_percent, how sure the focal length is), or a sensor's configuration that
+/// has them.  Throws what is wrong.
 export function readCalibration(text) {
   let root;
   try {
@@ -50,7 +51,9 @@ export function readCalibration(text) {
   const { distortion } = found;
   const five = Array.isArray(distortion) && distortion.length === 5 && distortion.every(Number.isFinite);
   if (distortion !== undefined && !five) throw new Error('The distortion in the file is not five numbers: k1 k2 p1 p2 k3.');
-  return { ...Object.fromEntries(KEYS.map((key) => [key, found[key]])), ...(five && { distortion }) };
+  const percent = found.focal_sigma_percent;
+  if (percent !== undefined && !(percent >= 0 && percent <= 50)) throw new Error('How sure the focal length is must be 0 to 50 percent.');
+  return { ...Object.fromEntries(KEYS.map((key) => [key, found[key]])), ...(five && { distortion }), ...(percent && { focal_sigma_percent: percent }) };
 }
 
 /// "71 x 43 degrees": what a lens sees.

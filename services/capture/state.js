@@ -5,7 +5,7 @@ const many = (number, one, more) => (number === 1 ? `one ${one}` : `${number} ${
 const CAMERA = {
   insecure: ['The browser gives no camera to this page.', 'It needs an address that begins with https://, or localhost. Give the sensor a certificate (chorus init certificate).'],
   asking: ['Waiting for the camera …', 'Allow this page to use it when the browser asks.'],
-  denied: ['The camera is not allowed for this page.', 'Allow it in the browser’s settings for this address (the sign beside the address), and in those of the system; then press Start.'],
+  denied: ['The camera is not allowed for this page.', 'Allow it in the browser’s settings for this address (the sign beside the address), and in those of the system. If this page does not go on by itself then, press Stop and Start.'],
   none: ['There is no camera.', 'Plug one in: it is taken as soon as it is there.'],
   absent: ['The chosen camera is not there.', 'Plug it in, or choose another one below.'],
   busy: ['The camera cannot be opened.', 'Does another program or another tab use it? End that; this page tries again.'],

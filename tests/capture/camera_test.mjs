@@ -71,6 +71,20 @@ test('who refuses is not asked again; what is missing is opened when it is plugg
   assert.equal(states.at(-1), 'on');
 });
 
+test('a camera that is allowed after all is opened', async () => {
+  const permission = Object.assign(new EventTarget(), { state: 'denied' });
+  const permissions = { query: async ({ name }) => { assert.equal(name, 'camera'); return permission; } };
+  Object.defineProperty(globalThis, 'navigator', { configurable: true, value: { mediaDevices: devices, permissions } });
+  devices.getUserMedia = refused('NotAllowedError');
+  await made().open('');
+  await settle();
+  devices.getUserMedia = async () => streamOf(new Track('door'));
+  permission.state = 'granted';
+  permission.dispatchEvent(new Event('change'));
+  await settle();
+  assert.deepEqual(states, ['asking', 'denied', 'asking', 'on']);
+});
+
 test('a lost camera is told, then opened again every two seconds', async () => {
   const track = new Track('door');
   devices.getUserMedia = async () => streamOf(track);

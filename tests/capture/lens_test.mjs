@@ -40,6 +40,9 @@ test('a calibration is read alone or in a sensor’s configuration, and refused 
   assert.deepEqual(readCalibration(JSON.stringify(FILE)), FILE);
   assert.deepEqual(readCalibration(JSON.stringify({ device: { camera: { intrinsics: FILE } } })), FILE);
   assert.deepEqual(readCalibration(JSON.stringify({ intrinsics: FILE, error: 0.3 })), FILE);
+  const unsure = readCalibration(JSON.stringify({ ...FILE, focal_sigma_percent: 0.2 }));
+  assert.equal(lensOfCalibration(unsure, FILE, { width: 640, height: 360 }).focalSigma, 0.002);
+  assert.throws(() => readCalibration(JSON.stringify({ ...FILE, focal_sigma_percent: -1 })), /0 to 50 percent/);
   assert.throws(() => readCalibration('a picture'), /no JSON/);
   assert.throws(() => readCalibration('null'), /has no width, height/);
   assert.throws(() => readCalibration(JSON.stringify({ ...FILE, fy: '904' })), /has no fy/);
