@@ -83,12 +83,13 @@ test('page and runner see the same, and make a body together', async () => {
     Object.assign(settings.device.camera, { source: still, max_rate_hz: 3 });
     return freePort().then((port) => workshop.service('chorus-sensor', `${id}-runner`, port, { id, device: settings.device }));
   };
+  const starting = [watching('cam01', film), watching('cam02', workshop.still('cam02', INSTANT))];
   await calibrate(page);
   await page.click('#run');
   await headline(/^Live: one person, /);
   await until('frames are taken', async () => (await workshop.json(`${phone.url}push`)).pusher?.frames > 10);
   await picture('live');
-  const twin = await watching('cam01', film);
+  const [twin, other] = await Promise.all(starting);
   const wanted = await until('the runner sees the person', () => joints(twin));
   twin.child.kill();
   const { median, most } = apart(await joints(phone), wanted);
@@ -98,7 +99,6 @@ test('page and runner see the same, and make a body together', async () => {
   assert.match(state.pusher.name, /BlazePose lite$/);
   assert.ok(Math.abs(state.pusher.clockOffsetMilliseconds) < 50, 'one computer, one clock');
 
-  const other = await watching('cam02', workshop.still('cam02', INSTANT));
   const fusion = await workshop.service('chorus-fusion', 'fusion', await freePort(), {
     viewer_dir: '', poll: { ca: join(workshop.folder, 'ca/ca.crt') },
     sensors: [{ id: 'cam01', url: phone.url, token: READ }, { id: 'cam02', url: other.url, token: READ }],
