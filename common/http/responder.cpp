@@ -76,14 +76,22 @@ Result<Router::Match> named(const Router& router, std::string_view path) {
   return router.match(path.substr(0, path.size() - kJsonSuffix.size()));
 }
 
-/// A redirection to the same path with or without a slash at the end, if that one is known.
-std::optional<Answer> redirected(const RequestHead& head, std::string_view path,
-                                 const Router& router) {
-  if (head.method != Method::Get && head.method != Method::Head) return std::nullopt;
+/// The entry of the same path with or without a slash at the end; null if there is none.
+const Router::Entry* other_slash(std::string_view path, const Router& router) {
   const bool slash = path.ends_with('/');
   const std::string other =
       slash ? std::string(path.substr(0, path.size() - 1)) : std::string(path) + "/";
-  if (path.size() < 2 || !router.match(other)) return std::nullopt;
+  if (path.size() < 2) return nullptr;
+  const auto match = router.match(other);
+  return match ? match->entry : nullptr;
+}
+
+/// A redirection to that path, if it is known.
+std::optional<Answer> redirected(const RequestHead& head, std::string_view path,
+                                 const Router& router) {
+  if (head.method != Method::Get && head.method != Method::Head) return std::nullopt;
+  if (other_slash(path, router) == nullptr) return std::nullopt;
+  const bool slash = path.ends_with('/');
   // Relative, so it is correct behind any proxy; left percent-encoded, so nothing is decoded twice.
   std::string_view last = head.path;
   if (slash) last.remove_suffix(1);
@@ -137,8 +145,8 @@ Reaction Responder::react(const RequestHead& head, const Peer& peer) const {
   auto match = named(*router_, *path);
   if (head.method == Method::Options && is_stranger(head, peer))
     return options(any_route_, kAnyMethods);
-  if (auto refused = turn_away(head, peer, match ? match->entry : nullptr))
-    return Reaction::of(std::move(*refused));
+  const Router::Entry* entry = match ? match->entry : other_slash(*path, *router_);
+  if (auto refused = turn_away(head, peer, entry)) return Reaction::of(std::move(*refused));
   if (!match) {
     auto elsewhere = redirected(head, *path, *router_);
     if (elsewhere) elsewhere->route = any_route_;

@@ -41,4 +41,18 @@ Eigen::Matrix3d ray_covariance(const Eigen::Vector3d& ray, const Intrinsics& cam
   return ray_from_pixel * ray_from_pixel.transpose();
 }
 
+Eigen::Vector3d turn_of_focal(const Eigen::Vector3d& ray) {
+  // At angle a from the axis: tan a = r / f, so da = -sin a cos a df / f.
+  const Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+  const double cosine = ray.dot(axis);
+  return cosine * (axis - cosine * ray);
+}
+
+void widen_ray(Joint& joint, double focal_sigma) {
+  if (!joint.bears() || !joint.covariance.known()) return;
+  const Eigen::Vector3d turn = focal_sigma * turn_of_focal(joint.position);
+  joint.covariance =
+      Covariance(Eigen::Matrix3d(joint.covariance.matrix() + turn * turn.transpose()));
+}
+
 }  // namespace chorus

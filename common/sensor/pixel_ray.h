@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "common/body/skeleton.h"
 #include "common/sensor/camera_image.h"
 
 namespace chorus {
@@ -18,5 +19,13 @@ namespace chorus {
 /// `sigma` [px].  Distortion changes the direction, but hardly its error.
 [[nodiscard]] Eigen::Matrix3d ray_covariance(const Eigen::Vector3d& ray, const Intrinsics& camera,
                                              double sigma);
+
+/// How a ray turns with the relative error of the focal length [rad]: towards the camera's axis, z.
+[[nodiscard]] Eigen::Vector3d turn_of_focal(const Eigen::Vector3d& ray);
+
+/// Adds the effect of an uncertain focal length (relative standard deviation `focal_sigma`) to a
+/// ray's covariance: nothing in the middle of the picture, much at its edge.  In sensor axes.
+/// Leaves points, and rays without a known covariance, unchanged.
+void widen_ray(Joint& joint, double focal_sigma);
 
 }  // namespace chorus

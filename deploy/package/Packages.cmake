@@ -3,7 +3,8 @@
 #   common  chorus (small: init, doctor, status, register, record), user, folders
 #   sensor  chorus-sensor and its service; nothing here may link OpenCV or PCL (tests/package measures its dependencies)
 #   fusion  chorus-fusion, its service and the viewer
-#   camera  the whole chorus-sensor, with the device camera and its runner; the service then runs this program
+#   camera  the whole chorus-sensor, with the device camera and its runner, and the capture page of the device bridge; the service then
+#           runs this program
 #   tools   the whole chorus: import, replay, fuse, export
 include(GNUInstallDirs)
 set(docs ${CMAKE_INSTALL_DATADIR}/doc)
@@ -39,6 +40,7 @@ install(PROGRAMS $<TARGET_FILE:chorus-sensor> DESTINATION ${CMAKE_INSTALL_BINDIR
 install(FILES deploy/package/camera.conf DESTINATION lib/systemd/system/chorus-sensor.service.d COMPONENT camera)
 install(FILES LICENSE DESTINATION ${docs}/chorus-camera RENAME copyright COMPONENT camera)
 install(DIRECTORY services/pose-runner DESTINATION ${CMAKE_INSTALL_DATADIR}/chorus COMPONENT camera PATTERN none EXCLUDE)
+install(DIRECTORY services/capture DESTINATION ${CMAKE_INSTALL_DATADIR}/chorus COMPONENT camera PATTERN package.json EXCLUDE)
 
 install(TARGETS chorus-fusion RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT fusion)
 foreach(service sensor fusion)
@@ -108,8 +110,8 @@ set(CPACK_COMPONENT_COMMON_DESCRIPTION "Chorus: the command line, user and folde
  Writes configurations, checks hosts, registers sensors and records.")
 set(CPACK_COMPONENT_SENSOR_DESCRIPTION "Chorus: a body-tracking device as a web service
  Serves the skeletons of one device (pushed, replayed or simulated) as linked data over HTTP.")
-set(CPACK_COMPONENT_CAMERA_DESCRIPTION "Chorus: webcams, streams and video files as sensors
- The device camera of chorus-sensor, and the runner that finds people in its pictures.")
+set(CPACK_COMPONENT_CAMERA_DESCRIPTION "Chorus: webcams, streams, video files and phones as sensors
+ The device camera of chorus-sensor, the runner that finds people in its pictures, and a page that does so on a phone.")
 set(CPACK_COMPONENT_FUSION_DESCRIPTION "Chorus: many body-tracking sensors, one tracker
  Reads sensors, finds where they stand from a walking person, and serves one tracker in many protocols.")
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION "Chorus: work on recordings

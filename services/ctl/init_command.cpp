@@ -72,7 +72,7 @@ void ask_many(const std::string& question, std::vector<std::string>& values) {
 void ask_for(InitArguments& arguments) {
   if (arguments.service == "sensor") {
     ask("Name of this sensor, unique in the workshop", arguments.sensor.id);
-    ask("Device: bridge, camera, replay or simulated", arguments.sensor.device);
+    ask("Device: bridge, camera, phone, replay or simulated", arguments.sensor.device);
     if (arguments.sensor.device == "camera") ask("Camera", arguments.sensor.camera);
     if (arguments.sensor.device == "replay") ask("Recording to play", arguments.sensor.recording);
   } else {
@@ -115,6 +115,16 @@ std::string shown_host() {
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "HOST";
 }
 
+/// The page to open; a browser gives its camera to https, and on the own host to http.
+void tell_phone(const ServiceWishes& wishes, const std::string& url) {
+  std::cerr << "On the phone, which needs ca.crt:\n  " << url << "capture/"
+            << (wishes.token.empty() ? "" : "#token=" + wishes.token) << "\n";
+  if (wishes.tls.empty() && !is_loopback(wishes.address)) {
+    std::cerr << "Without a certificate no browser gives it a camera: chorus init ca and chorus "
+                 "init certificate, then this again.\n";
+  }
+}
+
 void tell_next(const InitArguments& arguments, const ServiceWishes& wishes) {
   const std::string& service = arguments.service;
   std::cerr << fmt::format("{} written.  Next:\n  systemctl restart chorus-{}\n", arguments.out,
@@ -122,6 +132,7 @@ void tell_next(const InitArguments& arguments, const ServiceWishes& wishes) {
   const std::string url =
       fmt::format("{}://{}:{}/", wishes.tls.empty() ? "http" : "https",
                   is_loopback(wishes.address) ? "127.0.0.1" : shown_host(), wishes.port);
+  if (service == "sensor" && arguments.sensor.device == "phone") tell_phone(wishes, url);
   if (service == "sensor") {
     std::cerr << fmt::format("On the fusion host:\n  chorus init fusion --sensor {}={}{}{}\n",
                              arguments.sensor.id, url, wishes.read_token.empty() ? "" : ",",
@@ -135,10 +146,11 @@ void tell_next(const InitArguments& arguments, const ServiceWishes& wishes) {
 Result<ServiceWishes> write_sensor(InitArguments& arguments) {
   SensorWishes& wishes = arguments.sensor;
   if (const auto id = SensorId::parse(wishes.id); !id) return pass(id);
-  constexpr std::array<std::string_view, 4> kDevices{"bridge", "camera", "replay", "simulated"};
+  constexpr std::array<std::string_view, 5> kDevices{"bridge", "camera", "phone", "replay",
+                                                     "simulated"};
   if (std::ranges::find(kDevices, wishes.device) == kDevices.end()) {
     return fail(ErrorCode::InvalidArgument, "--device",
-                "\"" + wishes.device + "\" is none of bridge, camera, replay and simulated");
+                "\"" + wishes.device + "\" is none of bridge, camera, phone, replay and simulated");
   }
   if (wishes.device == "replay" && wishes.recording.empty())
     return fail(ErrorCode::InvalidArgument, "--recording", "a replay needs the file to play");
@@ -265,7 +277,7 @@ Run add_init(CLI::App& options) {
   options.add_option("--id", arguments->sensor.id, "sensor: its id; default: the host's name");
   options
       .add_option("--device", arguments->sensor.device,
-                  "sensor: bridge, camera, replay or simulated")
+                  "sensor: bridge, camera, phone, replay or simulated")
       ->capture_default_str();
   options
       .add_option("--camera", arguments->sensor.camera,

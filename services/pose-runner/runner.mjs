@@ -3,25 +3,11 @@
 //   runner.mjs [--model movenet|blazepose-lite|blazepose-full] [--check]
 import { parseArgs } from 'node:util';
 
-import * as blazepose from './blazepose.js';
+import { MODELS, warmUp } from './catalogue.js';
 import { ImageReader } from './image_reader.js';
 import { check, engine, load } from './models.js';
-import * as movenet from './movenet.js';
 
 const NANOSECONDS = 1e9;
-const MODELS = {
-  movenet: { hello: movenet.HELLO, files: movenet.FILES, make: (tf, models) => new movenet.MoveNet(tf, models) },
-  'blazepose-lite': ofBlazePose('lite'),
-  'blazepose-full': ofBlazePose('full'),
-};
-
-function ofBlazePose(size) {
-  return {
-    hello: { name: `BlazePose ${size}`, ...blazepose.HELLO },
-    files: blazepose.FILES[size],
-    make: (tf, models) => new blazepose.BlazePose(tf, models, size),
-  };
-}
 
 function chosen() {
   const { values } = parseArgs({ options: { model: { type: 'string', default: 'movenet' }, check: { type: 'boolean', default: false } } });
@@ -31,12 +17,6 @@ function chosen() {
 }
 
 const say = (message) => process.stdout.write(`${JSON.stringify(message)}\n`);
-
-/// The first pass takes longer than all others, because the engine prepares itself.
-async function warmUp(network) {
-  const side = 64;
-  await network.bodies({ width: side, height: side, pixels: new Uint8Array(side * side * 3) }, 0);
-}
 
 async function answer(network, { header, pixels }) {
   const began = performance.now();

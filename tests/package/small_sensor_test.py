@@ -3,7 +3,9 @@ What that saves is measured by tests/run.sh --workshop."""
 
 import os
 import re
+import shutil
 import subprocess
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -36,6 +38,14 @@ class SmallHost(unittest.TestCase):
     def test_a_camera_is_refused_with_the_package_to_install(self):
         done = subprocess.run([str(BIN / "chorus-sensor-small"), "--device", "camera", "--port", "0"], capture_output=True, text=True,
                               check=False, timeout=20)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("apt install chorus-camera", done.stderr)
+
+    def test_the_capture_page_is_refused_with_the_package_to_install(self):
+        with tempfile.TemporaryDirectory() as folder:  # alone: beside the sources it would find the page
+            program = shutil.copy(BIN / "chorus-sensor-small", folder)
+            done = subprocess.run([program, "--device", "bridge", "--set", "device.bridge.page=true", "--port", "0"], cwd=folder,
+                                  capture_output=True, text=True, check=False, timeout=20)
         self.assertEqual(done.returncode, 2)
         self.assertIn("apt install chorus-camera", done.stderr)
 

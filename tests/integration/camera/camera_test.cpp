@@ -163,6 +163,23 @@ TEST(Camera, WhatIsRedInTheVideoIsARayAtTheTimeOfItsPicture) {
   }
 }
 
+TEST(Camera, AGuessedFieldOfViewMakesRaysLessSureAwayFromTheMiddle) {
+  Rig rig;
+  auto section = rig.section();
+  section.erase("intrinsics");
+  section["loop"] = false;
+  rig.start(section);
+  ASSERT_TRUE(rig.over());
+  const auto captures = rig.captures(1);
+  const auto middle_first = [](const Capture& a, const Capture& b) {
+    return head_of(a).position.z() > head_of(b).position.z();
+  };
+  const auto [middle, edge] = std::minmax_element(captures.begin(), captures.end(), middle_first);
+  ASSERT_GT(std::abs(head_of(*edge).position.x()), 0.2);
+  EXPECT_GT(head_of(*edge).covariance.matrix().trace(),
+            1.2 * head_of(*middle).covariance.matrix().trace());
+}
+
 TEST(Camera, AFileStartsAgainAndItsTimesGoOn) {
   Rig rig;
   rig.start(rig.section());

@@ -1,4 +1,4 @@
-// docs/guide/examples/bridge/push.js in headless Chromium: a page of another origin, with a token, pushes landmarks in pixels.
+// services/capture/push.js in headless Chromium: a page of another origin, with a token, pushes landmarks in pixels.
 import assert from 'node:assert';
 import { spawn } from 'node:child_process';
 import { readFile } from 'node:fs/promises';
@@ -25,7 +25,7 @@ async function sensorProcess(t, ...settings) {
 
 /// Serves push.js and an empty page.
 async function pages(t) {
-  const source = await readFile(new URL('../../../docs/guide/examples/bridge/push.js', import.meta.url));
+  const source = await readFile(new URL('../../../services/capture/push.js', import.meta.url));
   const server = createServer((request, response) => {
     const script = request.url === '/push.js';
     response.setHeader('Content-Type', script ? 'text/javascript' : 'text/html');

@@ -75,7 +75,7 @@ TEST(Lens, AnUncertainFieldOfViewIsSaidInTheRays) {
     joint.measurement = Measurement::Ray;
     joint.position = *ray_of(pixel, lens->camera);
     joint.covariance = Covariance(Eigen::Matrix3d(Eigen::Matrix3d::Identity() * 1e-12));
-    widen(joint, lens->focal_sigma);
+    widen_ray(joint, lens->focal_sigma);
     const double stated = std::sqrt(joint.covariance.matrix().trace()) / kDegree;
     EXPECT_NEAR(stated / true_move(65, 1, pixel), 1.0, 0.03);
     EXPECT_NEAR(joint.position.dot(joint.covariance.matrix() * joint.position), 0.0, 1e-9);
@@ -92,8 +92,8 @@ TEST(Lens, TheMiddleOfThePictureIsSureAndPointsStayAsTheyAre) {
   point.measurement = Measurement::Point;
   point.position = {1, 1, 1};
   const Covariance before = ray.covariance;
-  widen(ray, 0.2);
-  widen(point, 0.2);
+  widen_ray(ray, 0.2);
+  widen_ray(point, 0.2);
   EXPECT_EQ(ray.covariance, before);
   EXPECT_EQ(point.covariance, before);
 }

@@ -78,6 +78,19 @@ TEST(Init, ACameraIsOneOption) {
   EXPECT_THAT(made.out, HasSubstr("\"camera\": { \"source\": \"rtsp://10.0.0.5/1\" }"));
 }
 
+TEST(Init, APhoneIsABridgeWithItsPageAndALinkToOpen) {
+  const testing::TemporaryFolder folder;
+  const std::string file = (folder / "sensor.json").string();
+  const Outcome plain = run({"sensor", "--id", "door", "--device", "phone", "--no-tls", "--token",
+                             "abcdefabcdef", "--out", file});
+  ASSERT_EQ(plain.code, kExitOk) << plain.error;
+  EXPECT_THAT(plain.error, AllOf(HasSubstr(":8081/capture/#token=abcdefabcdef\n"),
+                                 HasSubstr("no browser gives it a camera")));
+  const Outcome made =
+      run({"sensor", "--device", "phone", "--tls", "/etc/chorus/tls", "--out", "-"});
+  EXPECT_THAT(made.out, AllOf(HasSubstr("\"kind\": \"bridge\""), HasSubstr("\"page\": true")));
+}
+
 TEST(Init, LoopbackNeedsNoTokens) {
   const Outcome made = run({"fusion", "--out", "-", "--listen", "127.0.0.1", "--port", "9000"});
   ASSERT_EQ(made.code, kExitOk) << made.error;

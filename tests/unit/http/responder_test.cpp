@@ -82,6 +82,27 @@ TEST_F(ResponderTest, ThePathWithOrWithoutItsSlashLeadsToTheOther) {
   EXPECT_EQ(react("POST /frame/ HTTP/1.1\r\nHost: localhost\r\n").answer.status, 404);
 }
 
+TEST_F(ResponderTest, AStrangerIsLedToWhatIsForEverybodyAndNowhereElse) {
+  const auto router = std::make_shared<Router>();
+  const auto page = [](const Request&, const PathParams&) -> Result<DocumentPtr> {
+    return make_document("text/plain", "page", {"1"});
+  };
+  router->get("/open/", page);
+  router->for_everybody("/open/");
+  router->get("/shut/", page);
+  config_.tokens = {{"a reader's token", Role::Read}};
+  const Responder guarded(config_, router);
+  const auto status = [&](const std::string& path) {
+    bytes_ = "GET " + path + " HTTP/1.1\r\nHost: localhost\r\n\r\n";
+    EXPECT_FALSE(read_head(bytes_, head_));
+    return guarded.react(head_, {true, "127.0.0.1", 80}).answer.status;
+  };
+  EXPECT_EQ(status("/open"), 308);
+  EXPECT_EQ(status("/open/"), 200);
+  for (const char* path : {"/shut", "/shut/", "/open/further", "/nowhere"})
+    EXPECT_EQ(status(path), 401) << path;
+}
+
 TEST_F(ResponderTest, TheBodyOfTheHotPathIsTheDocumentsOwn) {
   const Reaction reaction = react("GET /frame HTTP/1.1\r\nHost: localhost\r\n");
   const auto* rendered = *frame_->current()->choose("");

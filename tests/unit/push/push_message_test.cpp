@@ -72,6 +72,7 @@ TEST(Hello, SaysWhoWhatAndHow) {
                                 {"floor", {0.0, -1.0, 0.0, 1.5}},
                                 {"trackedFrom", 0.7},
                                 {"pixelSigma", 2.5},
+                                {"focalSigma", 0.1},
                                 {"somethingNew", true}});
   EXPECT_EQ(hello.name, "door camera");
   EXPECT_EQ(hello.layout->name, "mediapipe_33");
@@ -83,6 +84,7 @@ TEST(Hello, SaysWhoWhatAndHow) {
   EXPECT_DOUBLE_EQ(hello.tracked_from, 0.7);
   EXPECT_DOUBLE_EQ(hello.inferred_from, hello.layout->inferred_from);
   EXPECT_EQ(hello.pixel_sigma, 2.5);
+  EXPECT_EQ(hello.focal_sigma, 0.1);
 }
 
 TEST(Hello, AxesAreThreeDirectionsAtRightAngles) {
@@ -175,6 +177,22 @@ TEST(PushedFrame, PixelsBecomeRaysAndNothingInventsDepth) {
   EXPECT_THAT(right.position, VectorNear(Eigen::Vector3d(0, half, half), 1e-9)) << "up is +y";
   EXPECT_NEAR(left.covariance.matrix()(1, 1), std::pow(3.0 / 900 * half, 2), 1e-9);
   EXPECT_NEAR(right.covariance.matrix()(0, 0), std::pow(9.0 / 900 * half, 2), 1e-8);
+}
+
+TEST(PushedFrame, AnUncertainFocalLengthIsInEachRayAndNotLessInTheMeanOfTwo) {
+  const Json camera{{"width", 1280}, {"height", 720}, {"fx", 900},
+                    {"fy", 900},     {"cx", 640},     {"cy", 360}};
+  const Json sure = with(with(kHello, "intrinsics", camera), "pixelSigma", 3);
+  const Json aside{640 + 900, 360, 0.8};
+  const Json frame = frame_of("pixels", landmarks({{9, aside}, {11, aside}, {12, aside}}));
+  const auto variance = [&](const Json& hello, JointId joint) {
+    return joint_of(read_frame(frame, hello), joint).covariance.matrix().trace();
+  };
+  const Json unsure = with(sure, "focalSigma", 0.1);
+  const double angle = 0.1 * 0.5;  // sin a cos a of 45 degrees
+  for (const JointId joint : {JointId::WristLeft, JointId::SpineBase}) {
+    EXPECT_NEAR(variance(unsure, joint) - variance(sure, joint), angle * angle, 1e-8);
+  }
 }
 
 TEST(PushedFrame, MayBeEmptyAndLeavesOutBodiesWithoutJoints) {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "services/sensor/device/bridge/capture_page.h"
 #include "services/sensor/device/bridge/line_server.h"
 #include "services/sensor/device/bridge/push_dialogue.h"
 #include "services/sensor/device/bridge/push_resource.h"
@@ -30,6 +31,8 @@ DeviceDescription Bridge::describe() const {
   device.label = desk_->options().settings.label;
   device.depth_camera = std::nullopt;
   device.resources = {{"push", "who pushes frames; POST or a WebSocket pushes them"}};
+  if (desk_->options().settings.page)
+    device.resources.push_back({"capture/", "makes the camera of a phone or laptop this sensor"});
   return device;
 }
 
@@ -60,6 +63,11 @@ Result<std::unique_ptr<FrameSource>> make_bridge(ConfigReader& section,
   DeskOptions options;
   options.sensor = context.sensor;
   options.settings = read_bridge_settings(section);
+  if (options.settings.page) {
+    const auto installed = find_capture_page();
+    if (!installed) return pass(installed);
+    add_capture_routes(context.router, *installed);
+  }
   options.clock =
       std::make_shared<sensor_service::ErringClock>(context.time.world, context.time.host);
   auto desk = std::make_shared<PushDesk>(std::move(options));

@@ -8,6 +8,7 @@ BridgeSettings read_bridge_settings(ConfigReader& section) {
   BridgeSettings settings;
   section.read("label", settings.label);
   section.read("socket", settings.socket);
+  section.read("page", settings.page);
   section.read("max_rate_hz", settings.max_rate_hz, 1.0, 1000.0);
   constexpr int kKilobyte = 1024;
   int message_kb = static_cast<int>(settings.max_message_bytes / kKilobyte);

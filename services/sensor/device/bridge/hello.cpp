@@ -96,6 +96,7 @@ Result<void> read_measures(const Json& message, Hello& hello) {
   double sigma = 0.0;
   for (const auto& ok : {number_at(message, "trackedFrom", kShare, {}, hello.tracked_from),
                          number_at(message, "inferredFrom", kShare, {}, hello.inferred_from),
+                         number_at(message, "focalSigma", kShare, {}, hello.focal_sigma),
                          number_at(message, "pixelSigma", {0.01, 1000.0}, {}, sigma)}) {
     if (!ok) return ok;
   }

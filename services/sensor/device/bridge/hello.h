@@ -21,6 +21,7 @@ struct Hello {
   std::optional<FloorPlane> floor;    ///< In sensor space.
   std::optional<Intrinsics> camera;   ///< For the pixels that it sends.
   std::optional<double> pixel_sigma;  ///< Standard deviation of a pixel coordinate [px].
+  double focal_sigma = 0.0;           ///< Standard deviation of the focal length, relative to it.
   double tracked_from = 0.0;          ///< Confidence, as in Layout.
   double inferred_from = 0.0;
 };

@@ -200,7 +200,10 @@ Result<BodyFrame> read_body(const Json& value, const Hello& hello, const At& at)
                              ? read_landmarks(*points, &read_point, hello, at["points"])
                              : read_landmarks(*pixels, &read_pixel, hello, at["pixels"]);
   if (!landmarks) return pass(landmarks);
-  return BodyFrame{BodyId{*number}, {}, {layout::joints_of(*hello.layout, *landmarks)}};
+  BodyFrame body{BodyId{*number}, {}, {layout::joints_of(*hello.layout, *landmarks)}};
+  // Common to all landmarks: added to joints, so that the mean of two landmarks is no surer of it.
+  for (Joint& joint : body.skeleton.joints) widen_ray(joint, hello.focal_sigma);
+  return body;
 }
 
 Result<std::vector<BodyFrame>> read_bodies(const Json& value, const Hello& hello,

@@ -5,7 +5,7 @@
 
 #include <Eigen/LU>
 
-#include "services/sensor/device/camera/lens.h"
+#include "common/sensor/pixel_ray.h"
 
 namespace chorus::camera {
 namespace {

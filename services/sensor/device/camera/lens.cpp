@@ -69,18 +69,4 @@ Intrinsics sent_camera(const Intrinsics& camera, Size sent) {
   return out;
 }
 
-Eigen::Vector3d turn_of_focal(const Eigen::Vector3d& ray) {
-  // At angle a from the axis: tan a = r / f, so da = -sin a cos a df / f.
-  const Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
-  const double cosine = ray.dot(axis);
-  return cosine * (axis - cosine * ray);
-}
-
-void widen(Joint& joint, double focal_sigma) {
-  if (!joint.bears() || !joint.covariance.known()) return;
-  const Eigen::Vector3d turn = focal_sigma * turn_of_focal(joint.position);
-  joint.covariance =
-      Covariance(Eigen::Matrix3d(joint.covariance.matrix() + turn * turn.transpose()));
-}
-
 }  // namespace chorus::camera

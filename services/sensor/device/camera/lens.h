@@ -2,7 +2,6 @@
 #pragma once
 
 #include "common/base/result.h"
-#include "common/body/skeleton.h"
 #include "services/sensor/device/camera/camera_settings.h"
 
 namespace chorus::camera {
@@ -29,13 +28,5 @@ struct Lens {
 
 /// The camera for landmarks in the picture as sent, where [0, 0] is the upper left corner.
 [[nodiscard]] Intrinsics sent_camera(const Intrinsics& camera, Size sent);
-
-/// How a ray turns with the relative error of the focal length [rad]: towards the camera's axis. In
-/// sensor axes.
-[[nodiscard]] Eigen::Vector3d turn_of_focal(const Eigen::Vector3d& ray);
-
-/// Adds the effect of an uncertain focal length to a ray's covariance: nothing in the middle of the
-/// picture, much at its edge.  Leaves points, and rays without a known covariance, unchanged.
-void widen(Joint& joint, double focal_sigma);
 
 }  // namespace chorus::camera

@@ -10,12 +10,9 @@ namespace {
 constexpr Duration kReadyWithin = std::chrono::seconds(60);
 constexpr Duration kAnswerWithin = std::chrono::seconds(10);
 
-void widen_all(std::vector<BodyFrame>& bodies, double focal_sigma) {
+void widen_depths(std::vector<BodyFrame>& bodies, double focal_sigma) {
   for (BodyFrame& body : bodies) {
-    for (Joint& joint : body.skeleton.joints) {
-      widen(joint, focal_sigma);
-      widen_depth(joint, focal_sigma);
-    }
+    for (Joint& joint : body.skeleton.joints) widen_depth(joint, focal_sigma);
   }
 }
 
@@ -43,10 +40,11 @@ Result<Found> Looker::look(const Picture& picture, Timestamp captured, std::uint
   if (!line) return pass(line);
   bridge::Hello hello = about_.hello;
   hello.camera = sent_camera(lens->camera, question.size);
+  hello.focal_sigma = lens->focal_sigma;
   const Depth depth = settings_->depth_from_size ? Depth::FromSize : Depth::None;
   auto bodies = read_runner_answer(*line, question, hello, depth);
   if (!bodies) return pass(bodies);
-  widen_all(*bodies, lens->focal_sigma);
+  widen_depths(*bodies, lens->focal_sigma);
   return Found{std::move(*bodies), *lens, question.size,
                hello.floor ? hello.floor : settings_->floor};
 }

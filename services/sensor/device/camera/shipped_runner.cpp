@@ -1,25 +1,14 @@
 #include "services/sensor/device/camera/shipped_runner.h"
 
-#include <filesystem>
-#include <system_error>
-
+#include "common/base/shipped_folder.h"
 #include "services/sensor/device/camera/runner_process.h"
 
 namespace chorus::camera {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// Looks next to the sources, among the installed files, and in the working directory.
 Result<std::string> shipped_runner() {
-  std::error_code failed;
-  const fs::path here = fs::read_symlink("/proc/self/exe", failed).parent_path();
-  for (const fs::path& place :
-       {here / "../share/chorus/pose-runner", here / "../../../services/pose-runner",
-        fs::path("services/pose-runner")}) {
-    const fs::path program = (place / "runner.mjs").lexically_normal();
-    if (fs::exists(program, failed)) return program.string();
-  }
+  const auto folder = shipped_folder("pose-runner", "runner.mjs");
+  if (folder) return *folder + "/runner.mjs";
   return fail(ErrorCode::NotFound, "device.camera.runner",
               "the runner that comes with Chorus is not installed; name the command of one, or "
               "start from the folder of the sources");

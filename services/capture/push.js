@@ -18,19 +18,32 @@ function nanoseconds(now) {
 }
 
 export class Pusher {
-  /// `hello` without its type.  `tell` is called with every complaint of the sensor, as text.
-  constructor(url, hello, { token = "", tell = console.warn, Socket = globalThis.WebSocket } = {}) {
-    Object.assign(this, { url, tell, Socket });
-    this.hello = JSON.stringify({ type: "hello", version: 1, ...hello });
+  /// `hello` without its type.  `tell(text, message)` is called with every complaint of the sensor, `changed` when the sensor has welcomed
+  /// us (with its message) or is lost (with null).  Before each connection `admitted` is asked whether to try.
+  constructor(url, hello, { token = "", tell = console.warn, changed = () => {}, admitted = async () => true, Socket = globalThis.WebSocket } = {}) {
+    Object.assign(this, { url, tell, changed, admitted, Socket });
+    this.welcome = null;
+    this.say(hello);
     const escaped = encodeURIComponent(token).replace(/[()']/g, (c) => "%" + c.charCodeAt(0).toString(16));
     this.protocols = token ? ["chorus.push", `chorus.token.${escaped}`] : ["chorus.push"];
     this.sequence = 0;
     this.dropped = 0;
-    this.welcome = null;
     this.connect();
   }
 
-  connect() {
+  /// Says hello, now or once the sensor is there; again when lens or layout have changed.
+  say(hello) {
+    this.hello = JSON.stringify({ type: "hello", version: 1, ...hello });
+    if (this.welcome !== null) this.socket.send(this.hello);
+  }
+
+  async connect() {
+    const admitted = await this.admitted();
+    if (this.closed) return;
+    if (!admitted) {
+      this.again();
+      return;
+    }
     const socket = new this.Socket(this.url, this.protocols);
     this.socket = socket;
     socket.onopen = () => socket.send(this.hello);
@@ -38,18 +51,24 @@ export class Pusher {
     socket.onerror = () => {};
     socket.onclose = () => {
       this.welcome = null;
-      if (!this.closed) this.retry = setTimeout(() => this.connect(), RETRY_MS);
+      this.changed(null);
+      if (!this.closed) this.again();
     };
+  }
+
+  again() {
+    this.retry = setTimeout(() => this.connect(), RETRY_MS);
   }
 
   hear(socket, message, received) {
     if (message.type === "welcome") {
       this.welcome = message;
+      this.changed(message);
     } else if (message.type === "clock") {
       socket.send(JSON.stringify({ type: "clock", sent: message.sent, received: nanoseconds(received),
         answered: nanoseconds(performance.now()) }));
     } else {
-      this.tell(`${message.type}: ${message.context}: ${message.detail}`);
+      this.tell(`${message.type}: ${message.context}: ${message.detail}`, message);
     }
   }
 
@@ -67,6 +86,6 @@ export class Pusher {
   close() {
     this.closed = true;
     clearTimeout(this.retry);
-    this.socket.close();
+    this.socket?.close();
   }
 }

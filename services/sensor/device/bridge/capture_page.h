@@ -1,0 +1,24 @@
+// `/capture/`: a page that makes the camera of a phone or laptop this sensor.  Its files are
+// answered without a token, because a person opens it before there is a place to enter one; they
+// are the same for everybody, and a list names each that does not lie in the page's own folder.
+#pragma once
+
+#include <string>
+
+#include "common/base/result.h"
+#include "common/http/router.h"
+
+namespace chorus::bridge {
+
+/// Folders of the installed files.
+struct CapturePage {
+  std::string page;    ///< Its own files.
+  std::string runner;  ///< The runner, whose models and engine the page uses.
+};
+
+/// NotFound, with what to install, when something is missing.
+[[nodiscard]] Result<CapturePage> find_capture_page();
+
+void add_capture_routes(http::Router& router, const CapturePage& installed);
+
+}  // namespace chorus::bridge
