@@ -7,6 +7,7 @@
 
 #include "fusion-server/fusion/bone_lengths.h"
 #include "fusion-server/fusion/joint_filters.h"
+#include "fusion-server/fusion/misfit_size.h"
 #include "fusion-server/fusion/motion_filter.h"
 #include "fusion-server/fusion/sighted_body.h"
 
@@ -41,7 +42,7 @@ MotionFilters motion_filters(const BodyModel& model, std::index_sequence<I...>) 
 class BodyFilter final : public Estimator {
  public:
   explicit BodyFilter(const FusionConfig& config)
-      : config_(config),
+      : config_(std::make_shared<const FusionConfig>(config)),
         errors_(line_of_sight_errors(config.noise, config.sensor_noise)),
         filters_(motion_filters(config.body, std::make_index_sequence<kJointCount>{})) {}
 
@@ -49,26 +50,19 @@ class BodyFilter final : public Estimator {
     const double passed = last_ ? std::max(0.0, seconds(instant.at - *last_)) : 0.0;
     last_ = instant.at;
     const PlacedBody expected = expected_at(instant.at);
-    SightedBody sighted(person, instant, *errors_, config_, biases_);
-    sighted.settle(lengths_.held(config_.body), expected);
-    lengths_.learn(sighted.placed(), passed, config_.body);
-    PlacedBody whole = sighted.placed();
-    for (std::size_t j = 0; j < kJointCount; ++j) {
-      if (!whole[j].placed) whole[j] = expected[j];
-    }
-    whole = hold_bones(whole, lengths_.held(config_.body));
-    if (config_.body.bias_rate > 0) sighted.learn(biases_, whole, passed);
+    SightedBody sighted(person, instant, *errors_, *config_, biases_);
+    sighted.settle(lengths_.held(model()), expected, misfits_.found(model()));
+    misfits_.learn(sighted.misfits(), passed, model());
+    lengths_.learn(sighted.placed(), passed, model());
+    const PlacedBody whole = held(sighted.placed(), expected);
+    if (model().bias_rate > 0) sighted.learn(biases_, whole, passed);
     agreement_.follow(sighted.disagreement(whole), passed);
     scale_square_.follow(sighted.scale_square(), passed);
     middle_ = middle_of(whole);
     return joint_by_joint(person.id, [&](JointId joint) {
-      const std::size_t j = index_of(joint);
-      if (!whole[j].placed) return FusedJoint{};
-      FusedJoint fused = sighted.shown(joint);
-      const bool determined = sighted.determined(j);
-      if (!determined) fused.joint.state = JointState::Inferred;
-      state(fused, filtered(j, instant.at, whole[j], determined));
-      return fused;
+      return whole[index_of(joint)].placed
+                 ? fused(sighted, joint, instant.at, whole[index_of(joint)])
+                 : FusedJoint{};
     });
   }
 
@@ -77,12 +71,34 @@ class BodyFilter final : public Estimator {
   }
 
  private:
+  [[nodiscard]] const BodyModel& model() const { return config_->body; }
+
+  /// The seen body, completed by what is expected, with bones of their lengths.
+  [[nodiscard]] PlacedBody held(PlacedBody body, const PlacedBody& expected) const {
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      if (!body[j].placed) body[j] = expected[j];
+    }
+    return hold_bones(body, lengths_.held(model()));
+  }
+
+  [[nodiscard]] FusedJoint fused(const SightedBody& sighted, JointId joint, Timestamp instant,
+                                 const PlacedJoint& now) {
+    const std::size_t j = index_of(joint);
+    const bool determined = sighted.determined(j);
+    FusedJoint fused = sighted.shown(joint);
+    if (!determined) fused.joint.state = JointState::Inferred;
+    PlacedJoint place = filtered(j, instant, now, determined);
+    if (determined) place.covariance += sighted.stated(j) - now.covariance;
+    state(fused, place);
+    return fused;
+  }
+
   /// Predicted places of the joints that were seen recently.
   [[nodiscard]] PlacedBody expected_at(Timestamp instant) const {
     PlacedBody body;
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const auto& updated = filters_[j].updated();
-      if (!updated || instant < *updated || instant - *updated > config_.body.carry) continue;
+      if (!updated || instant < *updated || instant - *updated > model().carry) continue;
       const auto motion = filters_[j].at(instant);
       const double variance = motion->variance + slow_[j];
       body[j] = {motion->position, variance * Eigen::Matrix3d::Identity(), true};
@@ -94,9 +110,9 @@ class BodyFilter final : public Estimator {
   PlacedJoint filtered(std::size_t j, Timestamp instant, const PlacedJoint& now, bool determined) {
     if (!determined) return now;
     slow_[j] = mean_variance(now.covariance);
-    const double white = config_.body.white * config_.body.white;
+    const double white = model().white * model().white;
     filters_[j].update(instant, now.position, white * slow_[j]);
-    if (!(config_.body.resting > 0)) return now;
+    if (!(model().resting > 0)) return now;
     const auto motion = filters_[j].at(instant);
     return {motion->position, now.covariance + motion->variance * Eigen::Matrix3d::Identity(),
             true};
@@ -104,19 +120,20 @@ class BodyFilter final : public Estimator {
 
   /// What all views have in common is in no view's covariance.
   void state(FusedJoint& fused, const PlacedJoint& place) const {
-    const BodyModel& model = config_.body;
-    const double wider = model.agreement > 0 ? agreement_.value / model.agreement : 1.0;
+    const BodyModel& body = model();
+    const double wider = body.agreement > 0 ? agreement_.value / body.agreement : 1.0;
     const double uneven = std::max(0.0, scale_square_.value - kUsualScale * kUsualScale);
     const double reach = middle_ ? (place.position - *middle_).squaredNorm() : 0.0;
-    const double common = config_.common_sigma * config_.common_sigma +
-                          model.proportion * model.proportion * uneven * reach;
+    const double common = config_->common_sigma * config_->common_sigma +
+                          body.proportion * body.proportion * uneven * reach;
     fused.joint.position = place.position;
     state_covariance(fused, wider * place.covariance + common * Eigen::Matrix3d::Identity());
   }
 
-  FusionConfig config_;
+  std::shared_ptr<const FusionConfig> config_;  ///< The same for all copies.
   std::shared_ptr<const ErrorModel> errors_;
   BoneLengths lengths_;
+  MisfitSize misfits_;
   Biases biases_;
   MotionFilters filters_;
   std::array<double, kJointCount> slow_{};  ///< Variance of a joint when last seen [m^2].

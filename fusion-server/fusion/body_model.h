@@ -8,7 +8,8 @@
 namespace chorus::fusion {
 
 struct BodyModel {
-  /// Standard deviation of the ratio by which a sensor's whole body is too large or too small.
+  /// Where the estimate of misfits starts (misfit_size.h).  Standard deviation of the ratio by
+  /// which a sensor's whole body is too large or too small.
   double scale = 0.06;
   /// How far it is turned about the vertical axis when seen from the side [rad]: zero up to
   /// `turn_from`, in full from `turn_full` on; both are angles between frontal and side-on.
@@ -22,21 +23,25 @@ struct BodyModel {
   /// after which it is forgotten.
   double bias_rate = 3.0;
   Duration bias_memory = std::chrono::milliseconds(300);
-  /// Huber's threshold, in standard deviations that include the pose errors.
+  /// Pose error in the weights of the views, as a fraction of what is stated (pose_error.h), and by
+  /// what factor it is larger where a joint is inferred.
+  double pose = 0.5;
+  double inferred = 3.0;
+  /// Huber's threshold, in standard deviations that include this pose error.
   double huber = 1.0;
   /// Spectral densities of the white-noise acceleration of a resting and of a moving joint [m^2 /
   /// s^3]; `limb` is a factor for limbs.  Resting 0: no filter over time.
-  double resting = 0.003;
+  double resting = 0.0005;
   double moving = 20.0;
   double limb = 4.0;
   /// Fraction of one instant's stated standard deviation that is independent at the next instant.
-  double white = 0.25;
+  double white = 0.2;
   /// Stated errors only, 0: unused.  Sensors that differ in scale also have wrong proportions: this
   /// fraction of that difference, times a joint's distance from the trunk.
-  double proportion = 0.7;
+  double proportion = 0.6;
   /// And the mean squared residual, in variances, of views that disagree no more than usual: the
   /// stated variances are multiplied by what is found over this.
-  double agreement = 0.21;
+  double agreement = 0.32;
   /// How long a joint that nobody sees is predicted.
   Duration carry = std::chrono::seconds(1);
 

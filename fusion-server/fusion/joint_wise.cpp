@@ -39,10 +39,11 @@ void lift_zero_weights(std::vector<JointView>& views, double floor) {
 class JointWise final : public Estimator {
  public:
   explicit JointWise(const FusionConfig& config)
-      : config_(config), errors_(line_of_sight_errors(config.noise, config.sensor_noise)) {}
+      : config_(std::make_shared<const FusionConfig>(config)),
+        errors_(line_of_sight_errors(config.noise, config.sensor_noise)) {}
 
   FusedBody fuse(const Person& person, const Instant& instant) override {
-    if (config_.method == Method::BestView) {
+    if (config_->method == Method::BestView) {
       return fuse_views(heaviest_view_of(person), instant);
     }
     return fuse_views(person, instant);
@@ -58,28 +59,28 @@ class JointWise final : public Estimator {
       auto views = joint_views_of(joint, person, instant.sensors, *errors_);
       for (JointView& view : views) {
         if (!view.joint.covariance.known())
-          view.pose_variance = pose_variance(config_.pose_error, joint, view.joint.state);
+          view.pose_variance = pose_variance(config_->pose_error, joint, view.joint.state);
       }
       return fuse_joint(std::move(views));
     });
   }
 
   [[nodiscard]] FusedJoint fuse_joint(std::vector<JointView> views) const {
-    if (config_.method == Method::Otto) {
-      lift_zero_weights(views, config_.zero_weight_floor);
+    if (config_->method == Method::Otto) {
+      lift_zero_weights(views, config_->zero_weight_floor);
     } else {
       for (JointView& s : views) s.weight = 1.0;
     }
-    FusedJoint fused = config_.method == Method::InverseVariance
-                           ? inverse_variance(views, config_.huber)
+    FusedJoint fused = config_->method == Method::InverseVariance
+                           ? inverse_variance(views, config_->huber)
                            : weighted_mean(views);
     if (!fused.joint.seen()) return fused;
-    const double common = config_.common_sigma * config_.common_sigma;
+    const double common = config_->common_sigma * config_->common_sigma;
     state_covariance(fused, fused.joint.covariance.matrix() + common * Eigen::Matrix3d::Identity());
     return fused;
   }
 
-  FusionConfig config_;
+  std::shared_ptr<const FusionConfig> config_;  ///< The same for all copies.
   std::shared_ptr<const ErrorModel> errors_;
 };
 

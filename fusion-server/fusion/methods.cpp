@@ -4,6 +4,7 @@
 #include <array>
 
 #include "fusion-server/fusion/body_filter.h"
+#include "fusion-server/fusion/joint_view.h"
 #include "fusion-server/fusion/joint_wise.h"
 #include "fusion-server/fusion/otto_kalman.h"
 #include "fusion-server/fusion/points_and_rays.h"
@@ -24,6 +25,15 @@ constexpr std::array kMethods{
     MethodRow{Method::PointsAndRays, "points-and-rays", points_and_rays},
     MethodRow{Method::BodyFilter, "body-filter", body_filter},
 };
+
+/// A point whose depth is hardly known: what a camera without depth makes of a landmark.
+bool nearly_a_ray(const Joint& joint) {
+  constexpr double kElongated = 3.0;  // of the standard deviations along and across
+  if (!joint.covariance.known()) return false;
+  const Eigen::Matrix3d covariance = joint.covariance.matrix();
+  const double along = largest_sigma(covariance) * largest_sigma(covariance);
+  return along > kElongated * kElongated * (covariance.trace() - along) / 2.0;
+}
 
 }  // namespace
 
@@ -51,7 +61,9 @@ Method method_for(const Person& person, const FusionConfig& config) {
       return std::ranges::any_of(view.skeleton.joints, wanted);
     });
   };
-  return !any(&Joint::seen) && any(&Joint::bears) ? Method::PointsAndRays : config.method;
+  if (!any(&Joint::seen)) return any(&Joint::bears) ? Method::PointsAndRays : config.method;
+  const bool depth = any([](const Joint& joint) { return joint.seen() && !nearly_a_ray(joint); });
+  return config.method == Method::BodyFilter && !depth ? Method::PointsAndRays : config.method;
 }
 
 }  // namespace chorus::fusion

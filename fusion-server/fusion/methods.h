@@ -25,7 +25,9 @@ struct MethodRow {
 /// An estimator of this method for one person, with the configured parameters.
 [[nodiscard]] std::unique_ptr<Estimator> begin(Method method, const FusionConfig& config);
 
-/// The configured method; for a person seen only by rays, the method that can use rays.
+/// The configured method; for a person seen only by rays, the method that can use rays.  Points
+/// whose stated depth is hardly known count as rays for the body filter, whose errors are those of
+/// depth sensors.
 [[nodiscard]] Method method_for(const Person& person, const FusionConfig& config);
 
 }  // namespace chorus::fusion

@@ -38,7 +38,8 @@ FusedJoint finish(std::span<const JointView> views, const LeastSquares& found, d
 class PointsAndRays final : public Estimator {
  public:
   explicit PointsAndRays(const FusionConfig& config)
-      : config_(config), errors_(line_of_sight_errors(config.noise, config.sensor_noise)) {}
+      : config_(std::make_shared<const FusionConfig>(config)),
+        errors_(line_of_sight_errors(config.noise, config.sensor_noise)) {}
 
   FusedBody fuse(const Person& person, const Instant& instant) override {
     return joint_by_joint(person.id, [&](JointId joint) {
@@ -54,38 +55,38 @@ class PointsAndRays final : public Estimator {
  private:
   FusedJoint fuse_joint(std::size_t joint, Timestamp instant, const std::vector<JointView>& views) {
     if (views.empty()) return {};
-    const auto found = least_squares(views, config_.huber);
+    const auto found = least_squares(views, config_->huber);
     if (!found || !determined(views, *found)) return bounded(joint, instant, views);
     filters_[joint].update(instant, found->position, mean_variance(found->covariance));
     seen_[joint] = instant;
-    return finish(views, *found, config_.common_sigma);
+    return finish(views, *found, config_->common_sigma);
   }
 
   [[nodiscard]] bool determined(std::span<const JointView> views, const LeastSquares& found) const {
-    return any_point(views) || largest_sigma(found.covariance) <= config_.max_sigma;
+    return any_point(views) || largest_sigma(found.covariance) <= config_->max_sigma;
   }
 
   /// Fuses the joint with its predicted position as one more measurement.
   [[nodiscard]] FusedJoint bounded(std::size_t joint, Timestamp instant,
                                    std::vector<JointView> views) const {
     const auto predicted = filters_[joint].at(instant);
-    const bool recent =
-        seen_[joint] && instant >= *seen_[joint] && instant - *seen_[joint] <= config_.kalman_coast;
+    const bool recent = seen_[joint] && instant >= *seen_[joint] &&
+                        instant - *seen_[joint] <= config_->kalman_coast;
     if (!recent || !predicted) return {};
     JointView last;
     last.joint.position = *predicted;
     last.joint.state = JointState::Inferred;
     last.covariance = filters_[joint].variance_at(instant) * Eigen::Matrix3d::Identity();
     views.push_back(last);
-    const auto found = least_squares(views, config_.huber);
-    if (!found || largest_sigma(found->covariance) > config_.max_sigma) return {};
-    FusedJoint fused = finish(views, *found, config_.common_sigma);
+    const auto found = least_squares(views, config_->huber);
+    if (!found || largest_sigma(found->covariance) > config_->max_sigma) return {};
+    FusedJoint fused = finish(views, *found, config_->common_sigma);
     if (fused.contributors == 0) return {};  // the joint is behind every camera that shows it
     fused.joint.state = JointState::Inferred;
     return fused;
   }
 
-  FusionConfig config_;
+  std::shared_ptr<const FusionConfig> config_;  ///< The same for all copies.
   std::shared_ptr<const ErrorModel> errors_;
   JointFilters filters_ = joint_filters();
   std::array<std::optional<Timestamp>, kJointCount> seen_;

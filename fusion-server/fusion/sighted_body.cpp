@@ -15,6 +15,21 @@ constexpr int kWeighings = 2;       // the same, starting from the previous roun
 
 Eigen::Matrix3d round_covariance(double variance) { return variance * Eigen::Matrix3d::Identity(); }
 
+/// Pose error as the weights have it.
+double weighed_pose(const FusionConfig& config, JointId joint, JointState state) {
+  const double tracked = pose_variance(config.pose_error, joint, JointState::Tracked);
+  const BodyModel& body = config.body;
+  const double factor = body.pose * (state == JointState::Inferred ? body.inferred : 1.0);
+  return factor * factor * tracked;
+}
+
+bool has_points(const SeenBody& seen) {
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    if (seen.has(j)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 SightedBody::SightedBody(const Person& person, const Instant& instant, const ErrorModel& errors,
@@ -33,24 +48,28 @@ void SightedBody::take(std::size_t j, const Instant& instant, const ErrorModel& 
   for (JointView& view : sights.views) {
     const bool own = view.joint.covariance.known();
     if (own || view.joint.bears()) sights.round = false;
+    sights.stated.push_back(mean_variance(view.covariance));
     if (!own && view.joint.seen()) {
-      const double pose = pose_variance(config_.pose_error, joint, view.joint.state);
-      view.covariance += round_covariance(pose);
+      sights.stated.back() += pose_variance(config_.pose_error, joint, view.joint.state);
+      view.covariance += round_covariance(weighed_pose(config_, joint, view.joint.state));
     }
     sights.variance.push_back(mean_variance(view.covariance));
+    sights.bias.emplace_back(Eigen::Vector3d::Zero());
     if (!view.joint.seen()) continue;
     const auto bias = biases.find(person_.views[view.view].sensor);
-    if (bias != biases.end()) view.joint.position -= bias->second[j];
+    if (bias != biases.end()) sights.bias.back() = bias->second[j];
+    view.joint.position -= sights.bias.back();
     seen_[view.view].place[j] = view.joint.position;
-    seen_[view.view].variance[j] = sights.variance.back();
+    seen_[view.view].information[j] = view.covariance.inverse();
   }
 }
 
-void SightedBody::settle(const HeldBones& bones, const PlacedBody& expected) {
+void SightedBody::settle(const HeldBones& bones, const PlacedBody& expected,
+                         const BodyModel& model) {
   place_all(expected, nullptr);
   for (int round = 0; round < kRounds; ++round) {
     const PlacedBody held = hold_bones(placed_, bones, 1);
-    mend(held);
+    mend(held, model);
     place_all(expected, &held);
   }
 }
@@ -78,7 +97,9 @@ PlacedJoint SightedBody::robust_mean(Sights& sights, const PlacedJoint* start) c
     double information = 0.0;
     for (std::size_t v = 0; v < sights.views.size(); ++v) {
       const Eigen::Vector3d& place = sights.views[v].joint.position;
-      const double distance = (place - joint.position).norm() / std::sqrt(sights.variance[v]);
+      // Knowing by how much a view is off does not make it right: its bias counts as distance too.
+      const Eigen::Vector3d off = place + sights.bias[v] - joint.position;
+      const double distance = off.norm() / std::sqrt(sights.variance[v]);
       const bool weigh = joint.placed && huber > 0 && distance > huber;
       sights.trust[v] = weigh ? huber / distance : 1.0;
       sum += sights.trust[v] / sights.variance[v] * place;
@@ -105,10 +126,10 @@ PlacedJoint SightedBody::robust_squares(Sights& sights, const PlacedJoint& expec
   return {found->position, found->covariance, true};
 }
 
-void SightedBody::mend(const PlacedBody& body) {
-  if (!(config_.body.scale > 0) && !(config_.body.turn > 0)) return;
+void SightedBody::mend(const PlacedBody& body, const BodyModel& model) {
+  if (!(model.scale > 0) && !(model.turn > 0)) return;
   for (std::size_t v = 0; v < seen_.size(); ++v) {
-    misfits_[v] = misfit_of(seen_[v], body, misfits_[v], config_.body);
+    misfits_[v] = misfit_of(seen_[v], body, misfits_[v], model);
   }
   std::vector<std::array<Eigen::Vector3d, kJointCount>> places;
   for (std::size_t v = 0; v < seen_.size(); ++v)
@@ -138,6 +159,16 @@ void SightedBody::learn(Biases& biases, const PlacedBody& body, double passed) c
   }
 }
 
+Eigen::Matrix3d SightedBody::stated(std::size_t joint) const {
+  const Sights& sights = sights_[joint];
+  if (!sights.round) return placed_[joint].covariance;
+  double information = 0.0;
+  for (std::size_t v = 0; v < sights.views.size(); ++v) {
+    information += sights.trust[v] / sights.stated[v];
+  }
+  return round_covariance(1.0 / information);
+}
+
 std::optional<double> SightedBody::disagreement(const PlacedBody& body) const {
   constexpr double kAxes = 3.0;
   double sum = 0.0;
@@ -159,7 +190,7 @@ std::optional<double> SightedBody::scale_square() const {
   double sum = 0.0;
   double count = 0.0;
   for (std::size_t v = 0; v < seen_.size(); ++v) {
-    if (std::ranges::none_of(seen_[v].variance, [](double each) { return each > 0; })) continue;
+    if (!has_points(seen_[v])) continue;
     sum += misfits_[v].scale * misfits_[v].scale;  // rays alone have no size
     count += 1.0;
   }

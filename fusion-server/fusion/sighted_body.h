@@ -25,12 +25,16 @@ class SightedBody {
   SightedBody(const Person& person, const Instant& instant, const ErrorModel& errors,
               const FusionConfig& config, const Biases& biases);
 
-  /// Solves for everything; bones of known length keep it.  `expected`: predicted places, which
-  /// limit the depth of joints shown by too few rays.
-  void settle(const HeldBones& bones, const PlacedBody& expected);
+  /// Solves for everything; `model` has the sizes of misfits found so far; bones of known length
+  /// keep it.  `expected`: predicted places, which limit the depth of joints shown by too few rays.
+  void settle(const HeldBones& bones, const PlacedBody& expected, const BodyModel& model);
 
   /// The joints according to the corrected views, without the constraint of the bones.
   [[nodiscard]] const PlacedBody& placed() const { return placed_; }
+  /// What the views say about how uncertain a joint's place is.  Bones do not count: the views that
+  /// measure a joint also measured its bones, and may agree on wrong lengths.
+  [[nodiscard]] Eigen::Matrix3d stated(std::size_t joint) const;
+  [[nodiscard]] const std::vector<Misfit>& misfits() const { return misfits_; }
   /// Whether the views alone determine the joint's place.
   [[nodiscard]] bool determined(std::size_t joint) const;
   /// Updates the biases from the points' residuals against `body`, `passed` [s] after the last.
@@ -47,7 +51,9 @@ class SightedBody {
   /// A joint's views, corrected, and how far each is trusted.
   struct Sights {
     std::vector<JointView> views;
-    std::vector<double> variance;  ///< Per axis [m^2].
+    std::vector<double> variance;       ///< Per axis, for weights [m^2].
+    std::vector<double> stated;         ///< Per axis, with the whole pose error [m^2].
+    std::vector<Eigen::Vector3d> bias;  ///< What was subtracted [m].
     std::vector<double> trust;
     bool round = true;     ///< All points have isotropic errors.
     bool bounded = false;  ///< The predicted place was needed besides the views.
@@ -58,7 +64,7 @@ class SightedBody {
   void place_all(const PlacedBody& expected, const PlacedBody* start);
   [[nodiscard]] PlacedJoint robust_mean(Sights& sights, const PlacedJoint* start) const;
   [[nodiscard]] PlacedJoint robust_squares(Sights& sights, const PlacedJoint& expected) const;
-  void mend(const PlacedBody& body);
+  void mend(const PlacedBody& body, const BodyModel& model);
 
   const FusionConfig& config_;
   const Person& person_;

@@ -52,16 +52,24 @@ Eigen::Matrix<double, 3, 2> slopes_at(std::size_t joint, const Centres& at) {
   return slopes;
 }
 
+/// A misfit undone: the sines once for all joints.
+struct Mending {
+  explicit Mending(const Misfit& misfit)
+      : scale(misfit.scale), back(about_y(-misfit.turn).toRotationMatrix()) {}
+  double scale;
+  Eigen::Matrix3d back;
+};
+
 /// The view's position of a joint, corrected for the misfit.
 Eigen::Vector3d mended_at(std::size_t joint, const SeenBody& seen, const Centres& at,
-                          const Misfit& misfit) {
+                          const Mending& mending) {
   Eigen::Vector3d place = seen.place[joint];
   const std::size_t axis = axis_of(joint);
   if (!in_trunk(static_cast<JointId>(joint)) && at.body[axis].placed) {
     const Eigen::Vector3d& about = at.body[axis].position;
-    place = about + about_y(-misfit.turn) * (place - about);
+    place = about + mending.back * (place - about);
   }
-  return place - misfit.scale * (at.body[joint].position - at.middle);
+  return place - mending.scale * (at.body[joint].position - at.middle);
 }
 
 /// Angle between the direction of sight and frontal, from the front or the rear alike [rad].
@@ -77,11 +85,9 @@ double side_on(const SeenBody& seen, const Centres& at) {
   return std::asin(std::min(1.0, std::abs(line.dot(ray)) / (line.norm() * ray.norm())));
 }
 
-double turn_sigma(const SeenBody& seen, const Centres& at, const BodyModel& model) {
-  if (!(model.turn > 0)) return kOff;
+double side_on_share(const SeenBody& seen, const Centres& at, const BodyModel& model) {
   const double span = std::max(kOff, model.turn_full - model.turn_from);
-  const double share = (side_on(seen, at) - model.turn_from) / span;
-  return kLeastTurn + model.turn * std::clamp(share, 0.0, 1.0);
+  return std::clamp((side_on(seen, at) - model.turn_from) / span, 0.0, 1.0);
 }
 
 }  // namespace
@@ -103,23 +109,27 @@ Misfit misfit_of(const SeenBody& seen, const PlacedBody& body, const Misfit& bef
   const auto middle = middle_of(body);
   if (!middle) return {};
   const Centres at{*middle, body};
-  const double turn = turn_sigma(seen, at, model);
+  const double share = side_on_share(seen, at, model);
+  const double turn = model.turn > 0 ? kLeastTurn + model.turn * share : kOff;
   const double scale = std::max(kOff, model.scale);
+  const Mending mending(before);
   const Eigen::Vector2d prior(1 / (scale * scale), 1 / (turn * turn));
   Eigen::Matrix2d information = prior.asDiagonal();
   Eigen::Vector2d right = -prior.cwiseProduct(Eigen::Vector2d(before.scale, before.turn));
   for (std::size_t j = 0; j < kJointCount; ++j) {
-    if (!(seen.variance[j] > 0) || !body[j].placed) continue;
+    if (!seen.has(j) || !body[j].placed) continue;
     const auto slopes = slopes_at(j, at);
-    const Eigen::Vector3d off = mended_at(j, seen, at, before) - body[j].position;
-    const double distance = off.norm() / std::sqrt(seen.variance[j]);
+    const Eigen::Vector3d off = mended_at(j, seen, at, mending) - body[j].position;
+    const double distance = std::sqrt(off.dot(seen.information[j] * off));
     const bool far = model.huber > 0 && distance > model.huber;
-    const double weight = (far ? model.huber / distance : 1.0) / seen.variance[j];
-    information += weight * slopes.transpose() * slopes;
-    right += weight * slopes.transpose() * off;
+    const Eigen::Matrix<double, 2, 3> pull =
+        (far ? model.huber / distance : 1.0) * slopes.transpose() * seen.information[j];
+    information += pull * slopes;
+    right += pull * off;
   }
-  const Eigen::Vector2d more = information.inverse() * right;
-  return {before.scale + more.x(), before.turn + more.y()};
+  const Eigen::Matrix2d spread = information.inverse();
+  const Eigen::Vector2d more = spread * right;
+  return {before.scale + more.x(), before.turn + more.y(), spread(0, 0), spread(1, 1), share};
 }
 
 std::array<Eigen::Vector3d, kJointCount> mended(const SeenBody& seen, const PlacedBody& body,
@@ -128,9 +138,10 @@ std::array<Eigen::Vector3d, kJointCount> mended(const SeenBody& seen, const Plac
   const auto middle = middle_of(body);
   if (!middle) return places;
   const Centres at{*middle, body};
+  const Mending mending(misfit);
   for (std::size_t j = 0; j < kJointCount; ++j) {
-    if (!(seen.variance[j] > 0) || !body[j].placed) continue;
-    places[j] = mended_at(j, seen, at, misfit);
+    if (!seen.has(j) || !body[j].placed) continue;
+    places[j] = mended_at(j, seen, at, mending);
   }
   return places;
 }

@@ -21,12 +21,19 @@ namespace chorus::fusion {
 struct SeenBody {
   Eigen::Vector3d eye = Eigen::Vector3d::Zero();  ///< Position of the sensor [m].
   std::array<Eigen::Vector3d, kJointCount> place{};
-  std::array<double, kJointCount> variance{};  ///< Per axis [m^2]; 0: not seen as a point.
+  /// Inverse covariance [1/m^2]; zero: not seen as a point.
+  std::array<Eigen::Matrix3d, kJointCount> information;
+
+  SeenBody() { information.fill(Eigen::Matrix3d::Zero()); }
+  [[nodiscard]] bool has(std::size_t joint) const { return information[joint](0, 0) > 0; }
 };
 
 struct Misfit {
   double scale = 0.0;
-  double turn = 0.0;  ///< About +y [rad].
+  double turn = 0.0;            ///< About +y [rad].
+  double scale_variance = 0.0;  ///< Of what was found; 0: nothing was.
+  double turn_variance = 0.0;   ///< [rad^2]
+  double side_on = 0.0;         ///< Seen frontally: 0; from the side: 1; see BodyModel::turn_from.
 };
 
 /// Mean of the core joints that have a place; none without any.

@@ -128,25 +128,37 @@ Comparison measure(Report& report, const FusionCase& each) {
   return report_draws(report, each.name, draws, each.in_full);
 }
 
-/// What each part of our method contributes: `ours` has all parts, every other row leaves one out.
+/// The body filter without one of its parts.
+Contender without(const char* part, void (*leave_out)(fusion::FusionConfig&)) {
+  fusion::FusionConfig config;
+  config.method = fusion::Method::BodyFilter;
+  leave_out(config);
+  return ours(config, std::string("without-") + part);
+}
+
+/// What each part of the body filter contributes: `ours` has all, every other row leaves one out.
 void ablate(Report& report) {
-  fusion::FusionConfig whole;
-  fusion::FusionConfig not_robust = whole;
-  not_robust.huber = 0;
-  fusion::FusionConfig isotropic = whole;
-  isotropic.noise.along = isotropic.noise.across = mm(21);  // the same mean variance
-  fusion::FusionConfig no_states = whole;
-  no_states.noise.inferred_factor = 1;
-  const std::vector<Contender> contenders{ours(whole), ours(not_robust, "without-robust-loss"),
-                                          ours(isotropic, "without-line-of-sight"),
-                                          ours(no_states, "without-inferred-factor")};
-  FusionCase each{"ablation-workshop6-A", contest_of("A", 6, PathKind::Random)};
-  each.contest.every_method = false;
-  Draws draws = draw_all(report, each, contenders);
-  each.contest.pipeline.sides.resolve = false;
-  const Draws unresolved = draw_all(report, each, {ours(whole, "without-side-consensus")});
-  for (std::size_t i = 0; i < draws.size(); ++i) draws[i].push_back(unresolved[i].front());
-  compare(each.name, draws, 0).report(report);
+  using fusion::FusionConfig;
+  FusionConfig whole;
+  whole.method = fusion::Method::BodyFilter;
+  const std::vector<Contender> contenders{
+      ours(whole),
+      without("turn", [](FusionConfig& c) { c.body.turn = 0; }),
+      without("scale", [](FusionConfig& c) { c.body.scale = 0; }),
+      without("bones", [](FusionConfig& c) { c.body.bone = 0; }),
+      without("bias", [](FusionConfig& c) { c.body.bias_rate = 0; }),
+      without("time", [](FusionConfig& c) { c.body.resting = 0; }),
+      without("robust-loss", [](FusionConfig& c) { c.body.huber = 0; })};
+  for (const char* profile : {"A", "B", "C", "D"}) {
+    FusionCase each{fmt::format("ablation-workshop6-{}", profile),
+                    contest_of(profile, 6, PathKind::Random)};
+    each.contest.every_method = false;
+    Draws draws = draw_all(report, each, contenders);
+    each.contest.pipeline.sides.resolve = false;
+    const Draws unresolved = draw_all(report, each, {ours(whole, "without-side-consensus")});
+    for (std::size_t i = 0; i < draws.size(); ++i) draws[i].push_back(unresolved[i].front());
+    compare(each.name, draws, 0).report(report);
+  }
 }
 
 /// Turns one source of error after the other down and up.

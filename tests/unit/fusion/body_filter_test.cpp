@@ -111,11 +111,62 @@ TEST(BodyFilter, AViewThatIsTooLargeAsAWholeIsShrunk) {
   const auto error = [&](double scale) {
     Room room;
     room.config.body.scale = scale;
-    (void)room.settled(exact);
-    const auto large = scaled(exact, 1.08);
-    return wrist_off(room.at(kSteps + 1, {view_of(1, exact), view_of(2, large)}), exact);
+    const auto two_see = [&](int step, double by) {
+      return room.at(step, {view_of(1, exact), view_of(2, scaled(exact, by))});
+    };
+    for (int i = 0; i < kSteps; ++i) (void)two_see(i, i % 2 == 0 ? 1.06 : 0.94);
+    return wrist_off(two_see(kSteps, 1.08), exact);
   };
   EXPECT_LT(error(0.06), 0.5 * error(0.0));
+}
+
+/// A camera that guesses depth has everything too far along its line of sight, and says so.
+TEST(BodyFilter, AnUncertainDepthIsNotTakenForAWrongSize) {
+  const auto exact = standing();
+  const auto guessed = [&](int number) {
+    SensorView view = view_of(number, exact);
+    for (Joint& joint : view.skeleton.joints) {
+      if (!joint.seen()) continue;
+      const Eigen::Vector3d way = (joint.position - view.eye).normalized();
+      joint.position += (number % 2 == 0 ? 0.3 : -0.2) * way;
+      joint.covariance = Covariance(
+          Eigen::Matrix3d(6.25e-4 * Eigen::Matrix3d::Identity() + 0.062 * way * way.transpose()));
+    }
+    return view;
+  };
+  Room room;
+  FusedBody body;
+  for (int i = 0; i < 30; ++i) {
+    // One joint of known depth, or the person would be one for points-and-rays.
+    std::vector<SensorView> views{guessed(1), guessed(2), guessed(3), guessed(4)};
+    views[0].skeleton[SpineMid].covariance = {};
+    body = room.at(i, views);
+  }
+  EXPECT_LT(wrist_off(body, exact), 0.02);
+}
+
+TEST(BodyFilter, AViewThatStaysWrongPullsNoMoreThanAtFirst) {
+  const auto exact = standing();
+  auto wrong = exact;
+  wrong[WristLeft].position += Eigen::Vector3d(0.1, 0.2, 0.2);
+  Room room;
+  room.config.body.bone = 0.0;
+  const auto step = [&](int i) {
+    return wrist_off(room.at(i, {view_of(1, exact), view_of(2, exact), view_of(3, wrong)}), exact);
+  };
+  const double first = step(0);
+  double last = 0.0;
+  for (int i = 1; i < kSteps; ++i) last = step(i);
+  EXPECT_LT(last, 1.2 * first);
+}
+
+TEST(BodyFilter, HeldBonesMakeNoPlaceSurer) {
+  const auto variance = [](double bone) {
+    Room room;
+    room.config.body.bone = bone;
+    return room.settled(standing()).variance[index_of(WristLeft)];
+  };
+  EXPECT_NEAR(variance(0.003), variance(0.0), 0.1 * variance(0.0));
 }
 
 TEST(BodyFilter, AViewFromTheSideMayHaveTheBodyTurned) {

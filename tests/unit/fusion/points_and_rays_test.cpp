@@ -48,10 +48,29 @@ TEST(PointsAndRays, TwoRaysMakeAJointWithItsContributors) {
   EXPECT_NEAR(std::sqrt(body.variance[kNeck]), 0.026, 0.01);
 }
 
+TEST(PointsAndRays, TakesPointsOfGuessedDepthFromTheBodyFilterButNoOthers) {
+  const auto person = [](double along, double across) {
+    SensorView view = neck_view(1, {0, 1, 0}, 0.5, {0, 1, 3});
+    const Eigen::Vector3d sigma(across, across, along);
+    view.skeleton[JointId::Neck].covariance =
+        Covariance(Eigen::Matrix3d(sigma.cwiseProduct(sigma).asDiagonal()));
+    return Person{PersonId{1}, {view}};
+  };
+  FusionConfig config;
+  config.method = Method::BodyFilter;
+  EXPECT_EQ(method_for(person(0.25, 0.025), config), Method::PointsAndRays);
+  EXPECT_EQ(method_for(person(0.03, 0.015), config), Method::BodyFilter);
+  const Person unstated{PersonId{1}, {neck_view(1, {0, 1, 0}, 0.5, {0, 1, 3})}};
+  EXPECT_EQ(method_for(unstated, config), Method::BodyFilter);
+  config.method = Method::Mean;
+  EXPECT_EQ(method_for(person(0.25, 0.025), config), Method::Mean);
+}
+
 TEST(PointsAndRays, AnswersForPeopleOfWhomThereAreRaysAloneWhateverTheMethod) {
   const Eigen::Vector3d neck(0.2, 1.4, 0.1);
   Cell cell;
   cell.config = {};
+  cell.config.method = Method::InverseVariance;
   const FusedBody rays = cell.at(milliseconds(0), {ray_view(1, neck), ray_view(2, neck)});
   EXPECT_LT((rays.skeleton[JointId::Neck].position - neck).norm(), 1e-9);
   EXPECT_EQ(rays.contributors[kNeck], 0b11U);

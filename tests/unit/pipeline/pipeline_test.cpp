@@ -11,9 +11,16 @@ namespace {
 
 using std::chrono::milliseconds;
 
+/// The people of ring.h are no bodies whose bones a filter could hold.
+PipelineConfig without_memory() {
+  PipelineConfig config;
+  config.fusion.method = fusion::Method::InverseVariance;
+  return config;
+}
+
 /// Steps at 30 Hz from 0.2 s on; returns the last step.
 Step run(const Histories& histories, const Registration& registration, int steps,
-         const PipelineConfig& config = {}) {
+         const PipelineConfig& config = without_memory()) {
   Step result;
   for (int i = 0; i < steps; ++i) {
     const Timestamp instant = kStart + milliseconds(200 + 33 * i);
@@ -60,13 +67,14 @@ TEST(Perceive, HandsOnTheViewsThatStepFuses) {
   const Step last = run(histories, registration, 10);
   const Timestamp next = last.snapshot.instant + milliseconds(33);
   const Inputs in{next, next + milliseconds(80), 10};
-  const Perceived perceived = perceive(in, histories, registration, last.memory, {});
-  const Step fused = step(in, histories, registration, last.memory, {});
+  const Perceived perceived = perceive(in, histories, registration, last.memory, without_memory());
+  const Step fused = step(in, histories, registration, last.memory, without_memory());
   ASSERT_EQ(perceived.people.size(), 2u);
   ASSERT_EQ(fused.snapshot.bodies.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(perceived.people[i].views.size(), 6u);
-    const FusedBody again = fusion::fuse(perceived.people[i], fused.snapshot.sensors, {});
+    const FusedBody again =
+        fusion::fuse(perceived.people[i], fused.snapshot.sensors, without_memory().fusion);
     EXPECT_EQ(again.id, fused.snapshot.bodies[i].id);
     EXPECT_EQ(again.skeleton[JointId::Neck].position,
               fused.snapshot.bodies[i].skeleton[JointId::Neck].position);
