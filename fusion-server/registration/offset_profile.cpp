@@ -13,15 +13,14 @@ namespace {
 
 using enum JointId;
 
-constexpr std::size_t kSmoothed = 5;       // frames that are averaged, so that no offset
-                                           // interpolates less noise away than another
-constexpr std::size_t kMostFrames = 1200;  // of the source; more are redundant
-constexpr std::size_t kMostCoarse = 300;   // of them for the coarse search
-constexpr std::size_t kMinFrames = 30;     // that an offset must leave
-constexpr double kCoarse = 0.020;          // [s]
-constexpr double kFine = 0.002;            // [s]
-constexpr double kOptimism = 1.3;          // errors of simulated walks beside the likelihood's
-constexpr double kErrorTime = 2.0;         // [s] in which a sensor's error is about forgotten
+constexpr std::size_t kSmoothed = 5;      // frames that are averaged, so that no offset
+                                          // interpolates less noise away than another
+constexpr std::size_t kMostFrames = 300;  // of the source: neighbours of a longer walk share noise
+constexpr std::size_t kMinFrames = 30;    // that an offset must leave
+constexpr double kCoarse = 0.020;         // [s]
+constexpr double kFine = 0.002;           // [s]
+constexpr double kOptimism = 1.3;         // errors of simulated walks beside the likelihood's
+constexpr double kErrorTime = 2.0;        // [s] in which a sensor's error is about forgotten
 
 struct Sides {
   JointId left;
@@ -63,9 +62,9 @@ Trail smoothed(const Trail& trail, Duration max_gap) {
   return out;
 }
 
-Trail thinned(const Trail& trail, std::size_t most) {
+Trail thinned(const Trail& trail) {
   const std::size_t count = trail.frames.size();
-  const std::size_t step = std::max<std::size_t>(1, (count + most - 1) / most);
+  const std::size_t step = std::max<std::size_t>(1, (count + kMostFrames - 1) / kMostFrames);
   Trail out{trail.sensor, {}};
   for (std::size_t i = 0; i < count; i += step) out.frames.push_back(trail.frames[i]);
   return out;
@@ -158,8 +157,8 @@ OffsetProfile::OffsetProfile(const Walker& target, const Walker& source,
     : range_(range),
       max_gap_(config.max_gap),
       target_(target.trail),
-      source_(thinned(source.trail, kMostFrames)),
-      inner_(thinned(inner_part(source_, target_, from_seconds(range)), kMostCoarse)),
+      source_(thinned(source.trail)),
+      inner_(inner_part(source_, target_, from_seconds(range))),
       levelled_(config.use_floor && target.floor.floor && source.floor.floor) {
   if (!levelled_) return;
   level_from_target_ = level(*target.floor.floor);
