@@ -13,15 +13,14 @@ namespace {
 
 using enum JointId;
 
-constexpr std::size_t kSmoothed = 5;     // frames that are averaged, so that no offset
-                                         // interpolates less noise away than another
-constexpr std::size_t kMaxFrames = 300;  // of the source; more are redundant
-constexpr std::size_t kMinFrames = 30;   // that an offset must leave
-constexpr double kCoarse = 0.020;        // [s]
-constexpr double kFine = 0.002;          // [s]
-constexpr double kOptimism =
-    1.3;  // by which the errors of simulated walks exceeded the likelihood's
-constexpr double kErrorTime = 2.0;  // [s] in which an error of a sensor is about forgotten
+constexpr std::size_t kSmoothed = 5;      // frames that are averaged, so that no offset
+                                          // interpolates less noise away than another
+constexpr std::size_t kMostFrames = 300;  // of the source: neighbours of a longer walk share noise
+constexpr std::size_t kMinFrames = 30;    // that an offset must leave
+constexpr double kCoarse = 0.020;         // [s]
+constexpr double kFine = 0.002;           // [s]
+constexpr double kOptimism = 1.3;         // errors of simulated walks beside the likelihood's
+constexpr double kErrorTime = 2.0;        // [s] in which a sensor's error is about forgotten
 
 struct Sides {
   JointId left;
@@ -65,7 +64,7 @@ Trail smoothed(const Trail& trail, Duration max_gap) {
 
 Trail thinned(const Trail& trail) {
   const std::size_t count = trail.frames.size();
-  const std::size_t step = std::max<std::size_t>(1, (count + kMaxFrames - 1) / kMaxFrames);
+  const std::size_t step = std::max<std::size_t>(1, (count + kMostFrames - 1) / kMostFrames);
   Trail out{trail.sensor, {}};
   for (std::size_t i = 0; i < count; i += step) out.frames.push_back(trail.frames[i]);
   return out;

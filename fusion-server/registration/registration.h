@@ -12,8 +12,8 @@
 
 namespace chorus::registration {
 
-/// All frames of one sensor during the walk, in capture order.  Where their clock_sigma is more than
-/// a millisecond or two, the offset is estimated from the walk (time_offset.h).
+/// All frames of one sensor during the walk, in capture order.  Where their clock_sigma is more
+/// than a millisecond or two, the offset is estimated from the walk (time_offset.h).
 struct WalkTrack {
   SensorId sensor;
   std::vector<SensorFrame> frames;

@@ -28,12 +28,13 @@ constexpr double kMaxSpread = 0.05;  // [m] of the place, over what is open of t
 struct Measured {
   std::size_t target;
   std::size_t source;
-  OffsetProfile profile;
+  double range;                      ///< That was searched to either side [s].
   std::optional<PairOffset> offset;  ///< None: it saw too little.
 };
 
 struct Network {
   std::vector<SensorId> sensors;
+  std::vector<Walker> walkers;
   std::vector<double> priors;  ///< Sigma of each clock [s].
   std::vector<Measured> pairs;
   Eigen::VectorXd offsets;
@@ -60,16 +61,15 @@ double prior_of(const WalkTrack& track) {
 }
 
 /// The pairs that are worth a search, each searched.
-void measure(Network& network, const std::vector<Walker>& walkers,
-             const RegistrationConfig& config) {
+void measure(Network& network, const RegistrationConfig& config) {
+  const std::vector<Walker>& walkers = network.walkers;
   for (std::size_t target = 0; target < walkers.size(); ++target) {
     for (std::size_t source = target + 1; source < walkers.size(); ++source) {
       const double sigma = std::hypot(network.priors[target], network.priors[source]);
       if (sigma < kKnown) continue;
       const double range = std::min(kMostSearched, kSearchSigmas * sigma);
-      OffsetProfile profile(walkers[target], walkers[source], config, range);
-      const auto offset = profile.best();
-      network.pairs.push_back({target, source, std::move(profile), offset});
+      const OffsetProfile profile(walkers[target], walkers[source], config, range);
+      network.pairs.push_back({target, source, range, profile.best()});
     }
   }
 }
@@ -77,11 +77,12 @@ void measure(Network& network, const std::vector<Walker>& walkers,
 double weight_of(const Network& network, const Measured& pair) {
   if (!pair.offset) return 0.0;
   const double sigma = std::hypot(pair.offset->sigma, kLeastSigma);
+  if (network.offsets.size() == 0) return 1.0 / (sigma * sigma);
   const double off = (pair.offset->offset - network.between(pair)) / (kOutlier * sigma);
   return 1.0 / (sigma * sigma) / (1.0 + off * off);
 }
 
-/// One step of re-weighted least squares over all pairs and priors.
+/// One step of re-weighted least squares over all pairs and priors; the first has all weights.
 void solve(Network& network) {
   const auto size = Network::at(network.sensors.size());
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size);
@@ -106,13 +107,16 @@ void solve(Network& network) {
 
 /// How far the source's place moves while the offset goes through what is open of it [m]; infinite
 /// when that cannot be seen.
-double place_spread(const Network& network, const Measured& pair) {
+double place_spread(const Network& network, const Measured& pair,
+                    const RegistrationConfig& config) {
   const double middle = network.between(pair);
   const double sigma = network.sigma_between(pair.target, pair.source);
   if (sigma < kKnown) return 0.0;
+  const OffsetProfile profile(network.walkers[pair.target], network.walkers[pair.source], config,
+                              pair.range);
   std::vector<Eigen::Vector3d> places;
   for (const double share : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
-    const auto place = pair.profile.place_at(middle + share * kSigmas95 * sigma);
+    const auto place = profile.place_at(middle + share * kSigmas95 * sigma);
     if (!place) return std::numeric_limits<double>::infinity();
     places.push_back(*place);
   }
@@ -155,19 +159,17 @@ WalkClocks clocks_of(const std::vector<WalkTrack>& walk, const RegistrationConfi
   WalkClocks clocks;
   if (config.method == PairMethod::IcpOnly || all_known(walk)) return clocks;
   Network network;
-  std::vector<Walker> walkers;
   for (const WalkTrack& track : walk) {
     if (std::ranges::find(network.sensors, track.sensor) != network.sensors.end()) continue;
     network.sensors.push_back(track.sensor);
     network.priors.push_back(prior_of(track));
-    walkers.push_back(offset_walker(track, config));
+    network.walkers.push_back(offset_walker(track, config));
   }
-  measure(network, walkers, config);
-  network.offsets = Eigen::VectorXd::Zero(Network::at(network.sensors.size()));
+  measure(network, config);
   for (int i = 0; i < kIterations; ++i) solve(network);
   clocks.offsets = against_the_best(network);
   for (const Measured& pair : network.pairs) {
-    if (place_spread(network, pair) <= kMaxSpread) continue;
+    if (place_spread(network, pair, config) <= kMaxSpread) continue;
     const SensorId& target = network.sensors[pair.target];
     const SensorId& source = network.sensors[pair.source];
     clocks.open.emplace(std::pair{target, source}, cannot_tell(target, source));

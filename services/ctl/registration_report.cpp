@@ -34,7 +34,7 @@ std::string chain_shown(const nlohmann::json& sensor) {
   return text.empty() ? "-" : text;
 }
 
-/// "the clocks of s2 and s5 differ by 212 ms +- 4" for each clock that the walk had to tell.
+/// "the clocks of s2 and s5 differ by 212 ms +- 4" for each clock that the walk told apart.
 std::string clocks_shown(const nlohmann::json& registration) {
   std::vector<std::pair<std::string, double>> clocks;
   std::map<std::string, double> sigmas;
@@ -50,10 +50,11 @@ std::string clocks_shown(const nlohmann::json& registration) {
   if (common == clocks.end()) return {};
   std::string text;
   for (const auto& [name, offset] : clocks) {
-    if (name == common->first) continue;
-    text += fmt::format("  the clocks of {} and {} differ by {:.0f} ms +- {:.0f}\n",
-                        printable(common->first), printable(name), std::abs(offset),
-                        std::ceil(kSigmas95 * sigmas[name]));
+    const double open = kSigmas95 * sigmas[name];
+    if (name == common->first || std::abs(offset) <= open) continue;
+    text +=
+        fmt::format("  the clocks of {} and {} differ by {:.0f} ms +- {:.0f}\n",
+                    printable(common->first), printable(name), std::abs(offset), std::ceil(open));
   }
   return text;
 }

@@ -113,6 +113,29 @@ TEST(FuseOffline, SameInputsSameBytes) {
   }
 }
 
+/// Recordings made by hosts without a common clock are brought in step by the walk, and fused so.
+TEST(FuseOffline, WithoutACommonClockTheWalkTellsTheClocks) {
+  const auto in_step = walk({.noise = 0.005});
+  auto tracks = in_step;
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    for (SensorFrame& frame : tracks[i].frames) {
+      move_in_time(frame, std::chrono::milliseconds(150 * static_cast<int>(i)));
+      frame.clock_sigma = 0.5;
+    }
+  }
+  const auto fused = fuse_offline(tracks, std::nullopt, {});
+  ASSERT_TRUE(fused) << fused.error().message;
+  const auto right = fuse_offline(in_step, std::nullopt, {});
+  ASSERT_TRUE(right);
+  const auto error = [](const OfflineResult& result) {
+    const int master = std::stoi(result.registration.master.str().substr(1));
+    const auto& place = result.registration.sensors.at(result.registration.master);
+    return mean_error(result.snapshots, true_place(master) * place.world_from_sensor.inverse());
+  };
+  EXPECT_EQ(fused->registration.clocks.size(), 4u);
+  EXPECT_LT(error(*fused), error(*right) + mm(10));
+}
+
 TEST(FuseOffline, AGapOfAYearIsSkippedNotCounted) {
   auto tracks = walk({.length = 4});
   for (WalkTrack& track : tracks) {

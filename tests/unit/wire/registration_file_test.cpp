@@ -36,6 +36,8 @@ Registration example() {
   edge.pairs = 640;
   edge.inliers = 601;
   r.edges.push_back(edge);
+  r.clocks[sensor_id("s1")] = {std::chrono::milliseconds(-212), std::chrono::milliseconds(4)};
+  r.clocks[sensor_id("s2")] = {};
   return r;
 }
 
@@ -53,6 +55,10 @@ TEST(RegistrationFile, ReadsWhatItWrites) {
   EXPECT_EQ(read->verdict, Verdict::Provisional);
   EXPECT_EQ(read->reasons, written.reasons);
   EXPECT_EQ(read->master, written.master);
+  ASSERT_EQ(read->clocks.size(), 2u);
+  EXPECT_EQ(read->clocks.at(sensor_id("s1")).added, std::chrono::milliseconds(-212));
+  EXPECT_EQ(read->clocks.at(sensor_id("s1")).sigma, std::chrono::milliseconds(4));
+  EXPECT_EQ(read->clocks.at(sensor_id("s2")).sigma, Duration{0});
   ASSERT_EQ(read->sensors.size(), 3u);
   for (const auto& [id, place] : written.sensors) {
     const Extrinsics& again = read->sensors.at(id);
