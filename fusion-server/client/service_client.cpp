@@ -64,7 +64,9 @@ Result<ServiceClient> ServiceClient::of(std::string_view url) {
   auto base = http::parse_url(url);
   if (!base) return pass(base);
   while (base->target.ends_with('/')) base->target.pop_back();
-  return ServiceClient(std::move(*base));
+  auto trust = base->secure ? authorities() : Result<tls::Trust>(tls::Trust());
+  if (!trust) return pass(trust);
+  return ServiceClient(std::move(*base), std::move(*trust));
 }
 
 Result<nlohmann::json> ServiceClient::get(std::string_view path) const {
@@ -90,7 +92,7 @@ Result<nlohmann::json> ServiceClient::ask(std::string_view method, std::string_v
   for (auto& header : authorization()) request.headers.push_back(std::move(header));
   request.body = std::move(body);
   const std::string where = http::url_text(base_, request.target);
-  const auto answer = fetch_trusted(base_, request);
+  const auto answer = http::fetch(base_, request, {}, trust_);
   if (!answer && answer.error().message.starts_with("cannot connect"))
     return fail(answer.error().code, where,
                 answer.error().message + "; is chorus-fusion running there?");

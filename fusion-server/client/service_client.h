@@ -35,7 +35,8 @@ namespace chorus::client {
 
 class ServiceClient {
  public:
-  /// `url` names the server; a path in it is kept as prefix.
+  /// `url` names the server; a path in it is kept as prefix.  For https:// the authorities() are
+  /// read here, once.
   [[nodiscard]] static Result<ServiceClient> of(std::string_view url);
 
   /// An empty answer is null.
@@ -45,11 +46,13 @@ class ServiceClient {
   [[nodiscard]] Result<nlohmann::json> remove(std::string_view path) const;
 
  private:
-  explicit ServiceClient(http::Url base) : base_(std::move(base)) {}
+  ServiceClient(http::Url base, tls::Trust trust)
+      : base_(std::move(base)), trust_(std::move(trust)) {}
   [[nodiscard]] Result<nlohmann::json> ask(std::string_view method, std::string_view path,
                                            std::string body) const;
 
   http::Url base_;
+  tls::Trust trust_;
 };
 
 /// Reads a member that may be absent or of another type; then the fallback is returned.
