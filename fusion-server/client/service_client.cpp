@@ -27,9 +27,12 @@ std::vector<std::pair<std::string, std::string>> authorization() {
   return {{"Authorization", std::string("Bearer ") + token}};
 }
 
-std::string default_server() {
-  const bool secure = ::access(kAuthoritiesOfWorkshop, R_OK) == 0;
-  return std::string(secure ? "https" : "http") + "://127.0.0.1:8080/";
+bool host_has_tls(const std::string& folder) {
+  return ::access((folder + "/host.crt").c_str(), F_OK) == 0;
+}
+
+std::string default_server(const std::string& tls_folder) {
+  return std::string(host_has_tls(tls_folder) ? "https" : "http") + "://127.0.0.1:8080/";
 }
 
 Result<tls::Trust> authorities() {

@@ -30,8 +30,14 @@ namespace chorus::client {
                                                          const http::ClientRequest& request,
                                                          const http::ClientLimits& limits = {});
 
-/// The fusion server of this host: with https where `chorus init` would have given it TLS.
-[[nodiscard]] std::string default_server();
+/// Where the certificates of this host are, if it has any.
+inline constexpr const char* kTlsFolder = "/etc/chorus/tls";
+
+/// Whether services of this host have TLS: `chorus init` gives it to them where host.crt is.
+[[nodiscard]] bool host_has_tls(const std::string& folder = kTlsFolder);
+
+/// The fusion server of this host.
+[[nodiscard]] std::string default_server(const std::string& tls_folder = kTlsFolder);
 
 class ServiceClient {
  public:

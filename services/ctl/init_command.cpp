@@ -87,9 +87,7 @@ bool is_loopback(const std::string& address) {
 std::string tls_folder(const InitArguments& arguments) {
   if (arguments.no_tls) return {};
   if (!arguments.tls.empty()) return arguments.tls;
-  std::error_code hidden;
-  const bool made = std::filesystem::exists(std::string(kTlsFolder) + "/host.crt", hidden);
-  return made ? kTlsFolder : "";
+  return client::host_has_tls() ? client::kTlsFolder : "";
 }
 
 ServiceWishes service_wishes(const InitArguments& arguments, std::uint16_t port) {
@@ -207,7 +205,7 @@ Result<int> run_init_certificate(const InitArguments& arguments) {
   std::cerr << fmt::format(
       "{0}/host.crt, host.key and ca.crt written.  Where they are in {1}, chorus init makes "
       "services that use them;\na service that has them: systemctl reload chorus-SERVICE.\n",
-      wishes.folder, kTlsFolder);
+      wishes.folder, client::kTlsFolder);
   return kExitOk;
 }
 

@@ -21,5 +21,15 @@ TEST(ServiceClient, ReadsTheAuthoritiesOnceAndBeforeTheFirstRequest) {
   EXPECT_THAT(plain, chorus::testing::IsOk()) << "needs none";
 }
 
+TEST(DefaultServer, HasTlsWhereInitGivesItToServices) {
+  const chorus::testing::TemporaryFolder folder;
+  EXPECT_EQ(default_server(folder.path().string()), "http://127.0.0.1:8080/");
+  (void)folder.write("ca.crt", "an authority alone is no certificate of this host");
+  EXPECT_EQ(default_server(folder.path().string()), "http://127.0.0.1:8080/");
+  (void)folder.write("host.crt", "");
+  EXPECT_EQ(default_server(folder.path().string()), "https://127.0.0.1:8080/");
+  EXPECT_TRUE(host_has_tls(folder.path().string()));
+}
+
 }  // namespace
 }  // namespace chorus::client
