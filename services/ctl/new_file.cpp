@@ -73,7 +73,8 @@ Result<void> make_folder(const std::string& named, Readers readers) {
   const std::filesystem::path above = path.parent_path();
   if (!above.empty()) std::filesystem::create_directories(above, failed);
   const bool shared = readers == Readers::Services;
-  if (::mkdir(folder.c_str(), shared ? 0750 : 0700) != 0)
+  constexpr mode_t kShared = 0751;  // everybody may read the ca.crt in it, by its name
+  if (::mkdir(folder.c_str(), shared ? kShared : 0700) != 0)
     return cannot(folder, " (as root, or with --out FOLDER)");
   const int made = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   const bool handed = !shared || (made >= 0 && hand_over(made));

@@ -24,5 +24,13 @@ TEST(MakeFolder, MakesItAndItsParentsForItsReaders) {
   }
 }
 
+TEST(MakeFolder, OthersMayPassThroughOneForTheServicesButNotLookAround) {
+  const chorus::testing::TemporaryFolder folder;
+  const auto made = folder / "tls/";
+  ASSERT_THAT(make_folder(made.string(), Readers::Services), chorus::testing::IsOk());
+  EXPECT_EQ(mode_of(made),
+            perms::owner_all | perms::group_read | perms::group_exec | perms::others_exec);
+}
+
 }  // namespace
 }  // namespace chorus::ctl
