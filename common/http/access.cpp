@@ -3,12 +3,12 @@
 #include <openssl/crypto.h>
 #include <openssl/evp.h>
 #include <openssl/sha.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 
 #include "common/http/text.h"
+#include "common/net/host_name.h"
 
 namespace chorus::http {
 namespace {
@@ -115,11 +115,7 @@ bool is_own_host(std::string_view host, const std::vector<std::string>& names) {
          });
 }
 
-std::vector<std::string> host_names() {
-  std::array<char, 256> name{};
-  if (::gethostname(name.data(), name.size() - 1) != 0 || name[0] == '\0') return {};
-  return {name.data(), std::string(name.data()) + ".local"};
-}
+std::vector<std::string> host_names() { return net::names_of(net::host_name()); }
 
 bool from_own_page(const RequestHead& head) {
   // A proxy in front of us may end TLS; the page is https then.

@@ -54,7 +54,7 @@ struct Guard {
 /// Any other name may belong to a web page whose owner points it here (DNS rebinding).
 [[nodiscard]] bool is_own_host(std::string_view host, const std::vector<std::string>& names);
 
-/// The name of this host, and the same with ".local".
+/// The names under which this host is asked (net::names_of).
 [[nodiscard]] std::vector<std::string> host_names();
 
 /// True for a request that comes from one of this service's own pages.

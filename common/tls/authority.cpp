@@ -1,9 +1,11 @@
 #include "common/tls/authority.h"
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 
 #include <arpa/inet.h>
+#include <openssl/asn1.h>
 #include <openssl/ec.h>
 #include <openssl/pem.h>
 #include <openssl/x509v3.h>
@@ -36,6 +38,23 @@ bool is_name(const std::string& host) {
          host.front() != '.' && std::all_of(host.begin(), host.end(), fits);
 }
 
+/// The first 64 characters, as many as a common name may have; none if the text is not UTF-8.
+std::optional<std::string> common_name_of(const std::string& name) {
+  constexpr int kLongestCommonName = 64;  // ub-common-name of RFC 5280
+  const auto* const bytes = reinterpret_cast<const unsigned char*>(name.data());
+  const auto size = static_cast<int>(name.size());
+  int begin = 0;
+  int end = 0;
+  for (int characters = 0; begin < size; ++characters) {
+    unsigned long ignored = 0;
+    const int taken = UTF8_getc(bytes + begin, size - begin, &ignored);
+    if (taken <= 0) return std::nullopt;
+    begin += taken;
+    if (characters < kLongestCommonName) end = begin;
+  }
+  return name.substr(0, static_cast<std::size_t>(end));
+}
+
 std::string pem_of(X509* certificate) {
   const Owned<BIO> out(BIO_new(BIO_s_mem()));
   need(out && PEM_write_bio_X509(out.get(), certificate) == 1);
@@ -61,7 +80,8 @@ void set_serial(X509* certificate) {
 }
 
 /// A certificate with a key and times that is not yet signed.
-Owned<X509> unsigned_certificate(const std::string& name, EVP_PKEY* key, const Validity& validity) {
+Owned<X509> unsigned_certificate(const std::string& common_name, EVP_PKEY* key,
+                                 const Validity& validity) {
   Owned<X509> certificate(X509_new());
   need(certificate && X509_set_version(certificate.get(), X509_VERSION_3) == 1);
   set_serial(certificate.get());
@@ -71,11 +91,9 @@ Owned<X509> unsigned_certificate(const std::string& name, EVP_PKEY* key, const V
   need(ASN1_TIME_set(X509_getm_notBefore(certificate.get()), time(validity.from)) != nullptr);
   need(ASN1_TIME_set(X509_getm_notAfter(certificate.get()), time(validity.until)) != nullptr);
   need(X509_set_pubkey(certificate.get(), key) == 1);
-  // A common name has at most 64 characters; clients that check a host use the extension's names.
-  const std::string shown = name.substr(0, 64);
   need(X509_NAME_add_entry_by_txt(X509_get_subject_name(certificate.get()), "CN", MBSTRING_UTF8,
-                                  reinterpret_cast<const unsigned char*>(shown.c_str()), -1, -1,
-                                  0) == 1);
+                                  reinterpret_cast<const unsigned char*>(common_name.c_str()), -1,
+                                  -1, 0) == 1);
   return certificate;
 }
 
@@ -103,9 +121,11 @@ Validity for_days(int days) {
 
 Result<Issued> new_authority(const std::string& name, const Validity& validity) {
   if (name.empty()) return fail(ErrorCode::InvalidArgument, "name", "an authority needs a name");
+  const auto common_name = common_name_of(name);
+  if (!common_name) return fail(ErrorCode::InvalidArgument, "name", "must be UTF-8");
   const Owned<EVP_PKEY> key(EVP_EC_gen("P-256"));
   need(key != nullptr);
-  const auto certificate = unsigned_certificate(name, key.get(), validity);
+  const auto certificate = unsigned_certificate(*common_name, key.get(), validity);
   X509* const own = certificate.get();
   need(X509_set_issuer_name(own, X509_get_subject_name(own)) == 1);
   extend(own, own, NID_basic_constraints, "critical,CA:TRUE,pathlen:0");
@@ -138,7 +158,8 @@ Result<Issued> new_certificate(const Issued& authority, const std::vector<std::s
   }
   const Owned<EVP_PKEY> key(EVP_EC_gen("P-256"));
   need(key != nullptr);
-  const auto certificate = unsigned_certificate(hosts.front(), key.get(), validity);
+  const auto certificate =
+      unsigned_certificate(common_name_of(hosts.front()).value_or(""), key.get(), validity);
   X509* const own = certificate.get();
   X509* const issuer = issuers.front().get();
   need(X509_set_issuer_name(own, X509_get_subject_name(issuer)) == 1);

@@ -155,7 +155,7 @@ Seal::Step Seal::step_of(int result) {
       break;
   }
   const std::string objection = this->objection();
-  failure_ = {ErrorCode::Unavailable, host_,
+  failure_ = {objection.empty() ? ErrorCode::Unavailable : ErrorCode::Forbidden, host_,
               objection.empty() ? words_for(ERR_peek_last_error()) : objection};
   ERR_clear_error();
   return Step::Failed;

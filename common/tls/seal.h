@@ -57,7 +57,8 @@ class Seal {
   /// Sends our end: nothing follows it, but the other side may go on.
   void say_end();
 
-  /// What is wrong and what to do, after a step has Failed.
+  /// What is wrong and what to do, after a step has Failed.  Forbidden: this side does not accept
+  /// the certificate that it was shown; anything else is Unavailable.
   [[nodiscard]] const Error& failure() const { return failure_; }
 
  private:

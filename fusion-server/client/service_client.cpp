@@ -27,9 +27,12 @@ std::vector<std::pair<std::string, std::string>> authorization() {
   return {{"Authorization", std::string("Bearer ") + token}};
 }
 
-std::string default_server() {
-  const bool secure = ::access(kAuthoritiesOfWorkshop, R_OK) == 0;
-  return std::string(secure ? "https" : "http") + "://127.0.0.1:8080/";
+bool host_has_tls(const std::string& folder) {
+  return ::access((folder + "/host.crt").c_str(), F_OK) == 0;
+}
+
+std::string default_server(const std::string& tls_folder) {
+  return std::string(host_has_tls(tls_folder) ? "https" : "http") + "://127.0.0.1:8080/";
 }
 
 Result<tls::Trust> authorities() {
@@ -64,7 +67,9 @@ Result<ServiceClient> ServiceClient::of(std::string_view url) {
   auto base = http::parse_url(url);
   if (!base) return pass(base);
   while (base->target.ends_with('/')) base->target.pop_back();
-  return ServiceClient(std::move(*base));
+  auto trust = base->secure ? authorities() : Result<tls::Trust>(tls::Trust());
+  if (!trust) return pass(trust);
+  return ServiceClient(std::move(*base), std::move(*trust));
 }
 
 Result<nlohmann::json> ServiceClient::get(std::string_view path) const {
@@ -90,7 +95,7 @@ Result<nlohmann::json> ServiceClient::ask(std::string_view method, std::string_v
   for (auto& header : authorization()) request.headers.push_back(std::move(header));
   request.body = std::move(body);
   const std::string where = http::url_text(base_, request.target);
-  const auto answer = fetch_trusted(base_, request);
+  const auto answer = http::fetch(base_, request, {}, trust_);
   if (!answer && answer.error().message.starts_with("cannot connect"))
     return fail(answer.error().code, where,
                 answer.error().message + "; is chorus-fusion running there?");

@@ -30,12 +30,19 @@ namespace chorus::client {
                                                          const http::ClientRequest& request,
                                                          const http::ClientLimits& limits = {});
 
-/// The fusion server of this host: with https where `chorus init` would have given it TLS.
-[[nodiscard]] std::string default_server();
+/// Where the certificates of this host are, if it has any.
+inline constexpr const char* kTlsFolder = "/etc/chorus/tls";
+
+/// Whether services of this host have TLS: `chorus init` gives it to them where host.crt is.
+[[nodiscard]] bool host_has_tls(const std::string& folder = kTlsFolder);
+
+/// The fusion server of this host.
+[[nodiscard]] std::string default_server(const std::string& tls_folder = kTlsFolder);
 
 class ServiceClient {
  public:
-  /// `url` names the server; a path in it is kept as prefix.
+  /// `url` names the server; a path in it is kept as prefix.  For https:// the authorities() are
+  /// read here, once.
   [[nodiscard]] static Result<ServiceClient> of(std::string_view url);
 
   /// An empty answer is null.
@@ -45,11 +52,13 @@ class ServiceClient {
   [[nodiscard]] Result<nlohmann::json> remove(std::string_view path) const;
 
  private:
-  explicit ServiceClient(http::Url base) : base_(std::move(base)) {}
+  ServiceClient(http::Url base, tls::Trust trust)
+      : base_(std::move(base)), trust_(std::move(trust)) {}
   [[nodiscard]] Result<nlohmann::json> ask(std::string_view method, std::string_view path,
                                            std::string body) const;
 
   http::Url base_;
+  tls::Trust trust_;
 };
 
 /// Reads a member that may be absent or of another type; then the fallback is returned.

@@ -12,6 +12,7 @@
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
 #include "services/ctl/findings.h"
+#include "services/ctl/server_option.h"
 
 namespace chorus::ctl {
 namespace {
@@ -89,6 +90,7 @@ Run add_doctor(CLI::App& options) {
   const auto arguments = std::make_shared<DoctorArguments>();
   options.add_option("--folder", arguments->folder, "Where the configurations are")
       ->capture_default_str();
+  add_authority_option(options);
   options.add_flag("--json", arguments->json, "Report as JSON");
   return [arguments] { return run_doctor(*arguments); };
 }

@@ -14,6 +14,7 @@
 #include "fusion-server/client/fused_frames.h"
 #include "services/ctl/command.h"
 #include "services/ctl/number_range.h"
+#include "services/ctl/server_option.h"
 #include "services/ctl/text_file.h"
 
 namespace chorus::ctl {
@@ -145,6 +146,7 @@ Run add_export(CLI::App& options) {
   options.add_option("--unit", arguments->unit, "Of lengths in BVH")
       ->check(CLI::IsMember({"cm", "m"}))
       ->capture_default_str();
+  add_authority_option(options);
   options.add_flag("--json", arguments->json, "Summary as JSON");
   return [arguments] { return run_export(*arguments); };
 }

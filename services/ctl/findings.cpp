@@ -124,9 +124,12 @@ Finding of_answering(const std::string& subject, const std::string& url, const s
   return {true, subject, fmt::format("answers at {}, clock {:+.1f} ms", url, difference)};
 }
 
+/// Whether we did not accept the certificate that the service showed (tls::Seal::failure); the
+/// message then says what to do.
+bool refuses_certificate(const Error& error) { return error.code == ErrorCode::Forbidden; }
+
 Finding unreached(const std::string& subject, const Error& error) {
-  // The message for a refused certificate already says what to do.
-  if (error.message.find("certificate") != std::string::npos)
+  if (refuses_certificate(error))
     return {false, subject, to_string(error),
             "chorus doctor on that host looks at its certificate"};
   return {false, subject, to_string(error),
@@ -205,7 +208,7 @@ Finding clock_finding(const NtpStatus& clock) {
 Finding health_finding(const ExaminedService& service) {
   const std::string subject = "chorus-" + service.kind;
   const auto answer = ask(service.url(), "healthz", "");
-  if (!answer && answer.error().message.find("certificate") != std::string::npos)
+  if (!answer && refuses_certificate(answer.error()))
     return {false, subject, to_string(answer.error()),
             "does this host have the ca.crt of its authority in /etc/chorus/tls?"};
   if (!answer) {

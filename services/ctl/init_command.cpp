@@ -1,8 +1,5 @@
 // chorus init: writes the configuration of a service, from options or from answers to questions.
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +10,8 @@
 #include <CLI/CLI.hpp>
 
 #include "common/base/strong_id.h"
+#include "common/net/host_name.h"
+#include "fusion-server/client/service_client.h"
 #include "services/ctl/command.h"
 #include "services/ctl/new_file.h"
 #include "services/ctl/written_certificates.h"
@@ -43,9 +42,7 @@ struct InitArguments {
 
 /// The name of this host as an id; characters that an id does not allow become "-".
 std::string host_id() {
-  std::array<char, 65> name{};
-  if (::gethostname(name.data(), name.size() - 1) != 0) return "s1";
-  std::string id(name.data());
+  std::string id = net::host_name();
   id = id.substr(0, id.find('.'));
   std::replace_if(
       id.begin(), id.end(),
@@ -90,9 +87,7 @@ bool is_loopback(const std::string& address) {
 std::string tls_folder(const InitArguments& arguments) {
   if (arguments.no_tls) return {};
   if (!arguments.tls.empty()) return arguments.tls;
-  std::error_code hidden;
-  const bool made = std::filesystem::exists(std::string(kTlsFolder) + "/host.crt", hidden);
-  return made ? kTlsFolder : "";
+  return client::host_has_tls() ? client::kTlsFolder : "";
 }
 
 ServiceWishes service_wishes(const InitArguments& arguments, std::uint16_t port) {
@@ -111,8 +106,8 @@ Result<void> write_new(const std::string& file, const std::string& text) {
 }
 
 std::string shown_host() {
-  std::array<char, 65> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "HOST";
+  const std::string name = net::host_name();
+  return name.empty() ? "HOST" : name;
 }
 
 /// The page to open; a browser gives its camera to https, and on the own host to http.
@@ -210,7 +205,7 @@ Result<int> run_init_certificate(const InitArguments& arguments) {
   std::cerr << fmt::format(
       "{0}/host.crt, host.key and ca.crt written.  Where they are in {1}, chorus init makes "
       "services that use them;\na service that has them: systemctl reload chorus-SERVICE.\n",
-      wishes.folder, kTlsFolder);
+      wishes.folder, client::kTlsFolder);
   return kExitOk;
 }
 

@@ -63,13 +63,18 @@ Result<void> write_file(const std::string& file, const std::string& text, Reader
   return failure;
 }
 
-Result<void> make_folder(const std::string& folder, Readers readers) {
+Result<void> make_folder(const std::string& named, Readers readers) {
   std::error_code failed;
-  if (std::filesystem::is_directory(folder, failed)) return {};
-  const std::filesystem::path above = std::filesystem::path(folder).parent_path();
+  if (std::filesystem::is_directory(named, failed)) return {};
+  // The parent of "x/tls/" is "x/tls": without the slash, or the folder itself would be a parent.
+  std::filesystem::path path(named);
+  if (!path.has_filename()) path = path.parent_path();
+  const std::string folder = path.string();
+  const std::filesystem::path above = path.parent_path();
   if (!above.empty()) std::filesystem::create_directories(above, failed);
   const bool shared = readers == Readers::Services;
-  if (::mkdir(folder.c_str(), shared ? 0750 : 0700) != 0)
+  constexpr mode_t kShared = 0751;  // everybody may read the ca.crt in it, by its name
+  if (::mkdir(folder.c_str(), shared ? kShared : 0700) != 0)
     return cannot(folder, " (as root, or with --out FOLDER)");
   const int made = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   const bool handed = !shared || (made >= 0 && hand_over(made));

@@ -19,7 +19,7 @@ enum class Overwriting { Never, Yes };
                                       Readers readers,
                                       Overwriting overwriting = Overwriting::Never);
 
-/// Makes a folder and its parents; a new one is 0700 or, for the services' group, 0750.
+/// Makes a folder and its parents; a new one is 0700 or, for the services' group, 0751.
 [[nodiscard]] Result<void> make_folder(const std::string& folder, Readers readers);
 
 }  // namespace chorus::ctl

@@ -1,15 +1,18 @@
 // chorus origin: sets the origin of the world, by numbers or by a person who stands there.
-#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <memory>
-#include <thread>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "common/base/json.h"
 #include "common/base/units.h"
+#include "common/http/client.h"
+#include "fusion-server/client/live_poll.h"
 #include "fusion-server/client/service_client.h"
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
@@ -23,7 +26,6 @@ namespace {
 
 using client::ServiceClient;
 
-constexpr std::chrono::milliseconds kAskEvery{50};
 constexpr double kFarthest = 1000.0;  // [m], the same as the server's
 
 struct OriginArguments {
@@ -36,23 +38,55 @@ struct OriginArguments {
   bool json = false;
 };
 
-/// Watches the person who stands there for this long.
-Result<Stance> watch(const ServiceClient& server, double seconds) {
-  std::vector<Stance> seen;
-  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-  std::string newest;
-  while (std::chrono::steady_clock::now() < until) {
-    const auto frame = server.get("/frame");
-    if (!frame) return pass(frame);
-    const std::string captured = client::text_at(*frame, "captured");
-    if (std::exchange(newest, captured) != captured) {
-      const auto stance = stance_in(*frame);
-      if (!stance) return pass(stance);
-      seen.push_back(*stance);
-    }
-    std::this_thread::sleep_for(kAskEvery);
+/// Watches the person who stands there, on one connection: each frame once, as it comes.
+class Watch {
+ public:
+  Watch(const http::Url& server, tls::Trust trust)
+      : poll_(io_, server, {"/frame", "application/json", {}, std::move(trust)},
+              {[this](const http::ClientResponse& answer) { take(answer); },
+               [this](const Error& error, int status) { failed(error, status); }}) {}
+
+  Result<Stance> run(double seconds) {
+    poll_.start();
+    io_.run_for(from_seconds(seconds));
+    poll_.stop();
+    if (failure_) return tl::unexpected<Error>(*failure_);
+    return steady(seen_);
   }
-  return steady(seen);
+
+ private:
+  void take(const http::ClientResponse& answer) {
+    const auto frame = parse_json(answer.body, {.bytes = answer.body.size()});
+    if (!frame) return end_with(frame.error());
+    // A server without ETags may send the same frame again.
+    const std::string captured = client::text_at(*frame, "captured");
+    if (std::exchange(newest_, captured) == captured) return;
+    const auto stance = stance_in(*frame);
+    if (!stance) return end_with(stance.error());
+    seen_.push_back(*stance);
+  }
+  void failed(Error error, int status) {
+    if (status == 0) error.message += "; is chorus-fusion running there?";
+    end_with(std::move(error));
+  }
+  void end_with(Error why) {
+    if (!failure_) failure_ = std::move(why);
+    io_.stop();
+  }
+
+  asio::io_context io_{1};
+  client::LivePoll poll_;
+  std::string newest_;
+  std::vector<Stance> seen_;
+  std::optional<Error> failure_;
+};
+
+Result<Stance> watch(const std::string& server, double seconds) {
+  const auto url = http::parse_url(server);
+  if (!url) return pass(url);
+  auto trust = client::authorities();
+  if (!trust) return pass(trust);
+  return Watch(*url, std::move(*trust)).run(seconds);
 }
 
 Result<int> run_origin(const OriginArguments& arguments) {
@@ -61,7 +95,7 @@ Result<int> run_origin(const OriginArguments& arguments) {
   Stance origin{arguments.x, arguments.z, deg(arguments.yaw)};
   if (arguments.here) {
     std::cerr << fmt::format("stand still for {} s, facing the front\n", arguments.seconds);
-    const auto stance = watch(*server, arguments.seconds);
+    const auto stance = watch(arguments.url, arguments.seconds);
     if (!stance) return pass(stance);
     origin = *stance;
   }

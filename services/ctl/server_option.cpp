@@ -9,6 +9,10 @@ namespace chorus::ctl {
 void add_server_option(CLI::App& app, std::string& url, const std::string& what,
                        const std::string& names) {
   app.add_option(names, url, what)->envname("CHORUS_URL")->capture_default_str();
+  add_authority_option(app);
+}
+
+void add_authority_option(CLI::App& app) {
   // client::authorities() looks there, so every request to a server uses it.
   app.add_option_function<std::string>(
       "--ca", [](const std::string& file) { ::setenv("CHORUS_CA", file.c_str(), 1); },

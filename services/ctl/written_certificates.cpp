@@ -1,11 +1,9 @@
 #include "services/ctl/written_certificates.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
 
 #include "common/base/file.h"
+#include "common/http/access.h"
 #include "common/tls/authority.h"
 #include "services/ctl/new_file.h"
 
@@ -14,14 +12,8 @@ namespace {
 
 constexpr std::uintmax_t kMaxBytes = 1u << 16;
 
-std::vector<std::string> own_names() {
-  std::array<char, 65> name{};
-  if (::gethostname(name.data(), name.size() - 1) != 0 || name[0] == '\0') return {};
-  return {name.data(), std::string(name.data()) + ".local"};
-}
-
 std::vector<std::string> names_for(std::vector<std::string> hosts) {
-  if (hosts.empty()) hosts = own_names();
+  if (hosts.empty()) hosts = http::host_names();
   for (const char* const own : {"localhost", "127.0.0.1", "::1"}) {
     if (std::find(hosts.begin(), hosts.end(), own) == hosts.end()) hosts.emplace_back(own);
   }

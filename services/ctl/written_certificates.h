@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "fusion-server/client/service_client.h"
 
 namespace chorus::ctl {
 
 inline constexpr const char* kAuthorityFolder = "/etc/chorus/ca";
-inline constexpr const char* kTlsFolder = "/etc/chorus/tls";
 
 struct AuthorityWishes {
   std::string folder = kAuthorityFolder;
@@ -21,7 +21,7 @@ struct AuthorityWishes {
 struct CertificateWishes {
   std::vector<std::string> hosts;  ///< Names and addresses; empty: those of this host.
   std::string authority = kAuthorityFolder;
-  std::string folder = kTlsFolder;
+  std::string folder = client::kTlsFolder;
   bool renew = false;  ///< Overwrite the present one.
   int days = 800;      ///< Browsers accept at most 825 from a private authority.
 };

@@ -15,7 +15,7 @@ ROWS = [
     ["common/sensor", "common/layout"],
     ["common/motion", "common/resource"],
     ["common/record"],
-    ["common/synthetic", "common/service", "common/importers", "common/exporters"],
+    ["common/synthetic", "common/service", "common/importers", "common/exporters", "common/calibration"],
     ["fusion-server/flow.h"],
     ["fusion-server/status.h", "fusion-server/sink.h"],
     ["fusion-server/align", "fusion-server/facing", "fusion-server/associate", "fusion-server/fusion"],

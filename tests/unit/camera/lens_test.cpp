@@ -40,6 +40,8 @@ TEST(Lens, AStatedLensIsScaledToPicturesOfItsShapeAndRefusedForOthers) {
   ASSERT_TRUE(half);
   EXPECT_EQ(half->camera, (Intrinsics{640, 360, 450, 455, 319.5, 179.5, {0.1, 0, 0, 0, 0}}));
   EXPECT_EQ(half->focal_sigma, 0.0);
+  settings.focal_sigma = 0.02;
+  EXPECT_EQ(lens_for(settings, {640, 360})->focal_sigma, 0.02);
   const auto other = lens_for(settings, {640, 480});
   ASSERT_FALSE(other);
   EXPECT_THAT(other.error().message, HasSubstr("1280 x 720, and the source gives 640 x 480"));

@@ -61,6 +61,13 @@ TEST(CameraSettings, EverythingIsRead) {
   EXPECT_EQ(settings.intrinsics, (Intrinsics{640, 480, 500, 501, 320, 240, {1, 2, 3, 4, 5}}));
 }
 
+TEST(CameraSettings, HowSureTheFocalLengthIsIsSaidWithTheLens) {
+  const char* const lens = R"({"intrinsics": {"width": 640, "height": 480, "fx": 500, "fy": 500,
+      "cx": 320, "cy": 240, "focal_sigma_percent": 0.5}})";
+  EXPECT_NEAR(read(lens).settings.focal_sigma, 0.005, 1e-12);
+  EXPECT_EQ(read(lens).problems, "");
+}
+
 TEST(CameraSettings, TheFloorLiesAsFarBelowAsTheCameraIsHigh) {
   const auto floor = read(R"({"height_m": 2, "pitch_deg": 30})").settings.floor;
   ASSERT_TRUE(floor);

@@ -18,6 +18,11 @@ TEST(CommandLine, TeachesWithExamplesInEveryHelp) {
   }
 }
 
+TEST(CommandLine, WhoeverAsksAServerMayNameItsAuthority) {
+  for (const char* command : {"status", "register", "origin", "record", "export", "doctor"})
+    EXPECT_THAT(run_chorus({command, "--help"}).out, HasSubstr("--ca")) << command;
+}
+
 TEST(CommandLine, KnowsWhatTheSmallProgramLeavesOut) {
   std::vector<std::string_view> names;
   for (const Command& command : recording_commands()) names.push_back(command.name);

@@ -1,9 +1,12 @@
 #include "services/ctl/findings.h"
 
+#include <thread>
+
 #include <gmock/gmock.h>
 
 #include "common/base/version.h"
 #include "common/http/server.h"
+#include "common/net/asio.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chorus::ctl {
@@ -59,6 +62,41 @@ TEST(Doctor, FindsASensorWell) {
   const Finding finding = only(sensor_findings(fake.fusion("0123456789ab")));
   EXPECT_TRUE(finding.good) << finding.words;
   EXPECT_EQ(finding.subject, "sensor s1");
+}
+
+/// Accepts connections and closes them at once.
+class HangsUp {
+ public:
+  HangsUp() : acceptor_(io_, {asio::ip::address_v4::loopback(), 0}) {
+    accept();
+    thread_ = std::thread([this] { io_.run(); });
+  }
+  ~HangsUp() {
+    io_.stop();
+    thread_.join();
+  }
+  [[nodiscard]] std::string url() const {
+    return "https://127.0.0.1:" + std::to_string(acceptor_.local_endpoint().port()) + "/";
+  }
+
+ private:
+  void accept() {
+    acceptor_.async_accept([this](net::error_code failed, asio::ip::tcp::socket) {
+      if (!failed) accept();
+    });
+  }
+  asio::io_context io_;
+  asio::ip::tcp::acceptor acceptor_;
+  std::thread thread_;
+};
+
+TEST(Doctor, AHostThatHangsUpIsNotSaidToHaveABadCertificate) {
+  const HangsUp host;
+  const ExaminedService fusion{
+      "fusion", "f", {{"sensors", {{{"id", "s1"}, {"url", host.url()}, {"token", ""}}}}}};
+  const Finding finding = only(sensor_findings(fusion));
+  EXPECT_THAT(finding.words, HasSubstr("certificate")) << "its message asks about one";
+  EXPECT_THAT(finding.advice, HasSubstr("is chorus-sensor running there"));
 }
 
 TEST(Doctor, SaysWhatToDoAboutAWrongToken) {

@@ -1,6 +1,7 @@
 // A fusion server in this process whose answers a test writes down.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -45,6 +46,7 @@ class ScriptedServer {
   [[nodiscard]] std::string url() const {
     return "http://127.0.0.1:" + std::to_string(server_->port()) + "/";
   }
+  [[nodiscard]] std::uint64_t connections() const { return server_->counters().connections_total; }
   /// Requests that wrote: "POST {...}", "DELETE /registration".
   [[nodiscard]] std::vector<std::string> written() const {
     const std::scoped_lock lock(mutex_);
@@ -62,7 +64,8 @@ class ScriptedServer {
     if (left.empty()) return fail(ErrorCode::Unavailable, path, "nothing yet");
     const std::string text = left.front();
     if (left.size() > 1) left.erase(left.begin());
-    return http::make_document("application/json", text, {});
+    return http::make_document("application/json", text,
+                               {std::to_string(std::hash<std::string>{}(text))});
   }
   Result<http::ActionResult> started(const std::string& body) {
     note("POST " + body);

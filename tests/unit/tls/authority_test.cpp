@@ -43,6 +43,23 @@ TEST(Authority, NeedsTheKeyOfItsCertificate) {
   EXPECT_FALSE(new_certificate({"nothing", "nothing"}, {"a"}, for_days(1)));
 }
 
+TEST(Authority, ALongNameIsCutBetweenCharacters) {
+  std::string name(63, 'a');
+  name += "\u00e9\u00e9";  // two bytes each
+  const auto issued = new_authority(name, for_days(1));
+  ASSERT_TRUE(issued);
+  // Facts show each byte beyond ASCII as "?": one whole character is left.
+  EXPECT_EQ(facts_of(issued->certificate)->subject, std::string(63, 'a') + "??");
+}
+
+TEST(Authority, ANameThatIsNotUtf8IsRefused) {
+  for (const char* name : {"\xff", "Werkstatt \xe4", "cut \xc3"}) {
+    const auto refused = new_authority(name, for_days(1));
+    ASSERT_FALSE(refused) << name;
+    EXPECT_EQ(refused.error().code, ErrorCode::InvalidArgument);
+  }
+}
+
 TEST(Certificate, DatesAreShownByDay) {
   EXPECT_EQ(date_text(std::chrono::sys_seconds(std::chrono::seconds(0))), "1970-01-01");
   EXPECT_FALSE(facts_of("no certificate"));

@@ -65,6 +65,7 @@ class SealTest : public ::testing::Test {
   [[nodiscard]] std::string objection(Wire wire) const {
     EXPECT_FALSE(wire.shake_hands());
     EXPECT_EQ(wire.client_step, Step::Failed);
+    EXPECT_EQ(wire.client.failure().code, ErrorCode::Forbidden) << "programs tell it by that";
     return wire.client.failure().message;
   }
 

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace chorus::camera {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr int kMaxSide = 16384;
 constexpr double kMaxPixels = 1e5;
 
@@ -20,8 +18,10 @@ void read_distortion(ConfigReader& section, Intrinsics& out) {
   std::copy(distortion.begin(), distortion.end(), out.distortion.begin());
 }
 
-Intrinsics read_intrinsics(ConfigReader section) {
+void read_intrinsics(ConfigReader section, CameraSettings& out) {
+  constexpr double kPercent = 0.01;
   Intrinsics camera;
+  double sigma_percent = 0.0;
   for (const char* key : {"width", "height", "fx", "fy", "cx", "cy"}) {
     if (!section.has(key)) section.complain(key, "is missing; a lens is stated as a whole");
   }
@@ -32,15 +32,15 @@ Intrinsics read_intrinsics(ConfigReader section) {
   section.read("cx", camera.cx, -kMaxPixels, kMaxPixels);
   section.read("cy", camera.cy, -kMaxPixels, kMaxPixels);
   read_distortion(section, camera);
-  return camera;
+  section.read("focal_sigma_percent", sigma_percent, 0.0, 50.0);
+  out.intrinsics = camera;
+  out.focal_sigma = sigma_percent * kPercent;
 }
 
 void read_lens(ConfigReader& section, CameraSettings& out) {
-  out.fov = 65.0 * kDegree;
-  out.fov_sigma = 6.0 * kDegree;
   section.read_deg("fov_deg", out.fov, 5.0, 150.0);
   section.read_deg("fov_sigma_deg", out.fov_sigma, 0.0, 30.0);
-  if (section.has("intrinsics")) out.intrinsics = read_intrinsics(section.child("intrinsics"));
+  if (section.has("intrinsics")) read_intrinsics(section.child("intrinsics"), out);
 }
 
 /// In a camera that looks down by `pitch`, "up" is tilted back towards the camera.

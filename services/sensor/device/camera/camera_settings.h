@@ -7,6 +7,7 @@
 
 #include "common/base/config_reader.h"
 #include "common/base/duration.h"
+#include "common/base/units.h"
 #include "common/sensor/camera_image.h"
 #include "common/sensor/sensor_frame.h"
 
@@ -34,8 +35,9 @@ struct CameraSettings {
   bool depth_from_size = false;          ///< Points instead of rays, if the runner supports it.
   std::optional<FloorPlane> floor = {};  ///< From height and pitch, if they are configured.
   std::optional<Intrinsics> intrinsics = {};
-  double fov = 1.13;         ///< Across the image's longer side [rad], if nothing better is known.
-  double fov_sigma = 0.105;  ///< Standard deviation of that value [rad].
+  double focal_sigma = 0.0;  ///< Standard deviation of their focal length, relative to it.
+  double fov = deg(65.0);    ///< Across the image's longer side [rad], if nothing better is known.
+  double fov_sigma = deg(6.0);  ///< Standard deviation of that value [rad].
 };
 
 [[nodiscard]] SourceKind kind_of(const std::string& source);

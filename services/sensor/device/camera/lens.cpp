@@ -49,7 +49,7 @@ Result<Lens> lens_for(const CameraSettings& settings, Size picture) {
                             "part of the view; state it for these, or choose that size",
                             stated.width, stated.height, picture.width, picture.height));
   }
-  return Lens{scaled(stated, picture), 0.0};
+  return Lens{scaled(stated, picture), settings.focal_sigma};
 }
 
 Size sent_size(Size picture, int max_side) {

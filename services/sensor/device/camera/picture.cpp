@@ -1,11 +1,24 @@
 #include "services/sensor/device/camera/picture.h"
 
+#include <utility>
 #include <vector>
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace chorus::camera {
+
+Result<Picture> read_picture(const std::string& file) {
+  auto pixels = std::make_shared<cv::Mat>();
+  try {
+    *pixels = cv::imread(file, cv::IMREAD_COLOR);
+  } catch (const cv::Exception&) {
+    pixels->release();
+  }
+  if (pixels->empty()) return fail(ErrorCode::Malformed, file, "is no picture that can be read");
+  const Size size{pixels->cols, pixels->rows};
+  return Picture{std::move(pixels), size};
+}
 
 std::string rgb_bytes(const Picture& picture, Size size) {
   constexpr std::size_t kChannels = 3;

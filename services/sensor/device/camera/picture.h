@@ -18,6 +18,9 @@ struct Picture {
   Size size;
 };
 
+/// The picture in a file, turned as its metadata says.
+[[nodiscard]] Result<Picture> read_picture(const std::string& file);
+
 /// Red, green and blue of the picture scaled to that size, row by row.
 [[nodiscard]] std::string rgb_bytes(const Picture& picture, Size size);
 

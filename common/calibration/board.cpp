@@ -1,0 +1,104 @@
+#include "common/calibration/board.h"
+
+#include <fmt/format.h>
+#include <opencv2/aruco/charuco.hpp>
+
+#include "common/calibration/board_pattern.h"
+
+namespace chorus::calibration {
+namespace {
+
+constexpr int kLeastSquares = 3;
+constexpr int kMostSquares = 40;
+constexpr double kLeastMm = 1.0;
+constexpr double kMostMm = 1000.0;
+
+int marker_count(const Board& board) { return board.columns * board.rows / 2; }
+
+/// The bits of a marker, black border included; [row][column], 0 is black.
+cv::Mat marker_picture(const cv::aruco::Dictionary& dictionary, int id) {
+  constexpr int kBorders = 2;
+  cv::Mat bits;
+  dictionary.drawMarker(id, dictionary.markerSize + kBorders, bits);
+  return bits;
+}
+
+/// Adds the black cells of a marker, those beside each other in a row as one.
+void add_marker(const cv::Mat& bits, double left, double top, double side,
+                std::vector<BlackPart>& out) {
+  const double cell = side / bits.rows;
+  for (int row = 0; row < bits.rows; ++row) {
+    for (int begin = 0; begin < bits.cols;) {
+      int end = begin;
+      while (end < bits.cols && bits.at<uchar>(row, end) == 0) ++end;
+      if (end > begin)
+        out.push_back({left + begin * cell, top - (row + 1) * cell, (end - begin) * cell, cell});
+      begin = end + 1;
+    }
+  }
+}
+
+Result<void> refuse(const char* option, std::string why) {
+  return fail(ErrorCode::InvalidArgument, option, std::move(why));
+}
+
+}  // namespace
+
+Result<void> check(const Board& board) {
+  for (const int count : {board.columns, board.rows}) {
+    if (count < kLeastSquares || count > kMostSquares)
+      return refuse("--squares", fmt::format("must be {} to {} squares in each direction, as 8x6",
+                                             kLeastSquares, kMostSquares));
+  }
+  if (!(board.square_mm >= kLeastMm && board.square_mm <= kMostMm))
+    return refuse("--square-mm", fmt::format("must be {} to {} mm", kLeastMm, kMostMm));
+  if (board.kind == BoardKind::Chessboard) return {};
+  if (!(board.marker_mm >= 0.3 * board.square_mm && board.marker_mm <= 0.95 * board.square_mm))
+    return refuse("--marker-mm", "must be 0.3 to 0.95 of the side of a square");
+  if (board.marker_bits < 4 || board.marker_bits > 7)
+    return refuse("--marker-bits", "must be 4 to 7");
+  if (marker_count(board) > kDictionarySizes.back())
+    return refuse("--squares", "has more squares than a dictionary has markers");
+  return {};
+}
+
+std::size_t corner_count(const Board& board) {
+  return static_cast<std::size_t>((board.columns - 1) * (board.rows - 1));
+}
+
+int markers_in_dictionary(const Board& board) {
+  for (const int size : kDictionarySizes) {
+    if (marker_count(board) <= size) return size;
+  }
+  return kDictionarySizes.back();
+}
+
+std::string description(const Board& board) {
+  const std::string squares =
+      fmt::format("{} x {} squares of {:g} mm", board.columns, board.rows, board.square_mm);
+  if (board.kind == BoardKind::Chessboard) return "chessboard, " + squares;
+  return fmt::format("charuco, {}, markers of {:g} mm (DICT_{}X{}_{})", squares, board.marker_mm,
+                     board.marker_bits, board.marker_bits, markers_in_dictionary(board));
+}
+
+std::vector<BlackPart> black_parts(const Board& board) {
+  std::vector<BlackPart> parts;
+  const auto dictionary = dictionary_of(board);
+  const double side = board.square_mm;
+  const double inset = 0.5 * (board.square_mm - board.marker_mm);
+  int id = 0;
+  // Numbered from the upper left, and the square at the lower left is black: OpenCV 4.6.
+  for (int row = board.rows - 1; row >= 0; --row) {
+    for (int column = 0; column < board.columns; ++column) {
+      if (row % 2 == column % 2) {
+        parts.push_back({column * side, row * side, side, side});
+      } else if (board.kind == BoardKind::Charuco) {
+        add_marker(marker_picture(*dictionary, id++), column * side + inset,
+                   (row + 1) * side - inset, board.marker_mm, parts);
+      }
+    }
+  }
+  return parts;
+}
+
+}  // namespace chorus::calibration

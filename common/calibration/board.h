@@ -1,0 +1,50 @@
+// A calibration board: what it looks like, and where its inner corners are.  Pure.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "common/base/result.h"
+
+namespace chorus::calibration {
+
+enum class BoardKind {
+  Charuco,    ///< Markers in the white squares: found even if only a part of it is visible.
+  Chessboard  ///< Without markers: must be visible as a whole.
+};
+
+struct Board {
+  BoardKind kind = BoardKind::Charuco;
+  int columns = 8;          ///< Squares, not inner corners.
+  int rows = 6;             ///< Squares.
+  double square_mm = 30.0;  ///< Side of a square.
+  double marker_mm = 22.5;  ///< Side of a marker.
+  int marker_bits = 4;      ///< Of OpenCV's dictionaries DICT_4X4 to DICT_7X7.
+};
+
+/// InvalidArgument names the option to change.
+[[nodiscard]] Result<void> check(const Board& board);
+
+/// Inner corners.
+[[nodiscard]] std::size_t corner_count(const Board& board);
+
+/// The predefined dictionary of OpenCV with the fewest markers that suffice for the board; the
+/// smaller ones are beginnings of the larger.
+[[nodiscard]] int markers_in_dictionary(const Board& board);
+
+/// "charuco, 8 x 6 squares of 30 mm, markers of 22 mm (DICT_4X4_50)"
+[[nodiscard]] std::string description(const Board& board);
+
+/// A black rectangle: x to the right and y up from the board's lower left corner [mm].
+struct BlackPart {
+  double x = 0.0;
+  double y = 0.0;
+  double width = 0.0;
+  double height = 0.0;
+};
+
+/// Everything that is black; where parts touch, together.
+[[nodiscard]] std::vector<BlackPart> black_parts(const Board& board);
+
+}  // namespace chorus::calibration

@@ -1,0 +1,109 @@
+#include "common/calibration/board_finder.h"
+
+#include <Eigen/Eigenvalues>
+#include <opencv2/aruco/charuco.hpp>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "common/calibration/board_pattern.h"
+
+namespace chorus::calibration {
+namespace {
+
+constexpr std::size_t kLeastCorners = 8;
+constexpr double kMetre = 1e-3;
+
+cv::Mat grey_of(const cv::Mat& picture) {
+  if (picture.channels() == 1) return picture;
+  cv::Mat grey;
+  cv::cvtColor(picture, grey, cv::COLOR_BGR2GRAY);
+  return grey;
+}
+
+/// Whether the corners span an area: the smaller of their two extents is at least half a square.
+bool spread_out(const std::vector<Corner>& corners, double square) {
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const Corner& corner : corners) mean += corner.on_board;
+  mean /= static_cast<double>(corners.size());
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+  for (const Corner& corner : corners)
+    scatter += (corner.on_board - mean) * (corner.on_board - mean).transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(scatter);
+  const double least = axes.eigenvalues()(0) / static_cast<double>(corners.size());
+  return std::sqrt(std::max(0.0, least)) > 0.3 * square;
+}
+
+}  // namespace
+
+struct BoardFinder::Pattern {
+  Board board;
+  std::shared_ptr<cv::aruco::Dictionary> dictionary;
+  std::shared_ptr<cv::aruco::CharucoBoard> charuco;
+
+  [[nodiscard]] std::vector<Corner> find_charuco(const cv::Mat& grey) const;
+  [[nodiscard]] std::vector<Corner> find_chessboard(const cv::Mat& grey) const;
+};
+
+std::vector<Corner> BoardFinder::Pattern::find_charuco(const cv::Mat& grey) const {
+  std::vector<std::vector<cv::Point2f>> markers;
+  std::vector<int> ids;
+  cv::aruco::detectMarkers(grey, dictionary, markers, ids);
+  if (ids.size() < 2) return {};
+  std::vector<cv::Point2f> pixels;
+  std::vector<int> corners;
+  cv::aruco::interpolateCornersCharuco(markers, ids, grey, charuco, pixels, corners);
+  std::vector<Corner> out;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const auto& place = charuco->chessboardCorners[static_cast<std::size_t>(corners[i])];
+    out.push_back({{place.x, place.y}, {pixels[i].x, pixels[i].y}});
+  }
+  return out;
+}
+
+std::vector<Corner> BoardFinder::Pattern::find_chessboard(const cv::Mat& grey) const {
+  const cv::Size inner(board.columns - 1, board.rows - 1);
+  std::vector<cv::Point2f> pixels;
+  if (!cv::findChessboardCorners(
+          grey, inner, pixels,
+          cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK))
+    return {};
+  // The window stays within a square of its corner, or it would see the neighbours.
+  double step = std::max(grey.cols, grey.rows);
+  for (std::size_t i = 1; i < pixels.size(); ++i)
+    step = std::min(step, cv::norm(pixels[i] - pixels[i - 1]));
+  const int half = std::clamp(static_cast<int>(step / 3.0), 2, 15);
+  cv::cornerSubPix(grey, pixels, {half, half}, {-1, -1},
+                   {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-3});
+  std::vector<Corner> out;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const auto column = static_cast<double>(i % static_cast<std::size_t>(inner.width));
+    const auto row = static_cast<double>(i / static_cast<std::size_t>(inner.width));
+    const double square = board.square_mm * kMetre;
+    out.push_back({{column * square, row * square}, {pixels[i].x, pixels[i].y}});
+  }
+  return out;
+}
+
+BoardFinder::BoardFinder(const Board& board)
+    : pattern_(std::make_unique<Pattern>(Pattern{board, nullptr, nullptr})) {
+  if (board.kind != BoardKind::Charuco) return;
+  pattern_->dictionary = dictionary_of(board);
+  pattern_->charuco = charuco_of(board);
+}
+
+BoardFinder::~BoardFinder() = default;
+
+std::vector<Corner> BoardFinder::find(const cv::Mat& picture) const {
+  std::vector<Corner> corners;
+  try {
+    const cv::Mat grey = grey_of(picture);
+    corners = pattern_->board.kind == BoardKind::Charuco ? pattern_->find_charuco(grey)
+                                                         : pattern_->find_chessboard(grey);
+  } catch (const cv::Exception&) {
+    return {};  // a picture that is too small for its filters
+  }
+  if (corners.size() < kLeastCorners) return {};
+  return spread_out(corners, pattern_->board.square_mm * kMetre) ? corners : std::vector<Corner>();
+}
+
+}  // namespace chorus::calibration

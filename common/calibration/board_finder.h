@@ -1,0 +1,31 @@
+// Finds the corners of a board in a picture.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "common/calibration/board.h"
+#include "common/calibration/view.h"
+
+namespace cv {
+class Mat;
+}
+
+namespace chorus::calibration {
+
+class BoardFinder {
+ public:
+  /// The board must have passed check().
+  explicit BoardFinder(const Board& board);
+  ~BoardFinder();
+
+  /// Empty when there is no board, or too little of it: fewer than eight corners, or all in a line.
+  /// The picture is grey, or blue, green and red.
+  [[nodiscard]] std::vector<Corner> find(const cv::Mat& picture) const;
+
+ private:
+  struct Pattern;
+  std::unique_ptr<Pattern> pattern_;
+};
+
+}  // namespace chorus::calibration

@@ -1,0 +1,26 @@
+#include "common/calibration/board_pattern.h"
+
+#include <algorithm>
+
+#include <opencv2/aruco/charuco.hpp>
+
+namespace chorus::calibration {
+
+std::shared_ptr<cv::aruco::Dictionary> dictionary_of(const Board& board) {
+  // The enumeration counts DICT_4X4_50, _100, _250, _1000, DICT_5X5_50, ...
+  const auto size =
+      std::find(kDictionarySizes.begin(), kDictionarySizes.end(), markers_in_dictionary(board));
+  const auto step = static_cast<int>(size - kDictionarySizes.begin());
+  const auto sizes = static_cast<int>(kDictionarySizes.size());
+  return cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50 +
+                                            sizes * (board.marker_bits - 4) + step);
+}
+
+std::shared_ptr<cv::aruco::CharucoBoard> charuco_of(const Board& board) {
+  constexpr double kMetre = 1e-3;
+  return cv::aruco::CharucoBoard::create(
+      board.columns, board.rows, static_cast<float>(board.square_mm * kMetre),
+      static_cast<float>(board.marker_mm * kMetre), dictionary_of(board));
+}
+
+}  // namespace chorus::calibration

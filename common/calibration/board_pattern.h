@@ -1,0 +1,24 @@
+// The board in the types of OpenCV's markers.  Private to this folder's .cpp files.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "common/calibration/board.h"
+
+namespace cv::aruco {
+class Dictionary;
+class CharucoBoard;
+}  // namespace cv::aruco
+
+namespace chorus::calibration {
+
+/// Markers in the predefined dictionaries of each number of bits.
+inline constexpr std::array kDictionarySizes{50, 100, 250, 1000};
+
+[[nodiscard]] std::shared_ptr<cv::aruco::Dictionary> dictionary_of(const Board& board);
+
+/// In metres.
+[[nodiscard]] std::shared_ptr<cv::aruco::CharucoBoard> charuco_of(const Board& board);
+
+}  // namespace chorus::calibration

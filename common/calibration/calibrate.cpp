@@ -1,0 +1,178 @@
+#include "common/calibration/calibrate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <opencv2/calib3d.hpp>
+
+#include "common/base/median.h"
+
+namespace chorus::calibration {
+namespace {
+
+constexpr std::size_t kLeastViews = 3;
+constexpr int kRounds = 6;
+constexpr double kOddView = 2.5;      // times the median error of the views
+constexpr double kGoodViewPx = 0.25;  // a view this good is never left out
+constexpr std::size_t kTerms = 9;     // fx fy cx cy k1 k2 p1 p2 k3
+
+/// What OpenCV answers.
+struct Solution {
+  Intrinsics camera;
+  std::array<double, kTerms> sigma{};
+  double error = 0.0;
+  std::vector<double> view_errors;
+  std::vector<double> tilts;
+};
+
+struct Points {
+  std::vector<std::vector<cv::Point3f>> on_board;
+  std::vector<std::vector<cv::Point2f>> pixels;
+};
+
+Points for_opencv(const std::vector<const View*>& views) {
+  Points out;
+  for (const View* view : views) {
+    auto& on_board = out.on_board.emplace_back();
+    auto& pixels = out.pixels.emplace_back();
+    for (const Corner& corner : view->corners) {
+      on_board.emplace_back(static_cast<float>(corner.on_board.x()),
+                            static_cast<float>(corner.on_board.y()), 0.0F);
+      pixels.emplace_back(static_cast<float>(corner.pixel.x()),
+                          static_cast<float>(corner.pixel.y()));
+    }
+  }
+  return out;
+}
+
+double tilt_of(const cv::Mat& turn, const cv::Mat& place) {
+  cv::Mat rotation;
+  cv::Rodrigues(turn, rotation);
+  const cv::Vec3d normal(rotation.at<double>(0, 2), rotation.at<double>(1, 2),
+                         rotation.at<double>(2, 2));
+  const cv::Vec3d sight(place.at<double>(0), place.at<double>(1), place.at<double>(2));
+  return std::acos(std::min(1.0, std::abs(normal.dot(sight)) / cv::norm(sight)));
+}
+
+Intrinsics intrinsics_of(const cv::Mat& matrix, const cv::Mat& distortion, PictureSize size) {
+  Intrinsics out{size.width,
+                 size.height,
+                 matrix.at<double>(0, 0),
+                 matrix.at<double>(1, 1),
+                 matrix.at<double>(0, 2),
+                 matrix.at<double>(1, 2),
+                 {}};
+  for (std::size_t i = 0; i < out.distortion.size(); ++i)
+    out.distortion[i] = distortion.at<double>(static_cast<int>(i));
+  return out;
+}
+
+Solution solve(const std::vector<const View*>& views, PictureSize size, bool with_k3) {
+  const Points points = for_opencv(views);
+  cv::Mat matrix;
+  cv::Mat distortion = cv::Mat::zeros(5, 1, CV_64F);
+  std::vector<cv::Mat> turns;
+  std::vector<cv::Mat> places;
+  cv::Mat sigma;
+  cv::Mat sigma_of_views;
+  cv::Mat errors;
+  Solution out;
+  out.error = cv::calibrateCamera(points.on_board, points.pixels, {size.width, size.height}, matrix,
+                                  distortion, turns, places, sigma, sigma_of_views, errors,
+                                  with_k3 ? 0 : cv::CALIB_FIX_K3,
+                                  {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-9});
+  out.camera = intrinsics_of(matrix, distortion, size);
+  for (std::size_t i = 0; i < kTerms; ++i) out.sigma[i] = sigma.at<double>(static_cast<int>(i));
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    out.view_errors.push_back(errors.at<double>(static_cast<int>(i)));
+    out.tilts.push_back(tilt_of(turns[i], places[i]));
+  }
+  return out;
+}
+
+/// Estimates k3 if it is known better than to a third of itself and improves the fit.
+Solution solve_well(const std::vector<const View*>& views, PictureSize size) {
+  Solution plain = solve(views, size, false);
+  Solution full = solve(views, size, true);
+  const bool needed = full.error < 0.98 * plain.error &&
+                      3.0 * full.sigma.back() < std::abs(full.camera.distortion.back());
+  return needed ? full : plain;
+}
+
+/// The views whose error is far above that of the others, at most `most` of them, worst first.
+std::vector<std::size_t> odd_views(const std::vector<double>& errors, std::size_t most) {
+  const double limit = std::max(kGoodViewPx, kOddView * median(errors));
+  std::vector<std::size_t> odd;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (!(errors[i] <= limit)) odd.push_back(i);
+  }
+  std::sort(odd.begin(), odd.end(),
+            [&](std::size_t a, std::size_t b) { return errors[a] > errors[b]; });
+  odd.resize(std::min(odd.size(), most));
+  return odd;
+}
+
+std::vector<const View*> used_of(const Calibration& calibration) {
+  std::vector<const View*> used;
+  for (const SolvedView& each : calibration.views) {
+    if (each.used) used.push_back(&each.view);
+  }
+  return used;
+}
+
+/// Writes what was found about the used views to them.
+void tell(const Solution& solution, Calibration& out) {
+  std::size_t i = 0;
+  for (SolvedView& each : out.views) {
+    if (!each.used) continue;
+    each.error_px = solution.view_errors[i];
+    each.tilt = solution.tilts[i++];
+  }
+  out.intrinsics = solution.camera;
+  out.sigma = solution.sigma;
+  out.error_px = solution.error;
+}
+
+/// Leaves out the odd ones; how many there were.
+std::size_t leave_out(const Solution& solution, Calibration& out, std::size_t most) {
+  const auto odd = odd_views(solution.view_errors, most);
+  std::vector<SolvedView*> used;
+  for (SolvedView& each : out.views) {
+    if (each.used) used.push_back(&each);
+  }
+  for (const std::size_t i : odd) used[i]->used = false;
+  return odd.size();
+}
+
+}  // namespace
+
+double Calibration::focal_sigma() const {
+  return std::max(sigma[0] / intrinsics.fx, sigma[1] / intrinsics.fy);
+}
+
+std::size_t Calibration::used() const { return used_of(*this).size(); }
+
+Result<Calibration> calibrate(const std::vector<View>& views, PictureSize size) {
+  if (views.size() < kLeastViews)
+    return fail(ErrorCode::InvalidArgument, "calibration",
+                "needs three views of the board or more");
+  Calibration out;
+  for (const View& view : views) out.views.push_back({view});
+  std::size_t may_leave = views.size() / 3;
+  try {
+    for (int round = 0; round < kRounds; ++round) {
+      const Solution solution = solve_well(used_of(out), size);
+      tell(solution, out);
+      const std::size_t left = leave_out(solution, out, may_leave);
+      if (left == 0) break;
+      may_leave -= left;
+    }
+    tell(solve_well(used_of(out), size), out);
+  } catch (const cv::Exception&) {
+    return fail(ErrorCode::InvalidArgument, "calibration",
+                "no lens fits these views; are --board and --squares those of the board?");
+  }
+  return out;
+}
+
+}  // namespace chorus::calibration

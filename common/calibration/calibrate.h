@@ -1,0 +1,39 @@
+// The lens of a camera from views of a board (Z. Zhang, "A flexible new technique for camera
+// calibration", 2000, as OpenCV has it), and whether it may be trusted.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/calibration/view.h"
+#include "common/sensor/camera_image.h"
+
+namespace chorus::calibration {
+
+struct SolvedView {
+  View view;
+  double error_px = 0.0;  ///< Root mean square of its corners' distance from where they should be.
+  double tilt = 0.0;      ///< Between the board's normal and the line of sight to it [rad].
+  bool used = true;       ///< False: left out, because it does not fit the others.
+};
+
+struct Calibration {
+  Intrinsics intrinsics;
+  /// Standard deviations, in the intrinsics' units: fx, fy, cx, cy, k1, k2, p1, p2, k3.
+  std::array<double, 9> sigma{};
+  double error_px = 0.0;  ///< Over all used views.
+  std::vector<SolvedView> views;
+
+  /// Standard deviation of the focal length, relative to it.
+  [[nodiscard]] double focal_sigma() const;
+  [[nodiscard]] std::size_t used() const;
+};
+
+/// Views that do not fit the others are left out, at most a third of them.  k3 is estimated only
+/// if the views show that it is needed.  InvalidArgument with fewer than three views, or if
+/// nothing fits.
+[[nodiscard]] Result<Calibration> calibrate(const std::vector<View>& views, PictureSize size);
+
+}  // namespace chorus::calibration

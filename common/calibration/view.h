@@ -1,0 +1,33 @@
+// One picture of a board, as corners; and which of many pictures to use.  Pure.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace chorus::calibration {
+
+struct Corner {
+  Eigen::Vector2d on_board;  ///< [m]
+  Eigen::Vector2d pixel;     ///< Centres of pixels are at whole coordinates.
+};
+
+struct View {
+  std::string name;  ///< The picture, for people.
+  std::vector<Corner> corners;
+};
+
+struct PictureSize {
+  int width = 0;
+  int height = 0;
+
+  bool operator==(const PictureSize&) const = default;
+};
+
+/// At most `most` views, each as different from the others as possible in place, size and tilt of
+/// the board; in their order.  A board that stands still counts once.
+[[nodiscard]] std::vector<View> varied_views(const std::vector<View>& views, PictureSize size,
+                                             std::size_t most);
+
+}  // namespace chorus::calibration

@@ -1,0 +1,59 @@
+// Pictures of a calibration board through a known lens, and the same as exact corners.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <opencv2/core.hpp>
+
+#include "common/calibration/board.h"
+#include "common/calibration/view.h"
+#include "common/sensor/camera_image.h"
+
+namespace chorus::testing {
+
+/// Brown's model, forwards; OpenCV's axes.
+[[nodiscard]] Eigen::Vector2d projected(const Eigen::Vector3d& x_in_camera,
+                                        const Intrinsics& camera);
+
+struct PoseWishes {
+  std::size_t count = 20;
+  double share = 0.5;  ///< Of the picture's width that the board takes.
+  double tilt = 0.6;   ///< The most [rad].
+  double reach = 0.3;  ///< How far from the middle the board's centre goes, by the side.
+  std::uint64_t seed = 1;
+};
+
+/// camera_from_board, in the board's axes of black_parts() (x right, y up, z to the viewer) [m].
+[[nodiscard]] std::vector<Eigen::Isometry3d> board_poses(const calibration::Board& board,
+                                                         const Intrinsics& camera,
+                                                         const PoseWishes& wishes);
+
+/// The inner corners that lie in the picture, each off by `noise` [px].
+[[nodiscard]] calibration::View seen_corners(const calibration::Board& board,
+                                             const Intrinsics& camera,
+                                             const Eigen::Isometry3d& camera_from_board,
+                                             double noise, std::uint64_t seed);
+
+struct Flaws {
+  double blur_px = 0.7;  ///< Standard deviation of a Gaussian.
+  double noise = 4.0;    ///< Of the grey values, 0 to 255.
+};
+
+/// Renders pictures; the lens is evaluated once.
+class BoardCamera {
+ public:
+  BoardCamera(const calibration::Board& board, const Intrinsics& camera);
+  /// Grey.
+  [[nodiscard]] cv::Mat picture(const Eigen::Isometry3d& camera_from_board, const Flaws& flaws,
+                                std::uint64_t seed) const;
+
+ private:
+  calibration::Board board_;
+  Intrinsics camera_;
+  cv::Mat sheet_;  ///< The board from the front, with its margin.
+  cv::Mat rays_;   ///< x/z and y/z of each subpixel's ray.
+};
+
+}  // namespace chorus::testing

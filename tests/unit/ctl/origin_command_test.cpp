@@ -1,0 +1,55 @@
+// chorus origin with a server whose answers are scripted.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/unit/ctl/program_run.h"
+#include "tests/unit/ctl/scripted_server.h"
+
+namespace chorus::ctl {
+namespace {
+
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+/// A person who stands at (1, -2) and faces +z.
+std::string frame(int index) {
+  const auto at = [](double left) { return Json{{"x", 1.0 + left}, {"y", 1.0}, {"z", -2.0}}; };
+  const Json joints{{"SpineBase", at(0)},
+                    {"HipLeft", at(0.1)},
+                    {"HipRight", at(-0.1)},
+                    {"ShoulderLeft", at(0.2)},
+                    {"ShoulderRight", at(-0.2)}};
+  const Json body{{"sidesConfidence", 0.99}, {"joints", joints}};
+  return Json{{"captured", "2026-11-22T10:00:0" + std::to_string(index % 10) + "Z"},
+              {"bodies", Json::array({body})}}
+      .dump();
+}
+
+TEST(Origin, ThePersonIsWatchedOnOneConnection) {
+  std::vector<std::string> frames;
+  for (int i = 0; i < 40; ++i) frames.push_back(frame(i));
+  const ScriptedServer server(ScriptedServer::Texts{{"/frame", frames}});
+  const Outcome done = run_chorus({"origin", "--url", server.url(), "--here", "--seconds", "0.6"});
+  // The server of this test knows no origins; what is asked of it is what counts.
+  EXPECT_THAT(done.error, HasSubstr("/registration/origin"));
+  EXPECT_LE(server.connections(), 2u) << "one for the frames, one to set the origin";
+}
+
+TEST(Origin, NobodyThereIsSaid) {
+  const ScriptedServer server(
+      ScriptedServer::Texts{{"/frame", {R"({"captured": "x", "bodies": []})"}}});
+  const Outcome done = run_chorus({"origin", "--url", server.url(), "--here", "--seconds", "0.5"});
+  EXPECT_EQ(done.code, kExitFailed);
+  EXPECT_EQ(done.error.find("/registration/origin"), std::string::npos);
+}
+
+TEST(Origin, AServerThatIsNotThereIsNamed) {
+  std::string gone;
+  gone = ScriptedServer(ScriptedServer::Texts{{"/frame", {"{}"}}}).url();
+  EXPECT_THAT(run_chorus({"origin", "--url", gone, "--here", "--seconds", "0.5"}).error,
+              HasSubstr("is chorus-fusion running there?"));
+}
+
+}  // namespace
+}  // namespace chorus::ctl
