@@ -1,4 +1,4 @@
-// The commands that work on recordings.
+// The commands that work on recordings and pictures.
 #include <array>
 
 #include "services/ctl/command.h"
@@ -42,6 +42,17 @@ constexpr std::array kRecordingCommands{
             "  chorus export fused.ndjson --format csv --person 2 --out - | head\n"
             "What each format holds, and what is lost: docs/guide/export.md.",
             &add_export},
+    Command{"calibrate", "Measures the lens of a camera, or states what is known of it",
+            "Examples:\n"
+            "  chorus calibrate camera --print-board board.pdf\n"
+            "  chorus calibrate camera /dev/video0 --out lens.json     move the board before it\n"
+            "  chorus calibrate camera board.mp4 --square-mm 29.7 --out lens.json\n"
+            "  chorus calibrate camera photos/ --board chessboard --squares 10x7 --out lens.json\n"
+            "  chorus calibrate camera --fov 70 --size 1280x720 --out lens.json\n"
+            "Exit code 0: the lens is written; 1: the pictures are not enough, and what to do is "
+            "printed.\n"
+            "Then: device.camera.intrinsics, or chorus import video --intrinsics lens.json.",
+            &add_calibrate},
 };
 
 }  // namespace

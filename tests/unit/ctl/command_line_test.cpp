@@ -41,6 +41,9 @@ TEST(CommandLine, PrintsItsManualAndItsCompletion) {
     EXPECT_THAT(completion.out, HasSubstr("\n    " + name + ") words=' --"));
   }
   EXPECT_THAT(manual.out, HasSubstr("\\fB\\-\\-cancel\\fR"));
+  EXPECT_THAT(manual.out, HasSubstr(".SS \"chorus calibrate camera\"\n"));
+  EXPECT_THAT(manual.out, HasSubstr("\\fB\\-\\-print\\-board\\fR"));
+  EXPECT_THAT(completion.out, HasSubstr(" camera --help --board"));
 }
 
 TEST(CommandLine, NamesTheCommandThatWasMeant) {
