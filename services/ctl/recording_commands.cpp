@@ -12,6 +12,7 @@ constexpr std::array kRecordingCommands{
             "  chorus import labanotation Ges01.csv --out rec --floor 0,0.99,0.12,1.1\n"
             "  chorus import pose2sim tests/data/pose2sim_mediapipe --out rec\n"
             "  chorus import nw-ucla a04_s01_e00_v0*.json --out rec --start 2026-11-21T07:30:00Z\n"
+            "  chorus import openpose cam01_json cam02_json --out rec --intrinsics lens.json\n"
             "  chorus import c3d walk.c3d --out rec   (also bvh, mvnx: their world becomes ours)\n"
             "Writes DIR/SENSOR.mcap, and registration.json and truth.ndjson where the source has "
             "them.\n"
