@@ -1,6 +1,6 @@
 # What is installed where, and the Debian packages that are made from it (deploy/make-packages.sh).
 #
-#   common  chorus (small: init, doctor, status, register, record), user, folders
+#   common  chorus (small: init, discover, doctor, status, register, record), user, folders
 #   sensor  chorus-sensor and its service; nothing here may link OpenCV or PCL (tests/package measures its dependencies)
 #   fusion  chorus-fusion, its service and the viewer
 #   camera  the whole chorus-sensor, with the device camera and its runner, and the capture page of the device bridge; the service then
@@ -105,7 +105,7 @@ foreach(script postinst postrm)
 endforeach()
 set(CPACK_DEBIAN_COMMON_PACKAGE_CONTROL_EXTRA "${control}/postinst;${control}/postrm")
 set(CPACK_DEBIAN_COMMON_PACKAGE_DEPENDS passwd)
-set(CPACK_DEBIAN_COMMON_PACKAGE_SUGGESTS chrony)
+set(CPACK_DEBIAN_COMMON_PACKAGE_SUGGESTS "chrony, avahi-daemon, avahi-utils")
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS chorus-sensor)
 set(CPACK_COMPONENT_COMMON_DESCRIPTION "Chorus: the command line, user and folders of a workshop host
  Writes configurations, checks hosts, registers sensors and records.")

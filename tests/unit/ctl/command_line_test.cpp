@@ -52,7 +52,7 @@ TEST(CommandLine, NamesTheCommandThatWasMeant) {
   EXPECT_THAT(wrong.error, HasSubstr("did you mean \"import\"?"));
   const Outcome strange = run_chorus({"xyzzyplugh"});
   EXPECT_EQ(strange.code, kExitUsage);
-  EXPECT_THAT(strange.error, HasSubstr("The commands are: import, init, doctor, register"));
+  EXPECT_THAT(strange.error, HasSubstr("The commands are: import, init, discover, doctor"));
 }
 
 TEST(CommandLine, TellsWrongUsageFromFailure) {
