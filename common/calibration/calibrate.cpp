@@ -45,13 +45,12 @@ Points for_opencv(const std::vector<const View*>& views) {
   return out;
 }
 
-double tilt_of(const cv::Mat& turn, const cv::Mat& place) {
+/// Against the picture's plane: a board beside the middle that is parallel to it tells nothing of
+/// the focal length, although it is seen obliquely.
+double tilt_of(const cv::Mat& turn) {
   cv::Mat rotation;
   cv::Rodrigues(turn, rotation);
-  const cv::Vec3d normal(rotation.at<double>(0, 2), rotation.at<double>(1, 2),
-                         rotation.at<double>(2, 2));
-  const cv::Vec3d sight(place.at<double>(0), place.at<double>(1), place.at<double>(2));
-  return std::acos(std::min(1.0, std::abs(normal.dot(sight)) / cv::norm(sight)));
+  return std::acos(std::min(1.0, std::abs(rotation.at<double>(2, 2))));
 }
 
 Intrinsics intrinsics_of(const cv::Mat& matrix, const cv::Mat& distortion, PictureSize size) {
@@ -85,7 +84,7 @@ Solution solve(const std::vector<const View*>& views, PictureSize size, bool wit
   for (std::size_t i = 0; i < kTerms; ++i) out.sigma[i] = sigma.at<double>(static_cast<int>(i));
   for (std::size_t i = 0; i < views.size(); ++i) {
     out.view_errors.push_back(errors.at<double>(static_cast<int>(i)));
-    out.tilts.push_back(tilt_of(turns[i], places[i]));
+    out.tilts.push_back(tilt_of(turns[i]));
   }
   return out;
 }

@@ -15,7 +15,7 @@ namespace chorus::calibration {
 struct SolvedView {
   View view;
   double error_px = 0.0;  ///< Root mean square of its corners' distance from where they should be.
-  double tilt = 0.0;      ///< Between the board's normal and the line of sight to it [rad].
+  double tilt = 0.0;      ///< Of the board against the picture's plane [rad].
   bool used = true;       ///< False: left out, because it does not fit the others.
 };
 

@@ -84,6 +84,13 @@ Result<ImportedSet> import_cameras(const std::filesystem::path& folder,
   return set;
 }
 
+/// Whether an input was left empty by whoever wrote it: no reason to stop the others.
+bool is_empty(const std::filesystem::path& input, const Error& why) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(input, ignored)) return why.code == ErrorCode::NotFound;
+  return std::filesystem::file_size(input, ignored) == 0;
+}
+
 Result<ImportedSet> import_each(const ReadRecording& read,
                                 const std::vector<std::filesystem::path>& inputs,
                                 const ImportOptions& options) {
@@ -92,8 +99,7 @@ Result<ImportedSet> import_each(const ReadRecording& read,
     ImportOptions own = options;
     if (!options.floors.empty()) own.floor = options.floors[i];
     auto recording = read(inputs[i], own, i);
-    std::error_code ignored;
-    if (!recording && std::filesystem::file_size(inputs[i], ignored) == 0) {
+    if (!recording && is_empty(inputs[i], recording.error())) {
       set.empty.push_back(recording.error());
       continue;
     }

@@ -75,14 +75,15 @@ std::string as_it_is(std::string_view text) {
   return text.empty() ? "" : ".PP\n.nf\n" + roff(text) + "\n.fi\n";
 }
 
-std::string commands_text(const CLI::App& app) {
+/// The commands of a program, and theirs in turn.
+std::string commands_text(const CLI::App& app, const std::string& name) {
   std::string out;
   for (const CLI::App* command : commands_of(app)) {
-    out += ".SS \"" + roff(app.get_name() + " " + command->get_name()) + "\"\n" +
-           roff(command->get_description()) + "\n" + options_of(*command) +
-           as_it_is(command->get_footer());
+    const std::string whole = name + " " + command->get_name();
+    out += ".SS \"" + roff(whole) + "\"\n" + roff(command->get_description()) + "\n" +
+           options_of(*command) + as_it_is(command->get_footer()) + commands_text(*command, whole);
   }
-  return out.empty() ? out : ".SH COMMANDS\n" + out;
+  return out;
 }
 
 std::string files_text(std::string_view files) {
@@ -106,6 +107,14 @@ std::string words_of(const CLI::App& app) {
   return out;
 }
 
+/// The same with the commands of a command, and their options.
+std::string all_words_of(const CLI::App& command) {
+  std::string out = words_of(command);
+  for (const CLI::App* below : commands_of(command))
+    out += " " + below->get_name() + all_words_of(*below);
+  return out;
+}
+
 }  // namespace
 
 std::string manual_page(const CLI::App& app, const Manual& manual) {
@@ -115,12 +124,13 @@ std::string manual_page(const CLI::App& app, const Manual& manual) {
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   std::string about = app.get_description();
   if (about.starts_with(name + ": ")) about.erase(0, name.size() + 2);
-  const bool has_commands = !commands_of(app).empty();
+  const std::string commands = commands_text(app, name);
   return ".TH " + roff(title) + " " + std::to_string(manual.section) + " \"\" \"chorus " +
          std::string(version()) + "\" \"Chorus\"\n.SH NAME\n" + roff(name) + " \\- " +
          roff(first_line(about)) + "\n.SH SYNOPSIS\n.B " + roff(name) + "\n" +
-         (has_commands ? "COMMAND [OPTIONS]" : "[OPTIONS]") + "\n.SH DESCRIPTION\n" + roff(about) +
-         "\n.SH OPTIONS\n" + options_of(app) + commands_text(app) + files_text(manual.files) +
+         (commands.empty() ? "[OPTIONS]" : "COMMAND [OPTIONS]") + "\n.SH DESCRIPTION\n" +
+         roff(about) + "\n.SH OPTIONS\n" + options_of(app) +
+         (commands.empty() ? "" : ".SH COMMANDS\n" + commands) + files_text(manual.files) +
          ".SH NOTES\n" + as_it_is(app.get_footer());
 }
 
@@ -131,7 +141,7 @@ std::string bash_completion(const CLI::App& app) {
   std::string cases;
   std::string all = words_of(app);
   for (const CLI::App* command : commands_of(app)) {
-    cases += "    " + command->get_name() + ") words='" + words_of(*command) + "' ;;\n";
+    cases += "    " + command->get_name() + ") words='" + all_words_of(*command) + "' ;;\n";
     all += " " + command->get_name();
   }
   return "# bash completion of " + name + ", made from its options.\n" + function +

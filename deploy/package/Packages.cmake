@@ -1,11 +1,11 @@
 # What is installed where, and the Debian packages that are made from it (deploy/make-packages.sh).
 #
-#   common  chorus (small: init, doctor, status, register, record), user, folders
+#   common  chorus (small: init, discover, doctor, status, register, record), user, folders
 #   sensor  chorus-sensor and its service; nothing here may link OpenCV or PCL (tests/package measures its dependencies)
 #   fusion  chorus-fusion, its service and the viewer
 #   camera  the whole chorus-sensor, with the device camera and its runner, and the capture page of the device bridge; the service then
 #           runs this program
-#   tools   the whole chorus: import, replay, fuse, export
+#   tools   the whole chorus: import, replay, fuse, export, calibrate
 include(GNUInstallDirs)
 set(docs ${CMAKE_INSTALL_DATADIR}/doc)
 
@@ -14,6 +14,7 @@ install(PROGRAMS $<TARGET_FILE:chorus> DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/c
 install(FILES LICENSE DESTINATION ${docs}/chorus-common RENAME copyright COMPONENT common)
 install(DIRECTORY docs/guide DESTINATION ${docs}/chorus-common COMPONENT common FILES_MATCHING PATTERN *.md)
 install(FILES LICENSE DESTINATION ${docs}/chorus-tools RENAME copyright COMPONENT tools)
+install(FILES NOTICE DESTINATION ${docs}/chorus-tools COMPONENT tools)
 
 # The programs themselves print their manual pages and completions.
 set(pages ${CMAKE_BINARY_DIR}/pages)
@@ -104,7 +105,7 @@ foreach(script postinst postrm)
 endforeach()
 set(CPACK_DEBIAN_COMMON_PACKAGE_CONTROL_EXTRA "${control}/postinst;${control}/postrm")
 set(CPACK_DEBIAN_COMMON_PACKAGE_DEPENDS passwd)
-set(CPACK_DEBIAN_COMMON_PACKAGE_SUGGESTS chrony)
+set(CPACK_DEBIAN_COMMON_PACKAGE_SUGGESTS "chrony, avahi-daemon, avahi-utils")
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS chorus-sensor)
 set(CPACK_COMPONENT_COMMON_DESCRIPTION "Chorus: the command line, user and folders of a workshop host
  Writes configurations, checks hosts, registers sensors and records.")
@@ -115,7 +116,7 @@ set(CPACK_COMPONENT_CAMERA_DESCRIPTION "Chorus: webcams, streams, video files an
 set(CPACK_COMPONENT_FUSION_DESCRIPTION "Chorus: many body-tracking sensors, one tracker
  Reads sensors, finds where they stand from a walking person, and serves one tracker in many protocols.")
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION "Chorus: work on recordings
- The commands import, replay, fuse and export.")
+ The commands import, replay, fuse, export and calibrate.")
 include(CPack)
 foreach(component common sensor camera fusion tools)
   cpack_add_component_group(${component})

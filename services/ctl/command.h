@@ -33,8 +33,8 @@ struct Command {
 /// second one needs.
 [[nodiscard]] std::span<const Command> host_commands();
 [[nodiscard]] std::span<const Command> recording_commands();
-inline constexpr std::array<std::string_view, 4> kRecordingCommandNames{"import", "replay", "fuse",
-                                                                        "export"};
+inline constexpr std::array<std::string_view, 5> kRecordingCommandNames{"import", "replay", "fuse",
+                                                                        "export", "calibrate"};
 [[nodiscard]] std::vector<Command> all_commands();
 
 Run add_init(CLI::App& options);
@@ -48,6 +48,8 @@ Run add_replay(CLI::App& options);
 Run add_fuse(CLI::App& options);
 Run add_export(CLI::App& options);
 Run add_camera(CLI::App& options);
+Run add_calibrate(CLI::App& options);
+Run add_discover(CLI::App& options);
 
 /// The whole program: parses, runs, prints errors to standard error.  Never throws.
 [[nodiscard]] int run_command_line(std::span<const Command> commands, int argc,

@@ -19,6 +19,14 @@ constexpr std::array kHostCommands{
         "  chorus init certificate s1.local 10.0.0.11 --out s1   for one of them, into folder s1\n"
         "An existing file is never overwritten.  Then: systemctl restart chorus-SERVICE.",
         &add_init},
+    Command{"discover", "Lists the sensors that announce themselves in this network",
+            "Examples:\n"
+            "  chorus discover\n"
+            "  chorus discover --json | jq -r '.[].url'\n"
+            "  chorus init fusion --discover          all of them in a new configuration\n"
+            "By multicast DNS with Avahi (avahi-daemon, avahi-utils).  Tokens are not announced.\n"
+            "Exit code 0: at least one was found; 1: none, or no Avahi here.",
+            &add_discover},
     Command{"doctor", "Checks this host: clock, services, tokens, disk, and the way to each sensor",
             "Examples:\n"
             "  chorus doctor\n"

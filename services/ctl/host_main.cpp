@@ -21,7 +21,8 @@ int main(int argc, char** argv) {
   chorus::service::become_whole_program("../libexec/chorus/chorus", argv);
   if (argc > 1 && is_elsewhere(argv[1])) {
     std::fprintf(stderr,
-                 "chorus: \"%s\" works on recordings and comes with another package: apt install "
+                 "chorus: \"%s\" works on recordings or pictures and comes with another package: "
+                 "apt install "
                  "chorus-tools\n",
                  argv[1]);
     return chorus::ctl::kExitUsage;

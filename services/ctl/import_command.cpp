@@ -1,7 +1,10 @@
 // chorus import FORMAT INPUT... --out DIR: turns files of other programs into recordings.
+#include <algorithm>
+#include <array>
 #include <iostream>
 #include <memory>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -17,6 +20,7 @@
 #include "services/ctl/command.h"
 #include "services/ctl/console.h"
 #include "services/ctl/number_range.h"
+#include "services/ctl/pose_import.h"
 #include "services/ctl/text_file.h"
 #include "services/ctl/video_import.h"
 
@@ -40,7 +44,16 @@ struct ImportArguments {
   double rate_hz = 30.0;
 };
 
-constexpr std::string_view kVideo = "video";
+/// Formats of cameras, whose lenses are in files of ours.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kCameraFormats{
+    {{"video", "what a runner finds in videos, one camera each, as rays"},
+     {"openpose", "OpenPose's JSON, also that of RTMLib and Pose2Sim: a folder a camera, as rays"},
+     {"mmpose", "MMPose's predictions in JSON: a file a video, or a folder of pictures, as rays"}}};
+
+bool is_of_cameras(std::string_view name) {
+  return std::any_of(kCameraFormats.begin(), kCameraFormats.end(),
+                     [&](const auto& row) { return row.first == name; });
+}
 
 /// A CLI11 check that says why a text is refused.
 template <class Parse>
@@ -52,8 +65,9 @@ std::function<std::string(const std::string&)> readable_by(Parse parse) {
 }
 
 std::string check_format(const std::string& name) {
-  if (name == kVideo || importers::format_named(name)) return {};
-  std::string known = fmt::format(" {}", kVideo);
+  if (is_of_cameras(name) || importers::format_named(name)) return {};
+  std::string known;
+  for (const auto& row : kCameraFormats) known += fmt::format(" {}", row.first);
   for (const auto& row : importers::kFormats) known += fmt::format(" {}", row.name);
   return fmt::format("there is no format \"{}\"; known are{}", name, known);
 }
@@ -218,10 +232,12 @@ importers::ImportOptions options_of(const ImportArguments& arguments) {
 Result<importers::ImportedSet> read_set(const ImportArguments& arguments,
                                         const importers::ImportOptions& options) {
   const std::vector<fs::path> inputs(arguments.inputs.begin(), arguments.inputs.end());
-  if (arguments.format == kVideo)
+  if (arguments.format == "video")
     return import_videos(inputs, options, {arguments.lenses, arguments.model, arguments.rate_hz});
+  if (is_of_cameras(arguments.format))
+    return import_poses(inputs, options, {arguments.lenses, arguments.rate_hz});
   if (!arguments.lenses.empty())
-    return fail(ErrorCode::InvalidArgument, "--intrinsics", "is for videos; leave it out");
+    return fail(ErrorCode::InvalidArgument, "--intrinsics", "is for cameras; leave it out");
   const auto format = importers::format_named(arguments.format);
   if (options.rays && format != importers::FileFormat::Pose2Sim)
     return fail(ErrorCode::InvalidArgument, "--rays",
@@ -248,7 +264,8 @@ Result<int> run_import(const ImportArguments& arguments) {
 
 Run add_import(CLI::App& options) {
   const auto arguments = std::make_shared<ImportArguments>();
-  std::string formats = "One of:\nvideo: what a runner finds in videos, one camera each, as rays";
+  std::string formats = "One of:";
+  for (const auto& [name, reads] : kCameraFormats) formats += fmt::format("\n{}: {}", name, reads);
   for (const auto& row : importers::kFormats)
     formats += fmt::format("\n{}: {}", row.name, row.reads);
   options.add_option("format", arguments->format, formats)->required()->check(check_format);
@@ -274,16 +291,19 @@ Run add_import(CLI::App& options) {
       ->check(CLI::IsMember({"cm", "m"}))
       ->capture_default_str();
   options
-      .add_option(
-          "--intrinsics", arguments->lenses,
-          "Lens of a video's camera: a file with the keys of device.camera.intrinsics, or a "
-          "sensor's configuration; once for all, or once for each in their order")
+      .add_option("--intrinsics", arguments->lenses,
+                  "Lens of a camera, for video, openpose and mmpose: a file with the keys of "
+                  "device.camera.intrinsics, or a "
+                  "sensor's configuration; once for all, or once for each in their order")
       ->take_all()
       ->allow_extra_args(false);
   options.add_option("--model", arguments->model, "That the runner finds people in videos with")
       ->capture_default_str();
   options
-      .add_option("--rate", arguments->rate_hz, "Pictures of a video that are looked at, a second")
+      .add_option(
+          "--rate", arguments->rate_hz,
+          "Pictures a second: of a video, those that are looked at; of openpose and mmpose, "
+          "those there are")
       ->check(number_range(0.1, 1000.0))
       ->capture_default_str();
   options.add_flag("--rays", arguments->rays,

@@ -13,6 +13,7 @@
 #include "common/net/host_name.h"
 #include "fusion-server/client/service_client.h"
 #include "services/ctl/command.h"
+#include "services/ctl/discovery.h"
 #include "services/ctl/new_file.h"
 #include "services/ctl/written_certificates.h"
 #include "services/ctl/written_config.h"
@@ -22,6 +23,7 @@ namespace {
 
 constexpr std::uint16_t kSensorPort = 8081;
 constexpr std::uint16_t kFusionPort = 8080;
+constexpr const char* kSensorFile = "/etc/chorus/sensor.json";
 
 struct InitArguments {
   std::string service;
@@ -34,6 +36,9 @@ struct InitArguments {
   std::vector<std::string> sensors;
   std::string sensors_from;
   std::vector<std::string> outputs;
+  bool discover = false;
+  std::string announce;  ///< A folder; see announce_folder.
+  bool no_announce = false;
   std::string tls;  ///< A folder; see tls_folder.
   bool no_tls = false;
   AuthorityWishes authority;
@@ -138,6 +143,29 @@ void tell_next(const InitArguments& arguments, const ServiceWishes& wishes) {
   }
 }
 
+/// Where the announcement goes; empty: nowhere.  A configuration that is only shown, or written
+/// elsewhere, announces nothing unless that is asked for.
+std::string announce_folder(const InitArguments& arguments) {
+  if (arguments.no_announce) return {};
+  if (!arguments.announce.empty()) return arguments.announce;
+  std::error_code hidden;
+  const bool offered = arguments.out == kSensorFile && !is_loopback(arguments.address) &&
+                       std::filesystem::is_directory(kAvahiFolder, hidden);
+  return offered ? kAvahiFolder : "";
+}
+
+/// An offer: without it the sensor works as well.
+void announce(const InitArguments& arguments, const ServiceWishes& wishes) {
+  const std::string folder = announce_folder(arguments);
+  if (folder.empty()) return;
+  const std::string file = folder + "/chorus-sensor.service";
+  const auto done =
+      write_file(file, announcement(arguments.sensor.id, wishes.port, !wishes.tls.empty()),
+                 Readers::Everybody, Overwriting::Yes);
+  std::cerr << (done ? file + " written: chorus discover finds this sensor (--no-announce)\n"
+                     : "note: not announced: " + to_string(done.error()) + "\n");
+}
+
 Result<ServiceWishes> write_sensor(InitArguments& arguments) {
   SensorWishes& wishes = arguments.sensor;
   if (const auto id = SensorId::parse(wishes.id); !id) return pass(id);
@@ -151,7 +179,23 @@ Result<ServiceWishes> write_sensor(InitArguments& arguments) {
     return fail(ErrorCode::InvalidArgument, "--recording", "a replay needs the file to play");
   wishes.service = service_wishes(arguments, kSensorPort);
   if (auto ok = write_new(arguments.out, sensor_config(wishes)); !ok) return pass(ok);
+  announce(arguments, wishes.service);
   return wishes.service;
+}
+
+/// Adds the sensors that announce themselves, unless one of that name is there already.
+Result<void> add_discovered(std::vector<PolledWish>& sensors) {
+  const auto found = discovered_sensors();
+  if (!found) return pass(found);
+  for (const FoundSensor& sensor : *found) {
+    const bool named = std::any_of(sensors.begin(), sensors.end(),
+                                   [&](const PolledWish& each) { return each.id == sensor.id; });
+    if (named) continue;
+    sensors.push_back({sensor.id, sensor.url(), ""});
+    std::cerr << "found " << sensor.id << " at " << sensor.url()
+              << "; its token is not announced: chorus init printed it there\n";
+  }
+  return {};
 }
 
 /// Reads lines "ID=URL,TOKEN" from a file, so that no token shows up in the list of processes.
@@ -175,6 +219,9 @@ Result<ServiceWishes> write_fusion(InitArguments& arguments) {
     const auto sensor = polled_wish(text);
     if (!sensor) return pass(sensor);
     wishes.sensors.push_back(*sensor);
+  }
+  if (arguments.discover) {
+    if (auto ok = add_discovered(wishes.sensors); !ok) return pass(ok);
   }
   for (const std::string& text : arguments.outputs) {
     const auto output = output_wish(text);
@@ -224,6 +271,17 @@ Result<int> run_init(InitArguments& arguments) {
   if (!wishes) return pass(wishes);
   if (arguments.out != "-") tell_next(arguments, *wishes);
   return kExitOk;
+}
+
+void add_discovery_options(CLI::App& options, InitArguments& arguments) {
+  options.add_flag("--discover", arguments.discover,
+                   "fusion: also the sensors that announce themselves (chorus discover)");
+  options
+      .add_option("--announce", arguments.announce,
+                  "sensor: folder for the file that has Avahi announce it; default: "
+                  "/etc/avahi/services if it is there, unless only this host is listened to")
+      ->excludes(
+          options.add_flag("--no-announce", arguments.no_announce, "sensor: writes no such file"));
 }
 
 void add_tls_options(CLI::App& options, InitArguments& arguments) {
@@ -291,6 +349,7 @@ Run add_init(CLI::App& options) {
                   "fusion: vrpn=CLIENT,..., dtrack=HOST:PORT, ...; may be repeated")
       ->take_all()
       ->allow_extra_args(false);
+  add_discovery_options(options, *arguments);
   add_tls_options(options, *arguments);
   return [arguments] { return run_init(*arguments); };
 }

@@ -1,4 +1,4 @@
-// The commands that work on recordings.
+// The commands that work on recordings and pictures.
 #include <array>
 
 #include "services/ctl/command.h"
@@ -12,6 +12,7 @@ constexpr std::array kRecordingCommands{
             "  chorus import labanotation Ges01.csv --out rec --floor 0,0.99,0.12,1.1\n"
             "  chorus import pose2sim tests/data/pose2sim_mediapipe --out rec\n"
             "  chorus import nw-ucla a04_s01_e00_v0*.json --out rec --start 2026-11-21T07:30:00Z\n"
+            "  chorus import openpose cam01_json cam02_json --out rec --intrinsics lens.json\n"
             "  chorus import c3d walk.c3d --out rec   (also bvh, mvnx: their world becomes ours)\n"
             "Writes DIR/SENSOR.mcap, and registration.json and truth.ndjson where the source has "
             "them.\n"
@@ -42,6 +43,17 @@ constexpr std::array kRecordingCommands{
             "  chorus export fused.ndjson --format csv --person 2 --out - | head\n"
             "What each format holds, and what is lost: docs/guide/export.md.",
             &add_export},
+    Command{"calibrate", "Measures the lens of a camera, or states what is known of it",
+            "Examples:\n"
+            "  chorus calibrate camera --print-board board.pdf\n"
+            "  chorus calibrate camera /dev/video0 --out lens.json     move the board before it\n"
+            "  chorus calibrate camera board.mp4 --square-mm 29.7 --out lens.json\n"
+            "  chorus calibrate camera photos/ --board chessboard --squares 10x7 --out lens.json\n"
+            "  chorus calibrate camera --fov 70 --size 1280x720 --out lens.json\n"
+            "Exit code 0: the lens is written; 1: the pictures are not enough, and what to do is "
+            "printed.\n"
+            "Then: device.camera.intrinsics, or chorus import video --intrinsics lens.json.",
+            &add_calibrate},
 };
 
 }  // namespace

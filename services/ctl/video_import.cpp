@@ -8,10 +8,8 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include "common/base/config_reader.h"
-#include "common/base/file.h"
+#include "services/ctl/lens_file.h"
 #include "services/sensor/device/camera/film.h"
 #include "services/sensor/device/camera/shipped_runner.h"
 
@@ -19,7 +17,6 @@ namespace chorus::ctl {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::uintmax_t kMaxLensBytes = 1u << 20;
 
 /// "cam01.mp4: 43 %, 12 s left": redrawn on a terminal; elsewhere printed at every tenth.
 class Progress {
@@ -54,35 +51,17 @@ class Progress {
   int told_ = -1;
 };
 
-/// The text of only the lens, as JSON.
-Result<std::string> lens_text(const std::string& file) {
-  const auto text = read_file(file, kMaxLensBytes);
-  if (!text) return pass(text);
-  auto root = ConfigReader::parse(*text, file);
-  if (!root) return pass(root);
-  if (!root->has("device")) return root->text();
-  const std::string own = root->child("device").child("camera").text("intrinsics");
-  if (!own.empty()) return own;
-  return fail(ErrorCode::InvalidArgument, file,
-              "is a sensor's configuration without device.camera.intrinsics");
-}
-
 /// The settings that a sensor would read from its section device.camera.
 Result<camera::CameraSettings> settings_for(const fs::path& video, const VideoImport& how,
                                             std::size_t index) {
-  nlohmann::json section{{"source", video.string()},
-                         {"model", how.model},
-                         {"loop", false},
-                         {"max_rate_hz", how.rate_hz}};
-  if (!how.lenses.empty()) {
-    const auto lens = lens_text(how.lenses[how.lenses.size() == 1 ? 0 : index]);
-    if (!lens) return pass(lens);
-    section["intrinsics"] = nlohmann::json::parse(*lens, nullptr, false);
-  }
-  auto reader = ConfigReader::parse(section.dump(), "--intrinsics");
-  if (!reader) return pass(reader);
-  auto settings = camera::read_camera_settings(*reader);
-  if (auto ok = reader->finish(); !ok) return pass(ok);
+  auto settings = Result<camera::CameraSettings>(camera::CameraSettings());
+  if (!how.lenses.empty())
+    settings = read_lens_file(how.lenses[how.lenses.size() == 1 ? 0 : index]);
+  if (!settings) return pass(settings);
+  settings->source = video.string();
+  settings->model = how.model;
+  settings->loop = false;
+  settings->max_rate_hz = how.rate_hz;
   return settings;
 }
 
@@ -120,10 +99,7 @@ Result<record::FrameRecording> import_one(const fs::path& file, const VideoImpor
 Result<importers::ImportedSet> import_videos(const std::vector<fs::path>& inputs,
                                              const importers::ImportOptions& options,
                                              const VideoImport& how) {
-  if (how.lenses.size() > 1 && how.lenses.size() != inputs.size())
-    return fail(ErrorCode::InvalidArgument, "--intrinsics",
-                fmt::format("takes one lens for all, or one for each of the {} videos, not {}",
-                            inputs.size(), how.lenses.size()));
+  if (auto ok = check_lens_count(how.lenses, inputs.size()); !ok) return pass(ok);
   return importers::import_recordings(
       inputs, options,
       [&](const fs::path& file, const importers::ImportOptions& own, std::size_t index) {

@@ -40,5 +40,7 @@ struct Agreement {
 [[nodiscard]] Result<void> runner_speed(Report& report);
 /// Five simulated cameras and the scenes of `persons`.
 [[nodiscard]] Result<void> simulated_people(Report& report);
+/// Lenses from rendered pictures of a board.
+[[nodiscard]] Result<void> lens_calibration(Report& report);
 
 }  // namespace chorus::bench

@@ -43,7 +43,7 @@ TEST(Weaknesses, FewViewsAreCounted) {
 }
 
 TEST(Weaknesses, WithoutTiltTheFocalLengthIsUnknown) {
-  const auto said = weak(views_of({.count = 15, .tilt = 0.02, .reach = 0.25}));
+  const auto said = weak(views_of({.count = 15, .tilt = 0.02, .reach = 0.36}));
   EXPECT_THAT(said, Contains(HasSubstr("tilt the board by 30 deg in at least 3 views")));
 }
 

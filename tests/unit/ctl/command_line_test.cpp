@@ -41,6 +41,9 @@ TEST(CommandLine, PrintsItsManualAndItsCompletion) {
     EXPECT_THAT(completion.out, HasSubstr("\n    " + name + ") words=' --"));
   }
   EXPECT_THAT(manual.out, HasSubstr("\\fB\\-\\-cancel\\fR"));
+  EXPECT_THAT(manual.out, HasSubstr(".SS \"chorus calibrate camera\"\n"));
+  EXPECT_THAT(manual.out, HasSubstr("\\fB\\-\\-print\\-board\\fR"));
+  EXPECT_THAT(completion.out, HasSubstr(" camera --help --board"));
 }
 
 TEST(CommandLine, NamesTheCommandThatWasMeant) {
@@ -49,7 +52,7 @@ TEST(CommandLine, NamesTheCommandThatWasMeant) {
   EXPECT_THAT(wrong.error, HasSubstr("did you mean \"import\"?"));
   const Outcome strange = run_chorus({"xyzzyplugh"});
   EXPECT_EQ(strange.code, kExitUsage);
-  EXPECT_THAT(strange.error, HasSubstr("The commands are: import, init, doctor, register"));
+  EXPECT_THAT(strange.error, HasSubstr("The commands are: import, init, discover, doctor"));
 }
 
 TEST(CommandLine, TellsWrongUsageFromFailure) {

@@ -1,0 +1,147 @@
+#include "services/ctl/board_pictures.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <chrono>
+#include <filesystem>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "common/calibration/board_finder.h"
+#include "services/sensor/device/camera/video.h"
+
+namespace chorus::ctl {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kEvery = 0.25;  // [s] between pictures of a video: a hand moves far enough
+constexpr std::size_t kMaxViews = 2000;
+
+bool is_photo(const fs::path& file) {
+  constexpr std::array kEndings{".jpg", ".jpeg", ".png", ".bmp", ".tif", ".tiff", ".webp"};
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+}
+
+/// Folders replaced by the photos in them, in the order of their names.
+Result<std::vector<std::string>> files_of(const std::vector<std::string>& sources) {
+  std::vector<std::string> files;
+  for (const std::string& source : sources) {
+    std::error_code failed;
+    if (!fs::is_directory(source, failed)) {
+      files.push_back(source);
+      continue;
+    }
+    const std::size_t before = files.size();
+    for (const auto& entry : fs::directory_iterator(source, failed)) {
+      if (is_photo(entry.path())) files.push_back(entry.path().string());
+    }
+    if (files.size() == before)
+      return fail(ErrorCode::NotFound, source, "holds no photos (.jpg, .png, .bmp, .tif, .webp)");
+    std::sort(files.begin() + static_cast<std::ptrdiff_t>(before), files.end());
+  }
+  return files;
+}
+
+class Search {
+ public:
+  explicit Search(const BoardSearch& how) : how_(how), finder_(how.board) {}
+
+  Result<BoardViews> run(const std::vector<std::string>& files) {
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      begin_ = static_cast<double>(i) / static_cast<double>(files.size());
+      step_ = 1.0 / static_cast<double>(files.size());
+      const auto done = is_photo(files[i]) ? photo(files[i]) : video(files[i]);
+      if (done) continue;
+      if (files.size() == 1) return pass(done);
+      out_.notes.push_back(to_string(done.error()) + "; left out");
+    }
+    if (odd_sizes_ > 0)
+      out_.notes.push_back(fmt::format("{} pictures are not {} x {}, as the first is; left out",
+                                       odd_sizes_, out_.size.width, out_.size.height));
+    return std::move(out_);
+  }
+
+ private:
+  Result<void> photo(const std::string& file) {
+    const auto picture = camera::read_picture(file);
+    if (!picture) return pass(picture);
+    look(*picture, fs::path(file).filename().string());
+    tell(1.0);
+    return {};
+  }
+
+  Result<void> video(const std::string& source) {
+    camera::CameraSettings settings;
+    settings.source = source;
+    const auto video = camera::open_video(settings);
+    if (!video) return pass(video);
+    const bool film = camera::kind_of(source) == camera::SourceKind::File;
+    return watch(**video, film, fs::path(source).filename().string());
+  }
+
+  Result<void> watch(camera::Video& video, bool film, const std::string& name) {
+    const camera::FileTiming timing = film ? video.timing() : camera::FileTiming{};
+    const double whole = timing.length ? seconds(*timing.length) : how_.seconds;
+    const auto began = std::chrono::steady_clock::now();
+    double next = 0.0;
+    for (double at = 0.0; film || at < how_.seconds; at += film ? seconds(timing.step) : 0.0) {
+      const auto moment = video.next();
+      if (!moment) return pass(moment);
+      if (!*moment) break;
+      if (!film)
+        at = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+      if (at < next) continue;
+      next = at + kEvery;
+      const auto picture = video.picture();
+      if (picture) look(*picture, fmt::format("{} at {:.2f} s", name, at));
+      tell(std::min(1.0, at / whole));
+    }
+    return {};
+  }
+
+  void look(const camera::Picture& picture, std::string name) {
+    const calibration::PictureSize size{picture.size.width, picture.size.height};
+    if (out_.pictures == 0) out_.size = size;
+    if (size != out_.size) {
+      ++odd_sizes_;
+      return;
+    }
+    ++out_.pictures;
+    auto corners = finder_.find(*picture.pixels);
+    if (!corners.empty() && out_.views.size() < kMaxViews)
+      out_.views.push_back({std::move(name), std::move(corners)});
+  }
+
+  void tell(double share) const {
+    if (!how_.progress) return;
+    how_.progress(begin_ + step_ * share,
+                  fmt::format("the board in {} of {} pictures", out_.views.size(), out_.pictures));
+  }
+
+  const BoardSearch& how_;
+  calibration::BoardFinder finder_;
+  BoardViews out_;
+  std::size_t odd_sizes_ = 0;
+  double begin_ = 0.0;
+  double step_ = 1.0;
+};
+
+}  // namespace
+
+Result<BoardViews> look_for_board(const BoardSearch& search) {
+  const auto files = files_of(search.sources);
+  if (!files) return pass(files);
+  auto found = Search(search).run(*files);
+  if (found && found->pictures == 0)
+    return fail(ErrorCode::NotFound, search.sources.empty() ? "pictures" : search.sources.front(),
+                found->notes.empty() ? "has no picture that can be read" : found->notes.front());
+  return found;
+}
+
+}  // namespace chorus::ctl

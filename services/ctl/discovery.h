@@ -1,0 +1,41 @@
+// Sensors that announce themselves in the local network by multicast DNS (DNS-SD, RFC 6763), with
+// Avahi.  An offer: a configuration lists its sensors, and nothing is followed by itself.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/result.h"
+
+namespace chorus::ctl {
+
+/// Where avahi-daemon looks for services to announce.
+inline constexpr const char* kAvahiFolder = "/etc/avahi/services";
+
+struct FoundSensor {
+  std::string id;
+  std::string host;     ///< "sensor-1.local"
+  std::string address;  ///< Numeric.
+  std::uint16_t port = 0;
+  bool tls = false;
+
+  /// With TLS by name, because certificates are for names; else by address.
+  [[nodiscard]] std::string url() const;
+  bool operator==(const FoundSensor&) const = default;
+};
+
+/// The file for kAvahiFolder that announces a sensor; no secret is in it.
+[[nodiscard]] std::string announcement(const std::string& id, std::uint16_t port, bool tls);
+
+/// Reads what `avahi-browse --resolve --parsable` prints: each sensor once, by id; IPv4 before
+/// IPv6, loopback and link-local addresses last.  Anybody in the network may announce anything, so
+/// lines without a valid id, name, address and port are left out.
+[[nodiscard]] std::vector<FoundSensor> read_browsed(std::string_view text);
+
+/// Asks Avahi, for a second or two.  Unsupported: avahi-browse is not installed; Unavailable: no
+/// daemon runs.
+[[nodiscard]] Result<std::vector<FoundSensor>> discovered_sensors();
+
+}  // namespace chorus::ctl

@@ -1,0 +1,22 @@
+// The lens of a camera in a file, as `chorus calibrate camera` writes it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "services/sensor/device/camera/lens.h"
+
+namespace chorus::ctl {
+
+/// Reads the keys of device.camera.intrinsics, or a sensor's configuration that has them, into
+/// settings that are otherwise the defaults.
+[[nodiscard]] Result<camera::CameraSettings> read_lens_file(const std::string& file);
+
+/// The same as a lens, for pictures of the size that the file states.
+[[nodiscard]] Result<camera::Lens> lens_in(const std::string& file);
+
+/// InvalidArgument unless there is none, one for all, or one for each of `inputs`.
+[[nodiscard]] Result<void> check_lens_count(const std::vector<std::string>& lenses,
+                                            std::size_t inputs);
+
+}  // namespace chorus::ctl

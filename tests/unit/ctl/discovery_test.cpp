@@ -1,0 +1,82 @@
+#include "services/ctl/discovery.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/ctl/program_run.h"
+
+namespace chorus::ctl {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// As avahi-browse 0.8 printed it, on a host with two interfaces.
+constexpr const char* kBrowsed =
+    R"(+;d0;IPv4;Chorus\032sensor\032s1\032on\032s1;_chorus-sensor._tcp;local
++;lo;IPv4;Chorus\032sensor\032s1\032on\032s1;_chorus-sensor._tcp;local
+=;lo;IPv4;Chorus\032sensor\032s1\032on\032s1;_chorus-sensor._tcp;local;s1.local;127.0.0.1;8081;"tls=1" "id=s1"
+=;d0;IPv6;Chorus\032sensor\032s1\032on\032s1;_chorus-sensor._tcp;local;s1.local;fe80::1;8081;"tls=1" "id=s1"
+=;d0;IPv4;Chorus\032sensor\032s1\032on\032s1;_chorus-sensor._tcp;local;s1.local;10.9.0.1;8081;"tls=1" "id=s1"
+=;d0;IPv4;Chorus\032sensor\032a2;_chorus-sensor._tcp;local;a2.local;10.9.0.2;9000;"tls=0" "id=a2"
+)";
+
+TEST(Discovery, EachSensorIsFoundOnceAtItsBestAddress) {
+  EXPECT_THAT(read_browsed(kBrowsed),
+              ElementsAre(FoundSensor{"a2", "a2.local", "10.9.0.2", 9000, false},
+                          FoundSensor{"s1", "s1.local", "10.9.0.1", 8081, true}));
+}
+
+TEST(Discovery, TlsIsAskedByNameAndPlainHttpByAddress) {
+  EXPECT_EQ((FoundSensor{"s1", "s1.local", "10.9.0.1", 8081, true}.url()),
+            "https://s1.local:8081/");
+  EXPECT_EQ((FoundSensor{"s1", "s1.local", "10.9.0.1", 8081, false}.url()),
+            "http://10.9.0.1:8081/");
+  EXPECT_EQ((FoundSensor{"s1", "s1.local", "fd00::1", 8081, false}.url()),
+            "http://[fd00::1]:8081/");
+}
+
+TEST(Discovery, WhatAStrangerMakesUpIsLeftOut) {
+  const auto line = [](const std::string& host, const std::string& address, const std::string& port,
+                       const std::string& texts) {
+    return "=;d0;IPv4;x;_chorus-sensor._tcp;local;" + host + ";" + address + ";" + port + ";" +
+           texts;
+  };
+  EXPECT_EQ(read_browsed(line("h.local", "10.0.0.1", "1", "\"id=s1\"")).size(), 1u);
+  for (const std::string& bad :
+       {line("h.local", "10.0.0.1", "0", "\"id=s1\""),
+        line("h.local", "10.0.0.1", "99999", "\"id=s1\""),
+        line("h.local", "nowhere", "1", "\"id=s1\""), line("h/../x", "10.0.0.1", "1", "\"id=s1\""),
+        line("h.local", "10.0.0.1", "1", "\"id=s 1;reboot\""),
+        line("h.local", "10.0.0.1", "1", "\"id=\x1b[31m\""), line("h.local", "10.0.0.1", "1", ""),
+        std::string("=;d0;IPv4"), std::string(";;;;;;;;;;"), std::string("\n\n=")})
+    EXPECT_THAT(read_browsed(bad), IsEmpty()) << bad;
+}
+
+TEST(Discovery, TheAnnouncementSaysWhatIsReadBack) {
+  const std::string text = announcement("s1", 8081, true);
+  for (const char* part :
+       {"<type>_chorus-sensor._tcp</type>", "<port>8081</port>", "id=s1", "tls=1"})
+    EXPECT_THAT(text, HasSubstr(part));
+}
+
+TEST(Discovery, InitAnnouncesASensorOnlyWhereThatIsAskedFor) {
+  const chorus::testing::TemporaryFolder folder;
+  const auto at = [&](const char* name) { return (folder / name).string(); };
+  const Outcome plain = run_chorus({"init", "sensor", "--id", "s1", "--out", at("a.json")});
+  ASSERT_EQ(plain.code, kExitOk) << plain.error;
+  EXPECT_EQ(plain.error.find("chorus discover"), std::string::npos);
+  const Outcome told = run_chorus({"init", "sensor", "--id", "s1", "--port", "9001", "--out",
+                                   at("b.json"), "--announce", folder.path().string()});
+  EXPECT_THAT(told.error, HasSubstr("chorus discover finds this sensor"));
+  EXPECT_THAT(chorus::testing::bytes_of(folder / "chorus-sensor.service"),
+              HasSubstr("<port>9001<"));
+  const Outcome unable =
+      run_chorus({"init", "sensor", "--id", "s1", "--out", at("c.json"), "--announce", at("none")});
+  EXPECT_EQ(unable.code, kExitOk) << "it is only an offer";
+  EXPECT_THAT(unable.error, HasSubstr("not announced"));
+}
+
+}  // namespace
+}  // namespace chorus::ctl

@@ -1,0 +1,178 @@
+#include "common/importers/pose_frames.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "common/importers/pose_people.h"
+#include "common/sensor/pixel_ray.h"
+#include "tests/support/matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace chorus::importers {
+namespace {
+
+using chorus::testing::IsOk;
+using nlohmann::json;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+/// The error as text with its code; "" when there is none.
+std::string refusal(const Result<record::FrameRecording>& read) {
+  return read ? "" : std::string(name_of(read.error().code)) + " " + to_string(read.error());
+}
+
+const PoseCamera kCamera{{640, 480, 500.0, 500.0, 320.0, 240.0, {}}, 25.0};
+
+/// A person whose landmarks lie below each other: landmark i at (u, 100 + 5 i).
+json flat_person(std::size_t landmarks, double u, double confidence = 0.9) {
+  json numbers = json::array();
+  for (std::size_t i = 0; i < landmarks; ++i) {
+    numbers.push_back(u);
+    numbers.push_back(100.0 + 5.0 * static_cast<double>(i));
+    numbers.push_back(confidence);
+  }
+  return {{"person_id", {-1}}, {"pose_keypoints_2d", numbers}};
+}
+
+json instance(std::size_t landmarks, double u) {
+  json points = json::array();
+  for (std::size_t i = 0; i < landmarks; ++i)
+    points.push_back({u, 100.0 + 5.0 * static_cast<double>(i)});
+  return {{"keypoints", points}, {"keypoint_scores", json(std::vector<double>(landmarks, 1.04))}};
+}
+
+std::string frame_text(const std::vector<json>& people) {
+  return json{{"version", 1.3}, {"people", people}}.dump();
+}
+
+class PoseFrames : public ::testing::Test {
+ protected:
+  void write(const std::string& name, const std::string& text) const {
+    (void)folder_.write(name, text);
+  }
+  [[nodiscard]] Result<record::FrameRecording> read() const {
+    ImportOptions options;
+    options.sensor = SensorId::parse("cam1").value();
+    return read_pose_frames(folder_.path(), kCamera, options);
+  }
+  chorus::testing::TemporaryFolder folder_;
+};
+
+TEST_F(PoseFrames, OpenPoseNumbersPicturesInTheirNames) {
+  write("cam1_000000000000_keypoints.json", frame_text({flat_person(25, 300)}));
+  write("cam1_000000000002_keypoints.json", frame_text({}));
+  const auto read_ = read();
+  ASSERT_THAT(read_, IsOk());
+  ASSERT_EQ(read_->frames.size(), 2u);
+  EXPECT_EQ(read_->frames[1].captured - read_->frames[0].captured, std::chrono::milliseconds(80));
+  EXPECT_EQ(read_->frames[0].captured, kDefaultStart);
+  EXPECT_TRUE(read_->frames[1].bodies.empty());
+  EXPECT_EQ(read_->notes.at("layout"), "body_25");
+  EXPECT_EQ(read_->intrinsics, kCamera.intrinsics);
+}
+
+TEST_F(PoseFrames, AJointIsTheRayThroughItsLandmark) {
+  write("0.json", frame_text({flat_person(25, 300)}));
+  const auto read_ = read();
+  ASSERT_THAT(read_, IsOk());
+  const Joint& wrist = read_->frames[0].bodies.at(0).skeleton[JointId::WristRight];
+  ASSERT_TRUE(wrist.bears());
+  // Landmark 4 of BODY_25; the sensor's x points to the left of the picture and y up.
+  const Eigen::Vector3d in_picture = *ray_of({300.0, 120.0}, kCamera.intrinsics);
+  EXPECT_NEAR(
+      (wrist.position - Eigen::Vector3d(-in_picture.x(), -in_picture.y(), in_picture.z())).norm(),
+      0.0, 1e-9);
+  EXPECT_TRUE(wrist.covariance.known());
+  EXPECT_EQ(wrist.state, JointState::Tracked);
+}
+
+TEST_F(PoseFrames, TheLayoutFollowsFromTheNumberOfLandmarks) {
+  const std::vector<std::pair<std::size_t, std::string>> known{{17, "coco_17"},  {18, "coco_18"},
+                                                               {25, "body_25"},  {26, "halpe_26"},
+                                                               {133, "coco_17"}, {136, "halpe_26"}};
+  for (const auto& [count, name] : known) {
+    json person = flat_person(count, 300);
+    for (std::size_t i = 1; i < 3 * count; i += 3) person["pose_keypoints_2d"][i] = 200.0;
+    write("0.json", frame_text({person}));
+    EXPECT_EQ(read()->notes.at("layout"), name);
+  }
+  write("0.json", frame_text({flat_person(21, 300)}));
+  EXPECT_THAT(refusal(read()),
+              ::testing::AllOf(::testing::StartsWith("not-found"), HasSubstr("has 21 landmarks")));
+}
+
+TEST_F(PoseFrames, MmposeIsReadByPictureAndByVideo) {
+  write("7.json", json::array({instance(17, 200), instance(17, 400)}).dump());
+  const auto pictures = read();
+  ASSERT_THAT(pictures, IsOk());
+  EXPECT_EQ(pictures->frames.at(0).bodies.size(), 2u);
+  EXPECT_EQ(pictures->frames[0].captured, kDefaultStart + std::chrono::milliseconds(280));
+
+  const json list = json::array({{{"frame_id", 1}, {"instances", json::array({instance(26, 200)})}},
+                                 {{"frame_id", 2}, {"instances", json::array()}}});
+  for (const json& document :
+       {list, json{{"meta_info", json::object()}, {"instance_info", list}}}) {
+    const auto file = folder_.write("video.json", document.dump());
+    const auto video = read_pose_frames(file, kCamera);
+    ASSERT_THAT(video, IsOk());
+    EXPECT_EQ(video->frames.size(), 2u);
+    EXPECT_EQ(video->sensor.str(), "video");
+    EXPECT_EQ(video->notes.at("layout"), "halpe_26");
+  }
+}
+
+TEST_F(PoseFrames, ADamagedOrEmptyFileCostsItsPictureOnly) {
+  write("0.json", frame_text({flat_person(17, 300)}));
+  write("1.json", "");
+  write("2.json", frame_text({flat_person(17, 300)}).substr(0, 40));
+  write("3.json", frame_text({flat_person(17, 300)}));
+  write("notes.txt", "not ours");
+  const auto read_ = read();
+  ASSERT_THAT(read_, IsOk());
+  EXPECT_EQ(read_->frames.size(), 2u);
+  EXPECT_THAT(read_->notes.at("damage.1"), HasSubstr("2 files have no frame; the first: "));
+  EXPECT_THAT(read_->notes.at("damage.1"), HasSubstr("1.json"));
+}
+
+TEST_F(PoseFrames, AFolderWithNothingUsefulSaysWhy) {
+  EXPECT_THAT(refusal(read()),
+              ::testing::AllOf(::testing::StartsWith("not-found"), HasSubstr("no .json files")));
+  write("0.json", "{");
+  EXPECT_THAT(refusal(read()), ::testing::AllOf(::testing::StartsWith("not-found"),
+                                                HasSubstr("no file that can be used")));
+}
+
+TEST_F(PoseFrames, LandmarksOfAnotherSizeAreRefused) {
+  write("0.json", frame_text({flat_person(17, 900)}));
+  EXPECT_THAT(refusal(read()), ::testing::AllOf(::testing::StartsWith("invalid-argument"),
+                                                HasSubstr("outside of pictures of 640 x 480")));
+  json scaled = flat_person(17, 0.5);
+  for (std::size_t i = 1; i < 51; i += 3) scaled["pose_keypoints_2d"][i] = 0.4;
+  write("0.json", frame_text({scaled}));
+  EXPECT_THAT(refusal(read()), ::testing::AllOf(::testing::StartsWith("invalid-argument"),
+                                                HasSubstr("--keypoint_scale 0")));
+}
+
+PosePerson person_at(double u, std::optional<std::uint64_t> id = {}) {
+  PosePerson person{{}, id};
+  for (int i = 0; i < 17; ++i) person.points.push_back({{u, 100.0 + 10.0 * i}, 0.9});
+  return person;
+}
+
+TEST(PeopleNumbers, FollowPeopleWhoseOrderChanges) {
+  PeopleNumbers numbers;
+  EXPECT_THAT(numbers.number({person_at(100), person_at(400)}), ElementsAre(1, 2));
+  EXPECT_THAT(numbers.number({person_at(395), person_at(110)}), ElementsAre(2, 1));
+  EXPECT_THAT(numbers.number({person_at(120)}), ElementsAre(1));
+  EXPECT_THAT(numbers.number({person_at(390), person_at(130)}), ElementsAre(2, 1));
+  EXPECT_THAT(numbers.number({person_at(600), person_at(135)}), ElementsAre(3, 1)) << "a newcomer";
+}
+
+TEST(PeopleNumbers, OfTheFileCountWhereAllHaveTheirOwn) {
+  PeopleNumbers numbers;
+  EXPECT_THAT(numbers.number({person_at(100, 7), person_at(400, 9)}), ElementsAre(7, 9));
+  EXPECT_THAT(numbers.number({person_at(100, 7), person_at(400, 7)}), ElementsAre(1, 2));
+}
+
+}  // namespace
+}  // namespace chorus::importers
