@@ -73,6 +73,7 @@ class Room {
   std::optional<core::FusionCore> core_;
   std::vector<Lane> lanes_;
   std::set<SensorId> alarmed_;
+  bool lost_ = false;                           ///< The pushed sensor has lost its place.
   std::map<PersonId, Eigen::Vector3d> errors_;  ///< Of the trunk, at the instant before.
   RoomLog log_;
   double before_sum_ = 0.0, after_sum_ = 0.0;
@@ -82,6 +83,7 @@ class Room {
 core::CoreConfig Room::config() const {
   core::CoreConfig config;
   for (std::size_t i = 0; i < setting_.sensors; ++i) config.sensors.insert(sensor_of(i));
+  config.watch = setting_.watch;
   return config;
 }
 
@@ -147,8 +149,9 @@ void Room::note_alarms(Timestamp now) {
   }
   if (!is_pushed(now) || log_.placed_again) return;
   const SensorId sensor = sensor_of(setting_.push->sensor);
-  if (core_->displaced() > 0 && core_->registration().sensors.contains(sensor))
-    log_.placed_again = now - begin_;
+  const bool placed = core_->registration().sensors.contains(sensor);
+  if (!placed) lost_ = true;
+  if (placed && lost_) log_.placed_again = now - begin_;
 }
 
 std::optional<Eigen::Vector3d> trunk_of(const Skeleton<WorldSpace>& body) {

