@@ -35,6 +35,11 @@ struct SensorStatus {
   std::uint64_t refused = 0;     ///< Frames that went back in time or had an implausible time.
   std::uint64_t failures = 0;    ///< Requests that got no usable answer.
 
+  /// How far from where the others see people it sees them, beyond what is usual for it [m]; none
+  /// until somebody has walked in view of it and of another one.
+  std::optional<double> shift;
+  std::string alarm;  ///< It was moved, as a sentence for people; empty: it stands as registered.
+
   bool operator==(const SensorStatus&) const = default;
 };
 
@@ -43,6 +48,27 @@ enum class SessionState {
   Solving,     ///< The walk is over; its final solve is running.
   Done,        ///< Verdict and reasons are final.
   Cancelled,
+};
+
+/// What two sensors saw together during a session.
+struct PairCoverage {
+  SensorId first;
+  SensorId second;
+  std::size_t sightings = 0;  ///< Instants at which both saw the one person.
+  double spread = 0.0;        ///< rms radius of these about their centre [m].
+  /// Radius inside which one would be placed relative to the other, in 95 % [m].
+  double expected = 0.0;
+
+  bool operator==(const PairCoverage&) const = default;
+};
+
+/// A square of half a metre of the floor on which somebody walked.
+struct CoveredCell {
+  double x = 0.0;           ///< Of its middle, world [m].
+  double z = 0.0;           ///< [m]
+  std::size_t sensors = 0;  ///< That saw somebody there.
+
+  bool operator==(const CoveredCell&) const = default;
 };
 
 /// One registration session: its progress, then its outcome.
@@ -57,6 +83,8 @@ struct SessionStatus {
   bool adopted = false;             ///< Its result is in use, or was, and was not withdrawn.
   /// What was missing for the last solve, and what became of its result.
   std::vector<std::string> reasons;
+  std::vector<PairCoverage> pairs;  ///< What the walk has covered; by pairs of sensors ...
+  std::vector<CoveredCell> cells;   ///< ... and from above, once sensors have places.
 
   bool operator==(const SessionStatus&) const = default;
 };
@@ -82,6 +110,8 @@ struct RegistrationProgress {
   std::vector<SessionStatus> sessions;  ///< The last few, newest first.
   std::uint64_t next_session = 1;       ///< Id of the next one.
   std::vector<std::string> awaits;      ///< What is missing at present, as sentences for people.
+  std::optional<Registration> earlier;  ///< In use before this one; an undo goes back to it.
+  std::vector<std::string> alarms;      ///< Sensors that were moved, as sentences for people.
   StorageStatus storage;
   std::uint64_t commands = 0;  ///< Number of clients' commands carried out.
 };
@@ -90,6 +120,7 @@ struct Counters {
   std::uint64_t ticks = 0;  ///< Snapshots published.
   /// Instants left out because the host was suspended or overloaded.
   std::uint64_t ticks_skipped = 0;
+  std::uint64_t displaced = 0;       ///< How often a sensor lost its place because it was moved.
   std::uint64_t frames_dropped = 0;  ///< Lost between poller and pipeline.
   std::uint64_t steps_failed = 0;    ///< Pipeline iterations that threw.
   std::uint64_t jobs_failed = 0;     ///< The same of the registration worker.

@@ -209,6 +209,20 @@ void note_refusals(Registration& current, const Registration& candidate) {
   }
 }
 
+Registration without(Registration current, const SensorId& sensor, const std::string& reason) {
+  spell_out_verdicts(current);
+  current.sensors.erase(sensor);
+  std::erase_if(current.edges, [&](const PairwiseRegistration& edge) {
+    return edge.source == sensor || edge.target == sensor;
+  });
+  take_verdict(current, sensor, {Verdict::Refused, {reason}});
+  current.verdict = current.sensors.empty() ? Verdict::None : least_of_placed(current);
+  const auto best = std::ranges::min_element(current.sensors, {},
+                                             [](const auto& entry) { return entry.second.error; });
+  if (current.master == sensor && best != current.sensors.end()) current.master = best->first;
+  return current;
+}
+
 std::set<SensorId> unplaced(const Registration& current, const std::set<SensorId>& seeing) {
   std::set<SensorId> missing;
   for (const SensorId& sensor : seeing) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <set>
+#include <string>
 
 #include "common/base/result.h"
 #include "fusion-server/core/registration_session.h"
@@ -35,6 +36,11 @@ namespace chorus::core {
 
 /// Notes, for each sensor that neither the registration nor the candidate could place, why.
 void note_refusals(Registration& current, const Registration& candidate);
+
+/// The registration without this sensor's place, which is no longer true; the sensor is refused for
+/// this reason.  A master without a place hands over to the best of the others.
+[[nodiscard]] Registration without(Registration current, const SensorId& sensor,
+                                   const std::string& reason);
 
 /// Those sensors among `seeing` (the ones that saw a body lately) that have no place.
 [[nodiscard]] std::set<SensorId> unplaced(const Registration& current,

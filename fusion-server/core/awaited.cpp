@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
+
+#include "fusion-server/core/coverage.h"
 
 namespace chorus::core {
 namespace {
@@ -63,13 +66,28 @@ bool say_walker(const Situation& s, std::vector<std::string>& out) {
   return seeing.size() >= enough && crowded.size() < seeing.size();
 }
 
+/// Reports which pairs need more of the walk, once it has lasted for a while.
+void say_uncovered(const Situation& s, std::vector<std::string>& out) {
+  constexpr double kAWhile = 6.0;     // [s]
+  constexpr std::size_t kAtOnce = 2;  // sentences; the rest comes when these are done
+  if (s.session->elapsed < kAWhile) return;
+  std::set<SensorId> seeing = s.last_seen.seeing(s.now);
+  for (const PairCoverage& pair : s.session->pairs) seeing.insert({pair.first, pair.second});
+  auto more = needs(s.session->pairs, seeing, s.wanted);
+  more.resize(std::min(more.size(), kAtOnce));
+  std::ranges::move(more, std::back_inserter(out));
+}
+
 void say_session(const Situation& s, bool walking, std::vector<std::string>& out) {
   if (s.session->state == SessionState::Solving) {
     out.emplace_back("the walk is over: its places are being solved");
-  } else if (walking) {
+    return;
+  }
+  if (walking) {
     out.push_back(fmt::format("keep walking: {:.0f} s more",
                               std::ceil(std::max(0.0, s.session->target - s.session->elapsed))));
   }
+  say_uncovered(s, out);
 }
 
 void say_start(const Situation& s, bool walking, std::vector<std::string>& out) {

@@ -19,6 +19,7 @@ struct Situation {
   bool automatic = true;                   ///< Sessions start by themselves.
   std::optional<Duration> retry;           ///< Time until one may start by itself again.
   Timestamp now;
+  double wanted = 0.05;  ///< 95 % radius of a sensor's place that is good enough [m].
 };
 
 /// One sentence per need; empty when every sensor has a place and no session is running.

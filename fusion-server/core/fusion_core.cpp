@@ -73,8 +73,7 @@ void FusionCore::refuse(const SensorFrame& frame, std::string_view why) {
 std::optional<Snapshot> FusionCore::tick(Timestamp now) {
   if (idle(now) > Duration{0}) return std::nullopt;
   const Tick tick = schedule_.next(now);
-  pipeline::Step step = pipeline::step({tick.instant, now, tick.sequence}, histories_,
-                                       registration(), memory_, config_.pipeline);
+  pipeline::Step step = step_at(tick, now);
   Answered answered{tick,
                     std::exchange(memory_, std::move(step.memory)),
                     {},
@@ -91,7 +90,37 @@ std::optional<Snapshot> FusionCore::tick(Timestamp now) {
   last_awaited_.clear();
   hindsight_.remember(std::move(answered));
   schedule_.answered(now);
+  guard_.look(step.people, tick.instant, config_.watch);
+  displace_moved();
   return std::move(step.snapshot);
+}
+
+/// Fuses one instant; after a change of places by the places before, too, so that bodies move from
+/// the one to the other little by little.
+pipeline::Step FusionCore::step_at(const Tick& tick, Timestamp now) {
+  const pipeline::Inputs in{tick.instant, now, tick.sequence};
+  pipeline::Step step = pipeline::step(in, histories_, registration(), memory_, config_.pipeline);
+  if (before_) {
+    auto was = pipeline::step(in, histories_, *before_, memory_, config_.pipeline).snapshot;
+    fade_.apply(was.bodies, tick.instant);
+    fade_.begin(was.bodies, step.snapshot.bodies, tick.instant);
+    before_.reset();
+  }
+  fade_.apply(step.snapshot.bodies, tick.instant);
+  return step;
+}
+
+/// A sensor that was moved has no place from the next instant on, and waits for another one.
+void FusionCore::displace_moved() {
+  const auto moved = guard_.moved();
+  if (!moved) return;
+  Registration before = registration();
+  if (!registrar_.displace(*moved, reason_of(*moved, *guard_.alarm_of(*moved)))) return;
+  guard_.displaced(*moved);
+  before_ = std::move(before);
+  hindsight_.forget();
+  awaited_by_ = 0;
+  ++displaced_;
 }
 
 std::optional<Snapshot> FusionCore::amended(Timestamp now) {
@@ -105,6 +134,7 @@ std::optional<Snapshot> FusionCore::amended(Timestamp now) {
   pipeline::Step step = pipeline::step({tick.instant, now, tick.sequence}, histories_,
                                        registration(), answered->before, config_.pipeline);
   shares_.settled(parts_of(step.snapshot));
+  fade_.apply(step.snapshot.bodies, tick.instant);
   return std::move(step.snapshot);
 }
 
@@ -136,13 +166,28 @@ Duration FusionCore::idle(Timestamp now) {
 }
 
 void FusionCore::forget() {
+  const Registration before = registration();
   registrar_.forget();
+  guard_.replaced(before, registration());
   leave_world();
 }
 
 Result<void> FusionCore::move_origin(const Origin& origin) {
+  const Registration before = registration();
   auto done = registrar_.move_origin(origin);
-  if (done) leave_world();
+  if (!done) return done;
+  guard_.replaced(before, registration());
+  leave_world();
+  return done;
+}
+
+Result<void> FusionCore::undo() {
+  Registration before = registration();
+  auto done = registrar_.undo();
+  if (!done) return done;
+  guard_.replaced(before, registration());
+  hindsight_.forget();
+  if (!before.sensors.empty()) before_ = std::move(before);
   return done;
 }
 
@@ -151,12 +196,17 @@ void FusionCore::leave_world() {
   memory_.tracks.people.clear();  // ids continue to count
   memory_.sides.people.clear();   // what was learned about each sensor stays
   hindsight_.forget();
+  before_.reset();
+  fade_.stop();
 }
 
 Outcome FusionCore::solved(Solution solution, Timestamp now) {
+  Registration before = registration();
   const Outcome outcome = registrar_.solved(std::move(solution), now);
-  if (outcome != Outcome::Nothing)
-    hindsight_.forget();  // all earlier answers were given in another world
+  if (outcome == Outcome::Nothing) return outcome;
+  hindsight_.forget();  // all earlier answers were given in another world
+  guard_.replaced(before, registration());
+  if (!before.sensors.empty()) before_ = std::move(before);
   return outcome;
 }
 
@@ -164,8 +214,19 @@ RegistrationProgress FusionCore::progress(Timestamp now) const {
   RegistrationProgress progress;
   progress.sessions = registrar_.sessions();
   progress.next_session = registrar_.next_session();
+  progress.earlier = earlier();
   progress.awaits = registrar_.awaits(now);
+  for (const SensorId& sensor : config_.sensors) {
+    const auto told = alarm(sensor);
+    const bool twice = told && told->or_else && *told->or_else < sensor;
+    if (told && !twice) progress.alarms.push_back(alarm_text(sensor, now));
+  }
   return progress;
+}
+
+std::string FusionCore::alarm_text(const SensorId& sensor, Timestamp now) const {
+  const auto told = alarm(sensor);
+  return told ? sentence_of(sensor, *told, now, config_.session.automatic) : std::string();
 }
 
 std::uint64_t FusionCore::refused(const SensorId& sensor) const {

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "fusion-server/associate/plausible.h"
+#include "fusion-server/core/cross_fade.h"
+#include "fusion-server/core/guard.h"
 #include "fusion-server/core/hindsight.h"
 #include "fusion-server/core/registrar.h"
 #include "fusion-server/core/tick_schedule.h"
@@ -24,6 +26,7 @@ struct CoreConfig {
   pipeline::PipelineConfig pipeline;
   registration::RegistrationConfig registration;
   SessionConfig session;
+  watch::WatchConfig watch;
   std::set<SensorId> sensors;  ///< Frames of other sensors are ignored.
   std::uint64_t first_sequence = 1;
   std::uint64_t first_session = 1;
@@ -56,6 +59,10 @@ class FusionCore {
   void forget();
   /// As Registrar::move_origin.
   [[nodiscard]] Result<void> move_origin(const Origin& origin);
+  /// As Registrar::undo.
+  [[nodiscard]] Result<void> undo();
+  [[nodiscard]] const std::optional<Registration>& earlier() const { return registrar_.earlier(); }
+  void set_earlier(Registration registration) { registrar_.set_earlier(std::move(registration)); }
   [[nodiscard]] std::optional<SolveJob> due_job(Timestamp now) { return registrar_.due_job(now); }
   Outcome solved(Solution solution, Timestamp now);
 
@@ -72,6 +79,18 @@ class FusionCore {
   /// Why something from this sensor was refused in the last few seconds; empty: nothing was.
   [[nodiscard]] std::string complaint(const SensorId& sensor, Timestamp now) const;
   [[nodiscard]] Share share(const SensorId& sensor) const { return shares_.of(sensor); }
+  /// The sensor does not stand where its place says; none: nothing of that kind is known.
+  [[nodiscard]] std::optional<SensorAlarm> alarm(const SensorId& sensor) const {
+    return guard_.alarm_of(sensor);
+  }
+  /// The same as a sentence for people; empty: none.
+  [[nodiscard]] std::string alarm_text(const SensorId& sensor, Timestamp now) const;
+  /// As SensorStatus::shift.
+  [[nodiscard]] std::optional<double> shift(const SensorId& sensor) const {
+    return guard_.shift_of(sensor);
+  }
+  /// How often a sensor lost its place because it was moved.
+  [[nodiscard]] std::uint64_t displaced() const noexcept { return displaced_; }
   [[nodiscard]] std::uint64_t skipped() const noexcept { return schedule_.skipped(); }
   /// No person has had this id or a higher one so far.
   [[nodiscard]] std::uint64_t next_person() const noexcept { return memory_.tracks.next_id; }
@@ -84,6 +103,8 @@ class FusionCore {
   };
 
   void leave_world();
+  [[nodiscard]] pipeline::Step step_at(const Tick& tick, Timestamp now);
+  void displace_moved();
   void refuse(const SensorFrame& frame, std::string_view why);
   void sift(SensorFrame& frame);
   [[nodiscard]] bool improves(const Answered& answered, Timestamp now) const;
@@ -101,6 +122,10 @@ class FusionCore {
   Hindsight hindsight_;
   Shares shares_;
   std::vector<SensorReport> reports_;
+  Guard guard_;
+  CrossFade fade_;
+  std::optional<Registration> before_;  ///< Until the next instant: what is to be faded from.
+  std::uint64_t displaced_ = 0;
 };
 
 }  // namespace chorus::core

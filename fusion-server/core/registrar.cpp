@@ -90,22 +90,58 @@ Result<void> Registrar::cancel(std::uint64_t session, Timestamp now) {
 void Registrar::end_session(SessionState state) {
   if (sessions_.empty() || !running(sessions_.front())) return;
   SessionStatus& current = sessions_.front();
-  current.elapsed = seconds(session_.elapsed());
-  current.target = seconds(session_.target());
+  show_progress(current);
   current.state = state;
   session_.cancel();
   before_.reset();
   stop_solve_.request_stop();
 }
 
+void Registrar::show_progress(SessionStatus& session) const {
+  session.elapsed = seconds(session_.elapsed());
+  session.target = seconds(session_.target());
+  session.pairs = session_.coverage().pairs();
+  session.cells = session_.coverage().cells(registration_);
+}
+
 void Registrar::forget() {
+  if (before_) registration_ = *before_;  // a session's own is not worth going back to
   end_session(SessionState::Cancelled);
   if (!registration_.sensors.empty()) forgotten_ = registration_.sensors;
+  keep_earlier(registration_);
   retries_.clear();
   not_before_ = Timestamp{};
   const std::uint64_t version = registration_.version;
   registration_ = Registration{};
   registration_.version = version;
+}
+
+void Registrar::keep_earlier(const Registration& used) {
+  if (!used.sensors.empty()) earlier_ = used;
+}
+
+Result<void> Registrar::undo() {
+  if (!sessions_.empty() && running(sessions_.front()))
+    return fail(ErrorCode::Conflict, "registration",
+                "a registration session is running; wait for its end or cancel it");
+  if (!earlier_)
+    return fail(ErrorCode::NotFound, "registration", "no registration from before is known");
+  Registration back = *std::exchange(earlier_, std::nullopt);
+  keep_configured(back, config_.sensors);
+  keep_earlier(registration_);
+  replace(std::move(back));
+  return {};
+}
+
+bool Registrar::displace(const SensorId& sensor, const std::string& reason) {
+  constexpr std::size_t kLeastPlaced = 3;
+  const bool busy = !sessions_.empty() && running(sessions_.front());
+  const bool enough = registration_.sensors.size() >= kLeastPlaced;
+  if (busy || !enough || !registration_.sensors.contains(sensor)) return false;
+  retries_.erase(sensor);
+  keep_earlier(registration_);
+  replace(without(registration_, sensor, reason));
+  return true;
 }
 
 Result<void> Registrar::move_origin(const Origin& origin) {
@@ -114,6 +150,7 @@ Result<void> Registrar::move_origin(const Origin& origin) {
                 "a registration session is running; wait for its end or cancel it");
   auto next = with_origin(registration_, origin);
   if (!next) return pass(next);
+  keep_earlier(registration_);
   replace(std::move(*next));
   return {};
 }
@@ -225,6 +262,7 @@ Outcome Registrar::settle_final(const Registration& candidate, Timestamp now) {
   current.adopted = next.has_value();
   Outcome outcome = Outcome::Adopted;
   if (next) {
+    keep_earlier(before_ ? *before_ : registration_);
     replace(std::move(*next));
   } else {
     const bool withdrawn = take_back();
@@ -264,17 +302,15 @@ void Registrar::back_off(const Registration& candidate, Timestamp now) {
 
 std::vector<SessionStatus> Registrar::sessions() const {
   std::vector<SessionStatus> all(sessions_.begin(), sessions_.end());
-  if (!all.empty() && running(all.front())) {
-    all.front().elapsed = seconds(session_.elapsed());
-    all.front().target = seconds(session_.target());
-  }
+  if (!all.empty() && running(all.front())) show_progress(all.front());
   return all;
 }
 
 std::vector<std::string> Registrar::awaits(Timestamp now) const {
   const auto all = sessions();
-  Situation situation{config_.sensors,           registration_, last_seen_, nullptr,
-                      config_.session.automatic, std::nullopt,  now};
+  Situation situation{
+      config_.sensors,           registration_, last_seen_, nullptr,
+      config_.session.automatic, std::nullopt,  now,        config_.registration.good_position};
   if (!all.empty() && running(all.front())) situation.session = &all.front();
   situation.retry = retry_in(now);
   return awaited(situation);

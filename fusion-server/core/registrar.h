@@ -65,6 +65,16 @@ class Registrar {
   [[nodiscard]] Result<void> cancel(std::uint64_t session, Timestamp now);
   /// Cancels the session and forgets the registration, but not in which world it was.
   void forget();
+  /// Goes back to the registration before this one; doing it twice changes nothing.  Conflict while
+  /// a session is running; NotFound when there is none before.
+  [[nodiscard]] Result<void> undo();
+  /// The registration that undo() goes back to; set at the start from what is stored.
+  [[nodiscard]] const std::optional<Registration>& earlier() const noexcept { return earlier_; }
+  void set_earlier(Registration registration) { earlier_ = std::move(registration); }
+
+  /// Takes the place from a sensor that was moved; the others keep theirs, and a session for it may
+  /// start at once.  False while a session is running, or if fewer than two others have a place.
+  [[nodiscard]] bool displace(const SensorId& sensor, const std::string& reason);
   /// Conflict while a session is running; NotFound and InvalidArgument as with_origin().
   [[nodiscard]] Result<void> move_origin(const Origin& origin);
 
@@ -89,9 +99,11 @@ class Registrar {
   void begin(Duration target, bool automatic, Timestamp now);
   void start_by_itself(Timestamp now);
   void end_session(SessionState state);
+  void show_progress(SessionStatus& session) const;
   [[nodiscard]] Result<Registration> successor(const Registration& base,
                                                const Registration& candidate, SolveKind kind) const;
   void replace(Registration next);
+  void keep_earlier(const Registration& used);
   [[nodiscard]] bool take_back();
   Outcome settle_provisional(const Registration& candidate);
   Outcome settle_final(const Registration& candidate, Timestamp now);
@@ -108,7 +120,9 @@ class Registrar {
   std::uint64_t next_session_;
   std::deque<SessionStatus> sessions_;  ///< Newest first; the running one, if any, is at the front.
   std::optional<Registration> before_;  ///< Set while the session's own registration is in use.
-  Places forgotten_;                    ///< Of the last registration that was forgotten.
+  std::optional<Registration>
+      earlier_;       ///< In use before; sessions' provisional ones do not count.
+  Places forgotten_;  ///< Of the last registration that was forgotten.
   bool solving_ = false;
   std::stop_source stop_solve_;
   SolveKind solving_kind_ = SolveKind::Provisional;

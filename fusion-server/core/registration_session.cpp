@@ -28,6 +28,7 @@ std::vector<registration::WalkTrack> assembled(const SharedWalk& walk) {
 
 void RegistrationSession::start(Duration target) {
   cancel();
+  coverage_.clear();
   collecting_ = true;
   target_ = target;
 }
@@ -47,7 +48,9 @@ void RegistrationSession::seal(Track& track) {
 }
 
 void RegistrationSession::add(const SensorFrame& frame) {
-  if (!collecting_ || frame.bodies.empty()) return;
+  if (!collecting_) return;
+  coverage_.add(frame);
+  if (frame.bodies.empty()) return;
   // Measured by our clock at receipt: a sensor's wrong clock must not stretch the session.
   if (last_seen_) {
     const Duration pause = frame.received - *last_seen_;

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "fusion-server/core/coverage.h"
 #include "fusion-server/flow.h"
 #include "fusion-server/registration/registration.h"
 
@@ -62,6 +63,8 @@ class RegistrationSession {
   [[nodiscard]] bool collecting() const noexcept { return collecting_; }
   [[nodiscard]] Duration elapsed() const noexcept { return elapsed_; }
   [[nodiscard]] Duration target() const noexcept { return target_; }
+  /// What the walk has covered; kept after its end until the next one starts.
+  [[nodiscard]] const Coverage& coverage() const noexcept { return coverage_; }
   /// Shares the walk collected so far; once collecting has ended, hands it over.
   [[nodiscard]] SharedWalk walk();
 
@@ -83,6 +86,7 @@ class RegistrationSession {
   Duration cost_{0};       ///< Duration of the last solve.
   std::optional<Timestamp> last_seen_;
   std::map<SensorId, Track> tracks_;
+  Coverage coverage_;
 };
 
 }  // namespace chorus::core

@@ -213,7 +213,7 @@ Step step(const Inputs& in, const Histories& histories, const Registration& regi
   leave_out_the_unplaced(snapshot.bodies, seen.people);
   seen.memory.seating.seat(snapshot.bodies, in.instant, config.association.coast, config.seating);
   snapshot.reports = std::move(seen.reports);
-  return {std::move(snapshot), std::move(seen.memory)};
+  return {std::move(snapshot), std::move(seen.memory), std::move(seen.people)};
 }
 
 }  // namespace chorus::pipeline

@@ -52,6 +52,7 @@ struct Perceived {
 struct Step {
   Snapshot snapshot;
   Memory memory;
+  std::vector<Person> people;  ///< What was fused: for each person all views, in world space.
 };
 
 /// A sensor whose frame for an instant may still arrive, and how long it is waited for.

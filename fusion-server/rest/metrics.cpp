@@ -22,6 +22,13 @@ void add_sensor(service::MetricsText& out, const SensorStatus& s) {
   out.gauge({"chorus_view_weight", "Largest weight of the sensor's views."}, s.weight, labels);
   out.gauge({"chorus_sensor_share", "Fused joints of the last second the sensor contributed to."},
             s.share, labels);
+  out.gauge({"chorus_sensor_moved", "1 while the sensor does not stand where it was registered."},
+            s.alarm.empty() ? 0.0 : 1.0, labels);
+  if (s.shift) {
+    out.gauge({"chorus_sensor_displacement_meters",
+               "How far from the others the sensor sees people now, beyond what is usual for it."},
+              *s.shift, labels);
+  }
   out.counter({"chorus_frames_received_total", "Frames received from the sensor."},
               number(s.frames), labels);
   out.counter({"chorus_frames_missed_total", "Gaps in the sensor's own sequence."},
@@ -74,6 +81,8 @@ std::string metrics_text(const Status& status, const std::vector<std::unique_ptr
             number(status.registration.version));
   out.gauge({"chorus_registered_sensors", "Sensors with a place."},
             number(status.registration.sensors.size()));
+  out.counter({"chorus_sensors_moved_total", "Times a sensor lost its place as it was moved."},
+              number(counters.displaced));
   out.gauge({"chorus_registration_stored",
              "1 while the registration in use survives a restart; see /registration."},
             stored(status.progress.storage) ? 1.0 : 0.0);

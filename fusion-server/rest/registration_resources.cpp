@@ -146,6 +146,23 @@ Result<http::ActionResult> RegistrationResources::move_origin(const http::Reques
   return http::ActionResult{http::status::kOk, live_->current(), {}};
 }
 
+Result<http::ActionResult> RegistrationResources::undo() {
+  const std::scoped_lock lock(mutex_);
+  if (busy(progress_))
+    return fail(ErrorCode::Conflict, "registration",
+                "a registration session is running; wait for its end, or DELETE " +
+                    wire::session_path(progress_.sessions.front().id));
+  if (!progress_.earlier)
+    return fail(ErrorCode::NotFound, "registration", "no registration from before is known");
+  const std::uint64_t version = registration_.version + 1;
+  std::swap(registration_, *progress_.earlier);
+  if (progress_.earlier->sensors.empty()) progress_.earlier.reset();
+  registration_.version = version;
+  control_.undo(++asked_);
+  show();
+  return http::ActionResult{http::status::kOk, live_->current(), {}};
+}
+
 Result<SessionStatus> RegistrationResources::find(const std::string& id) const {
   for (const SessionStatus& session : progress_.sessions) {
     if (std::to_string(session.id) == id) return session;
@@ -191,6 +208,8 @@ void RegistrationResources::add_routes(http::Router& router) {
                 [this](const Request&, const PathParams&) -> Done { return forget(); });
   router.action(Method::Post, "/registration/origin",
                 [this](const Request& request, const PathParams&) { return move_origin(request); });
+  router.action(Method::Post, "/registration/undo",
+                [this](const Request&, const PathParams&) { return undo(); });
   router.action(Method::Delete, one, [this](const Request&, const PathParams& params) {
     return cancel(params.at("id"));
   });

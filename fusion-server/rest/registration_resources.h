@@ -1,5 +1,6 @@
 // /registration and its sessions over HTTP: GET reads, POST starts a session or moves the world's
-// origin, DELETE forgets the registration or cancels a session.
+// origin or goes back to the registration before, DELETE forgets the registration or cancels a
+// session.
 #pragma once
 
 #include <functional>
@@ -25,6 +26,7 @@ struct RegistrationControl {
   std::function<void(std::uint64_t session, std::uint64_t ticket)> cancel;
   std::function<void(std::uint64_t ticket)> forget;
   std::function<void(const core::Origin& origin, std::uint64_t ticket)> move_origin;
+  std::function<void(std::uint64_t ticket)> undo;
   /// Length of a session unless the request specifies one.
   std::function<Duration()> default_target = [] { return std::chrono::seconds(30); };
 };
@@ -42,6 +44,7 @@ class RegistrationResources {
   [[nodiscard]] Result<http::ActionResult> post(const http::Request& request);
   [[nodiscard]] http::ActionResult forget();
   [[nodiscard]] Result<http::ActionResult> move_origin(const http::Request& request);
+  [[nodiscard]] Result<http::ActionResult> undo();
   [[nodiscard]] Result<http::ActionResult> cancel(const std::string& id);
   [[nodiscard]] Result<http::DocumentPtr> session(const std::string& id) const;
   [[nodiscard]] Result<SessionStatus> find(const std::string& id) const;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/base/units.h"
 #include "common/resource/floor_plane_resource.h"
 
 namespace chorus::rest {
@@ -39,6 +40,8 @@ resource::Node sensor_node(const SensorStatus& sensor, std::string id) {
   out.emplace_back("framesReceived", static_cast<std::int64_t>(sensor.frames));
   out.emplace_back("framesMissed", static_cast<std::int64_t>(sensor.missed));
   out.emplace_back("framesRefused", static_cast<std::int64_t>(sensor.refused));
+  if (sensor.shift) out.emplace_back("displacedMillimetres", Decimal{to_mm(*sensor.shift), 1});
+  if (!sensor.alarm.empty()) out.emplace_back("alarm", sensor.alarm);
   if (!sensor.last_error.empty()) out.emplace_back("lastError", sensor.last_error);
   out.emplace_back("frame", resource::Ref{"/sensors/" + sensor.id.str() + "/frame"});
   return node;

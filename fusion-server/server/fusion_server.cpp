@@ -39,6 +39,7 @@ core::CoreConfig core_config(const FusionSettings& settings) {
   core.pipeline.seating.front = outputs::slots_of_all(settings.at_start.outputs);
   core.registration = live.registration;
   core.session = live.session;
+  core.watch = live.watch;
   const bool places_are_given = !settings.at_start.registration_file.empty();
   if (places_are_given) core.session.automatic = false;
   for (const poll::PolledSensor& sensor : live.sensors) core.sensors.insert(sensor.id);
@@ -201,6 +202,7 @@ std::shared_ptr<http::Router> FusionServer::Impl::make_router() {
   control.move_origin = [this](const core::Origin& origin, std::uint64_t ticket) {
     loop->ask(MoveOrigin{origin, ticket});
   };
+  control.undo = [this](std::uint64_t ticket) { loop->ask(Undo{ticket}); };
   frames.emplace(serving, service::FrameHistory{config.at_start.history});
   frame_sink.emplace(*frames);
   sensors.emplace(serving, ids_of(config.live.sensors));

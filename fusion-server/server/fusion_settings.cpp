@@ -194,6 +194,13 @@ void read_pairing(ConfigReader& reader, registration::RegistrationConfig& out) {
   reader.read_s("good_duration_s", out.good_duration, seconds(1), seconds(300));
 }
 
+void read_watch(ConfigReader reader, watch::WatchConfig& out) {
+  reader.read("enabled", out.enabled);
+  reader.read("least_shift_m", out.least_shift, 0.005, 1.0);
+  reader.read("least_sigmas", out.least_sigmas, 2.0, 100.0);
+  reader.read("least_drift_m", out.least_drift, 0.01, 1.0);
+}
+
 void read_registration(ConfigReader reader, FusionSettings& out) {
   auto& [live, at_start] = out;
   reader.read("auto", live.session.automatic);
@@ -214,6 +221,7 @@ void read_registration(ConfigReader reader, FusionSettings& out) {
     }
   }
   read_pairing(reader, live.registration);
+  read_watch(reader.child("watch"), live.watch);
 }
 
 }  // namespace

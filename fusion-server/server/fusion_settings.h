@@ -15,6 +15,7 @@
 #include "fusion-server/pipeline/pipeline.h"
 #include "fusion-server/poll/poller.h"
 #include "fusion-server/registration/registration.h"
+#include "fusion-server/watch/watch_config.h"
 
 namespace chorus::server {
 
@@ -28,6 +29,7 @@ struct LiveSettings {
   pipeline::PipelineConfig pipeline;
   registration::RegistrationConfig registration;
   core::SessionConfig session;
+  watch::WatchConfig watch;
 
   bool operator==(const LiveSettings&) const = default;
 };

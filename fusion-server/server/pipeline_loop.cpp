@@ -48,7 +48,9 @@ PipelineLoop::PipelineLoop(LoopOptions options)
       commands_(kMaxCommands),
       solutions_(1),
       age_(kAgeBounds),
-      keeper_(options_.store, options_.store_trouble) {}
+      keeper_(options_.store, options_.store_trouble) {
+  if (auto earlier = options_.store.load_earlier()) core_.set_earlier(std::move(*earlier));
+}
 
 PipelineLoop::~PipelineLoop() {
   thread_.request_stop();
@@ -82,6 +84,7 @@ void PipelineLoop::turn() {
   if (auto snapshot = core_.tick(now)) {
     publish(std::move(*snapshot));
     counters_.step_seconds += seconds(std::chrono::steady_clock::now() - begun);
+    note_displaced();
   }
   if (const auto amended = core_.amended(now)) options_.on_amended(*amended);
   if (auto job = core_.due_job(now)) solve(std::move(*job));
@@ -111,6 +114,8 @@ void PipelineLoop::obey(Command command) {
     forget(*wish);
   } else if (const auto* move = std::get_if<MoveOrigin>(&command)) {
     move_origin(*move);
+  } else if (const auto* back = std::get_if<Undo>(&command)) {
+    undo(*back);
   } else {
     core_.reconfigure(std::move(std::get<core::CoreConfig>(command)));
   }
@@ -155,7 +160,17 @@ void PipelineLoop::move_origin(const MoveOrigin& wish) {
                              {"z", wish.origin.z},
                              {"yaw_deg", to_deg(wish.origin.yaw)},
                              {"version", core_.registration().version}});
-  keeper_.keep(worker_, core_.registration());
+  keeper_.keep(worker_, core_.registration(), core_.earlier());
+}
+
+void PipelineLoop::undo(const Undo& wish) {
+  obeyed_ = wish.ticket;
+  if (const auto undone = core_.undo(); !undone) {
+    log::warn("registration not undone", {{"reason", to_string(undone.error())}});
+    return;
+  }
+  log::info("registration undone", {{"version", core_.registration().version}});
+  keeper_.keep(worker_, core_.registration(), core_.earlier());
 }
 
 void PipelineLoop::publish(Snapshot snapshot) {
@@ -191,7 +206,7 @@ void PipelineLoop::take_solutions() {
     }
     // What a session adopts before its end is withdrawn if the final solve is refused.
     if (outcome == core::Outcome::Adopted && kind == core::SolveKind::Final)
-      keeper_.keep(worker_, now);
+      keeper_.keep(worker_, now, core_.earlier());
     publish_status(moment);
   }
 }
@@ -227,7 +242,18 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
   });
   if (own != reports.end()) status.weight = own->weight;
   status.bodies = core_.bodies(report.sensor.id, now);
+  status.shift = core_.shift(report.sensor.id);
+  status.alarm = core_.alarm_text(report.sensor.id, now);
   return status;
+}
+
+/// Stores that a sensor has lost its place, and says so; the sensor needs another one.
+void PipelineLoop::note_displaced() {
+  if (core_.displaced() == displaced_) return;
+  displaced_ = core_.displaced();
+  for (const std::string& alarm : core_.progress(options_.clock->now()).alarms)
+    log::warn("sensor was moved", {{"what", alarm}});
+  keeper_.keep(worker_, core_.registration(), core_.earlier());
 }
 
 /// Logs once what the pipeline refuses from a live sensor; the poller logs other errors.
@@ -256,6 +282,7 @@ void PipelineLoop::publish_status(Timestamp now) {
   status.counters = counters_;
   status.counters.age = age_.snapshot();
   status.counters.jobs_failed = worker_.failed();
+  status.counters.displaced = core_.displaced();
   status.counters.ticks_skipped = core_.skipped();
   status.counters.frames_dropped = frames_.dropped();
   options_.on_status(status);

@@ -38,7 +38,11 @@ struct MoveOrigin {
   core::Origin origin;
   std::uint64_t ticket = 0;
 };
-using Command = std::variant<StartSession, CancelSession, Forget, MoveOrigin, core::CoreConfig>;
+struct Undo {
+  std::uint64_t ticket = 0;
+};
+using Command =
+    std::variant<StartSession, CancelSession, Forget, MoveOrigin, Undo, core::CoreConfig>;
 
 struct LoopOptions {
   core::CoreConfig core;
@@ -76,10 +80,12 @@ class PipelineLoop {
   void cancel_session(const CancelSession& wish);
   void forget(const Forget& wish);
   void move_origin(const MoveOrigin& wish);
+  void undo(const Undo& wish);
   void publish(Snapshot snapshot);
   void solve(core::SolveJob job);
   void take_solutions();
   void publish_status(Timestamp now);
+  void note_displaced();
   void complain(const SensorStatus& sensor);
   [[nodiscard]] SensorStatus status_of(const poll::PollReport& report, Timestamp now) const;
 
@@ -93,7 +99,8 @@ class PipelineLoop {
   Histogram age_;  ///< Time from instant to publication [s].
   Timestamp status_at_{};
   std::chrono::steady_clock::time_point gathered_at_{};
-  std::uint64_t obeyed_ = 0;  ///< Ticket of the last command carried out.
+  std::uint64_t displaced_ = 0;  ///< FusionCore::displaced() when it was last stored.
+  std::uint64_t obeyed_ = 0;     ///< Ticket of the last command carried out.
   StateKeeper keeper_;
   RateReport trouble_{"pipeline step failed", log::Level::Error};
   Worker worker_;

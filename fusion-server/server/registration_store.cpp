@@ -41,8 +41,20 @@ Result<void> RegistrationStore::write(const std::string& file, const std::string
   return replace_file(file, text);
 }
 
-Result<void> RegistrationStore::save(const Registration& registration) const {
+std::optional<Registration> RegistrationStore::load_earlier() const {
+  std::error_code ignored;
+  if (folder_.empty() || !fs::exists(path() + ".old", ignored)) return std::nullopt;
+  auto earlier = load_registration_file(path() + ".old");
+  if (!earlier) return std::nullopt;
+  return std::move(*earlier);
+}
+
+Result<void> RegistrationStore::save(const Registration& registration,
+                                     const std::optional<Registration>& earlier) const {
   if (folder_.empty()) return {};
+  if (earlier) {
+    if (auto done = write(path() + ".old", wire::write_registration(*earlier)); !done) return done;
+  }
   return write(path(), wire::write_registration(registration));
 }
 

@@ -20,8 +20,13 @@ class RegistrationStore {
   /// not changed.
   [[nodiscard]] Result<std::optional<Registration>> load() const;
 
+  /// The one before it, for an undo; none if there is none that can be read.
+  [[nodiscard]] std::optional<Registration> load_earlier() const;
+
   /// Writes a temporary file, syncs it, renames it.  On failure the stored file is unchanged.
-  [[nodiscard]] Result<void> save(const Registration& registration) const;
+  /// `earlier` goes to registration.json.old in the same way.
+  [[nodiscard]] Result<void> save(const Registration& registration,
+                                  const std::optional<Registration>& earlier = {}) const;
 
   /// Moves the stored file to registration.json.old, so that an accidental forget can be undone.
   [[nodiscard]] Result<void> forget() const;

@@ -29,8 +29,11 @@ void StateKeeper::post(Worker& worker, std::function<Result<void>(const Registra
   worker.post([shared = shared_, job = std::move(job)] { shared->note(job(shared->store)); });
 }
 
-void StateKeeper::keep(Worker& worker, const Registration& registration) {
-  post(worker, [registration](const RegistrationStore& store) { return store.save(registration); });
+void StateKeeper::keep(Worker& worker, const Registration& registration,
+                       const std::optional<Registration>& earlier) {
+  post(worker, [registration, earlier](const RegistrationStore& store) {
+    return store.save(registration, earlier);
+  });
 }
 
 void StateKeeper::forget(Worker& worker) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -20,7 +21,8 @@ class StateKeeper {
   /// `trouble`: an error known beforehand (the folder cannot be used); empty if there is none.
   StateKeeper(RegistrationStore store, std::string trouble);
 
-  void keep(Worker& worker, const Registration& registration);
+  void keep(Worker& worker, const Registration& registration,
+            const std::optional<Registration>& earlier = {});
   void forget(Worker& worker);
   /// Person ids from `next` on are free; repeated calls are harmless.
   void people(Worker& worker, std::uint64_t next);

@@ -95,6 +95,36 @@ Node newest_session(const RegistrationProgress& progress) {
   return node;
 }
 
+/// What each two sensors saw together.
+std::vector<Node> pair_nodes(const SessionStatus& session) {
+  constexpr int kDigits = 3;
+  std::vector<Node> nodes;
+  for (const PairCoverage& pair : session.pairs) {
+    nodes.push_back({"_",
+                     {"PairCoverage"},
+                     {{"target", pair.first.str()},
+                      {"source", pair.second.str()},
+                      {"sightings", static_cast<std::int64_t>(pair.sightings)},
+                      {"spread", Decimal{pair.spread, kDigits}},
+                      {"expectedRadius", Decimal{pair.expected, kDigits}}}});
+  }
+  return nodes;
+}
+
+/// Where somebody walked, from above.
+std::vector<Node> cell_nodes(const SessionStatus& session) {
+  constexpr int kDigits = 2;
+  std::vector<Node> nodes;
+  for (const CoveredCell& cell : session.cells) {
+    nodes.push_back({"_",
+                     {"CoveredCell"},
+                     {{"x", Decimal{cell.x, kDigits}},
+                      {"z", Decimal{cell.z, kDigits}},
+                      {"seenBy", static_cast<std::int64_t>(cell.sensors)}}});
+  }
+  return nodes;
+}
+
 void add_storage(Node& node, const StorageStatus& storage) {
   node.properties.emplace_back("stored", stored(storage));
   if (stored(storage)) return;
@@ -103,6 +133,15 @@ void add_storage(Node& node, const StorageStatus& storage) {
                                    ? std::string("state_dir is empty: the registration is "
                                                  "forgotten when the server ends")
                                    : storage.trouble);
+}
+
+/// What an undo goes back to.
+Node earlier_node(const Registration& registration) {
+  return {"_",
+          {"EarlierRegistration"},
+          {{"version", static_cast<std::int64_t>(registration.version)},
+           {"verdict", std::string(name_of(registration.verdict))},
+           {"solved", registration.solved}}};
 }
 
 /// Sensors that took part in a walk but have no place.
@@ -172,6 +211,8 @@ Node session_node(const SessionStatus& session, const std::vector<std::string>& 
   out.emplace_back("adopted", session.adopted);
   out.emplace_back("reasons", session.reasons);
   if (running(session)) out.emplace_back("awaits", awaits);
+  out.emplace_back("coverage", pair_nodes(session));
+  out.emplace_back("floorCells", cell_nodes(session));
   out.emplace_back("registration", resource::Ref{"/registration"});
   return node;
 }
@@ -182,10 +223,12 @@ Node registration_node(const Registration& registration, const RegistrationProgr
   node.properties.emplace_back("verdict", std::string(name_of(registration.verdict)));
   node.properties.emplace_back("reasons", registration.reasons);
   node.properties.emplace_back("awaits", progress.awaits);
+  node.properties.emplace_back("alarms", progress.alarms);
   if (!registration.sensors.empty()) {
     node.properties.emplace_back("master", registration.master.str());
     node.properties.emplace_back("solved", registration.solved);
   }
+  if (progress.earlier) node.properties.emplace_back("earlier", earlier_node(*progress.earlier));
   add_storage(node, progress.storage);
   node.properties.emplace_back("session", newest_session(progress));
   std::vector<Node> sensors;

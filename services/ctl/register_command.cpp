@@ -33,6 +33,7 @@ struct RegisterArguments {
   double seconds = 30.0;  // a walk through a room, as in the guide
   bool fresh = false;
   bool cancel = false;
+  bool undo = false;
   bool json = false;
 };
 
@@ -145,10 +146,20 @@ Result<int> cancel(const ServiceClient& server, const RegisterArguments& argumen
   return kExitOk;
 }
 
+Result<int> undo(const ServiceClient& server) {
+  const auto registration = server.post("/registration/undo", nlohmann::json::object());
+  if (!registration) return pass(registration);
+  std::cout << "the registration from before is in use again; the same command brings this one "
+               "back\n"
+            << registration_report(*registration);
+  return kExitOk;
+}
+
 Result<int> run_register(const RegisterArguments& arguments) {
   const auto server = ServiceClient::of(arguments.url);
   if (!server) return pass(server);
   if (arguments.cancel) return cancel(*server, arguments);
+  if (arguments.undo) return undo(*server);
   if (arguments.fresh) {
     if (const auto forgotten = server->remove("/registration"); !forgotten) return pass(forgotten);
   }
@@ -171,10 +182,16 @@ Run add_register(CLI::App& options) {
       ->capture_default_str();
   auto* fresh = options.add_flag("--fresh", arguments->fresh,
                                  "Forget the registration there is before starting");
+  auto* cancelled =
+      options
+          .add_flag("--cancel", arguments->cancel,
+                    "End the session that runs; the registration is then what it was before")
+          ->excludes(fresh);
   options
-      .add_flag("--cancel", arguments->cancel,
-                "End the session that runs; the registration is then what it was before")
-      ->excludes(fresh);
+      .add_flag("--undo", arguments->undo,
+                "Go back to the registration before this one; twice changes nothing")
+      ->excludes(fresh)
+      ->excludes(cancelled);
   options.add_flag("--json", arguments->json, "Report as JSON");
   return [arguments] { return run_register(*arguments); };
 }

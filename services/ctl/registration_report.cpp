@@ -67,6 +67,8 @@ std::string registration_report(const nlohmann::json& registration) {
   const std::string master = client::text_at(registration, "master", "");
   if (!master.empty()) text += fmt::format(", master {}", printable(master));
   text += "\n";
+  for (const std::string& alarm : lines_at(registration, "alarms"))
+    text += "  ALARM: " + alarm + "\n";
   for (const std::string& reason : lines_at(registration, "reasons")) text += "  " + reason + "\n";
   for (const std::string& next : lines_at(registration, "awaits")) text += "  next: " + next + "\n";
   text += clocks_shown(registration);

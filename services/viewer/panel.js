@@ -59,13 +59,14 @@ export function showSensors(all, colorOf) {
     const row = body.insertRow();
     row.dataset.sensor = id;
     row.className = live ? '' : 'dead';
+    if (live && sensor.alarm) row.className = 'moved';
     row.title = sensor.url ?? '';
     const swatch = document.createElement('span');
     swatch.className = 'swatch';
     swatch.style.background = `#${colorOf(id).toString(16).padStart(6, '0')}`;
     cell(row, '').append(swatch);
     cell(row, id);
-    cell(row, sensor.state, STATE_CLASS[sensor.state] ?? '');
+    cell(row, live && sensor.alarm ? 'moved' : sensor.state, live && sensor.alarm ? 'bad' : STATE_CLASS[sensor.state] ?? '');
     cell(row, milliseconds(sensor.ageMilliseconds));
     cell(row, live ? number(sensor.rateHz, 1) : '–');
     cell(row, live ? sensor.bodies ?? '–' : '–');
@@ -90,6 +91,7 @@ export function showRegistration(registration) {
   const reasons = registration.reasons ?? [];
   const last = (registration.session?.reasons ?? []).filter((reason) => !reasons.includes(reason));
   showLines('reasons', [...reasons, ...last.map((reason) => `last walk: ${reason}`)]);
+  showLines('alarms', registration.alarms ?? []);
   showLines('awaits', registration.awaits ?? []);
   element('stored').textContent = registration.storeProblem ? `not stored: ${registration.storeProblem}` : '';
 }

@@ -48,6 +48,13 @@ function ofTheSensors(sensors) {
   return { tone: 'warn', sentence: `${names} ${dead.length === 1 ? 'delivers' : 'deliver'} nothing.`, next: why ?? 'Look after them.' };
 }
 
+/// A sensor that was moved is told of before anything else about places.
+function ofTheAlarms({ alarms = [] }) {
+  if (alarms.length === 0) return null;
+  const [what, next = ''] = alarms[0].split('; ');
+  return { tone: 'bad', sentence: `${what}.`, next };
+}
+
 function ofTheRegistration({ session, sensors = {}, awaits = [], verdict }) {
   const placed = Object.keys(sensors).length;
   if (session?.state === 'solving') return { tone: 'warn', sentence: 'The walk is over: the places are being solved.', next: '' };
@@ -70,6 +77,8 @@ export function stateOf(known) {
   if (!sensors || !registration) return { tone: 'warn', sentence: 'Connecting to the fusion server …', next: '' };
   const missing = ofTheSensors(sensors);
   if (missing?.tone === 'bad') return missing;
+  const alarm = ofTheAlarms(registration);
+  if (alarm) return alarm;
   const places = ofTheRegistration(registration);
   if (places?.sentence) return missing ? { ...places, sentence: `${places.sentence} ${missing.sentence}` } : places;
   const people = frame.bodies?.length ?? 0;

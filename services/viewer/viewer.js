@@ -5,10 +5,12 @@ import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
 import { Resource, clock, follow, link } from './poll.js';
 import { FusedView, RawView, frustum } from './skeleton_view.js';
+import { showCoverage } from './coverage.js';
 import { rateOf, showFused, showRegistration, showSensors, showState } from './panel.js';
 import { freshness, stateOf } from './state.js';
 
 const COLORS = [0x4cc9f0, 0xf2b84b, 0x80ed99, 0xf28482, 0xb892ff, 0xffd6a5, 0x2ec4b6, 0xff9f1c, 0xa0c4ff, 0xcaffbf];
+const MOVED = 0x7d3b38; // a sensor that does not stand where it was registered
 const RAW_EVERY_MS = 66;
 const STATE_EVERY_MS = 200;
 const base = new URL(new URLSearchParams(location.search).get('server') ?? '../', location.href);
@@ -104,6 +106,7 @@ follow(resource('sensors/'), 1000, ({ sensors: all }) => {
   for (const [id, state] of Object.entries(known.sensors)) {
     const view = sensorView(id);
     view.live = state.state === 'live';
+    view.wedge.traverse((part) => part.material?.color?.setHex(state.alarm ? MOVED : view.color));
     if (!view.live) showRaw(view, { bodies: [] });
   }
   shown.sensors = sensors.size;
@@ -114,7 +117,20 @@ follow(resource('registration'), 1000, (registration) => {
   known.registration = registration;
   placeSensors(registration);
   showRegistration(registration);
+  followSession(registration).catch(failed);
 }, failed);
+
+/// The map of the walk, while a session runs.
+let session = null;
+async function followSession(registration) {
+  const { state, progress } = registration.session ?? {};
+  const runs = (state === 'collecting' || state === 'solving') && progress;
+  if (!runs) session = null;
+  else if (session?.path !== progress) session = { path: progress, resource: resource(progress.slice(1)) };
+  const told = session && await session.resource.next();
+  if (session && !told) return;
+  showCoverage(document.getElementById('coverage'), document.getElementById('pairs'), told, registration.sensors);
+}
 
 /// Checks the clock too, because frames that no longer arrive cannot say so themselves.
 setInterval(() => {

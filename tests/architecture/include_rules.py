@@ -18,7 +18,7 @@ ROWS = [
     ["common/synthetic", "common/service", "common/importers", "common/exporters", "common/calibration"],
     ["fusion-server/flow.h"],
     ["fusion-server/status.h", "fusion-server/sink.h"],
-    ["fusion-server/align", "fusion-server/facing", "fusion-server/associate", "fusion-server/fusion"],
+    ["fusion-server/align", "fusion-server/facing", "fusion-server/associate", "fusion-server/fusion", "fusion-server/watch"],
     ["fusion-server/registration"],
     ["fusion-server/pipeline", "fusion-server/poll"],
     ["fusion-server/core", "fusion-server/wire", "fusion-server/outlet", "services/sensor"],
@@ -33,7 +33,7 @@ ROW_OF = {room: row for row, rooms in enumerate(ROWS) for room in rooms}
 # Values that rooms of the fusion server pass to each other; each header is a row of its own.
 VALUE_HEADERS = {"fusion-server/flow.h", "fusion-server/status.h", "fusion-server/sink.h"}
 
-STAGES = {f"fusion-server/{stage}" for stage in ("align", "facing", "associate", "fusion", "registration")}
+STAGES = {f"fusion-server/{stage}" for stage in ("align", "facing", "associate", "fusion", "watch", "registration")}
 FUSION_SERVER = {room for room in ROW_OF if room.startswith("fusion-server/")}
 # Usable without a network: they must not include or link it, not even indirectly.
 NO_SOCKET = {"fusion-server/core", "fusion-server/pipeline"} | VALUE_HEADERS | STAGES

@@ -74,11 +74,10 @@ int main(int argc, char** argv) {
     auto* command = app.add_subcommand(each.name, each.summary);
     command->callback([&chosen, &each] { chosen = &each; });
     const std::string_view name = each.name;
-    const bool lists =
-        name == "faults" || name == "fusion" || name == "persons" || name == "camera";
-    if (lists || name == "registration")
-      command->add_option("--only", options.only, "Run this case alone");
-    if (!lists) continue;
+    if (name != "faults" && name != "fusion" && name != "persons" && name != "camera" &&
+        name != "registration")
+      continue;
+    command->add_option("--only", options.only, "Run this case alone");
     command->add_flag("--list", options.list, "Name the cases and run none");
   }
   try {

@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { Link, ServerClock } from '../../services/viewer/poll.js';
+import { lineOf, mapOf } from '../../services/viewer/coverage.js';
 import { freshness, sidesOf, stateOf } from '../../services/viewer/state.js';
 
 const LIVE = { state: 'live' };
@@ -80,4 +81,27 @@ test('left and right are as certain as those of the least certain person', () =>
   assert.equal(sidesOf({ bodies: [{ sidesConfidence: 0.9999 }] }), '99 % certain', 'never rounded to certainty');
   assert.equal(sidesOf({ bodies: [{}] }), '–');
   assert.equal(sidesOf(null), '–');
+});
+
+test('a sensor that was moved comes before the verdict, and says what to do', () => {
+  const registration = { verdict: 'Good', sensors: { s1: {}, s2: {} }, alarms: ['s3 was moved by about 60 mm 12 s ago; it is being placed anew: walk where it and others see you'] };
+  const told = stateOf(known({ registration }));
+  assert.equal(told.tone, 'bad');
+  assert.equal(told.sentence, 's3 was moved by about 60 mm 12 s ago.');
+  assert.equal(told.next, 'it is being placed anew: walk where it and others see you');
+});
+
+test('the map of a walk has its cells, its sensors, and the pairs that are linked', () => {
+  const session = { floorCells: [{ x: 0.25, z: 1.75, seenBy: 5 }], coverage: [
+    { target: 's1', source: 's2', sightings: 900, spread: 0.8, expectedRadius: 0.041 },
+    { target: 's1', source: 's3', sightings: 3, spread: 0.1, expectedRadius: 4.2 }] };
+  const { cells, sensors, links } = mapOf(session, { s1: { x: 0, z: 0 }, s2: { x: 2, z: 1 } });
+  assert.deepEqual(cells, [{ x: 0.25, z: 1.75, level: 3 }]);
+  assert.deepEqual(sensors.map(({ id }) => id), ['s1', 's2']);
+  assert.equal(links[0].good, true);
+  assert.equal(links[1].good, false);
+  assert.equal(links[1].to, undefined, 's3 has no place yet');
+  assert.equal(lineOf(links[0]), 's1 – s2: 900 common sightings, ±41 mm expected');
+  assert.match(lineOf(links[1]), /more than 1 m expected$/);
+  assert.deepEqual(mapOf(null), { cells: [], sensors: [], links: [] });
 });

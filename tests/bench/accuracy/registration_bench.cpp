@@ -2,12 +2,15 @@
 // ablations, stress sweeps, and a thousand short walks with unsynchronised clocks.
 #include <algorithm>
 #include <cmath>
+#include <iostream>
+#include <string_view>
 
 #include <fmt/format.h>
 
 #include "common/base/units.h"
 #include "common/synthetic/draw.h"
 #include "common/synthetic/sensor_model.h"
+#include "tests/bench/accuracy/bump_cases.h"
 #include "tests/bench/accuracy/exchange.h"
 #include "tests/bench/accuracy/registration_cases.h"
 #include "tests/bench/methods/comparison.h"
@@ -220,12 +223,19 @@ void measure_ablations(Report& report, const std::string& profile) {
 }  // namespace
 
 Result<void> run_registration(Report& report) {
+  constexpr std::string_view kBump = "bump";
+  if (report.list()) {
+    std::cout << kBump << "\nwalks\n";
+    return {};
+  }
   if (report.only() == "walks") {
     report.profile(described({"A", "B"}));
     measure_all_short_walks(report, 200);
     return {};
   }
-  report.profile(described({"gauss", "A", "B", "C"}));
+  report.profile(described({"gauss", "A", "B", "C", "D"}));
+  if (report.only().empty() || report.only() == kBump) measure_bumps(report);
+  if (!report.only().empty()) return {};
   measure_gauss(report);
   for (const char* profile : {"A", "B", "C"}) measure_cases(report, profile);
   measure_all_short_walks(report, report.quick() ? 20 : 1000);

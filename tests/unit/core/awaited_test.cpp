@@ -68,6 +68,12 @@ TEST_F(Awaited, TheRestOfTheWalkAndItsSolution) {
   session_->state = SessionState::Collecting;
   session_->elapsed = 12.4;
   session_->target = 30;
+  EXPECT_THAT(said(), ElementsAre("keep walking: 18 s more", HasSubstr("s2 and another sensor"),
+                                  HasSubstr("s3 and another sensor")));
+  const auto pair = [](const char* a, const char* b) {
+    return PairCoverage{sensor_id(a), sensor_id(b), 300, 0.8, 0.04};
+  };
+  session_->pairs = {pair("s1", "s2"), pair("s2", "s3")};
   EXPECT_THAT(said(), ElementsAre("keep walking: 18 s more"));
   session_->state = SessionState::Solving;
   EXPECT_THAT(said(), ElementsAre(HasSubstr("being solved")));

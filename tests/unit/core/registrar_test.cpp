@@ -279,5 +279,59 @@ TEST_F(Sessions, TheOriginIsMovedBetweenSessionsOnly) {
   EXPECT_LT(off(registrar().registration(), "s3", elsewhere()), 1e-9) << "it stays there";
 }
 
+TEST_F(Sessions, ASensorThatWasMovedLosesItsPlaceAndOneForItStartsAtOnce) {
+  begin_with(ring());
+  const SensorId moved = sensor_id("s1");  // the master
+  EXPECT_FALSE(registrar().displace(sensor_id("stranger"), "unknown"));
+  ASSERT_TRUE(registrar().displace(moved, "sensor s1 was moved"));
+  const Registration& left = registrar().registration();
+  EXPECT_FALSE(left.sensors.contains(moved));
+  EXPECT_EQ(left.version, 5u);
+  EXPECT_EQ(left.verdict, Verdict::Good) << "the others stand as they stood";
+  EXPECT_TRUE(left.sensors.contains(left.master));
+  EXPECT_EQ(left.verdicts.at(moved).verdict, Verdict::Refused);
+  EXPECT_THAT(left.reasons, Contains("sensor s1 was moved"));
+  EXPECT_FALSE(registrar().displace(sensor_id("s2"), "two of two")) << "nobody could tell";
+  walk(seconds(1));
+  EXPECT_EQ(newest().state, SessionState::Collecting);
+  EXPECT_TRUE(newest().automatic);
+  EXPECT_FALSE(registrar().displace(sensor_id("s2"), "during a session"));
+  EXPECT_EQ(registrar().undo().error().code, ErrorCode::Conflict);
+}
+
+TEST_F(Sessions, AnUndoGoesBackOneStepAndAgainForward) {
+  begin_with(ring());
+  EXPECT_EQ(registrar().undo().error().code, ErrorCode::NotFound);
+  ASSERT_TRUE(registrar().move_origin({1.0, 0.0, 0.0}));
+  const auto place = [&] {
+    return registrar().registration().sensors.at(sensor_id("s2")).world_from_sensor;
+  };
+  const Eigen::Isometry3d moved = place();
+  ASSERT_TRUE(registrar().earlier());
+  ASSERT_TRUE(registrar().undo());
+  EXPECT_TRUE(place().isApprox(ring().sensors.at(sensor_id("s2")).world_from_sensor));
+  EXPECT_EQ(registrar().registration().version, 6u) << "versions rise";
+  ASSERT_TRUE(registrar().undo());
+  EXPECT_TRUE(place().isApprox(moved));
+  registrar().forget();
+  EXPECT_TRUE(registrar().registration().sensors.empty());
+  ASSERT_TRUE(registrar().undo());
+  EXPECT_TRUE(place().isApprox(moved)) << "a forgotten one comes back, too";
+}
+
+TEST_F(Sessions, AnUndoAfterAWalkGoesBackToBeforeItsProvisionalOnes) {
+  begin_with(ring(kSensors, Verdict::Provisional));
+  ASSERT_TRUE(registrar().start(seconds(8), now_));
+  auto job = walk(seconds(20));
+  ASSERT_TRUE(job);
+  ASSERT_EQ(answer(*job, ring()), Outcome::Adopted);
+  EXPECT_FALSE(registrar().earlier());
+  job = walk(seconds(20));
+  ASSERT_EQ(job->kind, SolveKind::Final);
+  ASSERT_EQ(answer(*job, ring()), Outcome::Adopted);
+  ASSERT_TRUE(registrar().undo());
+  EXPECT_EQ(registrar().registration().verdict, Verdict::Provisional);
+}
+
 }  // namespace
 }  // namespace chorus::core

@@ -93,6 +93,18 @@ TEST_F(Store, ForgettingMovesItAside) {
   EXPECT_TRUE(store.forget());
 }
 
+TEST_F(Store, KeepsTheOneBeforeForAnUndo) {
+  const RegistrationStore store(folder_.string());
+  EXPECT_FALSE(store.load_earlier());
+  ASSERT_TRUE(store.save(registration(2), registration(1)));
+  EXPECT_EQ((*store.load())->version, 2u);
+  ASSERT_TRUE(store.load_earlier());
+  EXPECT_EQ(store.load_earlier()->version, 1u);
+  std::ofstream(store.path() + ".old") << "{\"half\": ";
+  EXPECT_FALSE(store.load_earlier()) << "no reason to refuse the one in use";
+  EXPECT_FALSE(RegistrationStore("").load_earlier());
+}
+
 TEST_F(Store, IdsOfPeopleBeginAtOneOnlyWhereNobodyHasBeen) {
   const RegistrationStore store(folder_.string());
   EXPECT_EQ(*store.load_next_person(), 1u);

@@ -1,0 +1,56 @@
+// What the walk of a session has covered so far: which sensors saw somebody together, and where.
+//
+// Needs no places: common sightings are judged by the time of receipt, their spread in the space of
+// one of the two sensors.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fusion-server/status.h"
+
+namespace chorus::core {
+
+class Coverage {
+ public:
+  void clear();
+  /// Takes a frame with one body or none; others cannot be matched.
+  void add(const SensorFrame& frame);
+
+  /// All pairs that saw somebody together, ordered by names.
+  [[nodiscard]] std::vector<PairCoverage> pairs() const;
+  /// Where somebody walked in the world, by how many sensors each cell was seen.
+  [[nodiscard]] std::vector<CoveredCell> cells(const Registration& registration) const;
+
+ private:
+  struct Sight {
+    Timestamp received;
+    Eigen::Vector3d place;  ///< Of the neck, in the sensor's space [m].
+  };
+  struct Common {
+    std::size_t sightings = 0;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();  ///< In the first sensor's space [m].
+    double squares = 0.0;
+    double distance = 0.0;  ///< Sum over both sensors' distances / 2 [m].
+  };
+  using Cell = std::pair<int, int>;
+
+  std::map<SensorId, Sight> newest_;
+  std::map<std::pair<SensorId, SensorId>, Common> common_;
+  std::map<SensorId, std::map<Cell, Eigen::Vector3d>> seen_;  ///< In each sensor's own space.
+};
+
+/// What is expected of a pair that has so many sightings: radius [m] inside which the place of one
+/// is known relative to the other, in 95 % (algorithm: docs/papers/registration.md, Coverage).
+[[nodiscard]] double expected_radius(std::size_t sightings, double spread, double distance);
+
+/// Sentences for people about what the walk still needs, the most important first; empty: nothing.
+/// `seeing`: the sensors that saw somebody during the walk.
+[[nodiscard]] std::vector<std::string> needs(const std::vector<PairCoverage>& pairs,
+                                             const std::set<SensorId>& seeing, double target);
+
+}  // namespace chorus::core

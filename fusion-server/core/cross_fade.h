@@ -1,0 +1,33 @@
+// Lets a change of the sensors' places reach the output little by little.
+//
+// What bodies would have been with the places before, minus what they are now, is added to them and
+// fades to zero, so that nothing that follows a person jumps.
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include "fusion-server/flow.h"
+
+namespace chorus::core {
+
+class CrossFade {
+ public:
+  /// At one instant, the same people by the places before and by those of now.  A person who is
+  /// displaced by more than half a metre is not faded: the world was moved, or it is somebody else.
+  void begin(const std::vector<FusedBody>& before, const std::vector<FusedBody>& now, Timestamp at);
+
+  /// Adds what is left of the differences.
+  void apply(std::vector<FusedBody>& bodies, Timestamp at) const;
+
+  void stop() { offsets_.clear(); }
+
+ private:
+  using Offsets = std::array<Eigen::Vector3d, kJointCount>;
+
+  Timestamp begun_;
+  std::map<PersonId, Offsets> offsets_;
+};
+
+}  // namespace chorus::core

@@ -1,0 +1,42 @@
+// Whether the last seconds of a sensor's residuals differ from what is usual for it.
+//
+// For each of several window lengths the mean of the last blocks is compared with how such means
+// have scattered so far; nothing is assumed about how long errors last (docs/papers/watch.md (2)).
+#pragma once
+
+#include <array>
+#include <deque>
+
+#include "fusion-server/watch/standing_error.h"
+
+namespace chorus::watch {
+
+inline constexpr std::array<std::size_t, 4> kWindows{4, 5, 6, 9};  ///< [blocks]
+inline constexpr std::size_t kLongestWindow = kWindows.back();
+
+/// The window that differs most.
+struct Shift {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< Beyond the usual [m]; axes of Residual.
+  double sigmas = 0.0;                             ///< Mahalanobis distance of `mean`.
+  bool lasting = false;                            ///< In both halves of the window alike.
+  Timestamp since;                                 ///< Begin of the window.
+  std::set<SensorId> others;                       ///< Those that it was compared with.
+};
+
+class ShiftTest {
+ public:
+  ShiftTest();
+
+  /// Compares the last blocks.  Means of less than `learn_below` sigmas are learned from.
+  [[nodiscard]] Shift test(const std::deque<Block>& recent, const StandingError& usual,
+                           double learn_below);
+
+ private:
+  struct Scatter {
+    Eigen::Matrix3d squares;
+    double weight = 0.0;
+  };
+  std::array<Scatter, kWindows.size()> scatter_;
+};
+
+}  // namespace chorus::watch

@@ -1,0 +1,71 @@
+// Notices that a sensor was moved, from where it sees people in everyday use beside the others.
+//
+// Pure: views of people go in, instant by instant; findings come out.  Only people who walk count:
+// the error of somebody who stands still lasts, and tells nothing new.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "fusion-server/flow.h"
+#include "fusion-server/watch/shift_test.h"
+#include "fusion-server/watch/watch_config.h"
+
+namespace chorus::watch {
+
+struct Finding {
+  SensorId sensor;
+  /// Only these two saw people together: one of them was moved, and it cannot be told which.
+  std::optional<SensorId> or_else;
+  double shift = 0.0;    ///< Distance between where it and where the others see people [m].
+  bool drifted = false;  ///< It has been so for minutes; else it began lately.
+  Timestamp since;       ///< When it began, or was first certain.
+};
+
+class Watch {
+ public:
+  /// Takes the views of one instant; instants increase.  `config` may change at any time.
+  void look(const std::vector<Person>& people, Timestamp instant, const WatchConfig& config);
+
+  /// The sensor that stands out most at present; none when none does.
+  [[nodiscard]] std::optional<Finding> finding() const;
+  /// How far from the others this sensor sees people now, beyond what is usual for it [m]; none
+  /// until somebody has walked for a while.
+  [[nodiscard]] std::optional<double> shift_of(const SensorId& sensor) const;
+
+  /// Forgets a sensor that was moved, and what the others saw beside it lately.
+  void forget(const SensorId& sensor);
+  /// Forgets all sensors but these.
+  void keep_only(const std::set<SensorId>& sensors);
+
+ private:
+  struct Watched {
+    std::vector<Residual> open;  ///< Of the block that is being filled.
+    Timestamp began;
+    std::deque<Block> recent;  ///< Not yet learned from, so that a shift is compared with before.
+    StandingError usual;
+    ShiftTest test;
+    Shift shift;
+    double drift = 0.0;  ///< Of the place alone [m]; 0: not significant.
+  };
+  struct Walker {
+    Eigen::Vector3d smoothed = Eigen::Vector3d::Zero();
+    Timestamp seen;
+  };
+
+  [[nodiscard]] bool walks(const Person& person, Timestamp instant);
+  void add(Residual residual, Timestamp instant);
+  void close(Watched& sensor);
+  void judge(Watched& sensor) const;
+  [[nodiscard]] double size_of(const Watched& sensor) const;
+
+  WatchConfig config_;
+  Timestamp last_;
+  std::map<PersonId, Walker> walkers_;
+  std::map<SensorId, Watched> sensors_;
+};
+
+}  // namespace chorus::watch

@@ -1,0 +1,18 @@
+// What counts as a sensor that was moved.
+#pragma once
+
+namespace chorus::watch {
+
+struct WatchConfig {
+  bool enabled = true;
+  /// People must appear displaced by this much before a sensor counts as moved [m] ...
+  double least_shift = 0.03;
+  /// ... and by so many standard deviations of what is usual for that sensor.
+  double least_sigmas = 6.0;
+  /// A place that is off by this much for minutes counts as drifted [m].
+  double least_drift = 0.06;
+
+  bool operator==(const WatchConfig&) const = default;
+};
+
+}  // namespace chorus::watch

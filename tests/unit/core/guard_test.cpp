@@ -1,0 +1,122 @@
+// What people are told of a sensor that was moved, and what happens to its place.
+#include "fusion-server/core/guard.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "fusion-server/core/fusion_core.h"
+#include "tests/support/builders.h"
+#include "tests/unit/core/ring_of_three.h"
+
+namespace chorus::core {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using testing::kStart;
+using testing::sensor_id;
+
+TEST(Alarms, AreSentencesForPeople) {
+  const SensorAlarm alarm{0.0637, kStart, false, std::nullopt};
+  const Timestamp now = kStart + milliseconds(12300);
+  EXPECT_EQ(sentence_of(sensor_id("s3"), alarm, now, true),
+            "s3 was moved by about 60 mm 12 s ago; it is being placed anew: walk where it and "
+            "others see you");
+  EXPECT_THAT(sentence_of(sensor_id("s3"), alarm, now, false), HasSubstr("run chorus register"));
+  EXPECT_THAT(sentence_of(sensor_id("s3"), alarm, now + seconds(300), true),
+              HasSubstr("5 min ago"));
+  const SensorAlarm pair{0.05, kStart, false, sensor_id("s1")};
+  EXPECT_THAT(sentence_of(sensor_id("s3"), pair, now, true), HasSubstr("s3 or s1 was moved"));
+  const SensorAlarm drift{0.08, kStart, true, std::nullopt};
+  EXPECT_THAT(sentence_of(sensor_id("s3"), drift, now, true), HasSubstr("s3 has drifted"));
+}
+
+/// A person on a circle; each sensor has its own phase.  Sensor `pushed` is pushed by `push` along
+/// the world's x.
+class Pushed : public ::testing::Test {
+ protected:
+  Pushed() : core_(of_three<CoreConfig>(), ring()) {}
+
+  SensorFrame sight(int sensor, Duration t) const {
+    const double angle = 0.9 * chorus::seconds(t);
+    const auto person =
+        testing::standing_person({0.6 * std::cos(angle), 0, 0.6 * std::sin(angle)}, -angle);
+    Eigen::Isometry3d place = testing::ring_sensor(sensor, kSensors);
+    if (sensor == pushed_) place.translation().x() += push_;
+    const Timestamp captured = kStart + t;
+    return testing::sensor_frame(name(sensor), captured,
+                                 {testing::body_seen_from(place, person, captured)});
+  }
+
+  /// Largest step of the neck between two instants [m].
+  double run(Duration length) {
+    double most = 0.0;
+    for (const Duration end = t_ + length; t_ < end; t_ += milliseconds(1)) {
+      for (int i = 0; i < kSensors; ++i) {
+        const Duration phase = milliseconds(7 * i);
+        if (t_ >= phase && (t_ - phase) % milliseconds(33) < milliseconds(1))
+          core_.take(sight(i, t_));
+      }
+      while (auto snapshot = core_.tick(kStart + t_)) {
+        if (snapshot->bodies.empty()) continue;
+        const Eigen::Vector3d neck = snapshot->bodies[0].skeleton[JointId::Neck].position;
+        if (neck_) most = std::max(most, (neck - *neck_).norm());
+        neck_ = neck;
+      }
+    }
+    return most;
+  }
+
+  FusionCore core_;
+  Duration t_{0};
+  int pushed_ = -1;
+  double push_ = 0.0;
+  std::optional<Eigen::Vector3d> neck_;
+};
+
+TEST_F(Pushed, ASensorLosesItsPlaceIsToldOfAndPlacedAnewWithoutAJump) {
+  const double usual = run(seconds(40));
+  pushed_ = 1;
+  push_ = 0.08;
+  run(milliseconds(200));  // the push itself shows
+  EXPECT_LT(run(seconds(8)), usual + 0.005);
+  const SensorId moved = sensor_id("s2");
+  ASSERT_FALSE(core_.registration().sensors.contains(moved));
+  EXPECT_EQ(core_.registration().sensors.size(), 2u);
+  EXPECT_THAT(core_.registration().verdicts.at(moved).reasons,
+              Contains(HasSubstr("sensor s2 was moved")));
+  ASSERT_TRUE(core_.alarm(moved));
+  EXPECT_NEAR(core_.alarm(moved)->shift, 0.08, 0.03);
+  EXPECT_FALSE(core_.alarm(sensor_id("s1")));
+  EXPECT_EQ(core_.displaced(), 1u);
+
+  const auto job = [&] {
+    std::optional<SolveJob> due;
+    while (!due && t_ < seconds(120)) {
+      run(milliseconds(100));
+      due = core_.due_job(kStart + t_);
+    }
+    return due;
+  }();
+  ASSERT_TRUE(job) << "a session has started by itself";
+  Registration solved = ring();
+  solved.sensors[moved].world_from_sensor.translation().x() += push_;
+  EXPECT_EQ(core_.solved({job->session, job->kind, solved}, kStart + t_), Outcome::Adopted);
+  EXPECT_TRUE(core_.registration().sensors.contains(moved));
+  EXPECT_FALSE(core_.alarm(moved));
+  EXPECT_LT(run(seconds(2)), usual + 0.005);
+}
+
+TEST_F(Pushed, APlaceThatWasChangedOnPurposeIsNoAlarm) {
+  run(seconds(40));
+  ASSERT_TRUE(core_.move_origin({1.0, 2.0, 0.5}));
+  neck_.reset();
+  run(seconds(40));
+  EXPECT_EQ(core_.displaced(), 0u);
+  for (int i = 0; i < kSensors; ++i) EXPECT_FALSE(core_.alarm(sensor_id(name(i))));
+}
+
+}  // namespace
+}  // namespace chorus::core
