@@ -174,8 +174,9 @@ double floor_misfit(const Station& station) {
          height * height;
 }
 
-/// Tukey's loss of the points, from which their weights are derived, and that of the floors.
-double cost_of(const Adjustment& adjustment) {
+/// Tukey's loss of the points, from which their weights are derived, over the variance factor, and
+/// that of the floors.
+double cost_of(const Adjustment& adjustment, double factor) {
   const double limit = kTukey * adjustment.scale;
   double cost = 0.0;
   for (const FusedPoint& fused : adjustment.fuse_all()) {
@@ -183,7 +184,7 @@ double cost_of(const Adjustment& adjustment) {
     const double rest = off < 1.0 ? 1.0 - off * off : 0.0;
     cost += limit * limit / 3.0 * (1.0 - rest * rest * rest);
   }
-  cost /= std::max(adjustment.along, adjustment.upward);
+  cost /= factor;
   constexpr double kFar = kFarFloor * kFarFloor;
   for (const Station& station : adjustment.stations) {
     const double misfit = floor_misfit(station);
@@ -379,15 +380,14 @@ std::optional<Adjusted> adjust_together(const Places& places, const Walkers& wal
   if (adjustment.points.empty()) return std::nullopt;
   hold_strangers(adjustment.stations, adjustment.points);
   adjustment.along_ratio = config.along_ratio;
-  const std::vector<Station> start = adjustment.stations;
   adjustment.scale = std::max(kMinScale, median_norm(adjustment.fuse_all()) / kMedianToSigma);
+  (void)walk_equations(adjustment);
+  const double factor = std::max(adjustment.along, adjustment.upward);  // the same for both costs
+  const double before = cost_of(adjustment, factor);
   for (int i = 0; i < kIterations && iterate(adjustment); ++i) {
   }
-  const double after = cost_of(adjustment);
-  Adjusted result = adjusted(adjustment);
-  adjustment.stations = start;
-  if (!(after <= cost_of(adjustment))) return std::nullopt;
-  return result;
+  if (!(cost_of(adjustment, factor) <= before)) return std::nullopt;
+  return adjusted(adjustment);
 }
 
 }  // namespace chorus::registration
