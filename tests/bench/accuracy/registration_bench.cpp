@@ -301,6 +301,11 @@ Result<void> run_registration(Report& report) {
     measure_all_short_walks(report, 200);
     return {};
   }
+  if (report.only() == "bystanders") {
+    report.profile(described({"A", "B"}));
+    measure_all_bystanders(report, 250);
+    return {};
+  }
   report.profile(described({"gauss", "A", "B", "C"}));
   measure_gauss(report);
   for (const char* profile : {"A", "B", "C"}) measure_cases(report, profile);
