@@ -25,6 +25,7 @@ constexpr double kSettled = 1e-6;    // [rad], [m]
 constexpr double kMinScale = 0.02;   // in standard deviations
 constexpr double kRidge = 1e-6;      // holds the state in directions that nothing observes
 constexpr double kGauge = 1e-5;      // [rad], [m] sigma of what is held of the master
+constexpr double kFarthest = 1.0;    // [m] that an adjustment may move a sensor
 constexpr double kLevelView = 0.05;  // with a smaller horizontal part a view has no direction
 constexpr double kFarFloor = 4.0;    // in sigmas; a floor this far off has a quarter of its say
 constexpr FloorPrior kGuessedFloor{deg(2), mm(50)};
@@ -370,6 +371,13 @@ Adjusted adjusted(Adjustment& adjustment) {
   return result;
 }
 
+/// Chains of pairs are robust: who ends far from them was led away by wrong sights.
+bool near(const Places& start, const Places& end) {
+  return std::ranges::all_of(start, [&](const auto& each) {
+    return (end.at(each.first).translation() - each.second.translation()).norm() < kFarthest;
+  });
+}
+
 }  // namespace
 
 std::optional<Adjusted> adjust_together(const Places& places, const Walkers& walkers,
@@ -387,7 +395,9 @@ std::optional<Adjusted> adjust_together(const Places& places, const Walkers& wal
   for (int i = 0; i < kIterations && iterate(adjustment); ++i) {
   }
   if (!(cost_of(adjustment, factor) <= before)) return std::nullopt;
-  return adjusted(adjustment);
+  Adjusted result = adjusted(adjustment);
+  if (!near(places, result.places)) return std::nullopt;
+  return result;
 }
 
 }  // namespace chorus::registration
