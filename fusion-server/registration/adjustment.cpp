@@ -29,8 +29,7 @@ constexpr double kFarthest = 1.0;    // [m] that an adjustment may move a sensor
 constexpr double kLevelView = 0.05;  // with a smaller horizontal part a view has no direction
 constexpr double kFarFloor = 4.0;    // in sigmas; a floor this far off has a quarter of its say
 constexpr FloorPrior kGuessedFloor{deg(2), mm(50)};
-// Errors of joints last 0.2 to 1 s: ten seconds of real frames are worth about twelve.
-constexpr double kIndependent = 1.2;   // [1/s]
+constexpr double kIndependent = 1.2;   // [1/s] of real joints, whose errors last
 constexpr double kPriorFreedom = 3.0;  // what that is worth: as much as one sensor's own blocks
 constexpr Eigen::Index kAlong[] = {1, 3, 5};   // yaw and place along the floor
 constexpr Eigen::Index kUpward[] = {0, 2, 4};  // tilt and height
@@ -366,8 +365,6 @@ Adjusted adjusted(Adjustment& adjustment) {
     own = covariance.block<6, 6>(at, at);
     if (!station.master) own += bias;
   }
-  result.along = adjustment.along / (adjustment.scale * adjustment.scale);
-  result.upward = adjustment.upward / (adjustment.scale * adjustment.scale);
   return result;
 }
 

@@ -32,8 +32,6 @@ struct Adjusted {
   Places places;  ///< The world is level, its origin on the floor.
   /// Of (omega, tau) applied on the world's side; only of sensors that took part.
   std::map<SensorId, Matrix6> covariances;
-  double along = 1.0;   ///< Variance factor of yaw and place along the floor: Section 4's v.
-  double upward = 1.0;  ///< The same of tilt and height.
 };
 
 /// Starts from `places`.  None if nothing was seen together or the result fits the walk and the
