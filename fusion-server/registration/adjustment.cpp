@@ -7,10 +7,12 @@
 
 #include "common/base/median.h"
 #include "common/geometry/rotation.h"
+#include "fusion-server/registration/block_variance.h"
 #include "fusion-server/registration/floor_prior.h"
 #include "fusion-server/registration/pairs.h"
 #include "fusion-server/registration/point_elimination.h"
 #include "fusion-server/registration/tukey.h"
+#include "fusion-server/registration/view_bias.h"
 
 namespace chorus::registration {
 namespace {
@@ -19,67 +21,83 @@ constexpr std::size_t kMaxPoints = 1500;  // of the walk; successive ones are re
 constexpr std::size_t kMinMeasurements =
     20;  // with fewer a sensor keeps the place given by its chain
 constexpr int kIterations = 40;
-constexpr double kSettled = 1e-6;   // [rad], [m]
-constexpr double kMinScale = 0.02;  // in standard deviations
-constexpr double kRidge = 1e-6;     // holds the state in directions that nothing observes
+constexpr double kSettled = 1e-6;    // [rad], [m]
+constexpr double kMinScale = 0.02;   // in standard deviations
+constexpr double kRidge = 1e-6;      // holds the state in directions that nothing observes
+constexpr double kGauge = 1e-5;      // [rad], [m] sigma of what is held of the master
+constexpr double kFarthest = 1.0;    // [m] that an adjustment may move a sensor
+constexpr double kLevelView = 0.05;  // with a smaller horizontal part a view has no direction
+constexpr double kFarFloor = 4.0;    // in sigmas; a floor this far off has a quarter of its say
+constexpr FloorPrior kGuessedFloor{deg(2), mm(50)};
+constexpr double kIndependent = 1.2;   // [1/s] of real joints, whose errors last
+constexpr double kPriorFreedom = 3.0;  // what that is worth: as much as one sensor's own blocks
+constexpr Eigen::Index kAlong[] = {1, 3, 5};   // yaw and place along the floor
+constexpr Eigen::Index kUpward[] = {0, 2, 4};  // tilt and height
 
 /// A sensor during the adjustment.
 struct Station {
   SensorId id;
   const Walker* walker = nullptr;
   Eigen::Isometry3d level_from_sensor = Eigen::Isometry3d::Identity();
-  /// World here means the levelled master.
   Eigen::Isometry3d world_from_level = Eigen::Isometry3d::Identity();
-  bool levelled = false;
+  FloorPrior floor = {};  ///< How well its own floor is known; zero: not at all.
   bool master = false;
-  bool fixed = false;  ///< The master, and sensors with too few common points.
+  bool fixed = false;  ///< Has too few common points.
+
+  [[nodiscard]] Eigen::Isometry3d world_from_sensor() const {
+    return world_from_level * level_from_sensor;
+  }
 };
 
-Eigen::Isometry3d level_of(const Walker& walker, bool use_floor) {
-  return use_floor && walker.floor.floor ? level(*walker.floor.floor)
-                                         : Eigen::Isometry3d::Identity();
-}
-
 std::vector<Station> stations_of(const Places& places, const Walkers& walkers, bool use_floor) {
-  const Walker& master = walkers.all.at(walkers.master);
-  const bool master_levelled = use_floor && master.floor.floor;
-  const Eigen::Isometry3d world_from_master = level_of(master, use_floor);
   std::vector<Station> stations;
-  for (const auto& [id, master_from_sensor] : places) {
+  for (const auto& [id, world_from_sensor] : places) {
     const Walker& walker = walkers.all.at(id);
     Station station{id, &walker};
-    station.levelled = master_levelled && walker.floor.floor;
-    if (station.levelled) station.level_from_sensor = level_of(walker, use_floor);
-    station.master = station.fixed = id == walkers.master;
-    station.world_from_level =
-        world_from_master * master_from_sensor * station.level_from_sensor.inverse();
+    station.master = id == walkers.master;
+    if (use_floor && walker.floor.floor) {
+      station.level_from_sensor = level(*walker.floor.floor);
+      station.floor = kOneFloor;
+    } else if (station.master && walkers.guessed) {
+      station.level_from_sensor = level(*walkers.guessed);
+      station.floor = kGuessedFloor;
+    }
+    station.world_from_level = world_from_sensor * station.level_from_sensor.inverse();
     stations.push_back(station);
   }
   return stations;
 }
 
+/// A slot at one instant.
+struct Point {
+  double time = 0.0;  ///< Since the first instant [s].
+  PointMeasurements seen;
+};
+
 /// Adds the slots that several sensors saw at one instant.
 void add_instant(const std::vector<std::optional<TrailMoment>>& moments,
-                 const std::vector<Station>& stations, std::span<const Slot> slots,
-                 std::vector<PointMeasurements>& points) {
+                 const std::vector<Station>& stations, std::span<const Slot> slots, double time,
+                 std::vector<Point>& points) {
   for (std::size_t slot = 0; slot < slots.size(); ++slot) {
-    PointMeasurements point;
+    Point point{time, {}};
     for (std::size_t i = 0; i < stations.size(); ++i) {
       if (!moments[i] || !moments[i]->frame.has(slot)) continue;
       const Eigen::Vector3d& x = moments[i]->frame.points[slot];
       const Eigen::Isometry3d& turn = stations[i].level_from_sensor;
-      point.push_back({i, turn * x, turn.linear() * x.normalized(), slots[slot].sigma});
+      point.seen.push_back({i, turn * x, turn.linear() * x.normalized(), slots[slot].sigma});
     }
-    if (point.size() > 1) points.push_back(std::move(point));
+    if (point.seen.size() > 1) points.push_back(std::move(point));
   }
 }
 
-/// Each sensor's own instants, thinned out to save time: every sensor is included so that no
-/// overlap is missed.
+/// Each sensor's own instants at which the person had moved, thinned out to save time: every
+/// sensor is included so that no overlap is missed.
 std::vector<Timestamp> instants_of(const std::vector<Station>& stations, std::size_t slots) {
   std::vector<Timestamp> all;
   for (const Station& station : stations) {
-    for (const TrailFrame& frame : station.walker->trail.frames) all.push_back(frame.captured);
+    for (const TrailFrame& frame : station.walker->trail.frames) {
+      if (frame.moved) all.push_back(frame.captured);
+    }
   }
   std::sort(all.begin(), all.end());
   const std::size_t step = std::max<std::size_t>(1, all.size() * slots / kMaxPoints);
@@ -88,29 +106,30 @@ std::vector<Timestamp> instants_of(const std::vector<Station>& stations, std::si
   return instants;
 }
 
-std::vector<PointMeasurements> points_of(const std::vector<Station>& stations,
-                                         const RegistrationConfig& config) {
+std::vector<Point> points_of(const std::vector<Station>& stations,
+                             const RegistrationConfig& config) {
   const auto slots = slots_of(config.joints);
   std::vector<TrailReader> readers;
   for (const Station& station : stations) {
     readers.emplace_back(station.walker->trail, config.max_gap);
   }
-  std::vector<PointMeasurements> points;
-  for (const Timestamp instant : instants_of(stations, slots.size())) {
+  std::vector<Point> points;
+  const std::vector<Timestamp> instants = instants_of(stations, slots.size());
+  for (const Timestamp instant : instants) {
     std::vector<std::optional<TrailMoment>> moments;
     for (TrailReader& reader : readers) {
       moments.push_back(reader.at(instant));
       if (moments.back() && moments.back()->speed > config.max_speed) moments.back().reset();
     }
-    add_instant(moments, stations, slots, points);
+    add_instant(moments, stations, slots, seconds(instant - instants.front()), points);
   }
   return points;
 }
 
-void hold_strangers(std::vector<Station>& stations, const std::vector<PointMeasurements>& points) {
+void hold_strangers(std::vector<Station>& stations, const std::vector<Point>& points) {
   std::vector<std::size_t> measurements(stations.size(), 0);
-  for (const PointMeasurements& point : points) {
-    for (const PointMeasurement& measured : point) ++measurements[measured.sensor];
+  for (const Point& point : points) {
+    for (const PointMeasurement& measured : point.seen) ++measurements[measured.sensor];
   }
   for (std::size_t i = 0; i < stations.size(); ++i) {
     if (measurements[i] < kMinMeasurements) stations[i].fixed = true;
@@ -120,23 +139,24 @@ void hold_strangers(std::vector<Station>& stations, const std::vector<PointMeasu
 /// The adjustment's state between iterations.
 struct Adjustment {
   std::vector<Station> stations;
-  std::vector<PointMeasurements> points;
+  std::vector<Point> points;
   double along_ratio = 1.0;
-  double inflation = 1.0;
-  double scale = 0.0;  ///< Fixed after the first iteration, so that costs are comparable.
+  double scale = 0.0;  ///< Standard deviation of a point, in units of its sigma.
+  double along = 1.0;
+  double upward = 1.0;
 
   [[nodiscard]] std::vector<FusedPoint> fuse_all() const {
     std::vector<Eigen::Isometry3d> places;
     for (const Station& station : stations) places.push_back(station.world_from_level);
     std::vector<FusedPoint> all;
-    for (const PointMeasurements& measurements : points)
-      all.push_back(fuse_point(measurements, places, along_ratio));
+    for (const Point& point : points) all.push_back(fuse_point(point.seen, places, along_ratio));
     return all;
   }
   [[nodiscard]] double weight(const FusedPoint& fused) const {
     const double off = worst_norm(fused) / (kTukey * scale);
     return tukey_weight(off * off);
   }
+  [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(6 * stations.size()); }
 };
 
 double median_norm(const std::vector<FusedPoint>& all) {
@@ -145,31 +165,70 @@ double median_norm(const std::vector<FusedPoint>& all) {
   return median(std::move(norms));
 }
 
-/// Tukey's loss, from which the weights above are derived.
-double cost_of(const Adjustment& adjustment) {
+/// Squared misfit of a sensor's own floor, in sigmas; 0 without one.
+double floor_misfit(const Station& station) {
+  if (!(station.floor.tilt > 0)) return 0.0;
+  const Eigen::Vector3d up = station.world_from_level.linear().col(1);
+  const double height = station.world_from_level.translation().y() / station.floor.height;
+  return (up.x() * up.x() + up.z() * up.z()) / (station.floor.tilt * station.floor.tilt) +
+         height * height;
+}
+
+/// Tukey's loss of the points, from which their weights are derived, over the variance factor, and
+/// that of the floors.
+double cost_of(const Adjustment& adjustment, double factor) {
+  const double limit = kTukey * adjustment.scale;
   double cost = 0.0;
   for (const FusedPoint& fused : adjustment.fuse_all()) {
-    const double off = worst_norm(fused) / (kTukey * adjustment.scale);
+    const double off = worst_norm(fused) / limit;
     const double rest = off < 1.0 ? 1.0 - off * off : 0.0;
-    cost += 1.0 - rest * rest * rest;
+    cost += limit * limit / 3.0 * (1.0 - rest * rest * rest);
+  }
+  cost /= factor;
+  constexpr double kFar = kFarFloor * kFarFloor;
+  for (const Station& station : adjustment.stations) {
+    const double misfit = floor_misfit(station);
+    cost += kFar * misfit / (kFar + misfit);  // Geman-McClure
   }
   return cost;
 }
 
-void add_floors(PlaceEquations& equations, const std::vector<Station>& stations,
-                const Eigen::Vector3d& centre_in_world) {
+void add_floors(PlaceEquations& equations, const std::vector<Station>& stations) {
   for (std::size_t i = 0; i < stations.size(); ++i) {
-    if (!stations[i].levelled || stations[i].fixed) continue;
+    if (!(stations[i].floor.tilt > 0) || stations[i].fixed) continue;
     Normal normal;
-    const Eigen::Isometry3d& place = stations[i].world_from_level;
-    add_prior(normal, kTwoFloors, place, place.inverse() * centre_in_world);
+    // A floor is known best right under its own sensor.
+    add_prior(normal, stations[i].floor, stations[i].world_from_level, Eigen::Vector3d::Zero());
+    const double root = 1.0 / (1.0 + floor_misfit(stations[i]) / (kFarFloor * kFarFloor));
     const auto at = static_cast<Eigen::Index>(6 * i);
-    equations.information.block<6, 6>(at, at) += normal.information;
-    equations.right.segment<6>(at) += normal.right;
+    equations.information.block<6, 6>(at, at) += root * root * normal.information;
+    equations.right.segment<6>(at) += root * root * normal.right;
   }
 }
 
-/// The master must not move: its rows become the identity.
+/// The master keeps its place along the floor and the direction in which it looks.
+void hold_gauge(PlaceEquations& equations, const std::vector<Station>& stations) {
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    if (!stations[i].master) continue;
+    const Eigen::Isometry3d place = stations[i].world_from_sensor();
+    const Eigen::Vector3d view = place.linear().col(2);
+    const Matrix6 eye = at_point(place.translation());
+    Normal normal;
+    normal.add(eye.row(3), 0.0, 1.0 / (kGauge * kGauge));
+    normal.add(eye.row(5), 0.0, 1.0 / (kGauge * kGauge));
+    Row6 turn = Row6::Zero();
+    turn[1] = 1.0;
+    const Eigen::Vector3d aside(view.z(), 0.0, -view.x());
+    if (aside.norm() > kLevelView) {
+      turn.head<3>() = view.cross(aside).transpose() / aside.squaredNorm();
+    }
+    normal.add(turn, 0.0, 1.0 / (kGauge * kGauge));
+    const auto at = static_cast<Eigen::Index>(6 * i);
+    equations.information.block<6, 6>(at, at) += normal.information;
+  }
+}
+
+/// Sensors with too few points must not move: their rows become the identity.
 void hold_fixed(PlaceEquations& equations, const std::vector<Station>& stations) {
   for (std::size_t i = 0; i < stations.size(); ++i) {
     if (!stations[i].fixed) continue;
@@ -181,21 +240,98 @@ void hold_fixed(PlaceEquations& equations, const std::vector<Station>& stations)
   }
 }
 
-PlaceEquations equations_of(const Adjustment& adjustment) {
-  const auto size = static_cast<Eigen::Index>(6 * adjustment.stations.size());
-  PlaceEquations equations{kRidge * Eigen::MatrixXd::Identity(size, size),
-                           Eigen::VectorXd::Zero(size)};
-  const double variance = adjustment.scale * adjustment.scale * adjustment.inflation;
+/// Parameters of all sensors that can move against the master.
+std::vector<Eigen::Index> chosen(const std::vector<Station>& stations,
+                                 std::span<const Eigen::Index> of_each) {
+  std::vector<Eigen::Index> all;
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    if (stations[i].fixed || stations[i].master) continue;
+    for (const Eigen::Index each : of_each) all.push_back(static_cast<Eigen::Index>(6 * i) + each);
+  }
+  return all;
+}
+
+/// Variance of a measurement, in units of its own.
+struct Misfit {
+  double squares = 0.0;
+  double freedom = 0.0;
+  double weights = 0.0;
+
+  void add(const FusedPoint& fused, double weight) {
+    for (std::size_t i = 0; i < fused.seen.size(); ++i) {
+      const Eigen::Vector3d off = fused.x - fused.seen[i];
+      squares += weight * off.dot(fused.information[i] * off);
+    }
+    freedom += weight * 3.0 * static_cast<double>(fused.seen.size() - 1);
+    weights += weight;
+  }
+};
+
+/// All joints of a second or so err alike: the walk is worth as many points.
+BlockScores::Prior expected(const Misfit& misfit, const Adjustment& adjustment) {
+  const double independent = std::max(1.0, kIndependent * adjustment.points.back().time);
+  const double variance =
+      std::max(kMinScale * kMinScale, misfit.squares / std::max(1.0, misfit.freedom));
+  return {variance * std::max(1.0, misfit.weights / independent), kPriorFreedom};
+}
+
+/// The equations of the walk alone, whose points count as many times as they are independent.
+PlaceEquations walk_equations(Adjustment& adjustment) {
+  const Eigen::Index size = adjustment.size();
+  BlockScores blocks(adjustment.points.back().time);
   const std::vector<FusedPoint> all = adjustment.fuse_all();
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  PlaceEquations whole{Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size)};
+  PlaceEquations block = whole;
+  Misfit misfit;
   for (std::size_t k = 0; k < all.size(); ++k) {
     const double weight = adjustment.weight(all[k]);
-    centre += all[k].x / static_cast<double>(all.size());
-    if (weight > 0) add_point(equations, adjustment.points[k], all[k], weight / variance);
+    if (weight > 0) {
+      add_point(block, adjustment.points[k].seen, all[k], weight);
+      misfit.add(all[k], weight);
+    }
+    const bool last = k + 1 == all.size() || blocks.index(adjustment.points[k].time) !=
+                                                 blocks.index(adjustment.points[k + 1].time);
+    if (!last) continue;
+    whole.information += block.information;
+    whole.right += block.right;
+    blocks.add(std::move(block.information), std::move(block.right));
+    block = {Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size)};
   }
-  add_floors(equations, adjustment.stations, centre);
-  hold_fixed(equations, adjustment.stations);
+  const BlockScores::Prior prior = expected(misfit, adjustment);
+  adjustment.along = blocks.factor(chosen(adjustment.stations, kAlong), prior);
+  adjustment.upward = blocks.factor(chosen(adjustment.stations, kUpward), prior);
+  return whole;
+}
+
+/// Adds what is known besides the walk.
+void add_knowledge(PlaceEquations& equations, const std::vector<Station>& stations) {
+  equations.information.diagonal().array() += kRidge;
+  add_floors(equations, stations);
+  hold_gauge(equations, stations);
+  hold_fixed(equations, stations);
+}
+
+PlaceEquations equations_of(Adjustment& adjustment) {
+  PlaceEquations equations = walk_equations(adjustment);
+  const double factor = std::max(adjustment.along, adjustment.upward);
+  equations.information /= factor;
+  equations.right /= factor;
+  add_knowledge(equations, adjustment.stations);
   return equations;
+}
+
+/// Inverse information, where along the floor and upwards have variance factors of their own.
+Eigen::MatrixXd covariance_of(Adjustment& adjustment) {
+  PlaceEquations equations = walk_equations(adjustment);
+  Eigen::VectorXd shrink(adjustment.size());
+  for (Eigen::Index i = 0; i < shrink.size(); ++i) {
+    const bool upward = i % 6 == 0 || i % 6 == 2 || i % 6 == 4;
+    shrink[i] = 1.0 / std::sqrt(upward ? adjustment.upward : adjustment.along);
+  }
+  equations.information = shrink.asDiagonal() * equations.information * shrink.asDiagonal();
+  add_knowledge(equations, adjustment.stations);
+  return equations.information.ldlt().solve(
+      Eigen::MatrixXd::Identity(adjustment.size(), adjustment.size()));
 }
 
 /// Does one iteration; false when nothing moves any more.
@@ -214,35 +350,51 @@ bool iterate(Adjustment& adjustment) {
   return motion.norm() > kSettled;
 }
 
-Places places_of(const std::vector<Station>& stations) {
-  Eigen::Isometry3d world_from_master = Eigen::Isometry3d::Identity();
-  for (const Station& station : stations) {
-    if (station.master) world_from_master = station.world_from_level * station.level_from_sensor;
+Adjusted adjusted(Adjustment& adjustment) {
+  const Eigen::MatrixXd covariance = covariance_of(adjustment);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const FusedPoint& fused : adjustment.fuse_all()) sum += fused.x;
+  const Matrix6 bias = view_bias(sum / static_cast<double>(adjustment.points.size()));
+  Adjusted result;
+  for (std::size_t i = 0; i < adjustment.stations.size(); ++i) {
+    const Station& station = adjustment.stations[i];
+    result.places[station.id] = station.world_from_sensor();
+    if (station.fixed) continue;
+    const auto at = static_cast<Eigen::Index>(6 * i);
+    Matrix6& own = result.covariances[station.id];
+    own = covariance.block<6, 6>(at, at);
+    if (!station.master) own += bias;
   }
-  Places places;
-  for (const Station& station : stations) {
-    places[station.id] =
-        world_from_master.inverse() * station.world_from_level * station.level_from_sensor;
-  }
-  return places;
+  return result;
+}
+
+/// Chains of pairs are robust: who ends far from them was led away by wrong sights.
+bool near(const Places& start, const Places& end) {
+  return std::ranges::all_of(start, [&](const auto& each) {
+    return (end.at(each.first).translation() - each.second.translation()).norm() < kFarthest;
+  });
 }
 
 }  // namespace
 
-Places adjust_together(const Places& places, const Walkers& walkers,
-                       const RegistrationConfig& config) {
+std::optional<Adjusted> adjust_together(const Places& places, const Walkers& walkers,
+                                        const RegistrationConfig& config) {
   Adjustment adjustment;
   adjustment.stations = stations_of(places, walkers, config.use_floor);
   adjustment.points = points_of(adjustment.stations, config);
-  if (adjustment.points.empty()) return places;
+  if (adjustment.points.empty()) return std::nullopt;
   hold_strangers(adjustment.stations, adjustment.points);
   adjustment.along_ratio = config.along_ratio;
-  adjustment.inflation = std::max(1.0, walkers.inflation);
   adjustment.scale = std::max(kMinScale, median_norm(adjustment.fuse_all()) / kMedianToSigma);
-  const double before = cost_of(adjustment);
+  (void)walk_equations(adjustment);
+  const double factor = std::max(adjustment.along, adjustment.upward);  // the same for both costs
+  const double before = cost_of(adjustment, factor);
   for (int i = 0; i < kIterations && iterate(adjustment); ++i) {
   }
-  return cost_of(adjustment) <= before ? places_of(adjustment.stations) : places;
+  if (!(cost_of(adjustment, factor) <= before)) return std::nullopt;
+  Adjusted result = adjusted(adjustment);
+  if (!near(places, result.places)) return std::nullopt;
+  return result;
 }
 
 }  // namespace chorus::registration

@@ -1,30 +1,42 @@
 // All sensors at once: bundle adjustment over the walk, with the person's points eliminated.
 //
-//   minimise over places T_i and points x_k:  sum w (T_i m_ik - x_k)^T S_ik^-1 (T_i m_ik - x_k)
+//   minimise over places T_i and points x_k:
+//     sum w (T_i m_ik - x_k)^T S_ik^-1 (T_i m_ik - x_k) / v + sum over floors (tilt, height)
 //
-// with S_ik small across and large along each line of sight, Tukey weights, and the floor as a
-// prior.  Given the places, each x_k is the inverse-variance mean, so only the places are unknown.
-// Pairs of depth sensors gain little; single cameras, whose depth is inaccurate, gain much: three
-// lines of sight fix what two leave open.  Derived in docs/papers/registration.md, Section 8.
+// with S_ik small across and large along each line of sight, Tukey weights, and each sensor's floor
+// as a prior of its own tilt and height.  Given the places, each x_k is the inverse-variance mean,
+// so only the places are unknown.  What no measurement determines is where the world stands along
+// the floor and which way it is turned: the master's place and direction say that, and nothing else
+// of the master is held.  Derived in docs/papers/registration.md, Section 8.
 #pragma once
 
 #include <map>
+#include <optional>
 
+#include "fusion-server/registration/adjoint.h"
 #include "fusion-server/registration/pair_registration.h"
 
 namespace chorus::registration {
 
-/// master_from_sensor for every linked sensor, including the master.
+/// world_from_sensor for every linked sensor, including the master.
 using Places = std::map<SensorId, Eigen::Isometry3d>;
 
 struct Walkers {
   const std::map<SensorId, Walker>& all;
-  SensorId master;         ///< It is not moved.
-  double inflation = 1.0;  ///< Correlation: measurements per independent measurement.
+  SensorId master;
+  /// The master's floor where no sensor reports one: a guess, good to 2 deg and 50 mm.
+  std::optional<FloorPlane> guessed = {};
 };
 
-/// Starts from `places`; returns them unchanged if the result is not better.
-[[nodiscard]] Places adjust_together(const Places& places, const Walkers& walkers,
-                                     const RegistrationConfig& config);
+struct Adjusted {
+  Places places;  ///< The world is level, its origin on the floor.
+  /// Of (omega, tau) applied on the world's side; only of sensors that took part.
+  std::map<SensorId, Matrix6> covariances;
+};
+
+/// Starts from `places`.  None if nothing was seen together or the result fits the walk and the
+/// floors worse.
+[[nodiscard]] std::optional<Adjusted> adjust_together(const Places& places, const Walkers& walkers,
+                                                      const RegistrationConfig& config);
 
 }  // namespace chorus::registration

@@ -27,9 +27,11 @@ struct FloorPrior {
   double height = 0.0;
 };
 
-/// Each floor is accurate to 0.4 deg and 10 mm; the difference of two is worse by sqrt(2).
-inline constexpr FloorPrior kTwoFloors{deg(0.4) * std::numbers::sqrt2,
-                                       mm(10) * std::numbers::sqrt2};
+inline constexpr FloorPrior kOneFloor{deg(0.4), mm(10)};
+
+/// The difference of two floors is worse by sqrt(2).
+inline constexpr FloorPrior kTwoFloors{kOneFloor.tilt * std::numbers::sqrt2,
+                                       kOneFloor.height* std::numbers::sqrt2};
 
 /// Both frames are levelled: a motion must not tilt up, nor lift the floor below the walk.
 void add_prior(Normal& normal, const FloorPrior& prior, const Eigen::Isometry3d& target_from_source,

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
 
+#include "common/base/median.h"
 #include "common/geometry/rotation.h"
 #include "fusion-server/registration/icp.h"
 #include "fusion-server/registration/pairs.h"
@@ -20,6 +21,8 @@ constexpr double kMinAgreement = 0.3;  // with a smaller fraction of inliers the
 constexpr double kMinSlimness = 0.01;  // lambda2 / lambda1 of the walk: a line at 10 % lateral rms
 constexpr double kBias = mm(10);       // view-dependent joint bias at 90 deg and beyond
 constexpr std::size_t kMaxPairs = 6000;  // more cost time; successive ones are redundant
+constexpr double kLeastApart = 0.15;     // [m] the halves of a walk may always differ by this
+constexpr double kApartOfRms = 3.0;      // ... or by this much of the residuals
 constexpr double kIcpReach = 0.10;       // [m] a neck point without a partner this near is ignored
 
 /// Both skeletons' spaces levelled to y = 0 if both floors are known; unchanged otherwise.
@@ -161,6 +164,36 @@ Result<void> believable(const PairwiseRegistration& edge, const Extent& extent,
           both, 100.0 * agreement, edge.rms));
 }
 
+/// The pairs of one half of the walk.
+std::vector<Pair> half_of(const std::vector<Pair>& pairs, bool second) {
+  const std::size_t middle = pairs[pairs.size() / 2].instant;
+  std::vector<Pair> half;
+  std::ranges::copy_if(pairs, std::back_inserter(half),
+                       [&](const Pair& pair) { return (pair.instant >= middle) == second; });
+  return half;
+}
+
+/// Each half of the walk must place the other: whoever follows somebody else may fit one stretch of
+/// a walk by chance, hardly two.
+Result<void> halves_agree(const std::vector<Pair>& pairs, double rms, Freedom freedom,
+                          const std::string& both) {
+  const auto first = fit_robustly(half_of(pairs, false), freedom);
+  const auto second = fit_robustly(half_of(pairs, true), freedom);
+  if (!first || !second) return {};
+  std::vector<double> apart;
+  for (const Pair& pair : pairs) {
+    apart.push_back((first->target_from_source * pair.x_in_source -
+                     second->target_from_source * pair.x_in_source)
+                        .norm());
+  }
+  const double typical = median(std::move(apart));
+  if (typical <= std::max(kLeastApart, kApartOfRms * rms)) return {};
+  return fail(ErrorCode::Conflict, both,
+              fmt::format("{} disagree about the walk: its two halves put them {:.2f} m apart; "
+                          "check their clocks and that one person walks alone",
+                          both, typical));
+}
+
 /// A straight walk leaves the rotation about it open, unless floor or body height determine it.
 Result<void> determined(const Extent& extent, bool levelled, const std::string& both,
                         JointChoice joints) {
@@ -193,6 +226,8 @@ Result<PairwiseRegistration> timed(const Walker& target, const Walker& source,
   edge.spread = extent.spread;
   edge.inflation = refined.inflation;
   if (const auto ok = believable(edge, extent, both, config); !ok) return pass(ok);
+  const Freedom freedom = levelled.both ? Freedom::Yaw : Freedom::Full;
+  if (const auto ok = halves_agree(pairs, edge.rms, freedom, both); !ok) return pass(ok);
   const Eigen::Isometry3d target_from_level = levelled.level_from_target.inverse();
   edge.target_from_source =
       target_from_level * refined.target_from_source * levelled.level_from_source;

@@ -40,13 +40,13 @@ bool in_range(const TrailFrame& frame, const RegistrationConfig& config) {
 }
 
 void add(Pairing& pairing, const TrailFrame& target, const TrailFrame& source,
-         std::span<const Slot> slots) {
+         std::span<const Slot> slots, double time) {
   const std::size_t before = pairing.pairs.size();
   for (std::size_t i = 0; i < slots.size(); ++i) {
     if (!target.has(i) || !source.has(i)) continue;
     const double sigma = std::numbers::sqrt2 * slots[i].sigma;
     pairing.pairs.push_back({target.points[i], source.points[i], target.points[i].normalized(),
-                             source.points[i].normalized(), sigma, i, pairing.instants});
+                             source.points[i].normalized(), sigma, i, pairing.instants, time});
   }
   if (pairing.pairs.size() > before) ++pairing.instants;
 }
@@ -73,12 +73,15 @@ Pairing pair_up(const Trail& target, const Trail& source, const RegistrationConf
     const std::optional<TrailMoment> other = reader.at(seen.captured);
     if (!other) continue;
     ++pairing.together;
-    if (!in_range(seen, config) || !in_range(other->frame, config)) {
+    if (!seen.moved) {
+      ++pairing.resting;
+    } else if (!in_range(seen, config) || !in_range(other->frame, config)) {
       ++pairing.out_of_range;
     } else if (other->speed > config.max_speed) {
       ++pairing.too_fast;
     } else {
-      add(pairing, other->frame, seen, slots);
+      const double time = seconds(seen.captured - source.frames.front().captured);
+      add(pairing, other->frame, seen, slots, time);
     }
   }
   return pairing;

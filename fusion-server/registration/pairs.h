@@ -40,12 +40,14 @@ struct Pair {
   std::size_t slot = 0;
   /// Index of the source frame among the paired ones; simultaneous pairs have the same.
   std::size_t instant = 0;
+  double time = 0.0;  ///< Of the instant, since the first frame of the source [s].
 };
 
 struct Pairing {
   std::vector<Pair> pairs;
   std::size_t instants = 0;      ///< Source frames for which there are pairs.
   std::size_t together = 0;      ///< Source frames at whose instant the target saw a body, too.
+  std::size_t resting = 0;       ///< ... of these, at which the person had hardly moved.
   std::size_t too_fast = 0;      ///< ... of these, rejected by max_speed.
   std::size_t out_of_range = 0;  ///< ... of these, rejected by min_distance or max_distance.
 };

@@ -45,12 +45,13 @@ struct RegistrationConfig {
   std::size_t min_pairs = 60;  ///< With fewer correspondences there is no edge.
   double min_spread = 0.25;    ///< Narrower walks are refused [m].
   double max_edge_rms = 0.15;  ///< With larger residuals there is no edge [m].
-  /// With three or more sensors: one final adjustment of all of them.
+  /// One final adjustment of all sensors together.
   bool adjust_together = true;
   double good_rms = 0.08;  ///< Above this the verdict is provisional [m].
   Duration good_duration = std::chrono::seconds(20);  ///< Shorter walks stay provisional.
   /// Above this 95 % radius of a sensor's place on the floor the verdict is provisional [m].
   double good_position = 0.05;
+  double max_position = 0.10;      ///< With a larger one the sensor is refused [m].
   std::optional<SensorId> master;  ///< Default: the sensor with the best connection to all others.
 
   bool operator==(const RegistrationConfig&) const = default;

@@ -13,6 +13,8 @@
 
 #include "fusion-server/registration/adjoint.h"
 #include "fusion-server/registration/adjustment.h"
+#include "fusion-server/registration/consensus.h"
+#include "fusion-server/registration/error_radius.h"
 #include "fusion-server/registration/pair_registration.h"
 #include "fusion-server/registration/time_offset.h"
 #include "fusion-server/registration/transform_graph.h"
@@ -20,9 +22,8 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kRadius95 = 2.4477;  // sqrt of chi^2 with 2 degrees of freedom at 95 %
-constexpr double kMinUpright = 0.0;   // cos of the tilt beyond which a sensor would be upside down
-constexpr double kMinHeight = 0.0;    // [m] a sensor below the floor is a wrong solution
+constexpr double kMinUpright = 0.0;  // cos of the tilt beyond which a sensor would be upside down
+constexpr double kMinHeight = 0.0;   // [m] a sensor below the floor is a wrong solution
 
 /// Why two sensors have no edge.
 struct Refusal {
@@ -38,6 +39,7 @@ struct Work {
   std::map<SensorId, Walker> walkers;
   std::map<SensorId, const WalkTrack*> tracks;
   std::vector<Refusal> refusals;
+  std::set<SensorId> outcasts;  ///< Sensors that contradict the others; their reason is stated.
   Registration result;
   bool doubtful = false;  ///< There is a doubt about all places.
 
@@ -45,6 +47,8 @@ struct Work {
     doubtful = true;
     note(std::move(reason));
   }
+  /// Says why one sensor has no place; the others stay good.
+  void refuse(const SensorId& sensor, std::string reason) { doubt(sensor, std::move(reason)); }
   /// Adds a doubt about the place of one sensor; the others stay good.
   void doubt(const SensorId& sensor, std::string reason) {
     result.verdicts[sensor].reasons.push_back(reason);
@@ -79,6 +83,24 @@ void register_pairs(Work& work, const PairEstimator& estimate) {
   }
 }
 
+/// Leaves out the sensors that contradict the others, by name.
+void refuse_outcasts(Work& work) {
+  if (work.config.method != PairMethod::TimedRobust) return;
+  Evidence evidence;
+  evidence.edges = work.result.edges;
+  for (const Refusal& refusal : work.refusals) {
+    if (refusal.error.code != ErrorCode::Conflict) continue;
+    evidence.contradictions.push_back({refusal.target, refusal.source});
+  }
+  for (const auto& [sensor, walker] : work.walkers)
+    evidence.middles[sensor] = middle_of(walker.trail);
+  for (const Outcast& outcast : cast_out(evidence)) {
+    work.outcasts.insert(outcast.sensor);
+    work.refuse(outcast.sensor, outcast.reason);
+  }
+  work.result.edges = std::move(evidence.edges);
+}
+
 /// The sensor that reaches the most others; of equals, the one with the smallest total error, then
 /// with the smallest id.
 SensorId best_master(const Work& work) {
@@ -86,6 +108,7 @@ SensorId best_master(const Work& work) {
   std::size_t most = 0;
   double least = 0.0;
   for (const auto& [sensor, walker] : work.walkers) {
+    if (work.outcasts.contains(sensor)) continue;
     const auto chains = best_chains(sensor, work.result.edges);
     double total = 0.0;
     for (const auto& [other, chain] : chains) total += chain.error;
@@ -99,18 +122,20 @@ SensorId best_master(const Work& work) {
 
 void choose_master(Work& work) {
   const auto& wanted = work.config.master;
-  if (wanted && work.walkers.contains(*wanted)) {
+  const bool there = wanted && work.walkers.contains(*wanted);
+  if (there && !work.outcasts.contains(*wanted)) {
     work.result.master = *wanted;
     return;
   }
-  if (wanted) {
+  if (wanted && !there) {
     work.doubt(fmt::format("the configured master {} took no part in the walk", wanted->str()));
   }
   work.result.master = best_master(work);
 }
 
-/// The common floor of all linked sensors; if none has one, from the upright body.
-FloorPlane floor_in_master(Work& work, const std::map<SensorId, Chain>& chains) {
+/// The common floor of all linked sensors; none if none has one.
+std::optional<FloorPlane> floor_in_master(const Work& work,
+                                          const std::map<SensorId, Chain>& chains) {
   std::vector<PlacedFloor> floors;
   for (const auto& [sensor, chain] : chains) {
     const WalkFloor& own = work.walkers.at(sensor).floor;
@@ -120,7 +145,12 @@ FloorPlane floor_in_master(Work& work, const std::map<SensorId, Chain>& chains) 
     const Eigen::Vector3d eye = master_from_sensor.translation();
     floors.push_back({{normal, own.floor->offset - normal.dot(eye)}, eye});
   }
-  if (!floors.empty()) return common_floor(floors);
+  if (floors.empty()) return std::nullopt;
+  return common_floor(floors);
+}
+
+/// The master's floor as the upright body shows it.
+FloorPlane guessed_floor(Work& work) {
   work.doubt("no usable floor plane: the floor was guessed from the upright body and its feet");
   return floor_from_body(*work.tracks.at(work.result.master)).value_or(FloorPlane{});
 }
@@ -134,39 +164,48 @@ std::optional<std::string> impossible(const Eigen::Isometry3d& world_from_sensor
   return std::nullopt;
 }
 
-double median_inflation(const std::vector<PairwiseRegistration>& edges) {
-  std::vector<double> all;
-  for (const PairwiseRegistration& edge : edges) all.push_back(edge.inflation);
-  if (all.empty()) return 1.0;
-  return median(std::move(all));
-}
+/// A sensor in the world, with the covariance of (omega, tau) applied on the world's side.
+struct Placed {
+  Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
+  Matrix6 covariance = Matrix6::Zero();
+};
 
-/// Links by chains; with three or more sensors, then adjusts all of them together.  The covariance
-/// stays that of the chain: an upper bound, because the adjustment only adds information.
-std::map<SensorId, Chain> link(const Work& work) {
-  auto chains = best_chains(work.result.master, work.result.edges);
-  const bool timed = work.config.method == PairMethod::TimedRobust;
-  if (chains.size() < 3 || !timed || !work.config.adjust_together) return chains;
+/// Places by chains, in a world on the common floor; then adjusts all of them together.
+std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& chains) {
+  std::optional<FloorPlane> guessed;
+  std::optional<FloorPlane> floor = floor_in_master(work, chains);
+  if (!floor) floor = guessed = guessed_floor(work);
+  const Eigen::Isometry3d in_world = world_from_master(*floor);
+  const Matrix6 turn = adjoint(in_world);
+  std::map<SensorId, Placed> all;
   Places places;
-  for (const auto& [sensor, chain] : chains) places[sensor] = chain.master_from_sensor;
-  const Walkers walkers{work.walkers, work.result.master, median_inflation(work.result.edges)};
-  for (auto& [sensor, place] : adjust_together(places, walkers, work.config)) {
-    chains.at(sensor).master_from_sensor = place;
+  for (const auto& [sensor, chain] : chains) {
+    places[sensor] = in_world * chain.master_from_sensor;
+    all[sensor] = {places[sensor], turn * chain.covariance * turn.transpose()};
   }
-  return chains;
+  const bool timed = work.config.method == PairMethod::TimedRobust;
+  if (chains.size() < 2 || !timed || !work.config.adjust_together) return all;
+  const auto adjusted =
+      adjust_together(places, {work.walkers, work.result.master, guessed}, work.config);
+  if (!adjusted) return all;
+  for (auto& [sensor, place] : all) {
+    place.world_from_sensor = adjusted->places.at(sensor);
+    const auto own = adjusted->covariances.find(sensor);
+    if (own != adjusted->covariances.end()) place.covariance = own->second;
+  }
+  return all;
 }
 
 void place_sensors(Work& work) {
-  const std::map<SensorId, Chain> chains = link(work);
-  const Eigen::Isometry3d in_world = world_from_master(floor_in_master(work, chains));
-  const Matrix6 turn = adjoint(in_world);
-  for (const auto& [sensor, chain] : chains) {
+  const std::map<SensorId, Chain> chains = best_chains(work.result.master, work.result.edges);
+  for (const auto& [sensor, found] : placed(work, chains)) {
+    const Chain& chain = chains.at(sensor);
     Extrinsics place;
-    place.world_from_sensor = in_world * chain.master_from_sensor;
+    place.world_from_sensor = found.world_from_sensor;
     place.chain = chain.sensors;
     place.error = chain.error;
-    const Matrix6 shift = at_point(place.world_from_sensor.translation()) * turn;
-    place.covariance = shift * chain.covariance * shift.transpose();
+    const Matrix6 shift = at_point(place.world_from_sensor.translation());
+    place.covariance = shift * found.covariance * shift.transpose();
     const bool is_master = sensor == work.result.master;
     if (const auto why = impossible(place.world_from_sensor); why && !is_master) {
       work.doubt(sensor,
@@ -177,6 +216,26 @@ void place_sensors(Work& work) {
   }
 }
 
+double radius_on_floor(const Extrinsics& place) {
+  return radius_of_95(place.covariance.block<3, 3>(3, 3)({0, 2}, {0, 2}));
+}
+
+/// Nothing is accepted that nobody can vouch for.
+void refuse_wide(Work& work) {
+  const std::map<SensorId, Extrinsics> all = work.result.sensors;
+  for (const auto& [sensor, place] : all) {
+    const double radius = radius_on_floor(place);
+    if (radius <= work.config.max_position || place.chain.size() < 2) continue;
+    const SensorId& neighbour = place.chain[place.chain.size() - 2];
+    work.refuse(sensor,
+                fmt::format("sensor {} would be placed only to within {:.2f} m, of {:.2f} m "
+                            "allowed: walk where {} and {} both see you, and further to and fro",
+                            sensor.str(), radius, work.config.max_position,
+                            std::min(neighbour, sensor).str(), std::max(neighbour, sensor).str()));
+    work.result.sensors.erase(sensor);
+  }
+}
+
 bool linked(const Work& work, const SensorId& sensor) {
   return work.result.sensors.contains(sensor);
 }
@@ -184,6 +243,7 @@ bool linked(const Work& work, const SensorId& sensor) {
 /// Says why this sensor is left out: the reasons of its pairs with linked sensors, where several
 /// "never together" are combined.
 void explain_unlinked(Work& work, const SensorId& sensor) {
+  if (!work.result.verdicts[sensor].reasons.empty()) return;
   std::vector<std::string> strangers;
   std::vector<std::string> reasons;
   for (const Refusal& refusal : work.refusals) {
@@ -214,12 +274,6 @@ void explain_floor(Work& work, const SensorId& sensor) {
   work.doubt(sensor,
              fmt::format("sensor {}: {}, so its pitch, roll and height come from the walk alone",
                          sensor.str(), floor.objection));
-}
-
-double radius95(const Extrinsics& place) {
-  const Eigen::Matrix2d horizontal = place.covariance.block<3, 3>(3, 3)({0, 2}, {0, 2});
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(horizontal, Eigen::EigenvaluesOnly);
-  return kRadius95 * std::sqrt(std::max(0.0, eigen.eigenvalues()[1]));
 }
 
 /// Length of the walk as seen by the sensor that watched it longest.
@@ -258,7 +312,7 @@ void judge_chain(Work& work, const SensorId& sensor, const std::vector<SensorId>
 void judge_accuracy(Work& work) {
   for (const auto& [sensor, place] : work.result.sensors) judge_chain(work, sensor, place.chain);
   for (const auto& [sensor, place] : work.result.sensors) {
-    const double radius = radius95(place);
+    const double radius = radius_on_floor(place);
     if (radius <= work.config.good_position) continue;
     work.doubt(
         sensor,
@@ -312,7 +366,7 @@ void judge(Work& work) {
 
 Registration solve_with(const PairEstimator& estimate, const std::vector<WalkTrack>& walk,
                         Timestamp now, const RegistrationConfig& config) {
-  Work work{walk, config, {}, {}, {}, {}, false};
+  Work work{walk, config, {}, {}, {}, {}, {}, false};
   work.result.solved = now;
   reduce_tracks(work);
   const bool silent = std::all_of(walk.begin(), walk.end(),
@@ -322,8 +376,10 @@ Registration solve_with(const PairEstimator& estimate, const std::vector<WalkTra
     return work.result;
   }
   register_pairs(work, estimate);
+  refuse_outcasts(work);
   choose_master(work);
   place_sensors(work);
+  refuse_wide(work);
   judge(work);
   return work.result;
 }

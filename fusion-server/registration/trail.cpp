@@ -1,5 +1,6 @@
 #include "fusion-server/registration/trail.h"
 
+#include "common/base/units.h"
 #include "common/body/bones.h"
 
 namespace chorus::registration {
@@ -17,6 +18,8 @@ constexpr std::array kCoreSlots{
     Slot{SpineMid, SpineMid, mm(14)},
     Slot{ShoulderLeft, ShoulderRight, mm(12)},
     Slot{HipLeft, HipRight, mm(14)},
+    Slot{ElbowLeft, ElbowRight, mm(20)},
+    Slot{WristLeft, WristRight, mm(26)},
 };
 
 constexpr double limb_sigma(JointId id) {
@@ -74,6 +77,29 @@ TrailFrame reduce(const BodyFrame& body, Timestamp captured, std::span<const Slo
   return frame;
 }
 
+constexpr double kStep = mm(12);
+
+/// Distance between the middles of the slots that both frames have [m].
+double moved_between(const TrailFrame& a, const TrailFrame& b) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  int slots = 0;
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    if (!a.has(i) || !b.has(i)) continue;
+    sum += b.points[i] - a.points[i];
+    ++slots;
+  }
+  return slots > 0 ? sum.norm() / slots : kStep;
+}
+
+void mark_rests(std::vector<TrailFrame>& frames) {
+  const TrailFrame* last = nullptr;
+  for (TrailFrame& frame : frames) {
+    frame.moved =
+        last == nullptr || last->body != frame.body || moved_between(*last, frame) >= kStep;
+    if (frame.moved) last = &frame;
+  }
+}
+
 }  // namespace
 
 std::span<const Slot> slots_of(JointChoice choice) {
@@ -98,7 +124,19 @@ Trail trail_of(const WalkTrack& walk, JointChoice choice) {
     TrailFrame reduced = reduce(*body, frame.captured, slots_of(choice));
     if (reduced.seen != 0) trail.frames.push_back(std::move(reduced));
   }
+  mark_rests(trail.frames);
   return trail;
+}
+
+Eigen::Vector3d middle_of(const Trail& trail) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double count = 0.0;
+  for (const TrailFrame& frame : trail.frames) {
+    if (!frame.has(0)) continue;
+    sum += frame.points[0];
+    count += 1.0;
+  }
+  return count > 0 ? Eigen::Vector3d(sum / count) : sum;
 }
 
 }  // namespace chorus::registration

@@ -26,6 +26,9 @@ struct TrailFrame {
   BodyId body;
   std::array<Eigen::Vector3d, kJointCount> points;  ///< By slot; defined where `seen` has the bit.
   std::uint32_t seen = 0;
+  /// At least 12 mm away from the last such frame.  While a person rests, the error of a joint
+  /// lasts, too: many frames, one measurement.
+  bool moved = true;
 
   [[nodiscard]] bool has(std::size_t slot) const { return (seen >> slot & 1U) != 0; }
 };
@@ -38,5 +41,8 @@ struct Trail {
 /// Uses frames with exactly one body, and only tracked joints.  Frames with several bodies would
 /// first need association across sensors; `sole_body` is the place for that.
 [[nodiscard]] Trail trail_of(const WalkTrack& walk, JointChoice choice);
+
+/// The middle of the walk as this sensor saw it: mean of the first slot [m].
+[[nodiscard]] Eigen::Vector3d middle_of(const Trail& trail);
 
 }  // namespace chorus::registration

@@ -191,6 +191,7 @@ void read_pairing(ConfigReader& reader, registration::RegistrationConfig& out) {
   reader.read("max_edge_rms_m", out.max_edge_rms, 0.001, 5.0);
   reader.read("good_rms_m", out.good_rms, 0.001, 5.0);
   reader.read("good_position_m", out.good_position, 0.001, 5.0);
+  reader.read("max_position_m", out.max_position, 0.001, 5.0);
   reader.read_s("good_duration_s", out.good_duration, seconds(1), seconds(300));
 }
 

@@ -150,6 +150,7 @@ pipeline::OfflineConfig config_for(const Case& each) {
   config.registration.min_spread = 0.0;
   config.registration.max_edge_rms = 0.5;
   config.registration.max_speed = 10.0;
+  config.registration.max_position = 1.5;
   return config;
 }
 

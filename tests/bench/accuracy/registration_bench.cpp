@@ -200,6 +200,82 @@ void measure_all_short_walks(Report& report, std::size_t count) {
       "with stamps corrected from exchanges.  Marked are uniform circles and straight lines.");
 }
 
+/// What became of the sensors of one ring.
+struct RingFate {
+  bool odd_named = false;   ///< The one that followed somebody else has no place, and a reason.
+  std::size_t refused = 0;  ///< Of the others.
+  std::size_t lost = 0;     ///< ... that were placed more than 100 mm off.
+};
+
+/// A ring of four, 20 s; with `bystander`, one of its sensors followed somebody else all the time.
+RingFate one_ring(std::uint64_t seed, bool bystander) {
+  constexpr std::size_t kSensors = 4;
+  constexpr std::uint64_t kStranger = 5000;  // added to the seed of the walk
+  Setting setting;
+  setting.profile = seed % 2 == 0 ? "A" : "B";
+  setting.seed = seed;
+  synthetic::Ring four;
+  four.count = kSensors;
+  setting.places = ring_places(four);
+  setting.length = std::chrono::seconds(20);
+  Workshop workshop = draw_workshop(setting);
+  const std::size_t odd = synthetic::Draw{kPurpose, seed, 1}.bits() % kSensors;
+  if (bystander) {
+    synthetic::WalkerScript stranger;
+    stranger.seed = seed + kStranger;
+    setting.people = synthetic::make_people(stranger, 1);
+    workshop.tracks[odd] = draw_workshop(setting).tracks[odd];
+  }
+  const Registration solved = registration::solve(workshop.tracks, workshop.begin, {});
+  RingFate fate;
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    const SensorId& sensor = workshop.tracks[i].sensor;
+    const bool placed = solved.sensors.contains(sensor);
+    if (bystander && i == odd) {
+      fate.odd_named = !placed && !solved.verdicts.at(sensor).reasons.empty();
+      continue;
+    }
+    const Score score = score_of(workshop, solved, {sensor});
+    fate.refused += placed ? 0U : 1U;
+    fate.lost += score.lost;
+  }
+  return fate;
+}
+
+void measure_bystanders(Report& report, std::size_t count, bool bystander) {
+  const auto fates =
+      over_draws(count, [&](std::size_t i) { return one_ring(report.seed() + i, bystander); });
+  std::size_t named = 0;
+  std::size_t refused = 0;
+  std::size_t lost = 0;
+  for (const RingFate& fate : fates) {
+    named += fate.odd_named ? 1U : 0U;
+    refused += fate.refused;
+    lost += fate.lost;
+  }
+  const std::string name = bystander ? std::string("bystander-250") : std::string("honest-250");
+  const auto draws = static_cast<double>(count);
+  if (bystander) {
+    report.row(name, "named_percent", 100.0 * static_cast<double>(named) / draws, "%");
+    report.condition(name + ": who followed somebody else is refused by name in every draw",
+                     named == count);
+  }
+  const double others = draws * (bystander ? 3.0 : 4.0);
+  const double percent = 100.0 * static_cast<double>(refused) / others;
+  report.row(name, "others_refused_percent", percent, "%");
+  report.row(name, "others_over_100mm", static_cast<double>(lost), "");
+  constexpr double kMostRefused = 2.0;
+  report.condition(name + ": of the others at most 2 % refused, and none over 100 mm off",
+                   percent <= kMostRefused && lost == 0);
+}
+
+void measure_all_bystanders(Report& report, std::size_t count) {
+  for (const bool bystander : {true, false}) measure_bystanders(report, count, bystander);
+  report.note(
+      "bystander-250: rings of four, 20 s, profiles A and B in turns; one sensor followed somebody "
+      "else all the time.  honest-250: the same without.");
+}
+
 void measure_cases(Report& report, const std::string& profile) {
   for (RegistrationCase& each : registration_cases(profile)) {
     if (report.quick()) {
@@ -225,12 +301,17 @@ void measure_ablations(Report& report, const std::string& profile) {
 Result<void> run_registration(Report& report) {
   constexpr std::string_view kBump = "bump";
   if (report.list()) {
-    std::cout << kBump << "\nwalks\n";
+    std::cout << kBump << "\nwalks\nbystanders\n";
     return {};
   }
   if (report.only() == "walks") {
     report.profile(described({"A", "B"}));
     measure_all_short_walks(report, 200);
+    return {};
+  }
+  if (report.only() == "bystanders") {
+    report.profile(described({"A", "B"}));
+    measure_all_bystanders(report, 250);
     return {};
   }
   report.profile(described({"gauss", "A", "B", "C", "D"}));
@@ -239,6 +320,7 @@ Result<void> run_registration(Report& report) {
   measure_gauss(report);
   for (const char* profile : {"A", "B", "C"}) measure_cases(report, profile);
   measure_all_short_walks(report, report.quick() ? 20 : 1000);
+  measure_all_bystanders(report, report.quick() ? 10 : 250);
   if (!report.quick()) {
     for (const char* profile : {"A", "B"}) measure_ablations(report, profile);
     sweep_stress(report);

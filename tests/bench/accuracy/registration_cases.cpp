@@ -9,6 +9,7 @@
 #include "tests/bench/accuracy/exchange.h"
 #include "tests/bench/methods/comparison.h"
 #include "tests/bench/methods/over_draws.h"
+#include "tests/judge/statistics.h"
 
 namespace chorus::bench {
 namespace {
@@ -81,15 +82,35 @@ double percent_of(const std::vector<Score>& draws, Count count) {
   return asked == 0 ? kNoRatio : 100.0 * static_cast<double>(counted) / static_cast<double>(asked);
 }
 
-double covered_percent(const std::vector<Score>& draws) {
+/// Of the sensors that have a place.
+template <class Count>
+double percent_of_placed(const std::vector<Score>& draws, Count count) {
   std::size_t placed = 0;
-  std::size_t covered = 0;
+  std::size_t counted = 0;
   for (const Score& score : draws) {
     placed += score.asked - score.refused;
-    covered += score.covered;
+    counted += count(score);
   }
   return placed == 0 ? kNoRatio
-                     : 100.0 * static_cast<double>(covered) / static_cast<double>(placed);
+                     : 100.0 * static_cast<double>(counted) / static_cast<double>(placed);
+}
+
+/// What ours states about its own errors on the floor, and whether it is true.
+void report_stated(Report& report, const std::string& name, const std::vector<Score>& draws) {
+  std::vector<double> stated;
+  std::vector<double> off;
+  for (const Score& score : draws) {
+    stated.insert(stated.end(), score.stated.begin(), score.stated.end());
+    off.insert(off.end(), score.off.begin(), score.off.end());
+  }
+  report.row(name, "ellipse95_cover_percent",
+             percent_of_placed(draws, [](const Score& score) { return score.covered; }), "%");
+  report.row(name, "radius95_cover_percent",
+             percent_of_placed(draws, [](const Score& score) { return score.inside; }), "%");
+  if (stated.empty()) return;
+  const double radius = median(stated);
+  report.row(name, "radius95_mm", to_mm(radius), "mm");
+  report.row(name, "radius95_over_error", radius / median(off), "1");
 }
 
 /// Otto Table 1: position deviation [mm] of two sensors at this angle [deg].
@@ -207,7 +228,7 @@ void report_case(Report& report, const std::string& name, const std::vector<Meth
     report.row(name, prefix + "over_100mm_percent", lost_percent(method.draws), "%");
     report.row(name, prefix + "refused_percent", refused_percent(method.draws), "%");
   }
-  report.row(name, "ellipse95_cover_percent", covered_percent(scores.front().draws), "%");
+  report_stated(report, name, scores.front().draws);
 }
 
 double lost_percent(const std::vector<Score>& draws) {

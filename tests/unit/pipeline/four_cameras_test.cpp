@@ -63,6 +63,7 @@ RegistrationConfig camera_registration() {
   config.min_spread = 0.0;    // balancing on the spot: only the body itself has an extent
   config.max_edge_rms = 0.5;  // depth differs by decimetres
   config.max_speed = 10.0;    // depth jitters at 60 Hz
+  config.max_position = 1.5;  // as far as such cameras can tell
   return config;
 }
 

@@ -84,6 +84,8 @@ Registration solved_with(const Matrix6& covariance) {
   };
   RegistrationConfig config;
   config.master = sensor(1);
+  config.adjust_together = false;
+  config.max_position = 1.0;
   const WalkSpec spec{.length = 2, .noise = 0.0};
   return solve_with(estimate, {watch(1, kTarget, spec), watch(2, kSource, spec)}, kWalkStart,
                     config);

@@ -1,5 +1,6 @@
 #include "fusion-server/registration/pairs.h"
 
+#include <algorithm>
 #include <bit>
 #include <numbers>
 
@@ -47,6 +48,23 @@ TEST(TrailReader, InterpolatesBetweenFramesAndNeverBeyond) {
   EXPECT_FALSE(reader.at(kWalkStart + 2 * kFrame));
 }
 
+TEST(TrailOf, MarksTheFramesAtWhichThePersonHadMoved) {
+  const WalkSpec still{
+      .path = [](double) { return Eigen::Vector2d(0.2, 0.1); }, .length = 2, .noise = 0.001};
+  const Trail resting = trail_of(watch(1, ring_place(0), still), JointChoice::Core);
+  const Trail walking = trail_of(watch(1, ring_place(0), {.length = 2}), JointChoice::Core);
+  const auto moved = [](const Trail& trail) {
+    return std::ranges::count_if(trail.frames, &TrailFrame::moved);
+  };
+  ASSERT_EQ(resting.frames.size(), walking.frames.size());
+  EXPECT_LT(moved(resting), 12);  // the person turns and bobs by 20 mm
+  EXPECT_GT(moved(walking), 40);
+  const Trail other = trail_of(watch(2, ring_place(1), still), JointChoice::Core);
+  const Pairing pairing = pair_up(other, resting, {});
+  EXPECT_GT(pairing.resting, pairing.together / 2);
+  EXPECT_LE(pairing.instants, static_cast<std::size_t>(moved(resting)));
+}
+
 TEST(TrailReader, RefusesWideGapsAndOtherBodies) {
   const Trail trail = trail_with({frame_at(Duration{0}, {0, 1, 2}), frame_at(2 * kFrame, {0, 1, 2}),
                                   frame_at(3 * kFrame, {0, 1, 2}, 2)});
@@ -78,7 +96,7 @@ TEST(PairUp, GivesTheSameInstantOfBothSensors) {
   const Trail source = trail_of(watch(2, two, exact), JointChoice::Core);
   const Pairing pairing = pair_up(target, source, {});
   EXPECT_GT(pairing.pairs.size(), 800u);
-  EXPECT_EQ(pairing.pairs.size(), 6 * pairing.instants);
+  EXPECT_EQ(pairing.pairs.size(), 8 * pairing.instants);
   for (const Pair& pair : pairing.pairs) {
     EXPECT_LT((one * pair.x_in_target - two * pair.x_in_source).norm(), mm(2));
     EXPECT_NEAR(pair.ray_in_target.dot(pair.x_in_target), pair.x_in_target.norm(), 1e-9);
@@ -171,7 +189,7 @@ TEST(TrailOf, TakesTrackedJointsOfALoneBodyInTheOrderOfTime) {
 
 TEST(SlotsOf, EveryChoiceStartsWithWhatItPromises) {
   EXPECT_EQ(slots_of(JointChoice::Neck).size(), 1u);
-  EXPECT_EQ(slots_of(JointChoice::Core).size(), 6u);
+  EXPECT_EQ(slots_of(JointChoice::Core).size(), 8u);
   EXPECT_EQ(slots_of(JointChoice::All).size(), kJointCount);
   EXPECT_EQ(slots_of(JointChoice::Neck)[0].first, JointId::Neck);
   for (const JointChoice choice : {JointChoice::Neck, JointChoice::Core, JointChoice::All}) {

@@ -221,15 +221,62 @@ TEST(Solve, FromThreeSensorsOnAllAreAdjustedTogether) {
   EXPECT_LT(adjusted, 0.9 * chained);
 }
 
-TEST(Solve, TwoSensorsAreNotAdjusted) {
-  RegistrationConfig chains_only;
-  chains_only.adjust_together = false;
-  const auto walk = ring(2, {.length = 5});
-  const Registration alone = solve(walk, kWalkStart, chains_only);
-  const Registration together = solve(walk, kWalkStart, {});
-  for (const auto& [id, place] : alone.sensors) {
-    EXPECT_EQ(place.world_from_sensor.matrix(), together.sensors.at(id).world_from_sensor.matrix());
+/// A person who walks elsewhere at the same time.
+Eigen::Vector2d stroll(double t) {
+  return {0.9 * std::cos(0.37 * t) - 0.3 * std::sin(1.7 * t), 0.8 * std::sin(0.83 * t + 2.0)};
+}
+
+WalkTrack mirrored(WalkTrack track) {
+  for (SensorFrame& frame : track.frames) {
+    for (Joint& joint : frame.bodies[0].skeleton.joints) joint.position.x() *= -1.0;
   }
+  return track;
+}
+
+void expect_only_refused(const Registration& registration, int odd, const std::string& reason) {
+  EXPECT_FALSE(registration.sensors.contains(sensor(odd)));
+  EXPECT_EQ(registration.verdicts.at(sensor(odd)).verdict, Verdict::Refused);
+  EXPECT_THAT(registration.verdicts.at(sensor(odd)).reasons, Contains(HasSubstr(reason)));
+  for (int i = 0; i < 4; ++i) {
+    if (i == odd) continue;
+    ASSERT_TRUE(registration.sensors.contains(sensor(i))) << i;
+    EXPECT_LT(error_of(registration, i, 4).position, mm(20)) << i;
+  }
+}
+
+TEST(Solve, WhoFollowedSomebodyElseIsRefusedByNameAndTheRestStands) {
+  std::vector<WalkTrack> walk = ring(4, {});
+  walk[3] = watch(3, ring_place(1.5 * std::numbers::pi), {.path = stroll});
+  expect_only_refused(solve(walk, kWalkStart, {}), 3, "sensor s3 contradicts s0, s1, s2");
+}
+
+TEST(Solve, AMirroredOneIsRefusedByNameEvenAsTheWantedMaster) {
+  std::vector<WalkTrack> walk = ring(4, {});
+  walk[1] = mirrored(walk[1]);
+  RegistrationConfig config;
+  config.master = sensor(1);
+  expect_only_refused(solve(walk, kWalkStart, config), 1, "sensor s1 contradicts s0, s2, s3");
+}
+
+TEST(Solve, OneWhoseClockIsWrongIsRefusedByName) {
+  std::vector<WalkTrack> walk = ring(4, {});
+  for (SensorFrame& frame : walk[2].frames) frame.captured += std::chrono::seconds(3);
+  expect_only_refused(solve(walk, kWalkStart, {}), 2, "sensor s2 contradicts s0, s1, s3");
+}
+
+TEST(Solve, OneThatRepeatsAnotherIsRefusedByName) {
+  std::vector<WalkTrack> walk = ring(4, {});
+  walk[3].frames = walk[1].frames;
+  expect_only_refused(solve(walk, kWalkStart, {}), 3, "sensor s3 reports exactly what s1 reports");
+}
+
+TEST(Solve, APlaceThatNobodyCanVouchForIsRefusedWithWhereToWalk) {
+  RegistrationConfig strict;
+  strict.max_position = mm(5);
+  const Registration refused = solve(ring(3, {.length = 10}), kWalkStart, strict);
+  EXPECT_EQ(refused.verdict, Verdict::Refused);
+  EXPECT_THAT(refused.reasons, Contains(HasSubstr("of 0.01 m allowed: walk where s")));
+  EXPECT_EQ(solve(ring(3, {.length = 10}), kWalkStart, {}).sensors.size(), 3u);
 }
 
 /// Edges of a star: sensor 2 has an edge to every other, the others only to it.
@@ -259,6 +306,7 @@ TEST(Solve, AHeadDownOrBuriedSensorIsRefusedAndNamed) {
   };
   RegistrationConfig config;
   config.master = sensor(0);
+  config.adjust_together = false;
   wrong.linear() = Eigen::AngleAxisd(deg(170), Eigen::Vector3d::UnitZ()).toRotationMatrix();
   auto walk = ring(2, {.length = 1});  // with its own floor its place would be known
   for (SensorFrame& frame : walk[1].frames) frame.floor.reset();

@@ -1,0 +1,199 @@
+#include "fusion-server/registration/consensus.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "common/base/units.h"
+#include "common/geometry/rotation.h"
+
+namespace chorus::registration {
+namespace {
+
+constexpr double kLeastLoop = 0.15;  // [m] triangles that close to within this are closed
+constexpr double kLoopOfRms = 2.0;   // ... or within this much of the residuals of their edges
+constexpr double kLoopTurn = deg(15);
+constexpr double kSameRms = 1e-4;    // [m] no two sensors measure alike to within this
+constexpr double kSamePlace = 1e-3;  // [m], [rad]
+
+bool of(const SensorId& sensor, const SensorId& target, const SensorId& source) {
+  return sensor == target || sensor == source;
+}
+
+bool joins(const PairwiseRegistration& edge, const SensorId& a, const SensorId& b) {
+  return of(a, edge.target, edge.source) && of(b, edge.target, edge.source) && a != b;
+}
+
+/// to_from_from along an edge, whichever way it was estimated.
+Eigen::Isometry3d along(const PairwiseRegistration& edge, const SensorId& to) {
+  return edge.target == to ? edge.target_from_source : edge.target_from_source.inverse();
+}
+
+const PairwiseRegistration* edge_of(const Evidence& evidence, const SensorId& a,
+                                    const SensorId& b) {
+  const auto found = std::ranges::find_if(
+      evidence.edges, [&](const PairwiseRegistration& edge) { return joins(edge, a, b); });
+  return found == evidence.edges.end() ? nullptr : &*found;
+}
+
+std::set<SensorId> sensors_of(const Evidence& evidence) {
+  std::set<SensorId> all;
+  for (const PairwiseRegistration& edge : evidence.edges) all.insert({edge.target, edge.source});
+  for (const Contradiction& each : evidence.contradictions) all.insert({each.target, each.source});
+  return all;
+}
+
+/// What speaks for and against one sensor.
+struct Standing {
+  int credit = 0;
+  int blame = 0;
+  double misfit = 0.0;  ///< Sum over its edges: residual over the share of pairs that agree [m].
+  std::set<SensorId> accusers;
+  double widest = 0.0;  ///< Largest loop error [m]; infinite: turned.
+
+  [[nodiscard]] int excess() const { return blame - credit; }
+};
+
+using Standings = std::map<SensorId, Standing>;
+
+void count_pairs(const Evidence& evidence, Standings& standings) {
+  for (const PairwiseRegistration& edge : evidence.edges) {
+    const double share = static_cast<double>(std::max<std::size_t>(1, edge.inliers)) /
+                         static_cast<double>(std::max<std::size_t>(1, edge.pairs));
+    for (const SensorId& each : {edge.target, edge.source}) {
+      ++standings[each].credit;
+      standings[each].misfit += edge.rms / share;
+    }
+  }
+  for (const Contradiction& each : evidence.contradictions) {
+    ++standings[each.target].blame;
+    ++standings[each.source].blame;
+    standings[each.target].accusers.insert(each.source);
+    standings[each.source].accusers.insert(each.target);
+  }
+}
+
+void count_triangle(const std::array<SensorId, 3>& corners, const Evidence& evidence,
+                    Standings& standings) {
+  const PairwiseRegistration* ab = edge_of(evidence, corners[0], corners[1]);
+  const PairwiseRegistration* bc = edge_of(evidence, corners[1], corners[2]);
+  const PairwiseRegistration* ca = edge_of(evidence, corners[2], corners[0]);
+  if (ab == nullptr || bc == nullptr || ca == nullptr) return;
+  const double off = loop_error(*ab, *bc, *ca, evidence);
+  const bool closed = off <= std::max(kLeastLoop, kLoopOfRms * (ab->rms + bc->rms + ca->rms));
+  for (const SensorId& each : corners) {
+    Standing& standing = standings[each];
+    ++(closed ? standing.credit : standing.blame);
+    if (closed) continue;
+    standing.widest = std::max(standing.widest, off);
+    for (const SensorId& other : corners) {
+      if (other != each) standing.accusers.insert(other);
+    }
+  }
+}
+
+Standings standings_of(const Evidence& evidence) {
+  Standings standings;
+  count_pairs(evidence, standings);
+  const std::set<SensorId> all = sensors_of(evidence);
+  for (auto a = all.begin(); a != all.end(); ++a) {
+    for (auto b = std::next(a); b != all.end(); ++b) {
+      if (edge_of(evidence, *a, *b) == nullptr) continue;
+      for (auto c = std::next(b); c != all.end(); ++c)
+        count_triangle({*a, *b, *c}, evidence, standings);
+    }
+  }
+  return standings;
+}
+
+/// Who stands worst; of equals, whose pairs fit worst.  None where there is nothing to blame.
+std::optional<SensorId> worst_of(const Standings& standings) {
+  const auto key = [](const Standing& standing) {
+    return std::pair(standing.excess(), standing.misfit / std::max(1, standing.credit));
+  };
+  const auto worst = std::ranges::max_element(
+      standings, [&](const auto& a, const auto& b) { return key(a.second) < key(b.second); });
+  if (worst == standings.end()) return std::nullopt;
+  const Standing& standing = worst->second;
+  const bool convicted = standing.excess() >= 0 || standing.widest > 0.0;
+  if (standing.blame == 0 || !convicted) return std::nullopt;
+  return worst->first;
+}
+
+void remove(Evidence& evidence, const SensorId& sensor) {
+  std::erase_if(evidence.edges, [&](const PairwiseRegistration& edge) {
+    return of(sensor, edge.target, edge.source);
+  });
+  std::erase_if(evidence.contradictions,
+                [&](const Contradiction& each) { return of(sensor, each.target, each.source); });
+}
+
+std::string reason_for(const SensorId& sensor, const Standing& standing) {
+  std::vector<std::string> accusers;
+  for (const SensorId& each : standing.accusers) accusers.push_back(each.str());
+  const std::string by = std::isfinite(standing.widest) && standing.widest > 0.0
+                             ? fmt::format(", who place it {:.2f} m apart", standing.widest)
+                             : std::string();
+  return fmt::format(
+      "sensor {} contradicts {}{}: it followed somebody else, is mirrored, or its clock is wrong; "
+      "walk alone",
+      sensor.str(), fmt::join(accusers, ", "), by);
+}
+
+/// Two sensors that report the same numbers: the second repeats the first.
+std::optional<Outcast> copy_among(const Evidence& evidence) {
+  for (const PairwiseRegistration& edge : evidence.edges) {
+    const double off = edge.target_from_source.translation().norm() +
+                       angular_distance(Eigen::Quaterniond(edge.target_from_source.linear()),
+                                        Eigen::Quaterniond::Identity());
+    if (edge.rms > kSameRms || off > kSamePlace) continue;
+    const auto [first, second] = std::minmax(edge.target, edge.source);
+    return Outcast{second, fmt::format("sensor {} reports exactly what {} reports: one of them "
+                                       "repeats the other",
+                                       second.str(), first.str())};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+double loop_error(const PairwiseRegistration& ab, const PairwiseRegistration& bc,
+                  const PairwiseRegistration& ca, const Evidence& evidence) {
+  const SensorId a = of(ab.target, ca.target, ca.source) ? ab.target : ab.source;
+  const SensorId b = ab.target == a ? ab.source : ab.target;
+  const SensorId c = ca.target == a ? ca.source : ca.target;
+  const Eigen::Isometry3d around = along(ab, a) * along(bc, b) * along(ca, c);
+  const double turn =
+      angular_distance(Eigen::Quaterniond(around.linear()), Eigen::Quaterniond::Identity());
+  if (turn > kLoopTurn) return std::numeric_limits<double>::infinity();
+  const auto middle = evidence.middles.find(a);
+  const Eigen::Vector3d x =
+      middle == evidence.middles.end() ? Eigen::Vector3d::Zero() : middle->second;
+  return (around * x - x).norm();
+}
+
+std::vector<Outcast> cast_out(Evidence& evidence) {
+  std::vector<Outcast> outcasts;
+  while (const auto copy = copy_among(evidence)) {
+    outcasts.push_back(*copy);
+    remove(evidence, copy->sensor);
+  }
+  while (sensors_of(evidence).size() > 2) {
+    const Standings standings = standings_of(evidence);
+    const auto worst = worst_of(standings);
+    if (!worst) break;
+    Evidence rest = evidence;
+    remove(rest, *worst);
+    if (rest.edges.empty()) break;
+    outcasts.push_back({*worst, reason_for(*worst, standings.at(*worst))});
+    evidence = std::move(rest);
+  }
+  return outcasts;
+}
+
+}  // namespace chorus::registration
