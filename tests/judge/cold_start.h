@@ -30,7 +30,7 @@ struct ColdScript {
   synthetic::Ring ring = {};  ///< The sensors between which they come in.
 };
 
-/// Its time counts from 1970.
+/// Makes such a person; the time of a Person counts from 1970.
 [[nodiscard]] synthetic::Person cold_starter(const ColdScript& script);
 
 }  // namespace chorus::bench

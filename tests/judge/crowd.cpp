@@ -23,7 +23,7 @@ constexpr double kStint = 10.0;                     // of one person in a relay 
 constexpr double kMinPause = 0.3, kMaxPause = 2.0;  // [s]
 constexpr double kNever = 1e9;                      // [s]
 constexpr double kBeside = 0.5;                     // from the middle, for two side by side [m]
-constexpr double kBench = 0.2;                      // between one's neighbouring stations [m]
+constexpr double kBench = 0.2;  // between neighbouring stations of one person [m]
 enum Purpose : std::uint64_t { kBuild = 701, kSpeed, kHour, kPause };
 
 /// A walker of random build, starting somewhere in their loop.
@@ -63,7 +63,7 @@ synthetic::Person placed(const WalkerScript& script, const Placing& placing) {
   };
 }
 
-/// A time in the room, counted from the beginning [s]; `behind`: for how long the walk has paused.
+/// A time in the room, counted from the beginning [s]; `behind` is how long the walk has paused.
 struct Stint {
   double enters = 0.0;
   double leaves = kNever;

@@ -1,7 +1,8 @@
 // How well the answered people keep their identities, compared with the truth.
 //
-// CLEAR-MOT matching: a true person keeps its answer as long as that is within reach; the others
-// are assigned one-to-one with the least total distance.  Horizontal distances [m].
+// CLEAR-MOT matching: a true person keeps its answer as long as that is within reach; the other
+// people get the other answers one-to-one, with the least total distance.  Horizontal distances
+// [m].
 #pragma once
 
 #include <cstdint>

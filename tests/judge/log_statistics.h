@@ -25,8 +25,8 @@ struct LogStatistics {
   std::size_t frames = 0;
 };
 
-/// Statistics of the body with this id, or of the first body in each frame.  Frames must be in
-/// capture order; third differences are only taken over four frames at the usual rate.
+/// Statistics of the first body of each frame.  Frames must be in capture order; third differences
+/// are taken only over four frames at the usual rate.
 [[nodiscard]] LogStatistics statistics_of(const std::vector<SensorFrame>& frames);
 
 /// Standard deviation, and autocorrelation at a lag given in samples; NaN for too few.

@@ -9,12 +9,12 @@
 
 namespace chorus::bench {
 
-/// Delay of one direction: least + exponential; sometimes a spike is added. [s]
+/// Delay of one direction: least + exponential, sometimes plus a spike [s].
 struct Network {
   double least = 0.4e-3;
   double jitter = 1.5e-3;     ///< Mean of the exponential part.
   double spike_share = 0.05;  ///< Fraction of the messages.
-  double spike = 30e-3;       ///< Mean of its exponential.
+  double spike = 30e-3;       ///< Mean of the spike, which is exponential, too.
   double asymmetry = 0.0;     ///< The request takes this much longer than the answer.
 };
 

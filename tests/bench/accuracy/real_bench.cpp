@@ -26,8 +26,9 @@ using importers::Lateral;
 
 constexpr const char* kFolder = "tests/data/pose2sim_mediapipe";  // run from the repository root
 constexpr double kRateHz = 60.0;                                  // of the recording
-constexpr double kPlainMeanMm = 104;   // measured outside this project: plain mean of the four,
-constexpr double kBestCameraMm = 140;  // and the best single camera
+// Errors measured outside this project: of the plain mean of the four cameras, and of the best one.
+constexpr double kPlainMeanMm = 104;
+constexpr double kBestCameraMm = 140;
 
 constexpr double kNoWorseMm = 5;
 

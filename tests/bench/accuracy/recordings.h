@@ -11,8 +11,8 @@ namespace chorus::bench {
 /// Kinect v2 compared with optical targets: raw, and the same frames fused by the pipeline.
 [[nodiscard]] Result<void> compare_with_keraal(Report& report, const std::filesystem::path& folder);
 
-/// Three cameras of one take without clocks: closure of the yaws along chains, copied camera files,
-/// and which pairs count as registered.
+/// Three cameras of one take without clocks: reports how well the yaws along chains close, whether
+/// copied camera files are refused, and how many pairs are accepted.
 [[nodiscard]] Result<void> close_nw_ucla_chains(Report& report,
                                                 const std::filesystem::path& folder);
 
@@ -22,7 +22,7 @@ namespace chorus::bench {
 /// Checks capture times.
 [[nodiscard]] Result<void> time_labanotation(Report& report, const std::filesystem::path& folder);
 
-/// Left and right after the pipeline, one sensor each.
+/// How often left and right are right after the pipeline, each recording fused as a single sensor.
 [[nodiscard]] Result<void> side_labanotation(Report& report, const std::filesystem::path& folder);
 [[nodiscard]] Result<void> side_keraal(Report& report, const std::filesystem::path& folder);
 [[nodiscard]] Result<void> side_ntu(Report& report, const std::filesystem::path& folder);

@@ -26,9 +26,9 @@ using record::FrameRecording;
 
 using Body = Skeleton<WorldSpace>;
 
-/// Whether the labels of the body at frame `index` are right; nothing where that is unknown.
+/// What is known about the labels of one body.
 struct Truth {
-  bool as_labelled = true;  ///< The sensor's own labels are right.
+  bool as_labelled = true;  ///< The sensor's own left and right are correct.
 };
 using Judge =
     std::function<std::optional<Truth>(const FrameRecording&, std::size_t index, const Body& raw)>;

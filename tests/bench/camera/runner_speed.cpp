@@ -32,7 +32,7 @@ Result<std::vector<cv::Mat>> pictures() {
   return all;
 }
 
-/// Six of them side by side.
+/// A picture of six copies of `one`, three by two.
 cv::Mat six_times(const cv::Mat& one) {
   cv::Mat row;
   cv::hconcat(std::vector<cv::Mat>{one, one, one}, row);

@@ -29,7 +29,7 @@ using Settings = std::vector<std::string>;  ///< "key=value"
 struct Neighbour {
   std::string id;
   std::uint16_t port = 0;
-  int place = -1;      ///< Place on the ring, counted with the sensors; -1: unknown.
+  int place = -1;      ///< Its place on the ring, after those of the sensors; -1: unknown.
   bool honest = true;  ///< Expected to contribute.
 };
 
@@ -55,7 +55,7 @@ class Cell {
   [[nodiscard]] static Result<Cell> start(CellPlan plan);
 
   [[nodiscard]] Result<void> start_sensor(int index);
-  /// For its next start.
+  /// Sets what the sensor gets at its next start.
   void change_sensor(int index, Settings settings) { plan_.of_sensor[index] = std::move(settings); }
   [[nodiscard]] Result<void> start_fusion();
   /// Waits until every placed sensor contributes to one body.
@@ -81,7 +81,7 @@ class Cell {
   [[nodiscard]] http::ClientResponse ask(http::ClientRequest request) const;
   /// The answer to a GET as JSON; discarded() when there is no such answer.
   [[nodiscard]] nlohmann::json json(const std::string& path) const;
-  /// What /sensors/ says about this sensor.
+  /// What /sensors/ reports of this sensor.
   [[nodiscard]] nlohmann::json told_of(const std::string& sensor) const;
 
  private:

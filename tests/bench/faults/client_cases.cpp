@@ -30,7 +30,7 @@ CellPlan open_cell() {
   return plan;
 }
 
-/// While clients misbehave for `duration` [s], all others go on.
+/// Summary of what a well-behaved client sees during the next `duration` [s].
 Account watched(const Watch& watch, double duration) {
   const Timestamp begun = now();
   wait_for(duration);
@@ -84,7 +84,7 @@ Result<void> slowloris(Trial& trial) {
   return {};
 }
 
-/// Forty clients send requests and never read; nothing may accumulate for them.
+/// Forty clients send `request` `times` times each and never read; nothing may accumulate for them.
 Result<void> never_reading(Trial& trial, std::string_view request, int times) {
   constexpr int kMany = 40;
   constexpr double kMaxMore = 25.0;  // [MB]

@@ -44,7 +44,7 @@ class Pump {
   void become(const LinkModel& model);
   /// From now on nothing passes, and no end is told: like an unplugged cable.
   void freeze(bool frozen);
-  /// The next answer stops after `bytes` bytes, and all data after it.
+  /// Lets `bytes` more bytes of answers pass; then answers stop until freeze(false).
   void freeze_after(std::size_t bytes);
 
  private:

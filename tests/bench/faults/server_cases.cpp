@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The pose of every sensor, compared bit by bit.
+/// The poses of all sensors as a string with all digits, for comparison; empty if there are none.
 std::string extrinsics(const Cell& cell) {
   nlohmann::json out;
   const auto told = cell.json("/registration");
@@ -70,8 +70,8 @@ Result<void> server_killed(Trial& trial) {
   return kill_and_return(trial, *cell);
 }
 
-/// The state folder of the configuration that we ship, under a home folder of its own; the server
-/// dies after a walk.
+/// The shipped configuration keeps its state in a folder of the user; here that user has an empty
+/// home.  The server is killed after a walk and must come back registered.
 Result<void> default_folders(Trial& trial) {
   auto home = ScratchFolder::make();
   if (!home) return pass(home);
@@ -178,7 +178,7 @@ Result<void> full_disk(Trial& trial) {
   return {};
 }
 
-/// Exit code and stderr of a program that ended; none while it is running.
+/// How a program ended.
 struct Ending {
   int code = 0;
   std::string said;

@@ -33,7 +33,7 @@ class Watch {
 
   /// All frames until now.  Frames that the watcher was too slow for are fetched afterwards.
   [[nodiscard]] std::vector<FusedInstant> seen() const;
-  /// The newest; sequence 0: none yet.
+  /// The newest frame; its sequence is 0 if there is none yet.
   [[nodiscard]] FusedInstant newest() const;
 
  private:

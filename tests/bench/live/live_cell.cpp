@@ -30,7 +30,7 @@ constexpr double kHeight = 1.4;  // [m]
 constexpr std::size_t kKept = 90;
 constexpr auto kPatience = std::chrono::seconds(30);
 
-/// They sway, as people do: coordinates that never change are refused as implausible.
+/// People who sway as real ones do: coordinates that never change are refused as implausible.
 std::vector<Skeleton<WorldSpace>> people(int count, Timestamp now) {
   constexpr double kSway = 0.005;                   // [m]
   constexpr std::int64_t kSwaying = 4'000'000'000;  // [ns]

@@ -50,7 +50,7 @@ double minutes(const Report& report) {
   return report.quick() ? kQuickMinutes : kLongMinutes;
 }
 
-/// The same for every run with one seed, and long enough that compression finds no repetition.
+/// Noise that is the same in all runs with one seed and repeats too late for compression to notice.
 class Noise {
  public:
   explicit Noise(std::uint64_t seed) : draws_(kDraws) {

@@ -29,8 +29,8 @@ constexpr double kQuickRun = 6.0;     // [s]
 constexpr double kMaxToWire = 0.050;  // [s], the claim
 constexpr double kMaxCores = 0.5;     // the claim, without the simulation
 
-/// The last frame that the instant had to wait for, out of each sensor's first frame at or after
-/// it.  Before that frame the instant cannot be answered, whatever the software does.
+/// Of each sensor's first frame at or after an instant, the latest one.  Until it is delivered the
+/// instant cannot be fused, whatever the software does.
 struct Needed {
   Timestamp captured{};
   Timestamp delivered{};  ///< When a watcher of the sensor received that frame.
@@ -103,7 +103,7 @@ void report_frames(Report& report, const SystemCase& asked, const Observed& seen
   report.condition(c + ": no frame is lost or doubled", frames.lost == 0 && frames.doubled == 0);
   report.condition(c + ": fused frames come at 30 Hz", std::abs(hz - kRate) < 0.3);
   report.condition(c + ": delivery to wire p99 is below 50 ms", from_delivery < kMaxToWire);
-  // Other simulated devices need time from capture to delivery, as real ones do.
+  // Other profiles simulate the time from capture to delivery that real devices need.
   if (asked.profile == "gauss") {
     report.condition(c + ": capture to wire p99 is below 50 ms", from_capture < kMaxToWire);
   }

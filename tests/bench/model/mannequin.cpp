@@ -29,8 +29,8 @@ Scene scene_with(Person mannequin) {
   return scene;
 }
 
-/// Only what a mannequin on a robot arm shows: no frame is lost, nothing else is in the
-/// room.
+/// The profile without gross errors, lost frames and clock errors: a mannequin on a robot arm has
+/// none of them.
 kinect::Profile on_the_arm(kinect::Profile profile) {
   using kinect::Source;
   for (const Source source : {Source::Gross, Source::Delivery, Source::Clock}) {

@@ -25,8 +25,9 @@ struct MannequinSample {
 [[nodiscard]] std::vector<MannequinSample> swing_85(const synthetic::kinect::Profile& profile,
                                                     std::uint64_t seed);
 
-/// Mean displacement of one joint from frame to frame at true yaws within these bounds [m]; Otto
-/// Fig. 7.  From second differences, so that the slow turn itself does not count.
+/// Mean displacement [m] of one joint from frame to frame while the true yaw is between the two
+/// angles [rad] (Otto Fig. 7).  Computed from second differences, so that the slow turn does not
+/// count.
 [[nodiscard]] double jitter(const std::vector<MannequinSample>& samples, JointId joint,
                             double least_angle, double most_angle);
 

@@ -15,8 +15,8 @@ namespace {
 using http::DocumentPtr;
 
 constexpr int kConnections = 64;
-constexpr double kMinRatio = 0.85;  // Fraction of nginx's requests per second.
-constexpr double kMaxAgeMs = 5.0;   // 99 % of long-polled frames are younger.
+constexpr double kMinRatio = 0.85;  // fraction of nginx's requests per second
+constexpr double kMaxAgeMs = 5.0;   // 99 % of long-polled frames are younger
 constexpr double kFramesPerSecond = 30;
 constexpr int kJoints = 25;
 

@@ -40,8 +40,8 @@ class ServingProcess {
   std::optional<ScratchFolder> folder_ = {};  ///< nginx's.
 };
 
-/// Servers run on one core and the load on another, the same for all servers; on a machine with one
-/// core nothing is pinned.  Called in a child before it starts.
+/// Pins this process, and those it starts, to one core: servers to one, load generators to another.
+/// Does nothing on a machine with one core.
 enum class Side { Server, Load };
 void keep_to_side(Side side);
 

@@ -262,7 +262,7 @@ TEST(WebSocket, LongCookiesDoNotKeepAPageOut) {
   EXPECT_THAT(page.hear_until(R"({"n":1})"), HasSubstr("101 "));
 }
 
-/// False while the server still counts a connection.
+/// Waits until the server counts no open connection; false if it still counts one after 20 s.
 bool no_connection(const Server& server) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   while (server.counters().connections_open != 0) {

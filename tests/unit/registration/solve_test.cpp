@@ -232,7 +232,7 @@ TEST(Solve, TwoSensorsAreNotAdjusted) {
   }
 }
 
-/// Edges of a star: sensor 2 has an edge to every other, the others only to it.
+/// A star: only the edges of sensor 2 are accurate.
 TEST(Solve, TheMasterIsWhoReachesMostWithTheLeastError) {
   const PairEstimator star = [](const Walker& target, const Walker& source) {
     PairwiseRegistration edge{target.trail.sensor, source.trail.sensor};
