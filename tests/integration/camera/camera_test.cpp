@@ -83,7 +83,8 @@ class Rig {
     });
   }
   void stop() { running_ = {}; }
-  /// The captures so far, once there are `least`, or no more will come.
+  /// Waits until there are `least` captures, no more will come, or the time is over; returns all so
+  /// far.
   std::vector<Capture> captures(std::size_t least, Duration patience = 20s) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, patience, [&] { return captures_.size() >= least || over_; });

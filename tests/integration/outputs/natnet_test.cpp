@@ -48,7 +48,7 @@ std::unique_ptr<Server> server_with(ServerOptions given) {
   return server ? std::move(*server) : nullptr;
 }
 
-/// The first byte of the frame is `number`.
+/// Publishes a frame whose first byte is `number`.
 void publish(Server& server, char number, std::size_t bytes = 60) {
   Bytes payload(bytes);
   payload.front() = number;
@@ -169,7 +169,7 @@ TEST(NatNetServer, TheGroupHearsUsByTheAddressWeListenOn) {
   EXPECT_EQ(ask(client, *server, kConnect).size(), 283u);
   publish(*server, 'a');
   const std::string heard = joined ? member.next(1000) : "";
-  EXPECT_EQ(client.next(200), "");  // it only asked where frames are sent
+  EXPECT_EQ(client.next(200), "");  // the client only asked where frames are sent
   if (heard.empty()) GTEST_SKIP() << "runs where loopback has multicast";
   EXPECT_EQ(heard.substr(0, 5), "\7\0\x3C\0a"s);
 }

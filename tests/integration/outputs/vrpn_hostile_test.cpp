@@ -109,7 +109,8 @@ TEST_F(HostileVrpn, AClientThatPingsAndNeverReadsIsClosed) {
   for (int i = 0; i < 1000; ++i) flood += ping;
   deaf.say(pings);
   ASSERT_TRUE(wait_until([&] { return server->counters().clients == 2; }));
-  // It sends until the server reads no more; the server's memory is limited, so that is soon.
+  // The client sends until the server reads no more; the server's memory is limited, so that is
+  // soon.
   std::thread saying([&] {
     while (deaf.say(flood)) {
     }
@@ -150,7 +151,7 @@ TEST_F(PatientVrpn, FromAClientThatPingsAndNeverReadsNoMoreIsRead) {
   for (int i = 0; i < 1000; ++i) pings += vrpn_message(0, 0, "");
   EXPECT_LT(bytes_taken(deaf, pings, kMax), kMax);
   EXPECT_EQ(server->counters().clients, 1u);
-  // Its answers are being read now, so the server reads again.
+  // The client reads its answers now, so the server reads again.
   std::size_t heard = 0;
   while (deaf.say_some(pings.substr(0, 24), std::chrono::milliseconds(0)) == 0 && heard < kMax) {
     const std::size_t more = deaf.hear_some(std::chrono::seconds(10)).size();

@@ -103,7 +103,7 @@ TEST_F(Vrpn, EveryClientGetsEveryFrameOnce) {
     publish(1, n);
     for (VrpnClient* client : {&by_tcp, &by_udp}) {
       double z = 0;
-      while (z < 10'000) {  // frames sent before that
+      while (z < 10'000) {  // skips the frames sent before that
         const auto message = client->next("vrpn_Tracker Pos_Quat");
         ASSERT_TRUE(message);
         z = pose_of(*message)->position.z();

@@ -34,7 +34,7 @@ struct Floor {
     tracks = grouping.tracks;
     return grouping.people;
   }
-  /// A person walks along x at `speed` [m/s] for `count` instants; returns where the next would be.
+  /// A person walks along x at `speed` [m/s]; returns x at the instant after the last one.
   double walk(double speed, int instants) {
     for (int i = 0; i < instants; ++i) see({view_at({speed * kFrameSeconds * i, 1, 0})});
     return speed * kFrameSeconds * instants;

@@ -102,7 +102,8 @@ TEST(ArrivalKalman, StatesTheTimeOfArrivalSoAWalkerIsWhereHeWas) {
   ASSERT_GT(stated.size(), 100u);
   const Stated& last = stated.back();
   EXPECT_EQ(last.instant, at_frame(199) + late);
-  EXPECT_NEAR(x_of(last.body, Neck), 0.04 * 199, 0.01);  // 0.1 s, 100 mm behind its stamp
+  // stated for 0.1 s after its capture: 100 mm behind the walker
+  EXPECT_NEAR(x_of(last.body, Neck), 0.04 * 199, 0.01);
 }
 
 TEST(ArrivalKalman, LeavesOutSensorsWithoutAPlace) {
@@ -132,7 +133,7 @@ TEST(NearestNeighbour, DoesNotPredictSoWhoPassesCloserIsTakenForTheOther) {
   NearestNeighbour neighbour;
   for (int i = 0; i < 3; ++i)
     (void)neighbour.group({at_place(1, 0, 0), at_place(1, 1, 0)}, at_frame(i));
-  // Only one sees it, half-way beyond the middle.
+  // One sensor sees one body, just beyond the middle between the two people.
   const auto people = neighbour.group({at_place(1, 0.55, 0)}, at_frame(3));
   ASSERT_EQ(people.size(), 1u);
   EXPECT_EQ(people[0].id, PersonId{2});

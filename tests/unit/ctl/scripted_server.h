@@ -18,8 +18,9 @@ class ScriptedServer {
  public:
   using Texts = std::map<std::string, std::vector<std::string>>;
 
-  /// Path -> its answers, text by text, the last one for all later requests; a path without texts
-  /// does not exist yet (503).  `refusal`: the one to POST /registration.
+  /// `texts` maps each path to its answers, one per request; the last one serves all later
+  /// requests. A path without answers does not exist yet (503).  `refusal` answers POST
+  /// /registration.
   explicit ScriptedServer(Texts texts, std::optional<Error> refusal = std::nullopt)
       : texts_(std::move(texts)), refusal_(std::move(refusal)) {
     auto router = std::make_shared<http::Router>();
@@ -45,7 +46,7 @@ class ScriptedServer {
   [[nodiscard]] std::string url() const {
     return "http://127.0.0.1:" + std::to_string(server_->port()) + "/";
   }
-  /// Requests that wrote: "POST {...}", "DELETE /registration".
+  /// The requests that change something: "POST {...}", "DELETE /registration".
   [[nodiscard]] std::vector<std::string> written() const {
     const std::scoped_lock lock(mutex_);
     return written_;

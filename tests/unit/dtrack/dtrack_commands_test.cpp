@@ -36,7 +36,7 @@ TEST(DtrackCommandReader, TakesTwoHundredBytesAndNoMore) {
   EXPECT_EQ(commands_in(reader), (std::vector<std::string>{std::string(200, 'x')}));
   EXPECT_TRUE(reader.feed(std::string(200, 'x')));
   EXPECT_FALSE(reader.feed("x"));
-  CommandReader hidden;  // after a good one
+  CommandReader hidden;  // an overlong command follows a good one
   EXPECT_FALSE(hidden.feed("dtrack2 getmsg\0"s.append(201, 'x') + '\0'));
 }
 

@@ -106,8 +106,8 @@ TEST(Sides, OutlastHandsBehindTheBack) {
   EXPECT_EQ(wrong_share(Ring({0.0}, {{deg(130), deg(55)}}), 30, standing, hands), 0.0);
 }
 
-/// By labels alone, a sensor that exchanges and its mirror image are indistinguishable; a sensor
-/// that does not exchange resolves this at once.
+/// By labels alone, a body seen by sensors that exchange sides cannot be told from its mirror
+/// image; sensors that never exchange them settle it at once.
 TEST(Sides, OfAPlankAreToldBySensorsThatLabelRight) {
   for (double heading = 0.0; heading < 2.0 * std::numbers::pi; heading += deg(20)) {
     const auto standing = [&](double) { return wrap_angle(heading); };
@@ -196,12 +196,12 @@ Skeleton<WorldSpace> between(const Skeleton<WorldSpace>& a, const Skeleton<World
   return body;
 }
 
-/// It shows 65 deg until it takes the back for the front, then 120: for three frames the sides are
-/// drawn together and swept to the other side.
+/// A tracker shows 65 deg until it takes the back for the front, then 120 deg.  In between, for
+/// three frames, it draws the sides together and sweeps them to the other side.
 TEST(Sides, AreNotDraggedAlongByATrackerThatChangesItsMind) {
   const auto front = body_at({0, 0, 0}, deg(65));
   const auto rear = exchanged(body_at({0, 0, 0}, deg(120)));
-  for (const bool second : {false, true}) {  // nor with a second view that hardly shows sides
+  for (const bool second : {false, true}) {  // also beside a second view that hardly shows sides
     SidesMemory memory;
     const auto narrow = between(front, exchanged(front), 0.45);
     for (int i = 0; i < 30; ++i) {
@@ -216,8 +216,8 @@ TEST(Sides, AreNotDraggedAlongByATrackerThatChangesItsMind) {
   }
 }
 
-/// A person at work turns in front of a camera that never exchanges sides; then a plank is first
-/// seen from its side, at an angle that leaves everything open before anything is known.
+/// A person at work turns in front of a camera that never exchanges sides.  Then a plank is first
+/// seen from its side, at an angle that decides nothing for a camera whose habit is unknown.
 TEST(Sides, OfALaterPersonAreToldByTheHabitThatAnEarlierOneTaught) {
   const auto plank = body_at({0, 0, 0}, deg(150));
   const auto first_odds = [&](const SidesMemory& from) {

@@ -17,7 +17,7 @@ using enum JointId;
 
 const std::vector<SensorId> kSensors{sensor(1), sensor(2), sensor(3)};
 
-/// Tracks the first `count` joints, all of them at x, and faces its sensor so.
+/// A view that tracks the first `count` joints, all of them at x, of a body turned by `facing`.
 SensorView view_of(int number, std::size_t count, double facing, double x = 0.0) {
   SensorView view = neck_view(number, {x, 1, 0}, 0.5);
   view.facing = facing;

@@ -61,7 +61,7 @@ TEST(CameraViews, ImportTheShippedFolderInStep) {
   }
 }
 
-/// Ceilings: the committed results (tests/bench/accuracy/real_bench.cpp) plus ten percent.
+/// The ceilings are the committed results of tests/bench/accuracy/real_bench.cpp plus ten percent.
 TEST(CameraViews, LieNearTheTriangulationAndBestAcrossTheLineOfSight) {
   const auto set = import_files(FileFormat::Pose2Sim, {kFolder});
   ASSERT_THAT(set, IsOk());

@@ -112,7 +112,7 @@ TEST(PeopleAround, AreOppositeToEachOther) {
 
 const Timestamp kBegin = from_unix_ns(1'795'000'000'000'000'000);
 
-/// The people in the room, some time after the beginning.
+/// Which people are in the room `time` seconds after the beginning.
 std::vector<bool> inside_at(const std::vector<synthetic::Person>& people, double time) {
   std::vector<bool> inside;
   for (const auto& person : people)

@@ -80,7 +80,7 @@ inline Eigen::Quaterniond about_z(double degrees) {
   return about(Eigen::Vector3d::UnitZ(), degrees);
 }
 
-/// The whole body after walking to `place` and turning.
+/// Turns the whole body about the origin by a yaw, and then moves it by `by`.
 inline void move(outlet::TrackerBody& body, const Eigen::Vector3d& by, double yaw_degrees) {
   for (outlet::TrackerJoint& joint : body.joints) {
     joint.position = by + about_up(yaw_degrees) * joint.position;

@@ -31,7 +31,7 @@ struct Cell {
 
 SensorId camera_id(int i) { return testing::sensor_id("cam" + std::to_string(i)); }
 
-/// On a ring, at most 90 deg apart.
+/// Poses of the cameras on a ring; neighbours are at most 90 deg apart.
 Eigen::Isometry3d place_of(const Cell& cell, int i) {
   return testing::ring_sensor(i, std::max(4, cell.cameras), 3.5, 1.5);
 }

@@ -22,7 +22,7 @@ using registration::WalkTrack;
 
 constexpr double kFrameRate = 60.0;
 constexpr double kPlainMean = 0.104;        // [m] median joint error of the plain mean, data README
-constexpr double kBestSingleCamera = 0.14;  // [m] the same
+constexpr double kBestSingleCamera = 0.14;  // [m] the same of the best single camera
 
 struct Recording {
   std::vector<WalkTrack> tracks;

@@ -59,7 +59,7 @@ struct Ring {
   Duration length = std::chrono::seconds(2);
 };
 
-/// At 30 Hz, each sensor with its own phase, so that no frames are simultaneous.
+/// Histories of all sensors at 30 Hz, each with its own phase, so that no frames are simultaneous.
 inline Histories ring_histories(const Ring& ring) {
   Histories histories;
   for (int i = 0; i < ring.sensors; ++i) {

@@ -66,7 +66,7 @@ TEST(AdjustTogether, FindsTheTruthOfAnExactWalkFromADisplacedStart) {
   }
 }
 
-/// By an independent sum over the pairs, moving any one sensor does not reduce the cost.
+/// Moving any one sensor does not reduce the cost, which this test sums over the pairs by itself.
 TEST(AdjustTogether, EndsWhereNoSingleMoveFitsTheWalkBetter) {
   Scene scene = scene_of({.noise = 0.01});
   scene.config.use_floor = false;

@@ -30,7 +30,7 @@ Points moved(const Eigen::Isometry3d& by, const Points& points) {
   return out;
 }
 
-/// Displaced by less than the distance between points.
+/// The pose `at`, displaced by less than the distance between points.
 Eigen::Isometry3d nearly(const Eigen::Isometry3d& at) {
   return small_motion((Vector6() << 0.004, 0.01, -0.004, 0.012, -0.01, 0.008).finished()) * at;
 }

@@ -25,7 +25,7 @@ PointMeasurements sights_of(const Eigen::Vector3d& x, double error) {
 
 const Eigen::Vector3d kX(0.4, 1.3, 2.5);
 
-/// E(T) of the header: the minimum over x of the sum.
+/// E(T) of point_elimination.h: the minimum over x of the sum.
 double energy(const PointMeasurements& measurements, const Places3& places, double along_ratio) {
   const FusedPoint fused = fuse_point(measurements, places, along_ratio);
   double sum = 0.0;

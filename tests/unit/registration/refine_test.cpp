@@ -90,7 +90,7 @@ TEST(Refine, TheCostCountsEachSensorsDepthForLess) {
   EXPECT_NEAR(cost_of(pair, at, kDepth), 0.5, 1e-12);  // one sigma across
   pair[0].x_in_target = x + Eigen::Vector3d(0, 0, mm(10));
   EXPECT_NEAR(cost_of(pair, at, kDepth), 0.5 / (kDepth * kDepth), 1e-12);
-  pair[0].ray_in_source = Eigen::Vector3d::UnitX();  // now only one of them does
+  pair[0].ray_in_source = Eigen::Vector3d::UnitX();  // now only the target looks along z
   EXPECT_NEAR(cost_of(pair, at, kDepth), 0.5 / (0.5 * (1.0 + kDepth * kDepth)), 1e-12);
   at.weights = {0.0};
   EXPECT_EQ(cost_of(pair, at, kDepth), 0.0);

@@ -26,7 +26,7 @@ inline Eigen::Isometry3d place(double x, double z, double yaw) {
   return world_from_sensor;
 }
 
-/// On a circle of `radius` about the origin, looking at it.
+/// Pose of a sensor on a circle of `radius` about the origin, looking at its centre.
 inline Eigen::Isometry3d ring_place(double angle, double radius = 3.0) {
   return place(radius * std::sin(angle), radius * std::cos(angle), angle + std::numbers::pi);
 }

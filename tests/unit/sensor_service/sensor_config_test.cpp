@@ -85,7 +85,8 @@ TEST(SensorConfig, AFileThatIsNotThereIsNamed) {
   EXPECT_THAT(to_string(settings.error()), HasSubstr("/no/such.json"));
 }
 
-/// A key in a device's section only counts when that device is chosen.
+/// The configuration with the device chosen to whose section the key belongs: only then the key
+/// counts.
 std::string choosing_its_device(const std::string& key, const std::string& text) {
   auto root = ConfigReader::parse(text, "test");
   for (const std::string kind : {"replay", "bridge", "camera"}) {

@@ -1,4 +1,4 @@
-// trackd's blocks, read at the offsets used by readers of others.
+// trackd's blocks, read at the offsets that other programs' readers use.
 #include "fusion-server/trackd/trackd_encoder.h"
 
 #include <sys/mman.h>

@@ -84,7 +84,7 @@ TEST(WithSource, AllOffIsThePlainTruth) {
   EXPECT_GT(none.bodies, none.frames * 9 / 10) << "only outside the view is nobody";
 }
 
-/// Everything off except this.
+/// A profile in which only this source is on.
 Profile only(Source source) {
   Profile profile = nominal_profile("B");
   for (const Source each : kAllSources) {

@@ -14,7 +14,7 @@ namespace {
 constexpr double kFrame = 0.033;
 using enum JointId;
 
-/// One axis over a long run.
+/// One axis of smooth noise over `length` frames.
 std::vector<double> run_of(double tau, int length) {
   SmoothNoise noise;
   std::vector<double> values;
