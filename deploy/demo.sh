@@ -248,8 +248,8 @@ watcher=(python3 -B deploy/watch_tracker.py --base "$base")
 setpriv --pdeathsig TERM "${watcher[@]}" &
 watch_pid=$!
 children+=("$watch_pid")
-# The end comes with the watcher's verdict, or with the fusion server's end.  A sensor that ends is only reported: the
-# tracker lives on without it, as it would in a workshop.
+# The demo ends when the watcher gives its verdict or the fusion server ends.  A sensor that ends is only reported: the tracker
+# lives on without it, as it would in a workshop.
 while true; do
   alive=()
   for child in "${children[@]}"; do

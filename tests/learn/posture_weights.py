@@ -129,7 +129,7 @@ def front_of(body):
 
 
 def offsets(body):
-    """As in posture.cpp, clamped to +-1."""
+    """Offsets of the cues along the front, as in posture.cpp, clamped to +-1."""
     front = front_of(body)
     if front is None:
         return None

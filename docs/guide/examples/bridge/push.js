@@ -18,7 +18,7 @@ function nanoseconds(now) {
 }
 
 export class Pusher {
-  /// `hello` without its type.  `tell` is called with every complaint of the sensor, as text.
+  /// `hello` lacks its type.  `tell` is called with every complaint of the sensor, a string.
   constructor(url, hello, { token = "", tell = console.warn, Socket = globalThis.WebSocket } = {}) {
     Object.assign(this, { url, tell, Socket });
     this.hello = JSON.stringify({ type: "hello", version: 1, ...hello });
@@ -53,7 +53,7 @@ export class Pusher {
     }
   }
 
-  /// One frame, [] when nobody is seen.  False when it was dropped.
+  /// Sends one frame; `bodies` is [] when nobody is seen.  Returns false if the frame was dropped.
   push(bodies, captured = performance.now(), more = {}) {
     this.sequence += 1;
     if (this.welcome === null || this.socket.bufferedAmount > MOST_UNSENT) {
