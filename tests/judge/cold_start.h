@@ -27,7 +27,7 @@ struct ColdScript {
   std::uint64_t seed = 1;
   Timestamp begin;  ///< Start of the first action.
   double body_scale = 1.0;
-  synthetic::Ring ring = {};  ///< The sensors between which they come in.
+  synthetic::Ring ring = {};  ///< The person comes in between two of its sensors.
 };
 
 /// Makes such a person; the time of a Person counts from 1970.

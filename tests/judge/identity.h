@@ -44,7 +44,7 @@ struct Identity {
   double minutes = 0.0;
   /// Mean time from a person's appearance to the first answer, over those who got one [s].
   double first_answer = 0.0;
-  /// How often an id followed another person than before for a second or longer.
+  /// How often an id, after one person, followed another for a second or longer.
   std::size_t inherited = 0;
   std::size_t spare_ids = 0;  ///< Ids of people who already had one.
 };

@@ -14,12 +14,14 @@ namespace chorus::bench {
 
 struct LogStatistics {
   std::array<Eigen::Vector3d, kJointCount> white{};  ///< Robust white noise per axis, tracked [m]
-  std::array<Eigen::Vector3d, kJointCount> white_inferred{};  ///< The same while inferred [m]
-  std::array<double, kJointCount> inferred_share{};           ///< Fraction of the joint's frames.
-  std::map<JointId, double> bone_std;                         ///< By child joint [m]
-  std::map<JointId, double> lag_frame;  ///< Autocorrelation of the bone length at one frame.
-  std::map<JointId, double> lag_third;  ///< The same at a third of a second.
-  std::map<JointId, double> lag_later;  ///< The same at 0.4 s.
+  std::array<Eigen::Vector3d, kJointCount> white_inferred{};  ///< White noise while inferred [m]
+  /// Fraction of the joint's frames in which it is inferred.
+  std::array<double, kJointCount> inferred_share{};
+  /// Standard deviation of a bone's length, by child joint [m]
+  std::map<JointId, double> bone_std;
+  std::map<JointId, double> lag_frame;  ///< Autocorrelation of a bone's length after one frame.
+  std::map<JointId, double> lag_third;  ///< Autocorrelation after a third of a second.
+  std::map<JointId, double> lag_later;  ///< Autocorrelation after 0.4 s.
   std::array<double, 3> steps{};        ///< Between frames: median, 95 %, longest [s]
   std::size_t unoriented = 0;           ///< Joints that never had an orientation.
   std::size_t frames = 0;

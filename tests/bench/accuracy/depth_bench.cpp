@@ -42,7 +42,7 @@ std::size_t view_of(double facing) {
 /// Sums over the frames of one view.
 struct Tally {
   double given = 0;     ///< Sum of joint errors [m]
-  double repaired = 0;  ///< The same, labels repaired [m]
+  double repaired = 0;  ///< Sum of joint errors with repaired labels [m]
   std::size_t joints = 0;
   std::size_t inferred = 0;
   std::size_t frames = 0;

@@ -13,7 +13,7 @@ namespace chorus::bench {
 struct Network {
   double least = 0.4e-3;
   double jitter = 1.5e-3;     ///< Mean of the exponential part.
-  double spike_share = 0.05;  ///< Fraction of the messages.
+  double spike_share = 0.05;  ///< Fraction of the messages that are delayed by a spike.
   double spike = 30e-3;       ///< Mean of the spike, which is exponential, too.
   double asymmetry = 0.0;     ///< The request takes this much longer than the answer.
 };
@@ -21,7 +21,7 @@ struct Network {
 /// A sensor host and the network in front of it.
 struct Link {
   Network network;
-  synthetic::HostClock clock;  ///< Of the sensor host; the fusion host's is true.
+  synthetic::HostClock clock;  ///< The sensor host's clock; the fusion host's is true.
   std::uint64_t seed = 1;
 };
 

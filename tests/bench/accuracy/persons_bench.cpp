@@ -64,7 +64,7 @@ std::vector<Association> ablations() {
   const associate::AssociationConfig whole;
   std::vector<Association> all{{kOurs, whole}};
   associate::AssociationConfig config = whole;
-  config.coast = std::chrono::milliseconds(50);  // one instant
+  config.coast = std::chrono::milliseconds(50);  // longer than one instant, shorter than two
   all.push_back({"without-coasting", config});
   config = whole;
   config.confirm_frames = 1;
@@ -73,7 +73,7 @@ std::vector<Association> ablations() {
   config.merge_frames = std::numeric_limits<int>::max();
   all.push_back({"without-merging", config});
   config = whole;
-  config.gate = 10.0;  // the whole room
+  config.gate = 10.0;  // [m] reaches across the whole room
   all.push_back({"without-gate", config});
   config = whole;
   config.alone = Duration{0};
@@ -98,7 +98,7 @@ Draws only(const Draws& draws, bool ablated) {
   return kept;
 }
 
-/// One row for each method that ours is compared with.
+/// Reports one row for each method that ours is compared with.
 void report_no_switch(Report& report, const std::string& name, const Draws& draws) {
   const double ours = no_switch_percent(draws, kOurs);
   for (const auto& [method, identity] : draws.front()) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr Duration kStart = std::chrono::milliseconds(500);
 constexpr Duration kTail = std::chrono::milliseconds(200);
-constexpr double kClose = 0.3;  // [m] shoulder to shoulder
+constexpr double kClose = 0.3;  // [m] between necks: shoulder to shoulder
 constexpr const char* kBestSensor = "best-sensor-ids";
 
 using People = std::vector<synthetic::Person>;

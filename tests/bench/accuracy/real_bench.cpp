@@ -73,10 +73,11 @@ Eigen::Isometry3d published_from_ours(const Registration& ours, const Registrati
 struct FusedScore {
   double median_mm = std::numeric_limits<double>::quiet_NaN();
   double p90_mm = std::numeric_limits<double>::quiet_NaN();
-  double shape_mm = std::numeric_limits<double>::quiet_NaN();  ///< After the best rigid motion.
+  /// Median after the best rigid motion.
+  double shape_mm = std::numeric_limits<double>::quiet_NaN();
   double bodies_per_frame = 0.0;
   std::size_t frames = 0;
-  double missing_percent = 0.0;  ///< Of the true joints, in all frames of the recording.
+  double missing_percent = 0.0;  ///< True joints without an answer, in all frames.
 };
 
 /// The rigid motion that brings most joints onto the truth; views with left and right exchanged
@@ -204,7 +205,7 @@ double add_single_cameras(Report& report, const ImportedSet& set,
 struct Run {
   const char* prefix;
   const std::vector<record::FrameRecording>& views;
-  std::optional<Registration> extrinsics;  ///< None: registered from the person.
+  std::optional<Registration> extrinsics;  ///< None: register from the person.
 };
 
 /// Runs all methods with one kind of extrinsics; returns the last one's error.

@@ -164,7 +164,7 @@ Bodies raw_bodies(const FrameRecording& recording) {
   return bodies;
 }
 
-/// The same frames after the whole pipeline with one sensor; empty where it gave no body.
+/// Bodies after the whole pipeline with one sensor, frame by frame; empty where there is none.
 Result<Bodies> fused_bodies(const FrameRecording& recording) {
   Registration given;
   given.master = recording.sensor;

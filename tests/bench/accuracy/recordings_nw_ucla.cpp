@@ -46,7 +46,8 @@ bool same_numbers(const FrameRecording& a, const FrameRecording& b) {
   return true;
 }
 
-/// Without clocks: tries all start shifts up to a second and keeps the best fit.
+/// Registers two takes without clocks: tries all start shifts up to a second and keeps the best
+/// fit.
 std::optional<PairwiseRegistration> register_unclocked(const FrameRecording& target,
                                                        const FrameRecording& source) {
   registration::RegistrationConfig config;
@@ -70,7 +71,7 @@ std::optional<PairwiseRegistration> register_unclocked(const FrameRecording& tar
 /// Whether the product, as configured, takes these clips without clocks for a registered pair.
 bool accepts(const FrameRecording& target, const FrameRecording& source) {
   registration::RegistrationConfig config;
-  config.use_floor = false;  // Kinect v1 delivers none
+  config.use_floor = false;  // Kinect v1 delivers no floor
   const auto edge =
       register_pair({target.sensor, target.frames}, {source.sensor, source.frames}, config);
   return edge.has_value();

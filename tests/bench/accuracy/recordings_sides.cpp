@@ -47,8 +47,8 @@ struct Share {
 };
 
 struct Shares {
-  Share as_labelled;  ///< Where the sensor's labels are right.
-  Share exchanged;    ///< Where they are wrong.
+  Share as_labelled;  ///< Frames in which the sensor's labels are right.
+  Share exchanged;    ///< Frames in which they are exchanged.
 };
 
 /// The sensor's body nearest to a fused one.
@@ -127,7 +127,7 @@ using Reader = Result<FrameRecording> (*)(const fs::path&, const importers::Impo
 
 struct Collection {
   const char* name;
-  const char* ending;  ///< How the names of the files end; next, how they begin.
+  const char* ending;  ///< How the names of the files end.
   const char* beginning;
   Reader read;
   Judge judge;

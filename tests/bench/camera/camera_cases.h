@@ -27,7 +27,7 @@ struct Agreement {
   double asked = 0.0;          ///< Number of published joints at all instants asked about.
 
   void add(const Skeleton<WorldSpace>& fused, const Skeleton<WorldSpace>& published);
-  void missed(const Skeleton<WorldSpace>& published);  ///< Nobody was there.
+  void missed(const Skeleton<WorldSpace>& published);  ///< Counts an instant without a body.
   void report(Report& report, const std::string& name) const;
 };
 

@@ -42,7 +42,7 @@ cv::Mat six_times(const cv::Mat& one) {
 }
 
 struct Cost {
-  double seconds = 0.0;  ///< Of processor time, everything included.
+  double seconds = 0.0;  ///< Processor time of the runner, from its start on.
   std::size_t people = 0;
 };
 

@@ -33,7 +33,7 @@ struct Errors {
   double pixels = 8.0;           ///< Standard deviation of a landmark in each direction.
   double missing_person = 0.03;  ///< Share of the pictures in which a person is not found.
   double missing_joint = 0.05;
-  double hidden_person = 0.8;  ///< The same while another person stands in front of them.
+  double hidden_person = 0.8;  ///< The share while another person stands in front.
 };
 
 struct Crowd {
@@ -158,8 +158,8 @@ double thread_seconds() {
 
 struct Outcome {
   Identity identity;
-  std::vector<double> matching;  ///< Each instant [s].
-  std::vector<double> off;       ///< Necks, from the nearest true one [m].
+  std::vector<double> matching;  ///< Time of each matching [s].
+  std::vector<double> off;       ///< Distance of each neck from the nearest true one [m].
 };
 
 double nearest(const Eigen::Vector3d& neck, const std::vector<Skeleton<WorldSpace>>& people) {

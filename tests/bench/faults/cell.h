@@ -42,10 +42,11 @@ struct CellPlan {
   std::optional<PacketModel> path = {};  ///< Network between all sensors and the server.
   Settings fusion = {};
   bool secure = false;                  ///< The server asks the sensors by https.
-  ChildSurroundings surroundings = {};  ///< Those of chorus-fusion.
-  bool placed = true;     ///< Extrinsics are given; else the sensors' places are unknown.
-  bool stored = false;    ///< Given in the server's own state folder, not as registration.file.
-  bool start_all = true;  ///< False: no sensor is started yet.
+  ChildSurroundings surroundings = {};  ///< What chorus-fusion starts with.
+  bool placed = true;  ///< Extrinsics are given; else the sensors' places are unknown.
+  /// The extrinsics are in the server's state folder, not in registration.file.
+  bool stored = false;
+  bool start_all = true;              ///< False: no sensor is started yet.
   std::string address = "127.0.0.1";  ///< Where chorus-fusion listens.
 };
 

@@ -109,7 +109,7 @@ Result<void> never_reading_polls(Trial& trial) { return never_reading(trial, kGe
 Result<void> never_reading_events(Trial& trial) { return never_reading(trial, kEvents, 1); }
 Result<void> never_reading_sockets(Trial& trial) { return never_reading(trial, kUpgrade, 1); }
 
-constexpr double kWarmedUp = 60.0;  // [s] of churn; memory is judged after them
+constexpr double kWarmedUp = 60.0;  // [s] memory is judged after this much churn
 
 /// Duration of the churn [s]; CHORUS_CHURN_SECONDS=600 gives the ten minutes of the docs.
 double churn_length() {

@@ -1,4 +1,4 @@
-// Networks that delay, jitter and lose between the sensors and the server.
+// Networks between the sensors and the server that delay, jitter or lose data.
 #include <algorithm>
 #include <cmath>
 #include <thread>

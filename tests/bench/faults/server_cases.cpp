@@ -31,9 +31,9 @@ std::string extrinsics(const Cell& cell) {
   return out.dump();
 }
 
-/// Kills by SIGKILL, restarts at once, and checks that all is as before.
+/// Kills the server by SIGKILL, restarts it at once, and checks that all is as before.
 Result<void> kill_and_return(Trial& trial, Cell& cell) {
-  constexpr double kFirstBody = 0.5;  // after the first answer [s]
+  constexpr double kFirstBody = 0.5;  // from the first answer to the first body [s]
   const Watch watch(cell.port());
   wait_for(1.0);
   const std::string before = extrinsics(cell);

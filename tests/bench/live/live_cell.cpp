@@ -101,7 +101,7 @@ struct ExactSensors::Sensor {
 
   std::string id;
   Eigen::Isometry3d world_from_sensor;
-  Duration due;  ///< Time since the beginning.
+  Duration due;  ///< Time of the next capture, since the beginning.
   std::uint64_t sequence = 0;
   std::shared_ptr<http::LiveDocument> document = std::make_shared<http::LiveDocument>();
   std::unique_ptr<http::Server> server;

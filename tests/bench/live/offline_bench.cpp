@@ -38,7 +38,7 @@ constexpr std::size_t kDraws = 1 << 16;
 struct OfflineCase {
   const char* name;
   int people;
-  double share;             ///< Fraction of the length.
+  double share;             ///< Length, as a fraction of the asked one.
   double least_real_times;  ///< Claimed least ratio of recorded time to run time.
 };
 constexpr std::array kCases{OfflineCase{"six-sensors", 1, 1.0, 150.0},

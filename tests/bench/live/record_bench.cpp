@@ -114,7 +114,7 @@ struct Contents {
   std::size_t frames = 0;
   std::uint64_t lost = 0;
   std::size_t streams = 0;
-  std::uintmax_t json_bytes = 0;  ///< The same frames as JSON lines.
+  std::uintmax_t json_bytes = 0;  ///< Size of the frames as JSON lines.
 };
 
 Result<Contents> contents_of(const fs::path& path) {
@@ -157,8 +157,8 @@ double json_lines_cores(const fs::path& recording, const fs::path& out, double s
 }
 
 struct Measured {
-  double idle_cores = 0.0;  ///< chorus-fusion, not recording.
-  double busy_cores = 0.0;  ///< The same, recording.
+  double idle_cores = 0.0;  ///< Cores of chorus-fusion while it does not record.
+  double busy_cores = 0.0;  ///< Cores of chorus-fusion while it records.
   double json_lines_cores = kNoRatio;
   nlohmann::json report;
 };

@@ -26,7 +26,7 @@ namespace {
 constexpr double kRate = 30.0;        // [Hz], of sensors and output
 constexpr double kShortRun = 25.0;    // [s]
 constexpr double kQuickRun = 6.0;     // [s]
-constexpr double kMaxToWire = 0.050;  // [s], the claim
+constexpr double kMaxToWire = 0.050;  // [s] the claim
 constexpr double kMaxCores = 0.5;     // the claim, without the simulation
 
 /// Of each sensor's first frame at or after an instant, the latest one.  Until it is delivered the
@@ -244,7 +244,7 @@ using Hosts = std::array<HostError, kSystemSensors>;
 
 // Clocks behind and ahead of the server by amounts typical without NTP, and drifting.
 constexpr Hosts kApart{{{-150, 30}, {400, -50}, {-3000, 20}, {0, 50}, {35, -20}, {1200, 10}}};
-// The same; during the watch NTP sets one clock and, by less, another.
+// Clocks like kApart's; during the watch NTP sets one of them and, by less, another.
 constexpr Hosts kStepped{
     {{-150, 30, 150}, {400, -50, -400}, {-3000, 20}, {0, 50}, {35, -20}, {1200, 10}}};
 

@@ -16,12 +16,13 @@ struct MannequinSample {
   Skeleton<SensorSpace> exact;
 };
 
-/// 360 deg about its own vertical axis at 2.3 m, sensor level at a height of 1 m (Fig. 4A).
+/// Turns by 360 deg about the mannequin's own vertical axis, at 2.3 m, before a level sensor at a
+/// height of 1 m (Fig. 4A).
 [[nodiscard]] std::vector<MannequinSample> turn_full(const synthetic::kinect::Profile& profile,
                                                      std::uint64_t seed);
 
-/// 0 to 85 deg about a vertical axis behind its back, so that the body travels on a circle (Fig.
-/// 4B).
+/// Swings by 85 deg about a vertical axis behind the mannequin's back, so that the body travels on
+/// a circle (Fig. 4B).
 [[nodiscard]] std::vector<MannequinSample> swing_85(const synthetic::kinect::Profile& profile,
                                                     std::uint64_t seed);
 

@@ -115,7 +115,7 @@ Result<void> show_real_log(Report& report) {
   return {};
 }
 
-/// Six sensors, one person: seconds simulated per second of one core.
+/// Reports the seconds simulated per second of one core, for six sensors and one person.
 void measure_speed(Report& report) {
   Scene scene;
   scene.people = make_people(WalkerScript{}, 1);

@@ -55,8 +55,8 @@ double step(const LogStatistics& s) {
 }
 double unoriented(const LogStatistics& s) { return static_cast<double>(s.unoriented); }
 
-// For steps, the lower end is from the gesturing person's log, with capture times; the upper end is
-// from a polled log.
+// In claims about steps between frames, the lower end is from the gesturing person's log, which has
+// capture times; the upper end is from a polled log.
 constexpr LogClaim kWalking[] = {
     {{"log-white", "neck_x_mm", "mm", {1.1, 1.2}}, white<Neck, 0>},
     {{"log-white", "neck_y_mm", "mm", {0.8, 1.8}}, white<Neck, 1>},

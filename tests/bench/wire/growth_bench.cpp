@@ -27,8 +27,8 @@ double cores_used(const LiveCell& cell, double run_seconds) {
 }
 
 struct Reading {
-  double cores = 0.0;  ///< Used by the server.
-  double hz = 0.0;     ///< Received by each reader.
+  double cores = 0.0;  ///< Cores used by the server.
+  double hz = 0.0;     ///< Frames per second that each reader received.
   std::uint64_t lost = 0;
 };
 

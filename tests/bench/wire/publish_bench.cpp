@@ -46,7 +46,7 @@ class Watch {
  public:
   struct Arrival {
     Steady::time_point when;
-    std::size_t units;  ///< Total number up to then.
+    std::size_t units;  ///< Number of units received until then.
   };
 
   explicit Watch(Receiver& receiver) : receiver_(receiver) {
@@ -225,7 +225,7 @@ ClientRates rates(const ClientAnswers& before, const ClientAnswers& after,
 
 Result<void> clients_400(Report& report, const LiveCell& cell, const Lateness& alone,
                          double run_seconds) {
-  constexpr ClientCounts kClients{49, 300, 50};  // plus the witness
+  constexpr ClientCounts kClients{49, 300, 50};  // with the client of watch(), 400 in all
   const std::string name = "clients-400";
   const ClientCrowd crowd(cell, kClients);
   std::this_thread::sleep_for(std::chrono::seconds(1));

@@ -127,7 +127,7 @@ TEST(Tls, AWebSocketCarriesEveryVersion) {
   EXPECT_THAT(client.hear_until("{\"n\":2}"), HasSubstr("{\"n\":2}"));
   std::this_thread::sleep_for(100ms);  // a server that is writing would only close
   std::thread stopping([&] { service.server.stop(); });
-  EXPECT_THAT(client.hear_all(), HasSubstr("\x88\x02\x03\xe9"));  // going away
+  EXPECT_THAT(client.hear_all(), HasSubstr("\x88\x02\x03\xe9"));  // a close frame: going away
   EXPECT_TRUE(client.said_end());
   client.raw().leave();
   stopping.join();

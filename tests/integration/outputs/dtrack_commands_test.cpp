@@ -69,7 +69,8 @@ TEST(DtrackCommandServer, TheOldestConnectionIsInControl) {
   EXPECT_NE(ask(second, "dtrack2 tracking stop").find("err 2"), std::string::npos);
   first.reset();
   ASSERT_TRUE(wait_for([&] { return server->counters().clients == 1; }));
-  EXPECT_FALSE(server->controller().has_value());  // tracking ended with the client that started it
+  // Tracking ended when the client left that had started it.
+  EXPECT_FALSE(server->controller().has_value());
   EXPECT_EQ(ask(second, "dtrack2 tracking start"), "dtrack2 ok\0"s);
   ASSERT_TRUE(server->controller().has_value());
   EXPECT_NE(server->controller(), controller);

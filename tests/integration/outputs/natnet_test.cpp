@@ -90,13 +90,14 @@ TEST(NatNetServer, AClientGetsFramesWhereItConnectedFrom) {
   EXPECT_TRUE(wait_for([&] { return server->counters().clients == 1; }));
   EXPECT_EQ(ask(client, *server, kFrame).substr(0, 5), "\7\0\x3C\0a"s);
   client.say(kDisconnect, server->port());
-  EXPECT_EQ(ask(client, *server, "\x0E\0\0\0"s).size(), 283u);  // earlier messages have been read
+  // This answer shows that earlier messages have been read.
+  EXPECT_EQ(ask(client, *server, "\x0E\0\0\0"s).size(), 283u);
   publish(*server, 'b');
   EXPECT_EQ(client.next(200), "");
   EXPECT_TRUE(wait_for([&] { return server->counters().clients == 0; }));
 }
 
-/// Fails once, then stands still.
+/// A clock that fails once, then stands still.
 class ClockThatFailsOnce final : public Clock {
  public:
   [[nodiscard]] Timestamp now() const override {
@@ -234,7 +235,7 @@ TEST(NatNetServer, AFloodOfConnectionsLeavesTheClientItsFrames) {
 TEST(NatNetServer, TwoServersDoNotTalkToEachOther) {
   const auto first = server_with(options());
   const auto second = server_with(options());
-  // What the first server would send to the second if its address were forged.
+  // The second server gets what the first would send to it if the second's address were forged.
   DatagramReceiver stranger;
   const std::string unrecognized = ask(stranger, *first, "\x37\0\0\0"s);
   EXPECT_EQ(unrecognized, "\x64\0\0\0"s);
@@ -324,7 +325,7 @@ TEST(NatNetOutput, TellsThatBonesWereMeasuredAndDescribesThem) {
     snapshot->bodies[0].slot = 0;
     snapshot->bodies[0].skeleton = giant;
     sinks->front()->publish(snapshot);
-    const std::string frame = client.next();  // one at a time, so that none is dropped
+    const std::string frame = client.next();  // publishes one at a time, so that none is dropped
     ASSERT_EQ(frame.substr(0, 2), "\7\0"s);
     changed = frame[frame.size() - 6] == 2;
     EXPECT_TRUE(!changed || i + 1 >= BoneLengths::kFrames) << i;

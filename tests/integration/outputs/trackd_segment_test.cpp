@@ -109,7 +109,7 @@ TEST(TrackdSegment, OneThatIsInUseIsRefusedAndLeftAlone) {
   EXPECT_TRUE(there(settings.tracker_key));
 }
 
-/// Creates a segment by a program that has ended since.
+/// Creates a segment in another program, which then ends.
 void leave_behind(int key, std::size_t bytes) {
   const pid_t child = ::fork();
   if (child == 0) ::_exit(::shmget(key, bytes, IPC_CREAT | IPC_EXCL | 0666) < 0 ? 1 : 0);

@@ -222,7 +222,7 @@ class Flood {
 TEST_F(HostileVrpn, AFloodOfRequestsFromOneHostDoesNotLockOutAnother) {
   const Flood flood(server->port());
   ASSERT_TRUE(wait_until([&] { return server->counters().refused > 500; }));
-  // One might be lucky; each asks ten times.
+  // One request might be lucky, so each client asks ten times.
   std::vector<std::unique_ptr<VrpnClient>> others;
   for (int i = 0; i < 14; ++i) {
     others.push_back(std::make_unique<VrpnClient>(std::vector<std::string>{"Body0"}));

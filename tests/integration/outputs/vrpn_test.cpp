@@ -130,7 +130,7 @@ TEST_F(Vrpn, RepeatedRequestsOfOneClientMakeOneConnection) {
     ::sendto(asking, text.c_str(), text.size() + 1, 0, reinterpret_cast<sockaddr*>(&address), size);
   }
   ASSERT_TRUE(wait_until([&] { return server->counters().clients == 1; }));
-  VrpnClient other({"Body0"});  // after its answer all 50 have been read
+  VrpnClient other({"Body0"});  // when it is answered, all 50 requests have been read
   ASSERT_TRUE(other.request(server->port()));
   ASSERT_TRUE(first_pose(other));
   EXPECT_EQ(server->counters().clients, 2u);

@@ -80,7 +80,7 @@ History habitual(Duration delay, int frames = 30) {
 
 TEST(Align, ASensorIsWaitedForAsLongAsItsFramesUsuallyTake) {
   const Duration instant = milliseconds(33 * 29 + 10);
-  // One period, the delay, and a short grace period.
+  // The longest wait is one period, the delay, and a short grace period.
   EXPECT_EQ(longest_wait(habitual(milliseconds(2))), milliseconds(33 + 2 + 15));
   EXPECT_EQ(ask(habitual(milliseconds(2)), instant, milliseconds(45)).basis, Basis::Pending);
   EXPECT_EQ(ask(habitual(milliseconds(2)), instant, milliseconds(55)).basis, Basis::Lost);

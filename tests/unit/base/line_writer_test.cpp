@@ -105,7 +105,7 @@ TEST(LineWriter, TellsWhatIsMissing) {
   ASSERT_GT(writer.dropped(), 0u);
   std::string text;
   Told told;
-  while (told.lines + told.missing < kWritten) {  // reported at once or in parts
+  while (told.lines + told.missing < kWritten) {  // missing lines are reported at once or in parts
     text += pipe.read_until("\n");
     told = told_in(text.substr(0, text.rfind('\n') + 1));
   }

@@ -153,7 +153,7 @@ TEST(Refusals, AreToldOfSensorsWithoutAPlaceAndLeaveTheVerdict) {
   EXPECT_EQ(verdict_of(current, id("s1")), Verdict::Good);
   EXPECT_EQ(verdict_of(current, id("s5")), Verdict::None);
   EXPECT_EQ(current.verdicts.at(id("s5")).verdict, Verdict::Refused);
-  // Once it is placed, the old refusal is gone.
+  // Once s5 is placed, its old refusal is gone.
   const auto wider = adopted(current, ring(Verdict::Good, {1, 2, 5}), SolveKind::Final, true);
   ASSERT_TRUE(wider);
   EXPECT_TRUE(wider->reasons.empty());

@@ -81,7 +81,7 @@ TEST(FusionCore, FusesEveryInstantOnceAndKnowsWhoContributed) {
 TEST(FusionCore, AnswersWithoutWaitingForTheDelayWhenAllSensorsHavePassed) {
   FusionCore core(config(), ring());
   (void)run(core, Duration{0}, seconds(1));
-  // One frame interval and the phases, not the 200 ms of the alignment delay.
+  // The longest delay is one frame interval and the phases, not the 200 ms of the alignment delay.
   EXPECT_LT(run(core, seconds(1), seconds(1)).worst, milliseconds(50));
 }
 

@@ -1,5 +1,5 @@
-// Cameras whose pictures take long, with the configuration as shipped: they are waited for, without
-// delaying the others.
+// Cameras whose pictures take long, with the configuration as shipped: the server waits for them,
+// without delaying the others.
 #include <algorithm>
 #include <cmath>
 
@@ -18,7 +18,7 @@ using testing::sensor_id;
 
 struct Source {
   Duration period;
-  Duration jitter;  ///< Of the period and of the delay.
+  Duration jitter;  ///< Added to the period and to the delay, at most.
   Duration delay;
   bool rays = true;
 };

@@ -86,7 +86,7 @@ TEST(DtrackCommands, StartAndStopAreSeenByAll) {
   (void)answer("dtrack2 tracking start", first, device);
   EXPECT_EQ(answer("dtrack2 get status active", second, device),
             "dtrack2 set status active mea\0"s);
-  (void)answer("dtrack2 tracking stop", second, device);  // not in control
+  (void)answer("dtrack2 tracking stop", second, device);  // the second client is not in control
   EXPECT_TRUE(device.measuring);
   (void)answer("dtrack2 tracking stop", first, device);
   EXPECT_FALSE(device.measuring);

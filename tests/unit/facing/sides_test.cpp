@@ -15,7 +15,7 @@ constexpr Timestamp kStart = from_unix_ns(1'790'000'000'000'000'000);
 constexpr Duration kFrame = std::chrono::milliseconds(33);
 constexpr double kStep = 0.033;  // [s]
 
-/// All habits that real trackers have shown; none of them is part of the model.
+/// The habits that real trackers have shown; the model contains none of them.
 const std::vector<std::vector<Flips>> kTrackers{
     {{deg(130), deg(100)}},         {{deg(130), deg(75)}},         {{deg(130), deg(55)}},
     {{deg(110), deg(70)}},          {{deg(97), deg(92)}},          {{deg(140), deg(40)}},

@@ -112,7 +112,8 @@ TEST(CameraViews, AsRaysPointAtTheTriangulation) {
   }
 }
 
-/// Our axes: x to the sensor's left, y up, z forward.  All four cameras are upright, above floor.
+/// Our axes: x to the sensor's left, y up, z forward.  All four cameras are upright and above the
+/// floor.
 TEST(CameraViews, SpeakOurAxes) {
   const auto set = import_files(FileFormat::Pose2Sim, {kFolder});
   ASSERT_THAT(set, IsOk());

@@ -88,7 +88,7 @@ TEST(Screen, HidesWhoCrossesBehindItFromEverySensor) {
     const Eigen::Vector3d through = eye + share * (neck - eye);
     EXPECT_LT(std::abs(through.z()), screen().half.z());
     EXPECT_LT(through.y(), 2.0 * screen().half.y());
-    EXPECT_GT((place.linear() * Eigen::Vector3d::UnitZ()).x(), 0.9);  // it looks in that direction
+    EXPECT_GT((place.linear() * Eigen::Vector3d::UnitZ()).x(), 0.9);  // the sensor looks along +x
   }
 }
 

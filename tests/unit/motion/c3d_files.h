@@ -15,7 +15,7 @@ enum class Order { Intel = 84, Dec = 85, Mips = 86 };
 
 struct C3dSpec {
   Order order = Order::Intel;
-  float scale = -1.0f;  ///< Negative: the data are floats.
+  float scale = -1.0f;  ///< Negative: the points are stored as floats.
   std::string units = "mm";
   std::vector<std::string> labels{"HipLeft", "Wand"};
   std::string x_screen = "+X";

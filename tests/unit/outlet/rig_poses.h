@@ -9,8 +9,8 @@
 
 namespace chorus::outlet::testing {
 
-/// Exactly at rest: looks along -z, left hand at -x, pelvis 0.95 m above the floor at x = z = 0.
-/// No joint has an orientation of its own.
+/// A person exactly at rest: looks along -z, left hand at -x, pelvis 0.95 m above the floor at x =
+/// z = 0. The joints have no orientations.
 inline outlet::TrackerBody t_pose() {
   using enum JointId;
   struct Place {

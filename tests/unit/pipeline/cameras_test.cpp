@@ -26,7 +26,7 @@ struct Cell {
   int people = 1;
   double noise = deg(0.3);
   Duration lone_after =
-      std::chrono::hours(1);  ///< From this time on only the first camera sees anybody.
+      std::chrono::hours(1);  ///< from this time on only the first camera sees anybody
 };
 
 SensorId camera_id(int i) { return testing::sensor_id("cam" + std::to_string(i)); }

@@ -36,7 +36,7 @@ inline Registration ring_registration(int count) {
   return registration;
 }
 
-/// 25 joints around (x, z); only their relative positions matter here.
+/// A body of 25 joints around (x, z); only their relative positions matter.
 inline Skeleton<WorldSpace> body_at(double x, double z) {
   Skeleton<WorldSpace> body;
   for (std::size_t i = 0; i < kJointCount; ++i) {

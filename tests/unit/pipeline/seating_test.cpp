@@ -56,7 +56,7 @@ TEST(Seating, OfAHiddenPersonIsNotGivenToOneWhoEnters) {
 TEST(Seating, GoesToWhoCameMeanwhileWhenTheHiddenPersonStaysAway) {
   Room room;
   room.at(milliseconds(0), {1});
-  // The same person under a new id, then a second one.
+  // The same person comes under a new id, then a second person.
   EXPECT_EQ(room.at(milliseconds(33), {5, 6}), (Slots{{1, 5}, {2, 6}}));
   EXPECT_EQ(room.at(milliseconds(1034), {5, 6}), (Slots{{0, 5}, {2, 6}}));
 }

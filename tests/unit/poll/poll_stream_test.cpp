@@ -52,7 +52,8 @@ TEST(PollFsmStream, ItsFramesAreDeliveredAndTheRequestsOnlyKeepTheClock) {
   const Step clock = fsm.resume(Woke{}, milliseconds(34) + sleep_of(old), kFull);
   EXPECT_EQ(send_of(clock).resource, Resource::Clock);
   const Step hurry =
-      fsm.resume(ClockAnswered{milliseconds(5)}, milliseconds(140), kFull);  // not accurate yet
+      // The clock is not accurate yet.
+      fsm.resume(ClockAnswered{milliseconds(5)}, milliseconds(140), kFull);
   EXPECT_LE(sleep_of(hurry), milliseconds(100));
   (void)fsm.resume(streamed(3, 66), milliseconds(141), kFull);
   (void)fsm.resume(Woke{}, milliseconds(240), kFull);
@@ -72,7 +73,8 @@ TEST(PollFsmStream, WhatItLeavesOutIsFetchedAtOnceOneByOne) {
   const Step gap = fsm.resume(streamed(5, 132), milliseconds(100), kFull);
   EXPECT_EQ(send_of(gap).resource, Resource::KeptFrame);
   EXPECT_EQ(send_of(gap).sequence, 3u);
-  EXPECT_FALSE(fsm.resume(streamed(6, 165), milliseconds(133), kFull).action);  // one in flight
+  // One request is in flight.
+  EXPECT_FALSE(fsm.resume(streamed(6, 165), milliseconds(133), kFull).action);
   const Step next = fsm.resume(KeptAnswered{true}, milliseconds(201), kFull);
   EXPECT_TRUE(next.deliver);
   EXPECT_EQ(send_of(next).sequence, 4u);

@@ -8,7 +8,7 @@
 
 namespace chorus::record {
 
-inline constexpr int kCellFrames = 40;  ///< Of each sensor, and fused ones.
+inline constexpr int kCellFrames = 40;  ///< Number of frames of each sensor, and of fused ones.
 
 /// A frame as the recorder receives it: 5 ms after its capture by the recorder's clock; the
 /// sensor's clock is behind that by `applied`.

@@ -100,7 +100,7 @@ TEST(AdjustTogether, EndsWhereNoSingleMoveFitsTheWalkBetter) {
   }
 }
 
-/// Single cameras: chains of pairs leave the depth open, three rays determine it.
+/// Single cameras: chains of pairs leave the depth open; three rays determine it.
 TEST(AdjustTogether, ThreeBluntSensorsFixWhatEachPairLeavesOpen) {
   double before = 0.0;
   double after = 0.0;
@@ -140,8 +140,8 @@ TEST(AdjustTogether, FloorsHoldTiltAndHeightWhereTheWalkIsCountedForLittle) {
     const Places found = scene.adjust(displaced(scene.truth, 0.02), 0, inflation);
     return difference(found.at(sensor(1)), scene.truth.at(sensor(1))).angle;
   };
-  EXPECT_LT(to_deg(tilt_error(1.0)), 0.5);     // the walk outweighs the floor
-  EXPECT_GT(to_deg(tilt_error(1000.0)), 0.6);  // the floor outweighs the walk
+  EXPECT_LT(to_deg(tilt_error(1.0)), 0.5);     // here the walk outweighs the floor
+  EXPECT_GT(to_deg(tilt_error(1000.0)), 0.6);  // here the floor outweighs the walk
 }
 
 TEST(AdjustTogether, ASensorWithTooFewSightsKeepsItsPlace) {

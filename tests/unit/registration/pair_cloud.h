@@ -38,7 +38,7 @@ struct CloudSpec {
   unsigned seed = 1;
 };
 
-/// AR(1) noise of unit variance, one per joint.
+/// Noise that follows AR(1), with unit variance, one process per joint.
 class Wander {
  public:
   Wander(const CloudSpec& spec, std::mt19937& random) : spec_(spec), random_(random) {

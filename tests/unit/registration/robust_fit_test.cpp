@@ -27,7 +27,7 @@ TEST(RobustFit, FindsExactMotionsInBothFreedoms) {
   EXPECT_LT(gap(full->target_from_source, tilted_motion()), 1e-9);
   EXPECT_LT(full->rms, 1e-9);
   EXPECT_EQ(full->inliers, 180u);
-  EXPECT_EQ(full->scale, 0.02);  // perfect pairs: the smallest scale
+  EXPECT_EQ(full->scale, 0.02);  // perfect pairs have the smallest scale
   const auto yaw = fit_robustly(pairs_of(some_motion(), {}), Freedom::Yaw);
   ASSERT_TRUE(yaw);
   EXPECT_LT(gap(yaw->target_from_source, some_motion()), 1e-9);

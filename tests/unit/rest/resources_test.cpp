@@ -246,7 +246,7 @@ TEST_F(Registering, TheOriginMovesAndIsShownFromTheAnswerOn) {
   ASSERT_TRUE(moved) << to_string(moved.error());
   EXPECT_EQ(moved->status, 200);
   EXPECT_EQ(asked_, "origin 2 -1.5 0 #1; ");
-  publish();  // a state from before it was carried out
+  publish();  // publishes a state from before the command was carried out
   EXPECT_NE(shown().find("\"x\": -2"), std::string::npos) << shown();
   EXPECT_NE(shown().find("\"z\": 1.5"), std::string::npos);
 }

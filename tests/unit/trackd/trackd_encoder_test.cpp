@@ -188,7 +188,8 @@ TEST(Trackd, WhoStaysTrackedIsCalibratedAllTheTime) {
 TEST(Trackd, SlotsBeyondTheBlockAreLeftOut) {
   auto block = tracker_block(26);
   const auto before = block;
-  write_sensors(frame_with(one_joint(), 1), LengthUnit::Feet, block);  // would be sensor 26
+  // The joint would be sensor 26.
+  write_sensors(frame_with(one_joint(), 1), LengthUnit::Feet, block);
   EXPECT_EQ(block, before);
   std::vector<char> tiny(10);
   write_sensors(frame_with(one_joint(), 0), LengthUnit::Feet, tiny);

@@ -115,7 +115,7 @@ TEST(WithSource, EachAloneDoesItsOwnHarm) {
   EXPECT_LT(clock.worst, 1e-9) << "the stamp errs, not the place";
 }
 
-/// The quantity that this source disturbs, in any unit.
+/// The strength of the effect that this source has, in any unit.
 double harm(Source source, const Effect& effect) {
   if (source == Source::Clock) return effect.clock;
   if (source == Source::Delivery) return -static_cast<double>(effect.bodies);
