@@ -68,7 +68,7 @@ struct Confided {
 /// Four sensors side by side; the walk moves along them, and only neighbours see a common part.
 [[nodiscard]] Setting row_of_four();
 
-/// Two sensors of a ring, `angle` [rad] apart.
+/// Poses of two sensors of a ring, `angle` [rad] apart.
 [[nodiscard]] std::vector<Eigen::Isometry3d> pair_places(double angle);
 
 /// The true time at which a host's clock showed `stamp`.

@@ -172,7 +172,7 @@ Registration published_registration(const ImportedSet& set) {
   return registration;
 }
 
-/// The method described with the data: rigid perspective-n-point per camera.
+/// The views of the method that the data's README describes: rigid perspective-n-point per camera.
 Result<std::vector<record::FrameRecording>> plain_views() {
   const auto cameras = importers::read_cameras(std::string(kFolder) + "/cameras.json");
   if (!cameras) return pass(cameras);
@@ -288,7 +288,7 @@ Result<void> add_places(Report& report, const ImportedSet& set) {
   return {};
 }
 
-/// The method described with the data, fused by the plain mean [mm].
+/// Error of the method that the data's README describes, fused by the plain mean [mm].
 Result<double> plain_mean(Report& report, const ImportedSet& set,
                           const std::vector<record::FrameRecording>& plain) {
   const auto fused =

@@ -16,7 +16,7 @@ namespace chorus::bench {
 [[nodiscard]] Result<void> close_nw_ucla_chains(Report& report,
                                                 const std::filesystem::path& folder);
 
-/// Two views of a single pose must not be registered.
+/// Checks that two views of a single pose are not registered.
 [[nodiscard]] Result<void> refuse_ntu_poses(Report& report, const std::filesystem::path& folder);
 
 /// Checks capture times.

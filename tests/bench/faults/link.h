@@ -28,7 +28,7 @@ struct PumpEnds {
   net::tcp::endpoint target;
 };
 
-/// Both on loopback: listens on a free port, connects to 127.0.0.1:`target`.
+/// Ends that are both on loopback: listens on a free port, connects to 127.0.0.1:`target`.
 [[nodiscard]] PumpEnds on_loopback(std::uint16_t target);
 
 /// Forwards every connection.

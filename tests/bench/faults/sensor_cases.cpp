@@ -18,7 +18,7 @@ namespace chorus::bench {
 namespace {
 
 constexpr double kReturn = 1.5;    // until a sensor that returns contributes again, at most [s]
-constexpr double kFollowed = 0.3;  // the same for one whose host's clock was set [s]
+constexpr double kFollowed = 0.3;  // the same after its host's clock was set [s]
 constexpr double kPatience = 8.0;
 
 /// Waits until all sensors contribute again for a second, at most kPatience, which exceeds every

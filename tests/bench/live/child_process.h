@@ -30,7 +30,7 @@ class ChildProcess {
                                                   const ChildSurroundings& surroundings = {});
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&&) = delete;
-  ~ChildProcess();  ///< SIGTERM (also when it is stopped), waits 5 s, then SIGKILL.
+  ~ChildProcess();  ///< Sends SIGTERM, even to a stopped process, and SIGKILL 5 s later.
 
   /// User and system time used so far [s].
   [[nodiscard]] double cpu_seconds() const;

@@ -41,7 +41,7 @@ double run_seconds(const Report& report) {
 
 struct Rig {
   std::vector<ChildProcess> sensors;
-  std::vector<ChildProcess> fusion;  ///< One.
+  std::vector<ChildProcess> fusion;  ///< One process.
   std::uint16_t port = 0;
 
   [[nodiscard]] Result<nlohmann::json> ask(const std::string& method, const std::string& target,

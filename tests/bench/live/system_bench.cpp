@@ -204,7 +204,7 @@ std::ptrdiff_t stepped_hosts(const Observed& seen) {
   });
 }
 
-/// If no clock was set during the run, it would say nothing about clock steps.
+/// Checks that clocks were set during the run, which otherwise would say nothing about clock steps.
 void report_steps(Report& report, const SystemCase& asked, const Observed& seen) {
   const auto due =
       std::ranges::count_if(asked.hosts, [](const HostError& h) { return h.step_ms != 0; });

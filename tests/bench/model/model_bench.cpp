@@ -139,7 +139,7 @@ void measure_speed(Report& report) {
 struct MannequinFigures {
   double head = 0, neck_front = 0, neck_rear = 0, base_side = 0;  ///< Jitter [mm]
   double flip = 0, back = 0;                                      ///< [deg]
-  double neck_worst = 0, base_worst = 0;                          ///< Beyond 60 deg [mm]
+  double neck_worst = 0, base_worst = 0;                          ///< At yaws beyond 60 deg [mm]
 };
 
 double worst_beyond_60(const std::vector<MannequinSample>& swing, JointId id) {

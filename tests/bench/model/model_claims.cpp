@@ -25,7 +25,7 @@ template <JointId kJoint>
 double inferred(const LogStatistics& s) {
   return 100.0 * s.inferred_share[index_of(kJoint)];
 }
-/// Mean of both sides: our walkers always turn the same way, so which of the labels is hidden more
+/// Mean of both sides: our walkers always turn the same way, so how much either label is hidden
 /// depends on where left and right are exchanged back.
 template <JointId kLeft>
 double either_bone(const LogStatistics& s) {

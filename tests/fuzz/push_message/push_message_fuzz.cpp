@@ -1,5 +1,5 @@
-// Any lines as what a program pushes: each is read or refused with words, and what is read is a
-// frame that may be published.  A whole session of them, on clocks that go on, leaves the desk
+// Reads any lines as what a program pushes: each is read or refused with words, and what is read is
+// a frame that may be published.  A whole session of them, on clocks that go on, leaves the desk
 // alive.
 #include <cstddef>
 #include <cstdint>

@@ -253,7 +253,7 @@ TEST_F(HostileTest, RunningOutOfDescriptorsDoesNotEndTheServer) {
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   address.sin_port = htons(port());
   EXPECT_EQ(::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
-  // the server tries to accept meanwhile
+  // The server tries to accept meanwhile.
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
   for (const int fd : fillers) ::close(fd);

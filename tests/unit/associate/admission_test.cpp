@@ -1,4 +1,5 @@
-// Which tracks are published at once, and which wait: bodies that others should see but do not.
+// Which tracks are published at once, and which wait because other sensors should see them but do
+// not.
 #include "fusion-server/associate/admission.h"
 
 #include <algorithm>

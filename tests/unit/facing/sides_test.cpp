@@ -127,7 +127,7 @@ TEST(Sides, WalkingForwardsPutsAWrongBeginningRight) {
     right = is_right(person.views[0], exact);
     if (i == 0) {
       EXPECT_FALSE(right);
-    }  // stands like a plank, and the sensor shows it as facing
+    }  // at first it stands like a plank, and the sensor shows it as facing
   }
   EXPECT_TRUE(right);
   const auto exact = body_at({0, 0, -3}, deg(180));

@@ -24,7 +24,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Distance of each joint from the truth, split along and across the sensor's line of sight.
+/// Distance of each joint from the truth, and its part across the sensor's line of sight [m].
 struct Errors {
   std::vector<double> whole;
   std::vector<double> across;

@@ -134,7 +134,7 @@ TEST(PollFsmStream, ARequestThatFailsBesideItCostsTheSensorNothing) {
   const Step lost = fsm.resume(reset(), milliseconds(1700), kFull);
   EXPECT_EQ(fsm.state(), SensorState::Lost);
   EXPECT_EQ(lost.stream, StreamOrder::Close);
-  // After coming back it is streamed from at once.
+  // Once the sensor is back, the server opens a stream at once.
   EXPECT_EQ(fsm.resume(frame(1750, "\"9\""), milliseconds(1750), kFull).stream, StreamOrder::Open);
 }
 
