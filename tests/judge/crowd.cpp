@@ -37,7 +37,7 @@ WalkerScript script_of(std::uint64_t seed, std::size_t person, PathKind path) {
   return script;
 }
 
-/// Another person's walk, shifted to the side, turned about the middle and delayed.
+/// How a walk is shifted to the side, turned about the middle and delayed.
 struct Placing {
   double yaw = 0.0;    ///< [rad]
   double aside = 0.0;  ///< [m] to the left of the walk

@@ -39,7 +39,8 @@ enum class JointGroup {
 /// remains if only the definitions of joints differ.
 [[nodiscard]] double bias_free_mpjpe(const Answers& answers, JointGroup group);
 
-/// Mean length of a joint's step beyond the true step [m], over joints that are truly at rest.
+/// Mean distance between a joint's answered step and its true one [m], over joints that are truly
+/// at rest.
 [[nodiscard]] double jitter_at_rest(const Answers& answers, JointGroup group);
 
 /// Standard deviation of a bone's length divided by its mean; averaged over upper arms, forearms,

@@ -42,7 +42,7 @@ class Pump {
   [[nodiscard]] std::uint16_t port() const;
   /// Takes effect with the next message.
   void become(const LinkModel& model);
-  /// From now on nothing passes, and no end is told: like an unplugged cable.
+  /// While frozen nothing passes, and no end is told: like an unplugged cable.
   void freeze(bool frozen);
   /// Lets `bytes` more bytes of answers pass; then answers stop until freeze(false).
   void freeze_after(std::size_t bytes);

@@ -20,7 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The poses of all sensors as a string with all digits, for comparison; empty if there are none.
+/// The poses of all sensors as a string with all digits, for comparison; empty without
+/// /registration.
 std::string extrinsics(const Cell& cell) {
   nlohmann::json out;
   const auto told = cell.json("/registration");

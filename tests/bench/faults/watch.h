@@ -46,9 +46,9 @@ struct Account {
   double hz = 0.0;  ///< Frames received, per second.
   std::size_t frames = 0;
   std::size_t lost = 0;                 ///< Instants without a frame, or whose frame has no body.
-  double longest_gap = 0.0;             ///< Between two receipts [s]
+  double longest_gap = 0.0;             ///< Between two receipts, or after the last [s]
   double age_p50 = 0.0;                 ///< Median time from instant to receipt [s]
-  double age_p90 = 0.0;                 ///< 90th percentile of the same time [s]
+  double age_p90 = 0.0;                 ///< 90th percentile of this time [s]
   double several_percent = 0.0;         ///< Frames with more than one body.
   std::map<std::string, double> share;  ///< Frames that each sensor contributed to [percent].
 

@@ -50,7 +50,7 @@ struct WrkResult {
   double requests = 0.0;
 };
 
-/// wrk -t1 -c64 against http://127.0.0.1:port/frame.
+/// Runs wrk with one thread and `connections` connections against http://127.0.0.1:port/frame.
 [[nodiscard]] Result<WrkResult> run_wrk(std::uint16_t port, int connections, int run_seconds);
 
 struct LongPollLoad {

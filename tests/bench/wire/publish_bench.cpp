@@ -128,7 +128,7 @@ Result<Wire> measure(OpenedOutput& output, std::size_t frames) {
 }
 
 /// Sends the same number of bytes through the same hand-over, in as many datagrams as the output
-/// sends; for VRPN, which packs messages into streams, in full datagrams.
+/// sends; for VRPN, which packs many messages together, in full datagrams.
 Result<Wire> measure_bare(std::string_view name, const Wire& wire, std::size_t frames) {
   const bool packed = name.starts_with("vrpn");
   const auto count = packed

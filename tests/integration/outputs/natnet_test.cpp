@@ -325,7 +325,7 @@ TEST(NatNetOutput, TellsThatBonesWereMeasuredAndDescribesThem) {
     snapshot->bodies[0].slot = 0;
     snapshot->bodies[0].skeleton = giant;
     sinks->front()->publish(snapshot);
-    const std::string frame = client.next();  // publishes one at a time, so that none is dropped
+    const std::string frame = client.next();  // receives them one by one, so that none is dropped
     ASSERT_EQ(frame.substr(0, 2), "\7\0"s);
     changed = frame[frame.size() - 6] == 2;
     EXPECT_TRUE(!changed || i + 1 >= BoneLengths::kFrames) << i;

@@ -98,7 +98,7 @@ class Outputs(Rig):
         messages, sequence, checked = [], first - 1, 0
         for _ in range(MOST):
             found = osc_messages(vmc.recv(65536))
-            if found[0][0] == "/VMC/Ext/OK":  # begins a frame
+            if found[0][0] == "/VMC/Ext/OK":  # this message begins a frame
                 checked += 1 if messages and self.matches_vmc(fusion, sequence, messages) else 0
                 if checked == ENOUGH:
                     return

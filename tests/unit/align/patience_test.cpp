@@ -50,8 +50,7 @@ TEST(Patience, ASteadyOneIsGivenWhatItNeeds) {
   EXPECT_EQ(patience.of(slow).patience, AlignConfig{}.patience);
 }
 
-/// A history whose frames took 3 ms to arrive, except one that took `delay`: the last but `later` -
-/// 1.
+/// A history of 60 frames that took 3 ms to arrive, except frame 60 - `later`, which took `delay`.
 History held_up(Duration delay, int later = 5) {
   History history;
   for (int i = 0; i < 60; ++i) {

@@ -51,7 +51,7 @@ TEST(RegistrationSession, SolvesProvisionallyFromSixSecondsEveryTwoAndFinallyAtT
   session.start(seconds(12));
   EXPECT_TRUE(walk(session, seconds(0), milliseconds(5900)).empty());
   const auto due = walk(session, milliseconds(5900), seconds(7));
-  ASSERT_EQ(due.size(), 4u);  // about 6, 8, 10, then 12
+  ASSERT_EQ(due.size(), 4u);  // due after about 6, 8, 10 and 12 s
   EXPECT_EQ(due[0], SolveKind::Provisional);
   EXPECT_EQ(due[2], SolveKind::Provisional);
   EXPECT_EQ(due[3], SolveKind::Final);

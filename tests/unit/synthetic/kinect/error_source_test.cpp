@@ -10,7 +10,7 @@
 namespace chorus::synthetic::kinect {
 namespace {
 
-/// Names of the parameters that differ.
+/// Names of the parameters that scaling `source` changes.
 std::set<std::string> changed(Source source, double factor) {
   const auto before = parameters_of(nominal_profile("B"));
   const auto after = parameters_of(with_source(nominal_profile("B"), source, factor));
