@@ -233,7 +233,8 @@ Result<double> add_methods(Report& report, const Run& run, const ImportedSet& se
   return last;
 }
 
-/// The same landmarks as rays, without depth: from all cameras, and from two of them.
+/// Fuses the same landmarks as rays, without depth, of two, three and all four cameras; returns the
+/// error of all four.
 Result<double> add_rays(Report& report, double mean_mm) {
   importers::ImportOptions options;
   options.rays = true;

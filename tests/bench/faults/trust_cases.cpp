@@ -96,7 +96,7 @@ Result<void> certificate_expired(Trial& trial) {
   return {};
 }
 
-/// Connections that are open stay open, and new ones get the new certificate.
+/// All sensors get new certificates while they run, and every connection that is open must go on.
 Result<void> certificates_renewed(Trial& trial) {
   const Authority authority;
   auto cell = Cell::start(authority.plan());

@@ -42,7 +42,7 @@ struct TestServer {
     return {"127.0.0.1", server.port(), std::move(target)};
   }
 
-  /// Fetches, which must succeed.
+  /// Calls fetch(), which must succeed.
   [[nodiscard]] ClientResponse ask(const std::string& target, std::vector<Header> headers = {},
                                    const std::string& method = "GET",
                                    const std::string& body = {}) const {

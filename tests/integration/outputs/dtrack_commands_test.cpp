@@ -69,7 +69,7 @@ TEST(DtrackCommandServer, TheOldestConnectionIsInControl) {
   EXPECT_NE(ask(second, "dtrack2 tracking stop").find("err 2"), std::string::npos);
   first.reset();
   ASSERT_TRUE(wait_for([&] { return server->counters().clients == 1; }));
-  // Tracking ended when the client left that had started it.
+  // Tracking ended when the client that had started it left.
   EXPECT_FALSE(server->controller().has_value());
   EXPECT_EQ(ask(second, "dtrack2 tracking start"), "dtrack2 ok\0"s);
   ASSERT_TRUE(server->controller().has_value());

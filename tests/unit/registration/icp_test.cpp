@@ -13,7 +13,7 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-/// An asymmetric figure on the floor with some vertical motion: no rotation maps it to itself.
+/// An asymmetric path with some vertical motion: no rotation maps it to itself.
 Points walk(std::size_t count) {
   Points points;
   for (std::size_t i = 0; i < count; ++i) {

@@ -24,7 +24,7 @@ using outlet::testing::about_up;
 using outlet::testing::about_x;
 using outlet::testing::about_z;
 
-// As declared in C programs: no padding anywhere.
+// The blocks as C programs declare them: no padding anywhere.
 struct TrackerHeader {
   std::uint32_t version, sensors, offset, size, seconds, microseconds, command;
 };
