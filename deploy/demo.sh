@@ -58,7 +58,7 @@ read_arguments() {
 # --- what we started, and stopping it -------------------------------------------------------------
 
 children=() sensor_processes=0
-# start NAME COMMAND...: runs it in the background, with its log in NAME.log; it ends with this script.
+# start NAME COMMAND...: runs it in the background, with its log in NAME.log. The process ends with this script.
 start() {
   local name=$1; shift
   : > "$logs/$name.out"  # exists before the process, for those who read it

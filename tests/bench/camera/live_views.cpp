@@ -23,7 +23,7 @@ using std::chrono::seconds;
 using Json = nlohmann::json;
 
 constexpr double kTakeSeconds = 100.0 / kTruthHz;
-// [s] left out around the end of the take, where bodies jump to its beginning
+// Left out around the end of the take, where bodies jump to its beginning [s].
 constexpr double kJoin = 0.3;
 constexpr auto kPatience = seconds(120);
 constexpr auto kSettling = seconds(6);

@@ -136,7 +136,7 @@ TEST(RegistrationSession, ASlowSolveRestsTwiceAsLongAsItWorked) {
   EXPECT_EQ(walk(session, seconds(0), seconds(7)).size(), 1u);
   session.solved_in(seconds(3));
   EXPECT_TRUE(walk(session, seconds(7), milliseconds(7500)).empty());
-  // 9 s after the first solve was due
+  // This is 9 s after the first solve was due.
   EXPECT_EQ(walk(session, milliseconds(14500), seconds(1)).size(), 1u);
 }
 
