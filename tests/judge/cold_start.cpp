@@ -54,7 +54,8 @@ synthetic::Reach waving(double left_over) {
   return {false, up, {-0.35 + swing, 1.65, 0.25}};
 }
 
-/// Comes to a stop over the last kStopping; `left_over` is the time in seconds before the end.
+/// The pose of a walk that comes to a stop in its last kStopping; `left_over` is the time before
+/// its end [s].
 Pose walking(double left_over, double speed, double stride) {
   const double slow = std::min(left_over, kStopping);
   const double way = speed * (left_over - slow + 0.5 * slow * slow / kStopping);
@@ -94,7 +95,8 @@ double way_in(const Start& start) {
   return along + std::sqrt(std::max(0.0, kOutside * kOutside - aside));
 }
 
-/// The turn of everything about the middle that lets the way in pass midway between two sensors.
+/// Angle by which the scene is turned about the middle, so that the person comes in midway between
+/// two sensors [rad].
 double turn_between(const Start& start, const ColdScript& script) {
   if (script.start != ColdStart::Enter || script.ring.count == 0) return 0.0;
   const double along = start.place.dot(start.forward());

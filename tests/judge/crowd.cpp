@@ -15,11 +15,11 @@ using synthetic::PathKind;
 using synthetic::WalkerScript;
 
 constexpr double kFullTurn = 2.0 * std::numbers::pi;
-constexpr double kCircling = 0.8;                   // [m]
-constexpr double kReach = 1.3;                      // of people who cross [m]
-constexpr double kWorkRing = 1.0;                   // radius on which the working places lie [m]
-constexpr double kGap = 0.4;                        // between people at work [m]
-constexpr double kStint = 10.0;                     // of one person in a relay [s]
+constexpr double kCircling = 0.8;  // [m]
+constexpr double kReach = 1.3;     // how far people who cross walk from the middle [m]
+constexpr double kWorkRing = 1.0;  // radius on which the working places lie [m]
+constexpr double kGap = 0.4;       // between people at work [m]
+constexpr double kStint = 10.0;    // time that one person of a relay is in the room [s]
 constexpr double kMinPause = 0.3, kMaxPause = 2.0;  // [s]
 constexpr double kNever = 1e9;                      // [s]
 constexpr double kBeside = 0.5;                     // from the middle, for two side by side [m]
@@ -63,7 +63,7 @@ synthetic::Person placed(const WalkerScript& script, const Placing& placing) {
   };
 }
 
-/// A time in the room, counted from the beginning [s]; `behind` is how long the walk has paused.
+/// A stay in the room, in seconds from the beginning; `behind` is how long the walk has paused.
 struct Stint {
   double enters = 0.0;
   double leaves = kNever;

@@ -29,8 +29,9 @@ struct Roll {
 };
 
 struct IdentityConfig {
-  double reach = 0.5;    ///< A farther answer is not that person [m].
-  double ghost = 0.5;    ///< A track that follows people for less of its life is a ghost.
+  double reach = 0.5;  ///< A farther answer is not that person [m].
+  /// A track that follows people for a smaller fraction of its life is a ghost.
+  double ghost = 0.5;
   double lasting = 1.0;  ///< After this time an id has followed a person, not just passed by [s].
 };
 

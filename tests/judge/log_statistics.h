@@ -22,7 +22,7 @@ struct LogStatistics {
   std::map<JointId, double> lag_frame;  ///< Autocorrelation of a bone's length after one frame.
   std::map<JointId, double> lag_third;  ///< Autocorrelation after a third of a second.
   std::map<JointId, double> lag_later;  ///< Autocorrelation after 0.4 s.
-  std::array<double, 3> steps{};        ///< Between frames: median, 95 %, longest [s]
+  std::array<double, 3> steps{};        ///< Time between frames: median, 95 %, longest [s]
   std::size_t unoriented = 0;           ///< Joints that never had an orientation.
   std::size_t frames = 0;
 };

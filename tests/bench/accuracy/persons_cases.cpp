@@ -147,7 +147,7 @@ std::vector<Contestant> contestants_in(const Workshop& workshop,
   return all;
 }
 
-/// Everybody's true place; no person is claimed yet.
+/// The roll of an instant: everybody's true place, and no answers of a method yet.
 Roll roll_at(const Workshop& workshop, Timestamp instant) {
   Roll roll{instant, {}, {}};
   const SensorId& master = workshop.tracks.front().sensor;

@@ -1,7 +1,8 @@
-// chorus-bench real: the bundled four camera views of a real person, fused by all our methods,
-// compared with the published triangulation (tests/data/README.md; accurate to a few cm).
+// chorus-bench real: fuses the bundled four camera views of a real person by all our methods, and
+// compares them with the published triangulation (tests/data/README.md; accurate to a few cm).
 //
-// Once with the published extrinsics, once with extrinsics registered from the person alone.
+// Every method runs twice: with the published extrinsics, and with extrinsics registered from the
+// person alone.
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -19,7 +19,7 @@ namespace chorus::bench {
 /// Checks that two views of a single pose are not registered.
 [[nodiscard]] Result<void> refuse_ntu_poses(Report& report, const std::filesystem::path& folder);
 
-/// Checks capture times.
+/// Compares the times between frames with those of profile A.
 [[nodiscard]] Result<void> time_labanotation(Report& report, const std::filesystem::path& folder);
 
 /// How often left and right are right after the pipeline, each recording fused as a single sensor.

@@ -102,7 +102,7 @@ std::optional<Truth> labels_are_right(const FrameRecording&, std::size_t, const 
   return Truth{};
 }
 
-/// Judges by the direction in which the body moves within eight frames.
+/// Judges the labels by the direction in which the body moves within eight frames.
 std::optional<Truth> walks_forwards(const FrameRecording& recording, std::size_t index,
                                     const Body& raw) {
   constexpr std::size_t kFrames = 4;
@@ -131,7 +131,8 @@ struct Collection {
   const char* beginning;
   Reader read;
   Judge judge;
-  double least_percent;  ///< Least right where the labels are right; 0: only reported.
+  /// Required share of right answers where the labels are right; 0: only reported.
+  double least_percent;
 };
 
 Result<void> count_all(Report& report, const fs::path& folder, const Collection& each) {

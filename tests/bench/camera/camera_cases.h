@@ -23,7 +23,7 @@ inline constexpr double kTruthHz = 60.0;
 /// How fused joints agree with the published ones.
 struct Agreement {
   std::vector<double> errors;  ///< [m]
-  std::vector<double> limbs;   ///< Those of shoulders, elbows, wrists, hips, knees and ankles.
+  std::vector<double> limbs;   ///< Errors of shoulders, elbows, wrists, hips, knees and ankles [m].
   double asked = 0.0;          ///< Number of published joints at all instants asked about.
 
   void add(const Skeleton<WorldSpace>& fused, const Skeleton<WorldSpace>& published);

@@ -133,7 +133,7 @@ class Camera {
       if (!there) joint = Joint{};
       seen += there ? 1U : 0U;
     }
-    constexpr std::size_t kLeast = 4;  // landmarks that a runner calls a person
+    constexpr std::size_t kLeast = 4;  // with fewer landmarks a runner reports no person
     if (seen < kLeast) return;
     SensorView view;
     view.sensor = id_;

@@ -157,7 +157,8 @@ Result<std::vector<Memory>> restart_again_and_again(Cell& cell, double length) {
   return samples;
 }
 
-/// Clients come, take a frame and leave, and one sensor starts and stops; nothing is left over.
+/// Clients come, take a frame and leave, and one sensor starts and stops; the server must keep
+/// neither descriptors nor memory of them.
 Result<void> churn(Trial& trial) {
   constexpr std::size_t kEnough = 10;
   constexpr double kMaxRise = 1.0;  // [MB]

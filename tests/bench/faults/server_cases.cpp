@@ -132,7 +132,8 @@ struct UnreadPipe {
   }
   UnreadPipe(const UnreadPipe&) = delete;
   UnreadPipe& operator=(const UnreadPipe&) = delete;
-  /// Fills it through another end, because O_NONBLOCK must not apply to the program's own end.
+  /// Fills the pipe through another descriptor, because O_NONBLOCK must not apply to the program's
+  /// own.
   void fill() const {
     const int end = ::open(fmt::format("/proc/self/fd/{}", ends[1]).c_str(), O_WRONLY | O_NONBLOCK);
     while (::write(end, "x", 1) == 1) {

@@ -62,8 +62,8 @@ class Authority {
   tls::Issued authority_ = tls::new_authority("faults", tls::for_days(30)).value();
 };
 
-/// Waits until the last error that the server reports of the sensor contains `text`; false: in
-/// vain.
+/// Waits until the last error that the server reports of the sensor contains `text`; false if it
+/// does not within kPatience.
 bool says(const Cell& cell, const std::string& sensor, const std::string& text) {
   return wait_until(kPatience, [&] {
     return cell.told_of(sensor).value("lastError", "").find(text) != std::string::npos;

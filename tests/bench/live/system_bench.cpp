@@ -29,7 +29,7 @@ constexpr double kQuickRun = 6.0;     // [s]
 constexpr double kMaxToWire = 0.050;  // [s] the claim
 constexpr double kMaxCores = 0.5;     // the claim, without the simulation
 
-/// Of each sensor's first frame at or after an instant, the latest one.  Until it is delivered the
+/// The latest among the sensors' first frames at or after an instant.  Until it is delivered the
 /// instant cannot be fused, whatever the software does.
 struct Needed {
   Timestamp captured{};
@@ -244,7 +244,8 @@ using Hosts = std::array<HostError, kSystemSensors>;
 
 // Clocks behind and ahead of the server by amounts typical without NTP, and drifting.
 constexpr Hosts kApart{{{-150, 30}, {400, -50}, {-3000, 20}, {0, 50}, {35, -20}, {1200, 10}}};
-// Clocks like kApart's; during the watch NTP sets one of them and, by less, another.
+// The clocks of kApart; during the watch, two of them are set right, as by NTP: by 150 ms and by
+// 400 ms.
 constexpr Hosts kStepped{
     {{-150, 30, 150}, {400, -50, -400}, {-3000, 20}, {0, 50}, {35, -20}, {1200, 10}}};
 

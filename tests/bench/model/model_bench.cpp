@@ -94,7 +94,8 @@ void compare_view(Report& report) {
         {to_deg(2 * view.half_height)});
 }
 
-/// The shipped real log for comparison: a person standing and gesturing, so without conditions.
+/// Reports the shipped real log for comparison.  Its person stands and gestures instead of walking,
+/// so there are no conditions.
 Result<void> show_real_log(Report& report) {
   const auto log = importers::read_labanotation_csv(kRealLog);
   if (!log) return tl::unexpected(log.error());

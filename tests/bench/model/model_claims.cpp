@@ -25,8 +25,8 @@ template <JointId kJoint>
 double inferred(const LogStatistics& s) {
   return 100.0 * s.inferred_share[index_of(kJoint)];
 }
-/// Mean of both sides: our walkers always turn the same way, so how much either label is hidden
-/// depends on where left and right are exchanged back.
+/// Mean over both sides.  Our walkers always turn the same way, which hides one side more than the
+/// other, so one side alone is not comparable.
 template <JointId kLeft>
 double either_bone(const LogStatistics& s) {
   return to_mm(0.5 * (s.bone_std.at(kLeft) + s.bone_std.at(mirror(kLeft))));

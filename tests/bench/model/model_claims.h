@@ -35,8 +35,8 @@ struct LogClaim {
 /// Claims from two logs of walking people and one of a gesturing person (statistics only), about
 /// one person who walks in front of one sensor.
 [[nodiscard]] std::span<const LogClaim> walking_claims();
-/// Claims from a third log, of a person at 2 m with one side turned away from the sensor; for
-/// turned_scene().
+/// Claims from a third log, of a person at 2 m with one side turned away from the sensor.  They
+/// apply to turned_scene().
 [[nodiscard]] std::span<const LogClaim> turned_claims();
 
 }  // namespace chorus::bench

@@ -37,7 +37,7 @@ class ServingProcess {
   pid_t pid_ = -1;
   int life_line_ = -1;  ///< The child ends when this closes.
   std::uint16_t port_ = 0;
-  std::optional<ScratchFolder> folder_ = {};  ///< nginx's.
+  std::optional<ScratchFolder> folder_ = {};  ///< Configuration, document and logs of nginx.
 };
 
 /// Pins this process, and those it starts, to one core: servers to one, load generators to another.

@@ -47,8 +47,8 @@ class RawClient {
     return true;
   }
 
-  /// Waits until the other side accepts bytes, and sends what it accepts at once; 0: it accepted
-  /// none.
+  /// Waits until the other side accepts bytes, and sends as many as it accepts at once; returns
+  /// their number, 0 if the time is over.
   std::size_t say_some(std::string_view bytes, std::chrono::milliseconds time) {
     pollfd ready{socket_, POLLOUT, 0};
     if (::poll(&ready, 1, static_cast<int>(time.count())) <= 0) return 0;

@@ -39,7 +39,7 @@ std::string ask(RawClient& client, std::string_view command) {
   return client.hear_until("\0"sv);
 }
 
-/// The service still answers a well-behaved client.
+/// Requires that the service still answers a well-behaved client.
 void expect_alive(CommandServer& server) {
   ASSERT_TRUE(wait_for([&] { return server.counters().clients == 0; }));
   RawClient client(server.port());

@@ -235,7 +235,8 @@ TEST(NatNetServer, AFloodOfConnectionsLeavesTheClientItsFrames) {
 TEST(NatNetServer, TwoServersDoNotTalkToEachOther) {
   const auto first = server_with(options());
   const auto second = server_with(options());
-  // The second server gets what the first would send to it if the second's address were forged.
+  // A request with the second server's forged address would make the first server send its answer
+  // to the second one.  This test sends that answer itself.
   DatagramReceiver stranger;
   const std::string unrecognized = ask(stranger, *first, "\x37\0\0\0"s);
   EXPECT_EQ(unrecognized, "\x64\0\0\0"s);

@@ -175,7 +175,7 @@ TEST(TrackdSegment, AnAttachedReaderSeesTheRestartAfterACrash) {
   EXPECT_FALSE(reader->sees_a_head());
   (*outlet)->send(frame_of_somebody());
   EXPECT_TRUE(reader->sees_a_head());
-  reader.reset();  // otherwise the segment would stay
+  reader.reset();  // an attached reader would keep the segment alive
 }
 
 TEST(TrackdSegment, OneTakenOverFromADeadRunIsNotTakenFromTheNewOne) {

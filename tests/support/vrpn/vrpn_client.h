@@ -61,7 +61,7 @@ class VrpnDecoder {
   std::deque<VrpnMessage> messages;  ///< Without descriptions; to be removed by the caller.
   std::map<std::int32_t, std::string> senders;
   std::map<std::int32_t, std::string> types;
-  std::vector<std::int32_t> system_types;  ///< Negative ones, in order.
+  std::vector<std::int32_t> system_types;  ///< Negative types of the messages received, in order.
   std::string error;
 
  private:

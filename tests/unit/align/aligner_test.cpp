@@ -86,7 +86,7 @@ TEST(Align, ASensorIsWaitedForAsLongAsItsFramesUsuallyTake) {
   EXPECT_EQ(ask(habitual(milliseconds(2)), instant, milliseconds(55)).basis, Basis::Lost);
   EXPECT_EQ(ask(habitual(milliseconds(110)), instant, milliseconds(150)).basis, Basis::Pending);
   EXPECT_EQ(ask(habitual(milliseconds(110)), instant, milliseconds(160)).basis, Basis::Lost);
-  // Never longer than the patience.
+  // The wait is never longer than the patience.
   EXPECT_EQ(ask(habitual(milliseconds(400)), instant, milliseconds(201)).basis, Basis::Lost);
 }
 

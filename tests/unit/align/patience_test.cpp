@@ -91,7 +91,8 @@ TEST(Patience, OnABusyMachineTheWorstOfAllIsUnsteady) {
   EXPECT_EQ(patience.of(bad).patience, *usual_wait(busy));
 }
 
-/// Five frames per second, rays or points, arriving `delay` after their capture.
+/// A camera that delivers five frames per second, of rays or of points, `delay` after their
+/// capture.
 History camera(Duration delay, bool rays = true) {
   History history;
   for (int i = 0; i < 20; ++i) {

@@ -13,7 +13,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// A pipe of `bytes` bytes, whose reading end the test may read or not.
+/// A pipe that buffers `bytes` bytes; the test decides whether and when it is read.
 class Pipe {
  public:
   explicit Pipe(int bytes = 4096) {

@@ -88,7 +88,7 @@ TEST(JitterAtRest, CountsOnlyJointsThatRest) {
 TEST(BoneVariation, IsTheStandardDeviationOverTheMean) {
   Answers answers = exact_walk(100, 0.5);
   for (std::size_t i = 0; i < answers.size(); ++i) {
-    // Thigh: hip to knee 0.1 m long; now 0.09 or 0.11.
+    // The thigh, 0.1 m from hip to knee, becomes 0.09 m or 0.11 m long.
     answers[i].body[KneeLeft].position.y() += i % 2 == 0 ? 0.01 : -0.01;
   }
   // The shank, also 0.1 m long, changes with the thigh; six of eight bones do not change.

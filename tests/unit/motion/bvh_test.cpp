@@ -123,8 +123,8 @@ TEST_P(RealBvh, LooksLikeAPerson) {
   ASSERT_TRUE(bvh) << to_string(bvh.error());
   const auto motion = motion_from_bvh(*bvh);
   ASSERT_TRUE(motion) << to_string(motion.error());
-  // People bend and crouch in some of these, so at least one frame must show an upright person, and
-  // bones must keep their lengths in all.
+  // People bend and crouch in some of these files, so only one frame must show an upright person;
+  // bones must keep their lengths in all frames.
   int upright = 0;
   const auto length = [](const Skeleton<WorldSpace>& body, JointId a, JointId b) {
     return (body[a].position - body[b].position).norm();

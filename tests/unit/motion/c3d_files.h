@@ -22,7 +22,7 @@ struct C3dSpec {
   std::string y_screen = "+Y";
   int frames = 2;
   int analog = 3;  ///< Analog samples after each frame.
-  /// x y z in file units and the fourth word.
+  /// Returns x, y, z in file units and the point's fourth word.
   std::function<std::array<double, 4>(int frame, int point)> at = [](int f, int p) {
     return std::array<double, 4>{100.0 + f, -200.0 * p, 1500.25, 2.0};
   };

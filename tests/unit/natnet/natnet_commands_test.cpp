@@ -170,8 +170,8 @@ TEST(NatNetCommands, WhatNobodyKnowsIsUnrecognizedAndAnswersAreNot) {
   for (const int unknown : {15, 55, 99, 101, 127}) {
     EXPECT_EQ(message_in(desk.answer(request(unknown), kSomebody, at(0s))), 100);
   }
-  // Answers are refused: two servers that get each other's address must not answer each other
-  // forever.
+  // Messages that are answers get no answer: two servers that get each other's address must not
+  // answer each other forever.
   for (const int answer : {1, 3, 5, 7, 8, 11, 13, 100}) {
     const Reply reply = desk.answer(request(answer, "12345678"), kSomebody, at(0s));
     EXPECT_EQ(message_in(reply), -1) << answer;

@@ -118,7 +118,8 @@ TEST(Humanoid, AStraightLimbTakesTheShortestTurnAndABendingOneDoesNotJump) {
   double largest = 0.0;
   Quaternion before = Quaternion::Identity();
   for (double angle = 0; angle <= 60; angle += 0.5) {
-    TrackerBody body = t_pose();  // the elbow bends upwards: finally a quarter turn of twist
+    // the elbow bends upwards, and the upper arm twists by up to 90 deg
+    TrackerBody body = t_pose();
     turn(body, kLeftForearm, JointId::ElbowLeft, about_z(-angle));
     const Quaternion now = humanoid_of(body)[LeftUpperArm].world_from_bone;
     largest = std::max(largest, angular_distance(before, now));

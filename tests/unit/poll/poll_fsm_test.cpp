@@ -200,7 +200,7 @@ TEST(PollFsm, AFloorThatNeverAnswersDoesNotKeepTheFramesAway) {
 
 TEST(PollFsm, NoticesComeOnceAndAtMostOnceASecond) {
   PollFsm fsm = live(milliseconds(0));  // "live" was logged at 0
-  // The loss is still held back.
+  // The notice of the loss is still held back.
   EXPECT_FALSE(fsm.resume(reset(), milliseconds(500), kFull).notice);
   const Step later = fsm.resume(reset(), milliseconds(1200), kFull);
   ASSERT_TRUE(later.notice);

@@ -15,7 +15,8 @@ StreamFrame streamed(std::uint64_t sequence, int ms, bool odd = false) {
   return {sequence, at_ms(ms), odd};
 }
 
-/// Using a stream since `now`, without a request under way: asleep until the clock is due.
+/// A follower that has used a stream since `now`; it has no request under way and sleeps until its
+/// next request for the clock is due.
 PollFsm streaming(Duration now) {
   PollFsm fsm = live(now);
   (void)fsm.resume(streamed(2, 33), now, kFull);
@@ -173,7 +174,8 @@ TEST(PollFsmStream, ASensorThatTellsNoTimeIsHardlyAskedForIt) {
   EXPECT_EQ(asked, 0);
 }
 
-/// Streaming at 30 Hz, with a single gap of 250 ms; asleep, the newest frame at `now`.
+/// A follower of a stream at 30 Hz with a single gap of 250 ms; it sleeps, and its newest frame
+/// came at `now`.
 PollFsm late_once(Duration now) {
   PollFsm fsm = streaming(now - milliseconds(600));
   for (int i = 3; i <= 10; ++i)

@@ -58,7 +58,7 @@ TEST(RegisterPair, ASlightlyWrongFloorYieldsToTheWalk) {
   const auto edge = register_pair(watch(1, kTarget, {}), watch(2, source, wrong), {});
   ASSERT_TRUE(edge) << edge.error().message;
   const PlaceError off = difference(edge->target_from_source, truth(source));
-  EXPECT_LT(off.angle, deg(0.4));  // half of the error from trusting the floor
+  EXPECT_LT(off.angle, deg(0.4));  // half of the floor's error
   EXPECT_LT(off.position, mm(15));
 }
 

@@ -85,8 +85,7 @@ TEST(SensorConfig, AFileThatIsNotThereIsNamed) {
   EXPECT_THAT(to_string(settings.error()), HasSubstr("/no/such.json"));
 }
 
-/// The configuration with the device chosen to whose section the key belongs: only then the key
-/// counts.
+/// Chooses the device to whose section the key belongs, because only then does the key count.
 std::string choosing_its_device(const std::string& key, const std::string& text) {
   auto root = ConfigReader::parse(text, "test");
   for (const std::string kind : {"replay", "bridge", "camera"}) {

@@ -115,7 +115,7 @@ TEST(Gait, TheSeamIsAsSmoothAsTheRest) {
 }
 
 TEST(Walker, StandingFeetDoNotSlideFar) {
-  // Steps that match the speed: a standing foot (low, for a while) hardly moves over the floor.
+  // The steps match the speed: a standing foot (low, for a while) hardly moves over the floor.
   WalkerScript script;
   script.path = PathKind::Circle;
   script.reach = 3.0;

@@ -63,7 +63,7 @@ struct Heard {
     last = conversation.receive(bytes, testing::kStart);
     if (last) decoder.take_stream(*last);
   }
-  /// "Body0 3" for every pose that this client receives.
+  /// Sender and sensor, such as "Body0 3", of every pose that this client receives.
   std::multiset<std::string> poses(const Reports& reports) {
     decoder.take_stream(conversation.stream(reports));
     std::multiset<std::string> out;

@@ -113,7 +113,7 @@ TEST(ShownState, HiddenJointsAreMostlyInferredAndAVisibleCoreNever) {
   EXPECT_NEAR(hidden / 3000.0, visibility.inferred_occluded, 0.04);
 }
 
-/// A person standing 2.5 m in front of the sensor, with all joints at this speed.
+/// A person standing 2.5 m in front of the sensor, all of whose joints move at one speed.
 struct Setting {
   Skeleton<SensorSpace> body;
   Stand stand;
