@@ -61,7 +61,7 @@ children=() sensor_processes=0
 # start NAME COMMAND...: runs it in the background, with its log in NAME.log. The process ends with this script.
 start() {
   local name=$1; shift
-  : > "$logs/$name.out"  # exists before the process, for those who read it
+  : > "$logs/$name.out"  # the file exists before the process, for those who read it
   setpriv --pdeathsig TERM "$@" > "$logs/$name.out" 2> "$logs/$name.log" &
   children+=($!)
 }

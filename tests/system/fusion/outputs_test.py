@@ -46,7 +46,7 @@ class Outputs(Rig):
         return self.fusion(sensors, **{"registration.file": self.given_ring(SENSORS), **settings})
 
     def full_sequence(self, fusion, low, bits):
-        """The newest sequence with these lowest bits: the protocols send no more of it."""
+        """The newest sequence with these lowest bits: the protocols send only these bits."""
         now = get_json(fusion.url + "frame")["sequence"] + 30
         return now - (now - low) % 2**bits
 

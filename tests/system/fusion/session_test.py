@@ -10,7 +10,7 @@ import unittest
 from rig import BIN, ROOT, Rig, get, get_json, send, wait_for
 
 COUNT = 3
-# Good after a short walk: how good the registration is does not matter in this test.
+# Registrations count as good after a short walk: their quality does not matter in this test.
 QUICK = {"registration.seconds": 10, "registration.good_duration_s": 8, "registration.good_position_m": 1.0, "registration.good_rms_m": 1.0}
 CHORUS = BIN / "chorus"
 
