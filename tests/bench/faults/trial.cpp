@@ -9,7 +9,7 @@ namespace chorus::bench {
 namespace {
 
 constexpr double kRate = 30.0;  // [Hz]
-// tolerance of the number of frames: those at both ends are uncertain
+// Tolerance of the number of frames, because those at both ends are uncertain.
 constexpr double kMaxOff = 3.0;
 constexpr double kMinShare = 97.0;  // [percent]
 constexpr double kMaxGap = 0.35;    // between two frames: the alignment delay and a margin [s]

@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 
 constexpr int kSensors = 6;
 constexpr double kRate = 30.0;         // [Hz]
-constexpr double kLongMinutes = 60.0;  // the claim's own length
+constexpr double kLongMinutes = 60.0;  // the length that the claim states
 constexpr double kQuickMinutes = 1.0;
 constexpr double kNoise = 0.008;   // [m] of every coordinate
 constexpr double kMaxRss = 200.0;  // [MB] the claim

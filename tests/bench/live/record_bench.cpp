@@ -28,7 +28,7 @@ using std::chrono::milliseconds;
 constexpr int kSensors = 6;
 constexpr int kStreams = kSensors + 1;
 constexpr double kRate = 30.0;      // [Hz]
-constexpr double kLongRun = 60.0;   // [s]; CHORUS_RECORD_SECONDS=600 is the claim's own length
+constexpr double kLongRun = 60.0;   // [s]; the claim is for CHORUS_RECORD_SECONDS=600
 constexpr double kQuickRun = 5.0;   // [s]
 constexpr double kMaxCores = 0.10;  // the claim
 constexpr auto kPatience = std::chrono::seconds(60);

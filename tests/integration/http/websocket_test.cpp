@@ -191,8 +191,8 @@ INSTANTIATE_TEST_SUITE_P(
                       std::string("\xF3\x80\x01\x02\x03\x04", 6),  // reserved bits
                       std::string("\x83\x80\x01\x02\x03\x04", 6),  // unknown opcode
                       masked(0x8, "x"),                            // a close of one byte
-                      masked(0x8, "\x03\xE8\xFF"),              // a close whose reason is no UTF-8
-                      masked(0x1, "\xC3\x28"),                  // a text that is no UTF-8
+                      masked(0x8, "\x03\xE8\xFF"),              // a close whose reason is not UTF-8
+                      masked(0x1, "\xC3\x28"),                  // a text message that is not UTF-8
                       frame_of(kText, std::string(4097, 'x')),  // more than a client may send
                       many_fragments(),                         // the same in fragments
                       masked(0x0, "x"),                         // continuation without a start

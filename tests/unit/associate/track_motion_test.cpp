@@ -44,7 +44,7 @@ struct Floor {
 TEST(TrackMotion, SomebodyWhoWalksOnUnseenIsFoundAhead) {
   Floor floor;
   double x = floor.walk(2.5, 40);
-  // 0.33 s without a view, 0.83 m
+  // For 0.33 s nobody is seen; meanwhile the person walks 0.83 m.
   for (int i = 0; i < 10; ++i, x += 2.5 * kFrameSeconds) floor.see({});
   const auto people = floor.see({view_at({x, 1, 0})});
   ASSERT_EQ(people.size(), 1u);

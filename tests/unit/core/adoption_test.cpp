@@ -120,7 +120,7 @@ TEST(Extending, GivenPlacesWithoutVerdictsAreHeldToo) {
 
 TEST(Extending, SaysSoWhenThePlacedSensorsDoNotStandAsTheWalkShowsThem) {
   Registration candidate = ring(Verdict::Good, {1, 2, 3});
-  // somebody has moved s2 by accident
+  // Somebody has moved s2 by accident.
   candidate.sensors.at(id("s2")).world_from_sensor.translation().x() += 2.0;
   const auto wider = adopted(ring(Verdict::Good, {1, 2}), candidate, SolveKind::Final, true);
   ASSERT_FALSE(wider);

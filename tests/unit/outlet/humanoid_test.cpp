@@ -118,7 +118,7 @@ TEST(Humanoid, AStraightLimbTakesTheShortestTurnAndABendingOneDoesNotJump) {
   double largest = 0.0;
   Quaternion before = Quaternion::Identity();
   for (double angle = 0; angle <= 60; angle += 0.5) {
-    // the elbow bends upwards, and the upper arm twists by up to 90 deg
+    // The elbow bends upwards, and the upper arm twists by up to 90 deg.
     TrackerBody body = t_pose();
     turn(body, kLeftForearm, JointId::ElbowLeft, about_z(-angle));
     const Quaternion now = humanoid_of(body)[LeftUpperArm].world_from_bone;

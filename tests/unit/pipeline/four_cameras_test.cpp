@@ -60,7 +60,7 @@ RegistrationConfig camera_registration() {
   config.joints = registration::JointChoice::All;
   config.along_ratio = 8.0;
   config.use_floor = false;
-  // the person balances on the spot, so the points spread only over the body
+  // The person balances on the spot, so the points spread only over the body.
   config.min_spread = 0.0;
   config.max_edge_rms = 0.5;  // depth differs by decimetres
   config.max_speed = 10.0;    // depth jitters at 60 Hz

@@ -91,7 +91,7 @@ TEST(SensorResources, ListsEverySensorAndRelaysItsFrame) {
       resource::to_resource(testing::sensor_frame("s2", kStart, {})));
   EXPECT_EQ(ask(router, "/sensors/s2/frame").error().code, ErrorCode::NotFound);
   sensors.relay(sensor_id("s1"), raw);
-  // a sensor added after the start has no long poll, but its frame is served
+  // A sensor added after the start has no long poll, but its frame is served.
   sensors.relay(sensor_id("s2"), raw);
   EXPECT_NE(body(ask(router, "/sensors/s1/frame"), "text/turtle").find("SensorSpace"),
             std::string::npos);
