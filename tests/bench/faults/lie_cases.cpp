@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -40,6 +41,20 @@ std::vector<double> errors(const std::vector<FusedInstant>& seen, Timestamp from
 BodyFrame moved(BodyFrame body, const Eigen::Vector3d& by) {
   for (Joint& joint : body.skeleton.joints) joint.position += by;
   return body;
+}
+
+/// Ids of the bodies that are less than kNear from the person.
+std::set<std::uint64_t> ids_near_person(const std::vector<FusedInstant>& seen, Timestamp from,
+                                        Timestamp to) {
+  std::set<std::uint64_t> out;
+  for (const FusedInstant& each : seen) {
+    if (each.received < from || each.received >= to) continue;
+    for (std::size_t i = 0; i < each.places.size(); ++i) {
+      const double off = (each.places[i] - truth_at(each.instant)).norm();
+      if (off < kNear) out.insert(each.bodies[i]);
+    }
+  }
+  return out;
 }
 
 /// Makes of the truth what a liar reports, once the cell has settled.
@@ -93,7 +108,8 @@ Result<Lied> lie_to(Trial& trial, Liars& liars, double duration) {
   return out;
 }
 
-/// In at most 1 % of the frames there is a second person, and the first one stays in its place.
+/// In at most 1 % of the frames there is a second person; the first one stays in its place and
+/// keeps its id.
 Result<void> no_second_person(Trial& trial, const Lie& lie) {
   Liars liars(1, lie);
   const auto lied = lie_to(trial, liars, 6.0);
@@ -103,6 +119,8 @@ Result<void> no_second_person(Trial& trial, const Lie& lie) {
   const auto off = errors(lied->seen, lied->begun, lied->end);
   const auto astray = std::ranges::count_if(off, [](double e) { return !(e < kNear); });
   trial.check(astray == 0, fmt::format("frames without the person in its place: {}", astray));
+  const auto ids = ids_near_person(lied->seen, lied->calm, lied->end);
+  trial.check(ids.size() == 1, fmt::format("ids of the person: {}", ids.size()));
   return {};
 }
 

@@ -29,7 +29,7 @@ std::string extrinsics(const Cell& cell) {
   for (const auto& [name, place] : told["sensors"].items()) {
     for (const auto* key : {"x", "y", "z", "qx", "qy", "qz", "qw"}) out[name][key] = place[key];
   }
-  return out.dump();
+  return out.empty() ? std::string() : out.dump();
 }
 
 /// Kills the server by SIGKILL, restarts it at once, and checks that all is as before.

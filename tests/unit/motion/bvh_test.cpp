@@ -94,8 +94,10 @@ TEST(Bvh, AnyCutOrFlippedByteIsHandled) {
   for (std::size_t i = 0; i < kArm.size(); ++i) {
     std::string text(kArm);
     text[i] = static_cast<char>(text[i] ^ 0x15);
-    (void)parse_bvh(text, "flipped.bvh");
-    (void)parse_bvh(kArm.substr(0, i), "cut.bvh");
+    const auto flipped = parse_bvh(text, "flipped.bvh");
+    EXPECT_TRUE(flipped || !flipped.error().message.empty());
+    const auto cut = parse_bvh(kArm.substr(0, i), "cut.bvh");
+    EXPECT_TRUE(i + 2 >= kArm.size() || !cut) << "cut after " << i << " bytes";
   }
 }
 
