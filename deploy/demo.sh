@@ -58,10 +58,10 @@ read_arguments() {
 # --- what we started, and stopping it -------------------------------------------------------------
 
 children=() sensor_processes=0
-# start NAME COMMAND...: runs it in the background, with its log in NAME.log; it ends with this script.
+# start NAME COMMAND...: runs it in the background, with its log in NAME.log. The process ends with this script.
 start() {
   local name=$1; shift
-  : > "$logs/$name.out"  # exists before the process, for those who read it
+  : > "$logs/$name.out"  # the file exists before the process, for those who read it
   setpriv --pdeathsig TERM "$@" > "$logs/$name.out" 2> "$logs/$name.log" &
   children+=($!)
 }
@@ -248,8 +248,8 @@ watcher=(python3 -B deploy/watch_tracker.py --base "$base")
 setpriv --pdeathsig TERM "${watcher[@]}" &
 watch_pid=$!
 children+=("$watch_pid")
-# The end comes with the watcher's verdict, or with the fusion server's end.  A sensor that ends is only reported: the
-# tracker lives on without it, as it would in a workshop.
+# The demo ends when the watcher gives its verdict or the fusion server ends.  A sensor that ends is only reported: the tracker
+# lives on without it, as it would in a workshop.
 while true; do
   alive=()
   for child in "${children[@]}"; do

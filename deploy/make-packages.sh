@@ -81,7 +81,7 @@ rm -rf "$tree/packages"
 (cd "$tree" && cpack --config CPackConfig.cmake -D CPACK_PACKAGE_VERSION="$version" >cpack.log 2>&1) || { tail -20 "$tree/cpack.log" >&2; fail "cpack failed"; }
 rm -rf "$out"
 mkdir -p "$out/debug"
-out=$(realpath "$out")  # apt takes what has no / in front for a name
+out=$(realpath "$out")  # absolute, because apt takes a path without a leading / for the name of a package
 cp "$tree"/packages/*.deb "$out/"
 cp "$tree"/packages/*.ddeb "$out/debug/" 2>/dev/null || true
 if [[ -n "$deps" ]]; then

@@ -19,7 +19,7 @@ fail() { printf '\nworkshop: %s\n' "$*" >&2; exit 1; }
 readonly there=/var/tmp/chorus-packages
 read -ra ssh_command <<<"${CHORUS_SSH:-ssh -o BatchMode=yes -o ConnectTimeout=10}"
 
-# on HOST COMMAND: its standard input is ours.
+# on HOST COMMAND: runs the command on the host, with our standard input.
 on() { "${ssh_command[@]}" "$1" "$2"; }
 
 [[ $# == 2 ]] || { usage >&2; exit 2; }
@@ -86,7 +86,7 @@ install_on() {  # SSH PACKAGE...
   on "$host" "$there/install.sh $*" </dev/null
 }
 
-# Sensor hosts follow the fusion host's time; without a server of its own, it serves its own clock.
+# Sensor hosts follow the fusion host's time; a fusion host without a time server serves its own clock.
 keep_time() {  # ROLE SSH
   if [[ $1 == fusion ]]; then
     { echo "# Chorus: the time of the workshop"; echo "local stratum 10"

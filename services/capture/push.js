@@ -72,7 +72,7 @@ export class Pusher {
     }
   }
 
-  /// One frame, [] when nobody is seen.  False when it was dropped.
+  /// Sends one frame; `bodies` is [] when nobody is seen.  Returns false if the frame was dropped.
   push(bodies, captured = performance.now(), more = {}) {
     this.sequence += 1;
     if (this.welcome === null || this.socket.bufferedAmount > MOST_UNSENT) {

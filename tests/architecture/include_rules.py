@@ -35,12 +35,12 @@ VALUE_HEADERS = {"fusion-server/flow.h", "fusion-server/status.h", "fusion-serve
 
 STAGES = {f"fusion-server/{stage}" for stage in ("align", "facing", "associate", "fusion", "watch", "registration")}
 FUSION_SERVER = {room for room in ROW_OF if room.startswith("fusion-server/")}
-# Usable without a network: they must not include or link it, not even indirectly.
+# These rooms are usable without a network: they must not include or link it, not even indirectly.
 NO_SOCKET = {"fusion-server/core", "fusion-server/pipeline"} | VALUE_HEADERS | STAGES
-# They implement other protocols: sockets, but no HTTP.
+# These rooms implement protocols other than HTTP: they may use sockets, but no HTTP.
 NO_HTTP = {f"fusion-server/{room}" for room in ("outlet", "vrpn", "dtrack", "natnet", "trackd", "osc", "mxtp")}
 
-# (who, what they may not include, why)
+# Each entry: the rooms, what they must not include, and why.
 FORBIDDEN_ROOMS = [
     (FUSION_SERVER, {"common/synthetic"}, "what judges an algorithm must not feed it"),
     (STAGES, {"common/net", "common/http", "common/resource", "common/record", "common/service", "common/rdf"},

@@ -1,4 +1,4 @@
-// What holds of every body that a sensor may publish, whatever it was told.
+// What holds of every body that a sensor may publish, whatever input it got.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// The promises of proto/golden: perfect, good, bad.
+// What proto/golden promises of its files in the folders perfect, good and bad.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -100,7 +100,7 @@ TEST(GoldenOutputs, Trackd) {
   expect_golden("fused.trackd", {block.begin(), block.end()});
 }
 
-/// Server information, model definitions of two slots, a frame.
+/// The file holds the server's information, the model definitions of two slots, and a frame.
 TEST(GoldenOutputs, NatNet) {
   const outlet::TrackerFrame frame = golden_frame();
   const Timestamp start = frame.instant - std::chrono::milliseconds(12500);

@@ -19,7 +19,7 @@ constexpr double kStanding = 4.0;    // [s]
 constexpr double kBackwards = 3.0;   // [s]
 constexpr double kBackSpeed = 0.6;   // [m/s]
 constexpr double kEnterSpeed = 0.9;  // [m/s]
-constexpr double kOutside = 4.0;     // how far from the middle they come from [m]
+constexpr double kOutside = 4.0;     // distance from the middle at which they come in [m]
 constexpr double kStopping = 0.5;    // [s]
 constexpr double kStride = 0.8;      // amplitude of the strides
 constexpr double kRaising = 0.7;     // time to raise the hand, and to lower it again [s]
@@ -54,7 +54,8 @@ synthetic::Reach waving(double left_over) {
   return {false, up, {-0.35 + swing, 1.65, 0.25}};
 }
 
-/// Comes to a stop over the last kStopping; `left_over` is the time in seconds before the end.
+/// The pose of a walk that comes to a stop in its last kStopping; `left_over` is the time before
+/// its end [s].
 Pose walking(double left_over, double speed, double stride) {
   const double slow = std::min(left_over, kStopping);
   const double way = speed * (left_over - slow + 0.5 * slow * slow / kStopping);
@@ -94,7 +95,8 @@ double way_in(const Start& start) {
   return along + std::sqrt(std::max(0.0, kOutside * kOutside - aside));
 }
 
-/// The turn of everything about the middle that lets the way in pass midway between two sensors.
+/// Angle by which the scene is turned about the middle, so that the person comes in midway between
+/// two sensors [rad].
 double turn_between(const Start& start, const ColdScript& script) {
   if (script.start != ColdStart::Enter || script.ring.count == 0) return 0.0;
   const double along = start.place.dot(start.forward());

@@ -1,5 +1,5 @@
-// A person whom the tracker first sees while they do anything except walk forwards: nothing learned
-// about them earlier helps to tell front from rear.
+// A person whom the tracker first sees standing, waving, walking backwards or coming in: nothing
+// learned about them earlier helps to tell front from rear.
 //
 // The beginning lasts three to six seconds and ends standing; then they walk at random like
 // everybody else.  World: the workspace centre is the origin, metres.
@@ -27,10 +27,10 @@ struct ColdScript {
   std::uint64_t seed = 1;
   Timestamp begin;  ///< Start of the first action.
   double body_scale = 1.0;
-  synthetic::Ring ring = {};  ///< The sensors between which they come in.
+  synthetic::Ring ring = {};  ///< The person comes in between two of its sensors.
 };
 
-/// Its time counts from 1970.
+/// Makes such a person; the time of a Person counts from 1970.
 [[nodiscard]] synthetic::Person cold_starter(const ColdScript& script);
 
 }  // namespace chorus::bench

@@ -15,18 +15,18 @@ using synthetic::PathKind;
 using synthetic::WalkerScript;
 
 constexpr double kFullTurn = 2.0 * std::numbers::pi;
-constexpr double kCircling = 0.8;                   // [m]
-constexpr double kReach = 1.3;                      // of people who cross [m]
-constexpr double kWorkRing = 1.0;                   // radius on which the working places lie [m]
-constexpr double kGap = 0.4;                        // between people at work [m]
-constexpr double kStint = 10.0;                     // of one person in a relay [s]
+constexpr double kCircling = 0.8;  // [m]
+constexpr double kReach = 1.3;     // how far people who cross walk from the middle [m]
+constexpr double kWorkRing = 1.0;  // radius on which the working places lie [m]
+constexpr double kGap = 0.4;       // between people at work [m]
+constexpr double kStint = 10.0;    // time that one person of a relay is in the room [s]
 constexpr double kMinPause = 0.3, kMaxPause = 2.0;  // [s]
 constexpr double kNever = 1e9;                      // [s]
 constexpr double kBeside = 0.5;                     // from the middle, for two side by side [m]
-constexpr double kBench = 0.2;                      // between one's neighbouring stations [m]
+constexpr double kBench = 0.2;  // between neighbouring stations of one person [m]
 enum Purpose : std::uint64_t { kBuild = 701, kSpeed, kHour, kPause };
 
-/// A walker of random build, starting somewhere in their loop.
+/// A walker of random build who starts somewhere in the loop.
 WalkerScript script_of(std::uint64_t seed, std::size_t person, PathKind path) {
   constexpr double kSpread = 0.08;
   WalkerScript script;
@@ -37,7 +37,7 @@ WalkerScript script_of(std::uint64_t seed, std::size_t person, PathKind path) {
   return script;
 }
 
-/// Another person's walk, shifted to the side, turned about the middle and delayed.
+/// How a walk is shifted to the side, turned about the middle and delayed.
 struct Placing {
   double yaw = 0.0;    ///< [rad]
   double aside = 0.0;  ///< [m] to the left of the walk
@@ -63,7 +63,7 @@ synthetic::Person placed(const WalkerScript& script, const Placing& placing) {
   };
 }
 
-/// A time in the room, counted from the beginning [s]; `behind`: for how long the walk has paused.
+/// A stay in the room, in seconds from the beginning; `behind` is how long the walk has paused.
 struct Stint {
   double enters = 0.0;
   double leaves = kNever;
@@ -249,8 +249,8 @@ std::vector<Eigen::Isometry3d> places_behind_screen() {
 }
 
 synthetic::Occluder screen() {
-  // A third of the way to the sensors: its shadow at the crossing is half as wide again as the box,
-  // less half the distance between the sensors.
+  // The box stands a third of the way to the sensors: its shadow at the crossing is half as wide
+  // again as the box, less half the distance between the sensors.
   synthetic::Occluder box;
   box.half = {0.05, 1.25, 0.3};
   box.world_from_box.translation() = Eigen::Vector3d(-1.0, box.half.y(), 0.0);

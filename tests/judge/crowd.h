@@ -17,8 +17,8 @@ namespace chorus::bench {
 [[nodiscard]] std::vector<synthetic::Person> crossing_people(std::size_t count, std::uint64_t seed,
                                                              double passing = 0.5);
 
-/// Three people, one after the other on one walk: each leaves the room somewhere, and the next
-/// enters there 0.3 to 2 s later.  The first is there at `begin`; nobody comes back.
+/// Three people who use the same walk one after the other: each leaves the room on the way, and the
+/// next enters at that place 0.3 to 2 s later.  The first is there at `begin`; nobody comes back.
 [[nodiscard]] std::vector<synthetic::Person> relayed_people(std::uint64_t seed, Timestamp begin);
 
 /// Three people at work.  The first leaves for 0.3 to 2 s and, later, for 20 s; the other two leave
@@ -31,10 +31,10 @@ namespace chorus::bench {
 /// is out of the room.
 [[nodiscard]] std::vector<synthetic::Person> booth_people(std::uint64_t seed, Timestamp begin);
 
-/// Two people at assembly work, 1 m apart, who stood there before anybody looked.
+/// Two people at assembly work, 1 m apart, who are in their places from the start.
 [[nodiscard]] std::vector<synthetic::Person> side_by_side(std::uint64_t seed);
 
-/// Out of the room: farther from the middle than any person in it [m].
+/// Distance from the middle beyond which nobody is in the room [m].
 inline constexpr double kOutside = 50.0;
 
 /// One person stands in the middle, the other walks around them at 0.8 m: each occludes the other

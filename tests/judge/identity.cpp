@@ -21,7 +21,7 @@ struct Followed {
   std::optional<Timestamp> answered;  ///< The first instant with an answer.
 };
 
-/// Counts everything in one pass over the instants.
+/// Counts all figures in one pass over the instants.
 class Census {
  public:
   explicit Census(const IdentityConfig& config) : config_(config) {}
@@ -114,10 +114,10 @@ class Census {
     }
   }
 
-  /// `rate`: instants per second.
+  /// Counts `inherited` and `spare_ids`; `rate` is in instants per second.
   void count_heirs(Identity& found, double rate) const {
-    std::map<std::uint64_t, std::size_t> people;  // the people that an id followed
-    std::map<std::size_t, std::size_t> ids;       // the ids that mostly followed a person
+    std::map<std::uint64_t, std::size_t> people;  // number of people that an id followed
+    std::map<std::size_t, std::size_t> ids;       // number of ids that mostly followed a person
     for (const auto& [pair, count] : together_) {
       const auto& [person, id] = pair;
       if (static_cast<double>(count) < rate * config_.lasting) continue;

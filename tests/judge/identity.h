@@ -1,7 +1,8 @@
 // How well the answered people keep their identities, compared with the truth.
 //
-// CLEAR-MOT matching: a true person keeps its answer as long as that is within reach; the others
-// are assigned one-to-one with the least total distance.  Horizontal distances [m].
+// CLEAR-MOT matching: a true person keeps its answer as long as that is within reach; the other
+// people get the other answers one-to-one, with the least total distance.  Horizontal distances
+// [m].
 #pragma once
 
 #include <cstdint>
@@ -28,8 +29,9 @@ struct Roll {
 };
 
 struct IdentityConfig {
-  double reach = 0.5;    ///< A farther answer is not that person [m].
-  double ghost = 0.5;    ///< A track that follows people for less of its life is a ghost.
+  double reach = 0.5;  ///< A farther answer is not that person [m].
+  /// A track that follows people for a smaller fraction of its life is a ghost.
+  double ghost = 0.5;
   double lasting = 1.0;  ///< After this time an id has followed a person, not just passed by [s].
 };
 
@@ -43,7 +45,7 @@ struct Identity {
   double minutes = 0.0;
   /// Mean time from a person's appearance to the first answer, over those who got one [s].
   double first_answer = 0.0;
-  /// How often an id followed another person than before for a second or longer.
+  /// How often an id, after one person, followed another for a second or longer.
   std::size_t inherited = 0;
   std::size_t spare_ids = 0;  ///< Ids of people who already had one.
 };

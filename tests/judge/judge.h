@@ -26,13 +26,13 @@ struct Setting {
   std::vector<Eigen::Isometry3d> places = ring_places(synthetic::Ring{});
   synthetic::PathKind walk = synthetic::PathKind::Random;
   std::size_t persons = 1;
-  /// Used instead of `persons` walkers; their time counts from 1970.
+  /// If not empty, these people are used instead of `persons` walkers; their time counts from 1970.
   std::vector<synthetic::Person> people = {};
   std::vector<synthetic::Occluder> occluders = {};
   /// During the walk its middle moves by this vector and back again (world) [m].
   Eigen::Vector3d glide = Eigen::Vector3d::Zero();
-  /// In addition to the profile, each host's clock is off [s] and drifts [s/s] by at most this
-  /// much, uniformly distributed.
+  /// Each host's clock is off [s] and drifts [s/s] by at most this much, uniformly distributed, in
+  /// addition to the errors of the profile.
   double clock_offset = 0.0;
   double clock_drift = 0.0;
   Duration length = std::chrono::seconds(30);
@@ -53,8 +53,8 @@ struct Workshop {
 /// profile is an error of the caller (throws).
 [[nodiscard]] Workshop draw_workshop(Setting setting);
 
-/// The same frames, where each joint has the true mean square of its error as its covariance, and
-/// how the errors of two sensors are correlated.
+/// The frames of a draw again, where each joint has the true mean square of its error as its
+/// covariance; and how the errors of two sensors correlate.
 struct Confided {
   std::vector<registration::WalkTrack> tracks;  ///< None: the profile does not know its errors.
   synthetic::kinect::ColouredError coloured;
@@ -68,28 +68,28 @@ struct Confided {
 /// Four sensors side by side; the walk moves along them, and only neighbours see a common part.
 [[nodiscard]] Setting row_of_four();
 
-/// Two sensors of a ring, `angle` [rad] apart.
+/// Poses of two sensors of a ring, `angle` [rad] apart.
 [[nodiscard]] std::vector<Eigen::Isometry3d> pair_places(double angle);
 
 /// The true time at which a host's clock showed `stamp`.
 [[nodiscard]] Timestamp true_time(const synthetic::HostClock& clock, Timestamp stamp);
 
-/// Where the registered world truly lies in the scene when this sensor is the master: origin on the
-/// floor below it, +z in its viewing direction.
+/// The pose of the scene in the world that a registration with this master should find: origin on
+/// the floor below the master, +z in its viewing direction.
 [[nodiscard]] Eigen::Isometry3d world_from_scene(const Workshop& workshop, const SensorId& master);
 
-/// The true pose of a sensor in that world.
+/// The true pose of a sensor in the world of `master`.
 [[nodiscard]] Eigen::Isometry3d true_place(const Workshop& workshop, const SensorId& sensor,
                                            const SensorId& master);
 
 /// The truth as a registration.
 [[nodiscard]] Registration true_registration(const Workshop& workshop, const SensorId& master);
 
-/// A person's true joints in that world.
+/// A person's true joints in the world of `master`.
 [[nodiscard]] Skeleton<WorldSpace> true_body(const Workshop& workshop, std::size_t person,
                                              Timestamp instant, const SensorId& master);
 
-/// "A dfa00b0ef4a8, gauss": what every result says about where its numbers come from.
+/// Names the profiles with the hashes of their parameters: "A dfa00b0ef4a8, gauss".
 [[nodiscard]] std::string described(const std::vector<std::string>& profiles);
 
 }  // namespace chorus::bench

@@ -9,7 +9,7 @@ namespace chorus::bench {
 /// Sum of one body's distances from the truth [m], over the joints that were seen.
 struct LabelledError {
   double as_given = 0.0;
-  double exchanged = 0.0;  ///< With left and right exchanged as a whole.
+  double exchanged = 0.0;  ///< With all labels left and right exchanged.
 };
 
 template <class Space>

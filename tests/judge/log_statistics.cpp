@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kThirdDifferenceGain =
-    20.0;  // variance of x - 3x + 3x - x over that of x: 1 + 9 + 9 + 1
+    20.0;  // variance of a third difference of white noise over that of the noise: 1 + 9 + 9 + 1
 constexpr double kMadToSigma = 1.4826;
 constexpr double kUsualPace = 1.5;  // wider than this many median steps is a gap
 

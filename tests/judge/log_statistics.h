@@ -14,19 +14,21 @@ namespace chorus::bench {
 
 struct LogStatistics {
   std::array<Eigen::Vector3d, kJointCount> white{};  ///< Robust white noise per axis, tracked [m]
-  std::array<Eigen::Vector3d, kJointCount> white_inferred{};  ///< The same while inferred [m]
-  std::array<double, kJointCount> inferred_share{};           ///< Fraction of the joint's frames.
-  std::map<JointId, double> bone_std;                         ///< By child joint [m]
-  std::map<JointId, double> lag_frame;  ///< Autocorrelation of the bone length at one frame.
-  std::map<JointId, double> lag_third;  ///< The same at a third of a second.
-  std::map<JointId, double> lag_later;  ///< The same at 0.4 s.
-  std::array<double, 3> steps{};        ///< Between frames: median, 95 %, longest [s]
+  std::array<Eigen::Vector3d, kJointCount> white_inferred{};  ///< White noise while inferred [m]
+  /// Fraction of the joint's frames in which it is inferred.
+  std::array<double, kJointCount> inferred_share{};
+  /// Standard deviation of a bone's length, by child joint [m]
+  std::map<JointId, double> bone_std;
+  std::map<JointId, double> lag_frame;  ///< Autocorrelation of a bone's length after one frame.
+  std::map<JointId, double> lag_third;  ///< Autocorrelation after a third of a second.
+  std::map<JointId, double> lag_later;  ///< Autocorrelation after 0.4 s.
+  std::array<double, 3> steps{};        ///< Time between frames: median, 95 %, longest [s]
   std::size_t unoriented = 0;           ///< Joints that never had an orientation.
   std::size_t frames = 0;
 };
 
-/// Statistics of the body with this id, or of the first body in each frame.  Frames must be in
-/// capture order; third differences are only taken over four frames at the usual rate.
+/// Statistics of the first body of each frame.  Frames must be in capture order; third differences
+/// are taken only over four frames at the usual rate.
 [[nodiscard]] LogStatistics statistics_of(const std::vector<SensorFrame>& frames);
 
 /// Standard deviation, and autocorrelation at a lag given in samples; NaN for too few.

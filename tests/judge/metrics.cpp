@@ -14,9 +14,10 @@ namespace chorus::bench {
 namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kRest = 0.03;    // [m/s] a slower joint is at rest
-constexpr double kJump = 0.08;    // [m] more than the true step
-constexpr double kNextTo = 1.5;   // instants more than this many usual steps apart are no step
+constexpr double kRest = 0.03;  // [m/s] a slower joint is at rest
+constexpr double kJump = 0.08;  // [m] a jump exceeds the true step by this
+// Instants more than this many usual steps apart are not successive.
+constexpr double kNextTo = 1.5;
 constexpr double kMinLag = -0.2;  // [s]
 constexpr double kMaxLag = 0.4;   // [s]
 

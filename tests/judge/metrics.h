@@ -21,7 +21,7 @@ struct Answer {
   std::array<std::size_t, kJointCount> views{};  ///< Number of views that saw each joint.
 };
 
-/// In order of time.
+/// The answers about one person, in order of time.
 using Answers = std::vector<Answer>;
 
 enum class JointGroup {
@@ -35,15 +35,16 @@ enum class JointGroup {
 /// Mean distance of a joint from its true position.
 [[nodiscard]] double mpjpe(const Answers& answers, JointGroup group);
 
-/// The same after subtracting each joint's mean offset in the body's own frame: what remains if
-/// only the definition of a joint differs.
+/// Like mpjpe(), after subtracting each joint's mean offset in the body's own frame: the error that
+/// remains if only the definitions of joints differ.
 [[nodiscard]] double bias_free_mpjpe(const Answers& answers, JointGroup group);
 
-/// Mean length of a joint's step beyond the true step [m], over joints that are truly at rest.
+/// Mean distance between a joint's answered step and its true one [m], over joints that are truly
+/// at rest.
 [[nodiscard]] double jitter_at_rest(const Answers& answers, JointGroup group);
 
-/// Standard deviation of a bone's length over its mean; averaged over upper arms, forearms, thighs
-/// and shanks.
+/// Standard deviation of a bone's length divided by its mean; averaged over upper arms, forearms,
+/// thighs and shanks.
 [[nodiscard]] double bone_variation(const Answers& answers);
 
 /// Steps of a joint more than 80 mm longer than the true one, per minute, over all joints.
@@ -56,7 +57,7 @@ enum class JointGroup {
 /// between -0.2 and 0.4 s; requires a moving person and equidistant instants.
 [[nodiscard]] double latency(const Answers& answers);
 
-/// Fraction of all joints at all instants that were answered.
+/// Fraction of all joints at all instants that have an answer.
 [[nodiscard]] double coverage(const Answers& answers);
 
 }  // namespace chorus::bench

@@ -7,9 +7,9 @@ namespace chorus::bench {
 
 struct PlaceError {
   double position = 0.0;    ///< [m]
-  double horizontal = 0.0;  ///< Its part across the true vertical [m]
-  double vertical = 0.0;    ///< Its part along the true vertical [m]
-  double yaw = 0.0;         ///< About the true vertical [rad]
+  double horizontal = 0.0;  ///< Part of the position error across the true vertical [m]
+  double vertical = 0.0;    ///< Part of the position error along the true vertical [m]
+  double yaw = 0.0;         ///< Error about the true vertical [rad]
   double pitch_roll = 0.0;  ///< Tilt of the vertical [rad]
 };
 

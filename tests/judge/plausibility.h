@@ -9,12 +9,12 @@
 namespace chorus::bench {
 
 /// Fraction of pairs of limbs (arms: elbows to hands; legs: knees to feet) that fit the truth
-/// better with left and right exchanged, although the body as a whole does not.  Only where the two
-/// are truly at least 0.15 m apart.
+/// better with left and right exchanged.  A pair counts only where its joints are truly at least
+/// 0.15 m apart on average and the body as a whole is not exchanged.
 [[nodiscard]] double limb_label_error_share(const Answers& answers);
 
-/// Relative error of a bone's mean length; averaged over upper arms, forearms, thighs and
-/// shanks.
+/// Error of a bone's mean length relative to the true one; averaged over upper arms, forearms,
+/// thighs and shanks.
 [[nodiscard]] double bone_length_error(const Answers& answers);
 
 /// How far an answered ankle moves while the true one stands: horizontal rms deviation from its

@@ -11,7 +11,7 @@ namespace chorus::bench {
 struct Sighted {
   std::size_t least_views = 0;
   std::size_t most_views = 1000;
-  enum class Motion { Any, Rest, Moving } motion = Motion::Any;  ///< Of the true joint.
+  enum class Motion { Any, Rest, Moving } motion = Motion::Any;  ///< How the true joint moves.
 };
 
 /// Normalised estimation error squared, mean per axis: 1 is consistent, above 1 is overconfident.

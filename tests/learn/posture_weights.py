@@ -19,7 +19,7 @@ import math
 import os
 import sys
 
-CUES = {"knees": 0.05, "wrists": 0.10, "elbows": 0.05, "lean": 0.15}  # [m] at which a cue is full
+CUES = {"knees": 0.05, "wrists": 0.10, "elbows": 0.05, "lean": 0.15}  # [m]; from this offset on, a cue counts fully
 SHARES = {"labanotation": 7, "keraal": 2, "azure": 1, "ui-prmd": 10}
 RIDGE = 0.02
 KINECT = (
@@ -129,7 +129,7 @@ def front_of(body):
 
 
 def offsets(body):
-    """As in posture.cpp, clamped to +-1."""
+    """Offsets of the cues along the front, as in posture.cpp, clamped to +-1."""
     front = front_of(body)
     if front is None:
         return None

@@ -9,7 +9,7 @@ RULES = ("sign", "constant", "comparison", "dropped statement")
 SIGNS = [(" + ", " - "), (" - ", " + "), (" += ", " -= "), (" -= ", " += "), ("return -", "return "),
          ("(-", "("), (", -", ", "), ("= -", "= ")]
 COMPARISONS = [(" <= ", " >= "), (" >= ", " <= "), (" < ", " > "), (" > ", " < "), (" == ", " != "), (" != ", " == ")]
-# Not a digit of a name (kFeet2, uint8_t), of a hexadecimal number or of a template argument (block<3, 3>).
+# A number, but no digit of a name (kFeet2, uint8_t), of a hexadecimal number or of a template argument (block<3, 3>).
 NUMBER = re.compile(r"(?<![\w.'])\d[\d']*(?:\.\d*)?(?:e[-+]?\d+)?(?=[UFf]?\b|\D)(?![\w.'])(?!, \d+>|>)")
 TEMPLATE = re.compile(r"<[\w: ,]*>")
 TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')

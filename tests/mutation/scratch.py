@@ -56,7 +56,7 @@ class Scratch:
             raise SystemExit("mutate: the scratch copy does not configure:\n" + done.stderr[-2000:])
 
     def make(self, *targets):
-        """'', or the compiler's output."""
+        """Builds the targets; returns '' or, if that fails, the compiler's output."""
         done = self.run("ninja", "-C", str(self.build), f"-j{self.jobs}", *targets)
         return "" if done.returncode == 0 else done.stdout + done.stderr
 
@@ -75,7 +75,7 @@ class Scratch:
         return [f"{room}.{name}" for name in names]
 
     def ask(self, test, number, limit):
-        """Which test fails: '' none, else the first failing case, 'crash' or 'time limit'."""
+        """Which case fails first: its name, 'crash' or 'time limit'; '' if none fails."""
         program = self.build / "tests" / test
         environment = dict(self.environment, CHORUS_MUTANT=str(number))
         try:
@@ -89,7 +89,7 @@ class Scratch:
         return found.group(1) if found else f"crash ({done.returncode})"
 
     def plant(self, file, text):
-        """The broken text as a system header, so that its warnings are no errors."""
+        """Replaces the file by an #include of the broken text, a system header so that its warnings are no errors."""
         broken = self.tree / (file.removesuffix(".cpp") + BROKEN)
         broken.write_text("#pragma GCC system_header\n" + text)
         (self.tree / file).write_text(f'#include "{broken.relative_to(self.tree)}"\n')
@@ -131,7 +131,7 @@ class FileRound:
         return {"status": "survived", "seconds": round(time.monotonic() - started, 1)}
 
     def together(self):
-        """As many mutants as fit into one build; yields (number, result)."""
+        """Tests as many mutants as fit into one build at a time; yields (number, result)."""
         while True:
             text, taken = merged(self.original, self.left)
             if len(taken) < 2:

@@ -28,8 +28,8 @@ constexpr std::array kStanding{
     Place{JointId::FootLeft, 0.11, 0.03, 0.13},
 };
 
-/// The left arm stretched out at shoulder height, with the same bone lengths to about a
-/// millimetre.
+/// The left arm of such a person stretched out at shoulder height; bone lengths differ by at most
+/// about a millimetre.
 constexpr std::array kStretchedArm{
     Place{JointId::ElbowLeft, 0.46, 1.40, 0},    Place{JointId::WristLeft, 0.71, 1.40, 0},
     Place{JointId::HandLeft, 0.78, 1.40, 0},     Place{JointId::HandTipLeft, 0.86, 1.40, 0},

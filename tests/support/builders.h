@@ -26,7 +26,7 @@ inline constexpr Duration kFrameInterval{33'333'333};
 [[nodiscard]] Skeleton<WorldSpace> standing_person(const Eigen::Vector3d& place = {0, 0, 0},
                                                    double heading = 0.0);
 
-/// The same with arms stretched out sideways.
+/// A standing person with arms stretched out sideways.
 [[nodiscard]] Skeleton<WorldSpace> t_pose_person(const Eigen::Vector3d& place = {0, 0, 0},
                                                  double heading = 0.0);
 
@@ -39,7 +39,7 @@ inline constexpr Duration kFrameInterval{33'333'333};
 [[nodiscard]] Eigen::Isometry3d ring_sensor(int index, int count, double radius = 2.5,
                                             double height = 1.2);
 
-/// The floor y = 0 as that sensor sees it.
+/// The floor y = 0 as a sensor at this pose sees it.
 [[nodiscard]] FloorPlane floor_seen_from(const Eigen::Isometry3d& world_from_sensor);
 
 /// What a perfect sensor sees of a person.
@@ -47,7 +47,7 @@ inline constexpr Duration kFrameInterval{33'333'333};
                                        const Skeleton<WorldSpace>& person, Timestamp captured,
                                        std::uint64_t body_id = 1);
 
-/// A frame of one sensor; captured = received, the sequence counts frames since kStart.
+/// A frame of one sensor with captured = received; its sequence counts frames since kStart.
 [[nodiscard]] SensorFrame sensor_frame(std::string_view sensor, Timestamp captured,
                                        std::vector<BodyFrame> bodies);
 

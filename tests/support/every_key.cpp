@@ -7,7 +7,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Words that some key accepts; others refuse them.
+/// Strings, each of which some key accepts; the other keys refuse it.
 constexpr const char* kWords[] = {
     "s2",        "0.0.0.0", "http://a",    "warn",     "json",      "A",           "circle",
     "replay",    "otto",    "centre-axis", "icp-only", "neck",      "as-recorded", "powerwall",

@@ -64,7 +64,7 @@ MATCHER_P3(IsometryNear, expected, metres, radians,
   return arg.matrix().allFinite() && distance <= metres && angle <= radians;
 }
 
-/// The same states, and every joint seen in both differs by at most `metres`.
+/// Requires the same states, and at most `metres` between any joints that are seen.
 MATCHER_P2(SkeletonNear, expected, metres, "is within " + ::testing::PrintToString(metres) + " m") {
   for (std::size_t i = 0; i < kJointCount; ++i) {
     const Joint& joint = arg.joints[i];

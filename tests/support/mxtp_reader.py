@@ -36,7 +36,7 @@ ALONG = {
                                         ("Hand", "Wrist", "HandTip", True), ("UpperLeg", "Hip", "Knee", False),
                                         ("LowerLeg", "Knee", "Ankle", False), ("Foot", "Ankle", "Foot", False))}}
 
-# Pairs that bend in one plane: the cross product of the upper and the lower segment, in T-pose.
+# Pairs that bend in one plane, and the cross product of the upper and the lower segment in T-pose.
 HINGES = {("LeftUpperArm", "LeftForeArm"): DOWN, ("RightUpperArm", "RightForeArm"): UP,
           ("LeftUpperLeg", "LeftLowerLeg"): LEFT, ("RightUpperLeg", "RightLowerLeg"): LEFT}
 

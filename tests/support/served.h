@@ -16,7 +16,7 @@ struct Answer {
   std::string body;  ///< Of a refusal: the message.
 };
 
-/// `path` may end in ?key=value.
+/// `whole` is a path that may end in ?key=value.
 inline Result<http::DocumentPtr> document_at(const http::Router& router, const std::string& whole) {
   const std::size_t mark = whole.find('?');
   const std::string path = whole.substr(0, mark);

@@ -1,4 +1,4 @@
-// One sentence for each state of the tracker, and matching colours.
+// The viewer shows one sentence for each state of the tracker, in a matching colour, and follows the server's clock.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 

@@ -1,7 +1,8 @@
 // Profile C compared with profiles A and B: how far one sensor's joints are from the truth when
 // errors emerge from depth images, and when they are drawn at random.
 //
-// Both with labels as given, and with labels repaired where left and right are exchanged.
+// Both are reported with labels as given, and with labels repaired where left and right are
+// exchanged.
 #include <algorithm>
 #include <array>
 #include <ctime>
@@ -41,7 +42,7 @@ std::size_t view_of(double facing) {
 /// Sums over the frames of one view.
 struct Tally {
   double given = 0;     ///< Sum of joint errors [m]
-  double repaired = 0;  ///< The same, labels repaired [m]
+  double repaired = 0;  ///< Sum of joint errors with repaired labels [m]
   std::size_t joints = 0;
   std::size_t inferred = 0;
   std::size_t frames = 0;
@@ -77,7 +78,7 @@ Scene scene_of(std::vector<Person> people) {
   return scene;
 }
 
-/// The person whose neck is nearest.
+/// Index of the person whose neck is nearest to the body's.
 std::size_t nearest(const std::vector<Skeleton<SensorSpace>>& people,
                     const Skeleton<SensorSpace>& body) {
   const auto gap = [&](const Skeleton<SensorSpace>& person) {
@@ -156,7 +157,7 @@ double share(std::size_t part, std::size_t whole) {
   return whole == 0 ? std::nan("") : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// The spread over the draws that contain the view.
+/// Reports the median and the 5-95 % range over the draws that contain the view.
 void spread(Report& report, const std::string& name, const std::string& metric,
             std::vector<double> values, const char* unit) {
   std::erase_if(values, [](double value) { return std::isnan(value); });
@@ -242,7 +243,7 @@ void measure_speed(Report& report) {
   (void)record(scene, choice_of("C", report.seed()), kBegin, kBegin + from_seconds(length));
   const double spent = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
   report.row("one-sensor-C", "times_real_time", length / spent, "");
-  // A build without optimisation is about ten times slower and says nothing.
+  // Quick runs also happen in builds without optimisation, which are about ten times slower.
   if (!report.quick()) {
     report.condition(
         fmt::format("one sensor of profile C: {:.0f} times real time, at least 3", length / spent),

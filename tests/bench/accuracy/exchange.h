@@ -9,19 +9,19 @@
 
 namespace chorus::bench {
 
-/// Delay of one direction: least + exponential; sometimes a spike is added. [s]
+/// Delay of one direction: least + exponential, sometimes plus a spike [s].
 struct Network {
   double least = 0.4e-3;
   double jitter = 1.5e-3;     ///< Mean of the exponential part.
-  double spike_share = 0.05;  ///< Fraction of the messages.
-  double spike = 30e-3;       ///< Mean of its exponential.
+  double spike_share = 0.05;  ///< Fraction of the messages that are delayed by a spike.
+  double spike = 30e-3;       ///< Mean of the spike, which is exponential, too.
   double asymmetry = 0.0;     ///< The request takes this much longer than the answer.
 };
 
 /// A sensor host and the network in front of it.
 struct Link {
   Network network;
-  synthetic::HostClock clock;  ///< Of the sensor host; the fusion host's is true.
+  synthetic::HostClock clock;  ///< The sensor host's clock; the fusion host's is true.
   std::uint64_t seed = 1;
 };
 

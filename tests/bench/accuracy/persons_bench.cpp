@@ -51,7 +51,7 @@ Draws draw_all(const Report& report, PersonsCase each, const std::vector<Associa
   });
 }
 
-/// Draws in which no person's id ever changed, in percent.
+/// Percentage of the draws in which no person's id ever changed.
 double no_switch_percent(const Draws& draws, const std::string& method) {
   const auto faultless = std::ranges::count_if(
       draws, [&](const Identities& found) { return found.at(method).switches == 0; });
@@ -64,7 +64,7 @@ std::vector<Association> ablations() {
   const associate::AssociationConfig whole;
   std::vector<Association> all{{kOurs, whole}};
   associate::AssociationConfig config = whole;
-  config.coast = std::chrono::milliseconds(50);  // one instant
+  config.coast = std::chrono::milliseconds(50);  // longer than one instant, shorter than two
   all.push_back({"without-coasting", config});
   config = whole;
   config.confirm_frames = 1;
@@ -73,7 +73,7 @@ std::vector<Association> ablations() {
   config.merge_frames = std::numeric_limits<int>::max();
   all.push_back({"without-merging", config});
   config = whole;
-  config.gate = 10.0;  // the whole room
+  config.gate = 10.0;  // [m] reaches across the whole room
   all.push_back({"without-gate", config});
   config = whole;
   config.alone = Duration{0};
@@ -87,7 +87,7 @@ std::vector<Association> ablations() {
   return all;
 }
 
-/// Either ours and the other methods, or ours and its ablations.
+/// Keeps ours and its ablations if `ablated`, else ours and the other methods.
 Draws only(const Draws& draws, bool ablated) {
   Draws kept = draws;
   for (Identities& identities : kept) {
@@ -98,7 +98,7 @@ Draws only(const Draws& draws, bool ablated) {
   return kept;
 }
 
-/// One row for each method that ours is compared with.
+/// Reports one row for each method that ours is compared with.
 void report_no_switch(Report& report, const std::string& name, const Draws& draws) {
   const double ours = no_switch_percent(draws, kOurs);
   for (const auto& [method, identity] : draws.front()) {
@@ -120,7 +120,7 @@ void report_figure(Report& report, const std::string& name, const Draws& draws,
   if (figure.better == Better::Higher) comparison.report_wins(report);
 }
 
-/// Where the median is zero, the mean over the draws still differs.
+/// Reports the mean over the draws, which still differs where the median is zero.
 void report_mean_ghosts(Report& report, const std::string& name, const Draws& draws) {
   double sum = 0.0;
   for (const Identities& found : draws)
@@ -156,7 +156,7 @@ void measure(Report& report, const PersonsCase& each) {
   if (each.sides) report_sides(report, each);
   if (ablated) report_draws(report, "ablation-" + each.name, only(draws, true));
   if (each.name != kCrossingTwo) return;
-  constexpr double kMin = 50.0;  // [%] generous: it catches a regression, it is no target
+  constexpr double kMin = 50.0;  // [%] generous: it catches a regression and is no target
   report.condition(
       fmt::format("{}: in at least {} % of the draws no id changes", kCrossingTwo, kMin),
       no_switch_percent(draws, kOurs) >= kMin);
@@ -186,10 +186,12 @@ constexpr std::array kParts{
            p.delivery.gaps_per_minute *= f;
            p.delivery.drop_share = std::min(0.9, p.delivery.drop_share * f);
          }},
-    Part{"occlusion", [](Profile& p, double f) { p.visibility.girth *= f; }},  // the occluders'
+    // The girth scales the radii of the bodies that occlude others.
+    Part{"occlusion", [](Profile& p, double f) { p.visibility.girth *= f; }},
     Part{"yaw", [](Profile& p, double f) { p = with_source(std::move(p), Yaw, f); }}};
 
-/// Varies one source after the other in the scene that separates methods; x1 is the same for all.
+/// Varies one source after the other in the scene that separates methods best; the unchanged
+/// profile is the same for all sources and is measured once.
 void sweep(Report& report) {
   PersonsCase usual = case_named("crossing-2-hidden");
   usual.length = kSweepLength;

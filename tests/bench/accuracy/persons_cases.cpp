@@ -13,7 +13,7 @@ namespace {
 
 constexpr Duration kStart = std::chrono::milliseconds(500);
 constexpr Duration kTail = std::chrono::milliseconds(200);
-constexpr double kClose = 0.3;  // [m] shoulder to shoulder
+constexpr double kClose = 0.3;  // [m] between necks: shoulder to shoulder
 constexpr const char* kBestSensor = "best-sensor-ids";
 
 using People = std::vector<synthetic::Person>;
@@ -41,8 +41,8 @@ using Sights = associate::Scene;
 /// A method: returns the people at each instant; keeps whatever memory it needs.
 using Grouper = std::function<std::vector<Person>(const Sights& sights)>;
 
-/// Profile A tracks many occluded joints falsely, with an error about their true position: it would
-/// see through the screen.  Here it is known which joints are occluded.
+/// Reports every occluded joint as inferred.  Profile A reports many of them as tracked, close to
+/// their true positions, so its sensors would see through the screen.
 void know_the_occluded(synthetic::kinect::Profile& profile, std::size_t) {
   profile.visibility.inferred_occluded = 1.0;
 }
@@ -82,7 +82,7 @@ Setting setting_of(const PersonsCase& each, std::uint64_t seed) {
   return setting;
 }
 
-/// Horizontal position; not finite: the person is not in the room.
+/// True horizontal place of a person; NaN while the person is out of the room.
 Eigen::Vector2d true_place(const Workshop& workshop, std::size_t person, Timestamp instant,
                            const SensorId& master) {
   const Eigen::Vector2d place = baselines::place_of(true_body(workshop, person, instant, master));
@@ -147,7 +147,7 @@ std::vector<Contestant> contestants_in(const Workshop& workshop,
   return all;
 }
 
-/// Everybody's true place; no person is claimed yet.
+/// The roll of an instant: everybody's true place, and no answers of a method yet.
 Roll roll_at(const Workshop& workshop, Timestamp instant) {
   Roll roll{instant, {}, {}};
   const SensorId& master = workshop.tracks.front().sensor;
@@ -161,7 +161,7 @@ Period period_of(const Workshop& workshop) {
   return {workshop.begin + kStart, workshop.begin + workshop.setting.length - kTail};
 }
 
-/// Calls the roll by every method, at every instant: who is said to be who.
+/// Lets every method assign the views of every instant, and records who it says is where.
 void call_rolls(const Workshop& workshop, std::vector<Contestant>& contestants) {
   const Registration places = true_registration(workshop, workshop.tracks.front().sensor);
   visit_scenes(workshop.tracks, places, period_of(workshop), [&](const Sights& sights) {
@@ -227,7 +227,8 @@ Identities identities_in(const PersonsCase& each, std::uint64_t seed,
   for (const Contestant& contestant : contestants) {
     const Identity found = identity_of(contestant.rolls);
     const auto [known, fresh] = identities.emplace(contestant.name, found);
-    if (!fresh && found.idf1 > known->second.idf1) known->second = found;  // the best sensor
+    // Every sensor is a contestant of the same name: the best one is kept.
+    if (!fresh && found.idf1 > known->second.idf1) known->second = found;
   }
   return identities;
 }

@@ -1,5 +1,5 @@
-// The scenes in which association is measured, and whom each method takes for whom in one draw of
-// them.
+// The scenes in which association is measured, and how well each method keeps people's identities
+// in one draw of them.
 #pragma once
 
 #include <map>
@@ -22,7 +22,7 @@ struct PersonsCase {
   /// Changes the profile of the sensor at `place` after the draw.
   std::function<void(synthetic::kinect::Profile&, std::size_t place)> adjust = {};
   std::size_t draws = 20;
-  bool sides = false;  ///< sides_wrong_in() is measured too.
+  bool sides = false;  ///< Whether sides_wrong_in() is measured, too.
 };
 
 /// The case that is measured in quick runs and used for sweeps.
@@ -36,7 +36,7 @@ struct Association {
   associate::AssociationConfig config = {};
 };
 
-/// By method.
+/// What each method makes of the people, by the method's name.
 using Identities = std::map<std::string, Identity>;
 
 /// One draw: each of `ours`, and in addition `nearest-neighbour` (greedy, without prediction) and

@@ -1,7 +1,8 @@
-// chorus-bench real: the bundled four camera views of a real person, fused by all our methods,
-// compared with the published triangulation (tests/data/README.md; accurate to a few cm).
+// chorus-bench real: fuses the bundled four camera views of a real person by all our methods, and
+// compares them with the published triangulation (tests/data/README.md; accurate to a few cm).
 //
-// Once with the published extrinsics, once with extrinsics registered from the person alone.
+// Every method runs twice: with the published extrinsics, and with extrinsics registered from the
+// person alone.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -26,8 +27,9 @@ using importers::Lateral;
 
 constexpr const char* kFolder = "tests/data/pose2sim_mediapipe";  // run from the repository root
 constexpr double kRateHz = 60.0;                                  // of the recording
-constexpr double kPlainMeanMm = 104;   // measured outside this project: plain mean of the four,
-constexpr double kBestCameraMm = 140;  // and the best single camera
+// Errors measured outside this project: of the plain mean of the four cameras, and of the best one.
+constexpr double kPlainMeanMm = 104;
+constexpr double kBestCameraMm = 140;
 
 constexpr double kNoWorseMm = 5;
 
@@ -72,10 +74,11 @@ Eigen::Isometry3d published_from_ours(const Registration& ours, const Registrati
 struct FusedScore {
   double median_mm = std::numeric_limits<double>::quiet_NaN();
   double p90_mm = std::numeric_limits<double>::quiet_NaN();
-  double shape_mm = std::numeric_limits<double>::quiet_NaN();  ///< After the best rigid motion.
+  /// Median after the best rigid motion.
+  double shape_mm = std::numeric_limits<double>::quiet_NaN();
   double bodies_per_frame = 0.0;
   std::size_t frames = 0;
-  double missing_percent = 0.0;  ///< Of the true joints, in all frames of the recording.
+  double missing_percent = 0.0;  ///< True joints without an answer, in all frames.
 };
 
 /// The rigid motion that brings most joints onto the truth; views with left and right exchanged
@@ -171,7 +174,7 @@ Registration published_registration(const ImportedSet& set) {
   return registration;
 }
 
-/// The method described with the data: rigid perspective-n-point per camera.
+/// The views of the method that the data's README describes: rigid perspective-n-point per camera.
 Result<std::vector<record::FrameRecording>> plain_views() {
   const auto cameras = importers::read_cameras(std::string(kFolder) + "/cameras.json");
   if (!cameras) return pass(cameras);
@@ -204,7 +207,7 @@ double add_single_cameras(Report& report, const ImportedSet& set,
 struct Run {
   const char* prefix;
   const std::vector<record::FrameRecording>& views;
-  std::optional<Registration> extrinsics;  ///< None: registered from the person.
+  std::optional<Registration> extrinsics;  ///< None: register from the person.
 };
 
 /// Runs all methods with one kind of extrinsics; returns the last one's error.
@@ -232,7 +235,8 @@ Result<double> add_methods(Report& report, const Run& run, const ImportedSet& se
   return last;
 }
 
-/// The same landmarks as rays, without depth: from all cameras, and from two of them.
+/// Fuses the same landmarks as rays, without depth, of two, three and all four cameras; returns the
+/// error of all four.
 Result<double> add_rays(Report& report, double mean_mm) {
   importers::ImportOptions options;
   options.rays = true;
@@ -287,7 +291,7 @@ Result<void> add_places(Report& report, const ImportedSet& set) {
   return {};
 }
 
-/// The method described with the data, fused by the plain mean [mm].
+/// Error of the method that the data's README describes, fused by the plain mean [mm].
 Result<double> plain_mean(Report& report, const ImportedSet& set,
                           const std::vector<record::FrameRecording>& plain) {
   const auto fused =

@@ -11,18 +11,18 @@ namespace chorus::bench {
 /// Kinect v2 compared with optical targets: raw, and the same frames fused by the pipeline.
 [[nodiscard]] Result<void> compare_with_keraal(Report& report, const std::filesystem::path& folder);
 
-/// Three cameras of one take without clocks: closure of the yaws along chains, copied camera files,
-/// and which pairs count as registered.
+/// Three cameras of one take without clocks: reports how well the yaws along chains close, whether
+/// copied camera files are refused, and how many pairs are accepted.
 [[nodiscard]] Result<void> close_nw_ucla_chains(Report& report,
                                                 const std::filesystem::path& folder);
 
-/// Two views of a single pose must not be registered.
+/// Checks that two views of a single pose are not registered.
 [[nodiscard]] Result<void> refuse_ntu_poses(Report& report, const std::filesystem::path& folder);
 
-/// Checks capture times.
+/// Compares the times between frames with those of profile A.
 [[nodiscard]] Result<void> time_labanotation(Report& report, const std::filesystem::path& folder);
 
-/// Left and right after the pipeline, one sensor each.
+/// How often left and right are right after the pipeline, each recording fused as a single sensor.
 [[nodiscard]] Result<void> side_labanotation(Report& report, const std::filesystem::path& folder);
 [[nodiscard]] Result<void> side_keraal(Report& report, const std::filesystem::path& folder);
 [[nodiscard]] Result<void> side_ntu(Report& report, const std::filesystem::path& folder);

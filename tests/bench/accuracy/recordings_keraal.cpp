@@ -134,8 +134,8 @@ void find_shift(Take& take) {
   take.shift = chosen;
 }
 
-/// rms per joint group after a rigid motion; `own_place`: also after subtracting each target's mean
-/// offset from the limb, in the target's axes.
+/// rms distance of all targets from their limbs after the best rigid motion; `own_place`: each
+/// target's mean offset from its limb, in the target's axes, is subtracted first.
 double take_rms(const Take& take, bool own_place) {
   const Fit motion = fit(take);
   std::vector<double> errors;
@@ -164,7 +164,7 @@ Bodies raw_bodies(const FrameRecording& recording) {
   return bodies;
 }
 
-/// The same frames after the whole pipeline with one sensor; empty where it gave no body.
+/// Bodies after the whole pipeline with one sensor, frame by frame; empty where there is none.
 Result<Bodies> fused_bodies(const FrameRecording& recording) {
   Registration given;
   given.master = recording.sensor;

@@ -46,7 +46,8 @@ bool same_numbers(const FrameRecording& a, const FrameRecording& b) {
   return true;
 }
 
-/// Without clocks: tries all start shifts up to a second and keeps the best fit.
+/// Registers two takes without clocks: tries all start shifts up to a second and keeps the best
+/// fit.
 std::optional<PairwiseRegistration> register_unclocked(const FrameRecording& target,
                                                        const FrameRecording& source) {
   registration::RegistrationConfig config;
@@ -70,7 +71,7 @@ std::optional<PairwiseRegistration> register_unclocked(const FrameRecording& tar
 /// Whether the product, as configured, takes these clips without clocks for a registered pair.
 bool accepts(const FrameRecording& target, const FrameRecording& source) {
   registration::RegistrationConfig config;
-  config.use_floor = false;  // Kinect v1 delivers none
+  config.use_floor = false;  // Kinect v1 delivers no floor
   const auto edge =
       register_pair({target.sensor, target.frames}, {source.sensor, source.frames}, config);
   return edge.has_value();
@@ -96,15 +97,15 @@ void close_chain(const Views& views, Closure& closure) {
 /// Counts over all takes.
 struct Census {
   std::size_t complete = 0;  ///< Takes with all three views.
-  std::size_t copies = 0;    ///< ... of which two have the same numbers.
-  std::size_t refused = 0;   ///< ... and which the importer refuses as copies.
-  std::size_t wrongly = 0;   ///< Takes that it refuses as copies although they are not.
+  std::size_t copies = 0;    ///< Complete takes of which two views have the same numbers.
+  std::size_t refused = 0;   ///< Such takes that the importer refuses as copies.
+  std::size_t wrongly = 0;   ///< Complete takes without copies that the importer refuses as copies.
   std::size_t pairs = 0;     ///< Pairs of walks.
-  std::size_t accepted = 0;  ///< ... that were accepted as registered.
+  std::size_t accepted = 0;  ///< Pairs that were accepted as registered.
   Closure closure;
 };
 
-/// False where two views are the same.
+/// Counts a complete take; returns false if two of its views are the same.
 bool count_copies(const Views& views, Census& census) {
   const FrameRecording& a = views.at("v01");
   const FrameRecording& b = views.at("v02");

@@ -26,9 +26,9 @@ using record::FrameRecording;
 
 using Body = Skeleton<WorldSpace>;
 
-/// Whether the labels of the body at frame `index` are right; nothing where that is unknown.
+/// What is known about the labels of one body.
 struct Truth {
-  bool as_labelled = true;  ///< The sensor's own labels are right.
+  bool as_labelled = true;  ///< The sensor's own left and right are correct.
 };
 using Judge =
     std::function<std::optional<Truth>(const FrameRecording&, std::size_t index, const Body& raw)>;
@@ -47,8 +47,8 @@ struct Share {
 };
 
 struct Shares {
-  Share as_labelled;  ///< Where the sensor's labels are right.
-  Share exchanged;    ///< Where they are wrong.
+  Share as_labelled;  ///< Frames in which the sensor's labels are right.
+  Share exchanged;    ///< Frames in which they are exchanged.
 };
 
 /// The sensor's body nearest to a fused one.
@@ -102,7 +102,7 @@ std::optional<Truth> labels_are_right(const FrameRecording&, std::size_t, const 
   return Truth{};
 }
 
-/// Judges by the direction in which the body moves within eight frames.
+/// Judges the labels by the direction in which the body moves within eight frames.
 std::optional<Truth> walks_forwards(const FrameRecording& recording, std::size_t index,
                                     const Body& raw) {
   constexpr std::size_t kFrames = 4;
@@ -127,11 +127,12 @@ using Reader = Result<FrameRecording> (*)(const fs::path&, const importers::Impo
 
 struct Collection {
   const char* name;
-  const char* ending;  ///< How the names of the files end; next, how they begin.
+  const char* ending;  ///< How the names of the files end.
   const char* beginning;
   Reader read;
   Judge judge;
-  double least_percent;  ///< Least right where the labels are right; 0: only reported.
+  /// Required share of right answers where the labels are right; 0: only reported.
+  double least_percent;
 };
 
 Result<void> count_all(Report& report, const fs::path& folder, const Collection& each) {

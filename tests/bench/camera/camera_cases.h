@@ -10,7 +10,7 @@
 
 namespace chorus::bench {
 
-/// Where four cameras really stood, what they saw, and the triangulation of that.
+/// Landmarks of four cameras, their true places and the published triangulation.
 inline constexpr const char* kFourViews = "tests/data/pose2sim_mediapipe";
 inline constexpr const char* kFourVideos = "tests/data/pose2sim_videos/four";
 inline constexpr double kTruthHz = 60.0;
@@ -20,25 +20,25 @@ inline constexpr double kTruthHz = 60.0;
 
 [[nodiscard]] Registration published_places(const importers::ImportedSet& set);
 
-/// Joints that were answered, beside the published ones.
+/// How fused joints agree with the published ones.
 struct Agreement {
   std::vector<double> errors;  ///< [m]
-  std::vector<double> limbs;   ///< The same of shoulders, elbows, wrists, hips, knees and ankles.
-  double asked = 0.0;          ///< Published joints at all instants asked about.
+  std::vector<double> limbs;   ///< Errors of shoulders, elbows, wrists, hips, knees and ankles [m].
+  double asked = 0.0;          ///< Number of published joints at all instants asked about.
 
   void add(const Skeleton<WorldSpace>& fused, const Skeleton<WorldSpace>& published);
-  void missed(const Skeleton<WorldSpace>& published);  ///< Nobody was there.
+  void missed(const Skeleton<WorldSpace>& published);  ///< Counts an instant without a body.
   void report(Report& report, const std::string& name) const;
 };
 
-/// Bundled landmarks, and every picture of the bundled videos: offline, so that it does not matter
-/// how fast this computer is.
+/// Fuses the bundled landmarks, and every picture of the bundled videos, offline, so that the speed
+/// of this computer does not matter.
 [[nodiscard]] Result<void> four_views(Report& report);
-/// The same videos through real processes.
+/// Fuses the bundled videos with real processes.
 [[nodiscard]] Result<void> live_views(Report& report);
-/// Pictures a second on one core.
+/// Measures how many pictures a second a runner takes on one core.
 [[nodiscard]] Result<void> runner_speed(Report& report);
-/// Five simulated cameras and the scenes of `persons`.
+/// Measures who is who with five simulated cameras in the scenes of `persons`.
 [[nodiscard]] Result<void> simulated_people(Report& report);
 /// Lenses from rendered pictures of a board.
 [[nodiscard]] Result<void> lens_calibration(Report& report);

@@ -16,7 +16,7 @@ namespace {
 
 using importers::ImportedSet;
 
-/// Landmarks of both networks, not made of several: where networks can be compared.
+/// Joints that every network gives as one landmark, so that networks can be compared.
 constexpr std::array kLimbs{JointId::ShoulderLeft, JointId::ShoulderRight, JointId::ElbowLeft,
                             JointId::ElbowRight,   JointId::WristLeft,     JointId::WristRight,
                             JointId::HipLeft,      JointId::HipRight,      JointId::KneeLeft,

@@ -23,7 +23,8 @@ using std::chrono::seconds;
 using Json = nlohmann::json;
 
 constexpr double kTakeSeconds = 100.0 / kTruthHz;
-constexpr double kJoin = 0.3;  // [s] around the end of the take, where bodies jump to its beginning
+// Left out around the end of the take, where bodies jump to its beginning [s].
+constexpr double kJoin = 0.3;
 constexpr auto kPatience = seconds(120);
 constexpr auto kSettling = seconds(6);
 constexpr double kWatched = 30.0;  // [s]
@@ -85,7 +86,7 @@ Skeleton<WorldSpace> body_of(const Json& body) {
 
 struct Watched {
   Agreement agreement;
-  std::vector<double> ages;  ///< Of frames when they came [s].
+  std::vector<double> ages;  ///< Age of each frame at its receipt [s].
   double frames = 0.0;
   double with_body = 0.0;
 };

@@ -32,7 +32,7 @@ Result<std::vector<cv::Mat>> pictures() {
   return all;
 }
 
-/// Six of them side by side.
+/// A picture of six copies of `one`, three by two.
 cv::Mat six_times(const cv::Mat& one) {
   cv::Mat row;
   cv::hconcat(std::vector<cv::Mat>{one, one, one}, row);
@@ -42,7 +42,7 @@ cv::Mat six_times(const cv::Mat& one) {
 }
 
 struct Cost {
-  double seconds = 0.0;  ///< Of processor time, everything included.
+  double seconds = 0.0;  ///< Processor time of the runner, from its start on.
   std::size_t people = 0;
 };
 

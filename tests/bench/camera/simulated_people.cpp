@@ -26,13 +26,14 @@ constexpr double kFocal = 1005.0;  // [px]
 constexpr double kHalfWidth = 640.0;
 constexpr double kHalfHeight = 360.0;
 constexpr std::size_t kCameras = 5;
-constexpr double kHidden = 0.30;  // [m] beside the line of sight to another
+// A neck this close to the line of sight to another one hides it [m].
+constexpr double kHidden = 0.30;
 
 struct Errors {
-  double pixels = 8.0;           ///< Of a landmark, in each direction (standard deviation).
-  double missing_person = 0.03;  ///< Of the pictures.
+  double pixels = 8.0;           ///< Standard deviation of a landmark in each direction.
+  double missing_person = 0.03;  ///< Share of the pictures in which a person is not found.
   double missing_joint = 0.05;
-  double hidden_person = 0.8;  ///< Of the pictures in which another stands before them.
+  double hidden_person = 0.8;  ///< The share while another person stands in front.
 };
 
 struct Crowd {
@@ -64,7 +65,7 @@ synthetic::Ring ring() {
 
 SensorId camera_id(std::size_t i) { return SensorId::parse(fmt::format("cam{}", i)).value(); }
 
-/// Pose models know nothing of hands and toes.
+/// Whether pose models have a landmark for the joint; they have none for hands and toes.
 bool has_landmark(JointId id) {
   constexpr std::array kNone{JointId::HandLeft,     JointId::HandRight, JointId::HandTipLeft,
                              JointId::HandTipRight, JointId::ThumbLeft, JointId::ThumbRight,
@@ -81,7 +82,7 @@ class Camera {
 
   [[nodiscard]] associate::Observer observer() const { return {id_, world_from_camera_}; }
 
-  /// Who is in the picture, numbered from left to right.
+  /// Adds a view of each person found in the picture; body ids count from left to right.
   void see(const std::vector<Skeleton<WorldSpace>>& people, std::vector<SensorView>& views) {
     std::vector<Skeleton<SensorSpace>> here;
     for (const auto& person : people)
@@ -109,7 +110,7 @@ class Camera {
     });
   }
 
-  /// The ray of a joint as a landmark would give it; false: it is not in the picture.
+  /// Replaces a joint by the ray to its noisy landmark; false: it is not in the picture.
   bool make_ray(Joint& joint) {
     std::normal_distribution<double> noise(0.0, errors_.pixels);
     if (joint.position.z() < 0.2) return false;
@@ -132,7 +133,7 @@ class Camera {
       if (!there) joint = Joint{};
       seen += there ? 1U : 0U;
     }
-    constexpr std::size_t kLeast = 4;  // landmarks that a runner calls a person
+    constexpr std::size_t kLeast = 4;  // with fewer landmarks a runner reports no person
     if (seen < kLeast) return;
     SensorView view;
     view.sensor = id_;
@@ -157,8 +158,8 @@ double thread_seconds() {
 
 struct Outcome {
   Identity identity;
-  std::vector<double> matching;  ///< Each instant [s].
-  std::vector<double> off;       ///< Necks, from the nearest true one [m].
+  std::vector<double> matching;  ///< Time of each matching [s].
+  std::vector<double> off;       ///< Distance of each neck from the nearest true one [m].
 };
 
 double nearest(const Eigen::Vector3d& neck, const std::vector<Skeleton<WorldSpace>>& people) {
@@ -168,7 +169,7 @@ double nearest(const Eigen::Vector3d& neck, const std::vector<Skeleton<WorldSpac
   return least;
 }
 
-/// Who is said to be where, beside the truth.
+/// What the fused bodies say about who is where, with the truth; adds the neck errors to `off`.
 Roll roll_of(Timestamp instant, const std::vector<Skeleton<WorldSpace>>& people,
              const std::vector<FusedBody>& bodies, std::vector<double>& off) {
   Roll roll{instant, {}, {}};
@@ -224,7 +225,7 @@ double middle(const std::vector<Outcome>& outcomes, Figure figure) {
   return median(values);
 }
 
-/// Its median over the draws.
+/// A metric that is reported as its median over the draws.
 struct Figure {
   const char* metric;
   const char* unit;

@@ -29,7 +29,7 @@ using Settings = std::vector<std::string>;  ///< "key=value"
 struct Neighbour {
   std::string id;
   std::uint16_t port = 0;
-  int place = -1;      ///< Place on the ring, counted with the sensors; -1: unknown.
+  int place = -1;      ///< Its place on the ring, after those of the sensors; -1: unknown.
   bool honest = true;  ///< Expected to contribute.
 };
 
@@ -42,10 +42,11 @@ struct CellPlan {
   std::optional<PacketModel> path = {};  ///< Network between all sensors and the server.
   Settings fusion = {};
   bool secure = false;                  ///< The server asks the sensors by https.
-  ChildSurroundings surroundings = {};  ///< Those of chorus-fusion.
-  bool placed = true;     ///< Extrinsics are given; else the sensors' places are unknown.
-  bool stored = false;    ///< Given in the server's own state folder, not as registration.file.
-  bool start_all = true;  ///< False: no sensor is started yet.
+  ChildSurroundings surroundings = {};  ///< What chorus-fusion starts with.
+  bool placed = true;  ///< Extrinsics are given; else the sensors' places are unknown.
+  /// The extrinsics are in the server's state folder, not in registration.file.
+  bool stored = false;
+  bool start_all = true;              ///< False: no sensor is started yet.
   std::string address = "127.0.0.1";  ///< Where chorus-fusion listens.
 };
 
@@ -55,7 +56,7 @@ class Cell {
   [[nodiscard]] static Result<Cell> start(CellPlan plan);
 
   [[nodiscard]] Result<void> start_sensor(int index);
-  /// For its next start.
+  /// Sets what the sensor gets at its next start.
   void change_sensor(int index, Settings settings) { plan_.of_sensor[index] = std::move(settings); }
   [[nodiscard]] Result<void> start_fusion();
   /// Waits until every placed sensor contributes to one body.
@@ -81,7 +82,7 @@ class Cell {
   [[nodiscard]] http::ClientResponse ask(http::ClientRequest request) const;
   /// The answer to a GET as JSON; discarded() when there is no such answer.
   [[nodiscard]] nlohmann::json json(const std::string& path) const;
-  /// What /sensors/ says about this sensor.
+  /// What /sensors/ reports of this sensor.
   [[nodiscard]] nlohmann::json told_of(const std::string& sensor) const;
 
  private:

@@ -30,7 +30,7 @@ CellPlan open_cell() {
   return plan;
 }
 
-/// While clients misbehave for `duration` [s], all others go on.
+/// Summary of what a well-behaved client sees during the next `duration` [s].
 Account watched(const Watch& watch, double duration) {
   const Timestamp begun = now();
   wait_for(duration);
@@ -84,7 +84,7 @@ Result<void> slowloris(Trial& trial) {
   return {};
 }
 
-/// Forty clients send requests and never read; nothing may accumulate for them.
+/// Forty clients send `request` `times` times each and never read; nothing may accumulate for them.
 Result<void> never_reading(Trial& trial, std::string_view request, int times) {
   constexpr int kMany = 40;
   constexpr double kMaxMore = 25.0;  // [MB]
@@ -109,7 +109,7 @@ Result<void> never_reading_polls(Trial& trial) { return never_reading(trial, kGe
 Result<void> never_reading_events(Trial& trial) { return never_reading(trial, kEvents, 1); }
 Result<void> never_reading_sockets(Trial& trial) { return never_reading(trial, kUpgrade, 1); }
 
-constexpr double kWarmedUp = 60.0;  // [s] of churn; memory is judged after them
+constexpr double kWarmedUp = 60.0;  // [s] memory is judged after this much churn
 
 /// Duration of the churn [s]; CHORUS_CHURN_SECONDS=600 gives the ten minutes of the docs.
 double churn_length() {
@@ -157,7 +157,8 @@ Result<std::vector<Memory>> restart_again_and_again(Cell& cell, double length) {
   return samples;
 }
 
-/// Clients come, take a frame and leave, and one sensor starts and stops; nothing is left over.
+/// Clients come, take a frame and leave, and one sensor starts and stops; the server must keep
+/// neither descriptors nor memory of them.
 Result<void> churn(Trial& trial) {
   constexpr std::size_t kEnough = 10;
   constexpr double kMaxRise = 1.0;  // [MB]

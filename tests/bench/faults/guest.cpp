@@ -97,7 +97,7 @@ struct RawServer::Impl {
   Conversation conversation;
   int listening = ::socket(AF_INET, SOCK_STREAM, 0);
   std::uint16_t port = testing::free_port();
-  std::mutex mutex;  ///< Guards the two below.
+  std::mutex mutex;  ///< Guards the sockets and the threads.
   std::vector<int> sockets;
   std::vector<std::jthread> threads;
   std::jthread acceptor;

@@ -28,7 +28,8 @@ class Guest {
   struct Said {
     Timestamp captured;
     std::vector<BodyFrame> bodies = {};
-    std::string behind = {};  ///< More Turtle after the frame; then no other format is served.
+    /// More Turtle after the frame; if not empty, no other format is served.
+    std::string behind = {};
   };
   using Script = std::function<Said(Timestamp now)>;
 

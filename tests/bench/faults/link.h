@@ -28,7 +28,7 @@ struct PumpEnds {
   net::tcp::endpoint target;
 };
 
-/// Both on loopback: listens on a free port, connects to 127.0.0.1:`target`.
+/// Ends that are both on loopback: listens on a free port, connects to 127.0.0.1:`target`.
 [[nodiscard]] PumpEnds on_loopback(std::uint16_t target);
 
 /// Forwards every connection.
@@ -42,9 +42,9 @@ class Pump {
   [[nodiscard]] std::uint16_t port() const;
   /// Takes effect with the next message.
   void become(const LinkModel& model);
-  /// From now on nothing passes, and no end is told: like an unplugged cable.
+  /// While frozen nothing passes, and no end is told: like an unplugged cable.
   void freeze(bool frozen);
-  /// The next answer stops after `bytes` bytes, and all data after it.
+  /// Lets `bytes` more bytes of answers pass; then answers stop until freeze(false).
   void freeze_after(std::size_t bytes);
 
  private:

@@ -1,4 +1,4 @@
-// Networks that delay, jitter and lose between the sensors and the server.
+// Networks between the sensors and the server that delay, jitter or lose data.
 #include <algorithm>
 #include <cmath>
 #include <thread>
@@ -79,8 +79,8 @@ Result<void> one_bad(Trial& trial, const LinkModel& link) {
   return after ? Result<void>{} : pass(after);
 }
 
-/// Frames too late for the live stream are not lost: when the same instants are asked for a second
-/// later, they use them.  And /sensors/ reports the sensor's real share.
+/// Frames too late for the live stream are not lost: instants asked for a second later include
+/// them, and /sensors/ reports the share that the sensor really has.
 Result<void> used_later(Trial& trial, Cell& cell) {
   constexpr int kAsked = 60;
   constexpr double kMin = 95.0;
@@ -133,7 +133,8 @@ class BusyMachine {
   std::vector<std::jthread> threads_;
 };
 
-/// With all frames late at times, the worst link must still cost the other sensors nothing.
+/// Although the busy machine delays all frames at times, one bad link must cost the other sensors
+/// nothing.
 Result<void> jitter_busy(Trial& trial) {
   auto cell = Cell::start(with_links({}, 1, 2));
   if (!cell) return pass(cell);

@@ -149,7 +149,8 @@ class Way {
       if (!is_lost()) under_way_.push_back({due, {packet.data(), static_cast<std::size_t>(size)}});
     }
   }
-  /// If the device accepts no more, the packet is lost, as in a full queue.
+  /// Writes the packets that are due; one that the device does not accept is lost, as in a full
+  /// queue.
   void hand_on(SteadyClock::time_point now) {
     for (; !under_way_.empty() && under_way_.front().due <= now; under_way_.pop_front()) {
       const std::string& bytes = under_way_.front().bytes;

@@ -20,7 +20,7 @@ struct PacketModel {
 
 class LossyPath {
  public:
-  /// Errors: Unsupported (no root, no TUN device), Internal.
+  /// Errors: Unsupported (no root, no TUN device), Io.
   [[nodiscard]] static Result<std::unique_ptr<LossyPath>> open(const PacketModel& model);
   ~LossyPath();
   LossyPath(const LossyPath&) = delete;

@@ -17,11 +17,12 @@
 namespace chorus::bench {
 namespace {
 
-constexpr double kReturn = 1.5;    // a sensor that returns contributes again within this time [s]
-constexpr double kFollowed = 0.3;  // and one whose clock was set within this time [s]
+constexpr double kReturn = 1.5;    // until a sensor that returns contributes again, at most [s]
+constexpr double kFollowed = 0.3;  // the same after its host's clock was set [s]
 constexpr double kPatience = 8.0;
 
-/// Waits until all contribute again for a second; gives up later than any limit.
+/// Waits until all sensors contribute again for a second, at most kPatience, which exceeds every
+/// limit.
 void wait_for_return(const Watch& watch, const Cell& cell, Timestamp since) {
   (void)wait_until(kPatience,
                    [&] { return std::isfinite(recovery(watch.seen(), since, cell.placed())); });
@@ -79,12 +80,13 @@ Result<void> frozen_mid_answer(Trial& trial) {
   return {};
 }
 
-/// A bad sensor next to two good ones: what must hold for these, and what is reported of it.
+/// A bad sensor beside two good ones, which must go on undisturbed.
 struct Beside {
   Neighbour neighbour;
-  std::atomic<bool>* misbehaves = nullptr;  ///< Set once all has settled; null: it always does.
-  double watched = 4.0;                     ///< [s]
-  bool must_tell = true;                    ///< It must not count as live without a complaint.
+  /// Set once all has settled; null: the sensor misbehaves from the start.
+  std::atomic<bool>* misbehaves = nullptr;
+  double watched = 4.0;   ///< [s]
+  bool must_tell = true;  ///< /sensors/ must report an error of the bad sensor.
 };
 
 Result<void> beside_two(Trial& trial, const Beside& asked) {
@@ -125,7 +127,7 @@ Result<void> never_answers(Trial& trial) {
   return beside_two(trial, {{"x", server.port(), 2, false}});
 }
 
-/// Turtle about unrelated things: `count` subjects of seven bytes each.
+/// Turtle about unrelated things: `count` triples of seven bytes each.
 std::string foreign_subjects(std::size_t count) {
   std::string text;
   text.reserve(7 * count);

@@ -20,7 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The pose of every sensor, compared bit by bit.
+/// The poses of all sensors as a string with all digits, for comparison; empty without
+/// /registration.
 std::string extrinsics(const Cell& cell) {
   nlohmann::json out;
   const auto told = cell.json("/registration");
@@ -28,12 +29,12 @@ std::string extrinsics(const Cell& cell) {
   for (const auto& [name, place] : told["sensors"].items()) {
     for (const auto* key : {"x", "y", "z", "qx", "qy", "qz", "qw"}) out[name][key] = place[key];
   }
-  return out.dump();
+  return out.empty() ? std::string() : out.dump();
 }
 
-/// Kills by SIGKILL, restarts at once, and checks that all is as before.
+/// Kills the server by SIGKILL, restarts it at once, and checks that all is as before.
 Result<void> kill_and_return(Trial& trial, Cell& cell) {
-  constexpr double kFirstBody = 0.5;  // after the first answer [s]
+  constexpr double kFirstBody = 0.5;  // from the first answer to the first body [s]
   const Watch watch(cell.port());
   wait_for(1.0);
   const std::string before = extrinsics(cell);
@@ -70,8 +71,8 @@ Result<void> server_killed(Trial& trial) {
   return kill_and_return(trial, *cell);
 }
 
-/// The state folder of the configuration that we ship, under a home folder of its own; the server
-/// dies after a walk.
+/// The shipped configuration keeps its state in a folder of the user; here that user has an empty
+/// home.  The server is killed after a walk and must come back registered.
 Result<void> default_folders(Trial& trial) {
   auto home = ScratchFolder::make();
   if (!home) return pass(home);
@@ -131,7 +132,8 @@ struct UnreadPipe {
   }
   UnreadPipe(const UnreadPipe&) = delete;
   UnreadPipe& operator=(const UnreadPipe&) = delete;
-  /// Fills it through another end, because O_NONBLOCK must not apply to the program's own end.
+  /// Fills the pipe through another descriptor, because O_NONBLOCK must not apply to the program's
+  /// own.
   void fill() const {
     const int end = ::open(fmt::format("/proc/self/fd/{}", ends[1]).c_str(), O_WRONLY | O_NONBLOCK);
     while (::write(end, "x", 1) == 1) {
@@ -178,7 +180,7 @@ Result<void> full_disk(Trial& trial) {
   return {};
 }
 
-/// Exit code and stderr of a program that ended; none while it is running.
+/// How a program ended.
 struct Ending {
   int code = 0;
   std::string said;

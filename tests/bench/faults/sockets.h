@@ -20,7 +20,7 @@ class RawSocket {
   [[nodiscard]] bool open() const { return descriptor_ >= 0; }
   /// Sends without waiting; false when not all of it was sent.
   bool say(std::string_view bytes) const;
-  /// Data that arrives within `patience` [s], at least a byte; empty: nothing, or it is closed.
+  /// Data that arrives within `patience` [s]; empty: none came, or the other side has closed.
   [[nodiscard]] std::string hear(double patience) const;
   /// All data until the other side has been silent for `silence` [s], or has closed.
   [[nodiscard]] std::string hear_all(double silence) const;

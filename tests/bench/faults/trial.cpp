@@ -8,8 +8,9 @@
 namespace chorus::bench {
 namespace {
 
-constexpr double kRate = 30.0;      // [Hz]
-constexpr double kMaxOff = 3.0;     // frames more or less than due, at both ends of the count
+constexpr double kRate = 30.0;  // [Hz]
+// Tolerance of the number of frames, because those at both ends are uncertain.
+constexpr double kMaxOff = 3.0;
 constexpr double kMinShare = 97.0;  // [percent]
 constexpr double kMaxGap = 0.35;    // between two frames: the alignment delay and a margin [s]
 

@@ -29,9 +29,9 @@ class Trial {
   /// Skips the case: this machine cannot run it.
   void leave_out(std::string reason) { left_out = std::move(reason); }
 
-  /// All but the faulty part go on: the server runs, fused frames with a body come at 30 Hz, none
-  /// is lost, and each of these sensors contributes to nearly all of them.  Sets the measured
-  /// values of this trial.
+  /// Checks that all but the faulty part go on: the server runs, fused frames with a body come at
+  /// 30 Hz, none is lost, and each of these sensors contributes to nearly all of them.  Sets the
+  /// measured values of this trial.
   void check_others(Cell& cell, const Account& account, const std::vector<std::string>& others);
   /// Records how long the recovery took, and checks it against a limit [s].
   void check_recovery(double took, double limit);
@@ -39,10 +39,10 @@ class Trial {
   std::vector<Check> checks;
   std::string left_out;
   double lost = kNotMeasured;       ///< Fused instants without a frame or without a body.
-  double recover_s = kNotMeasured;  ///< From the fault's end until all contribute again.
+  double recover_s = kNotMeasured;  ///< From the fault's end until all contribute again [s].
   double rss_mb = kNotMeasured;     ///< Resident memory of chorus-fusion at the end.
   double output_hz = kNotMeasured;
-  double others_percent = kNotMeasured;  ///< Fraction of frames for the worst healthy sensor.
+  double others_percent = kNotMeasured;  ///< Frames that the worst healthy sensor contributed to.
   double age_p90_ms = kNotMeasured;
 };
 

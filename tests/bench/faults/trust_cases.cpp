@@ -15,7 +15,7 @@ namespace chorus::bench {
 namespace {
 
 constexpr int kSensors = 3;
-constexpr double kReturn = 1.5;  // after it has been put right [s]
+constexpr double kReturn = 1.5;  // until a repaired sensor contributes again, at most [s]
 constexpr double kPatience = 8.0;
 
 /// An authority, and files of sensors that it vouches for.
@@ -62,7 +62,8 @@ class Authority {
   tls::Issued authority_ = tls::new_authority("faults", tls::for_days(30)).value();
 };
 
-/// Until what the server says of the sensor holds this text.
+/// Waits until the last error that the server reports of the sensor contains `text`; false if it
+/// does not within kPatience.
 bool says(const Cell& cell, const std::string& sensor, const std::string& text) {
   return wait_until(kPatience, [&] {
     return cell.told_of(sensor).value("lastError", "").find(text) != std::string::npos;
@@ -95,7 +96,7 @@ Result<void> certificate_expired(Trial& trial) {
   return {};
 }
 
-/// Connections that are open stay open, and new ones get the new certificate.
+/// All sensors get new certificates while they run, and every connection that is open must go on.
 Result<void> certificates_renewed(Trial& trial) {
   const Authority authority;
   auto cell = Cell::start(authority.plan());

@@ -112,7 +112,7 @@ std::vector<FusedInstant> Watch::seen() const {
     seen = impl_->seen;
   }
   std::vector<FusedInstant> out;
-  constexpr std::int64_t kMax = 60;  // beyond this they are gone, or the server restarted
+  constexpr std::int64_t kMax = 60;  // if more are missing they are gone, or the server restarted
   for (const FusedInstant& each : seen) {
     const std::int64_t last = out.empty() ? each.sequence - 1 : out.back().sequence;
     if (each.sequence - last <= kMax) {

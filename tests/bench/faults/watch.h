@@ -21,8 +21,8 @@ struct FusedInstant {
   Timestamp instant;
   Timestamp received;  ///< By the clock of this host.
   std::vector<std::uint64_t> bodies;
-  std::vector<Eigen::Vector3d> places;  ///< Of each body's SpineBase, world [m].
-  std::set<std::string> contributors;   ///< Of any joint.
+  std::vector<Eigen::Vector3d> places;  ///< Where each body's SpineBase is, world [m].
+  std::set<std::string> contributors;   ///< Sensors that contributed to any joint.
 };
 
 /// Long-polls /frame in JSON on a thread of its own.
@@ -33,7 +33,7 @@ class Watch {
 
   /// All frames until now.  Frames that the watcher was too slow for are fetched afterwards.
   [[nodiscard]] std::vector<FusedInstant> seen() const;
-  /// The newest; sequence 0: none yet.
+  /// The newest frame; its sequence is 0 if there is none yet.
   [[nodiscard]] FusedInstant newest() const;
 
  private:
@@ -46,11 +46,11 @@ struct Account {
   double hz = 0.0;  ///< Frames received, per second.
   std::size_t frames = 0;
   std::size_t lost = 0;                 ///< Instants without a frame, or whose frame has no body.
-  double longest_gap = 0.0;             ///< Between two receipts [s]
+  double longest_gap = 0.0;             ///< Between two receipts, or after the last [s]
   double age_p50 = 0.0;                 ///< Median time from instant to receipt [s]
-  double age_p90 = 0.0;                 ///< Its 90th percentile [s]
+  double age_p90 = 0.0;                 ///< 90th percentile of this time [s]
   double several_percent = 0.0;         ///< Frames with more than one body.
-  std::map<std::string, double> share;  ///< Of frames that each sensor contributed to [percent].
+  std::map<std::string, double> share;  ///< Frames that each sensor contributed to [percent].
 
   [[nodiscard]] double share_of(const std::string& sensor) const;
 };

@@ -13,11 +13,12 @@ namespace chorus::bench {
 /// The environment that a program gets when it starts, besides its arguments.
 struct ChildSurroundings {
   int error_output = -1;          ///< Descriptor that its stderr is sent to; -1: /dev/null.
-  std::size_t descriptors = 0;    ///< Its soft limit; 0: the same as ours.
-  std::size_t address_space = 0;  ///< Its limit [bytes]; 0: the same as ours.
-  /// "NAME=value", in addition to our environment.
+  std::size_t descriptors = 0;    ///< Soft limit of open file descriptors; 0: ours.
+  std::size_t address_space = 0;  ///< Limit of virtual memory [bytes]; 0: ours.
+  /// Each "NAME=value", in addition to our environment.
   std::vector<std::string> environment = {};
-  /// A folder on a file system of one megabyte that only this program sees.  Needs root.
+  /// A folder that becomes a file system of one megabyte, visible to this program only.  Needs
+  /// root.
   std::string small_disk = {};
 };
 
@@ -29,7 +30,7 @@ class ChildProcess {
                                                   const ChildSurroundings& surroundings = {});
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&&) = delete;
-  ~ChildProcess();  ///< SIGTERM (also when it is stopped), waits 5 s, then SIGKILL.
+  ~ChildProcess();  ///< Sends SIGTERM, even to a stopped process, and SIGKILL 5 s later.
 
   /// User and system time used so far [s].
   [[nodiscard]] double cpu_seconds() const;

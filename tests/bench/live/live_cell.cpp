@@ -30,7 +30,7 @@ constexpr double kHeight = 1.4;  // [m]
 constexpr std::size_t kKept = 90;
 constexpr auto kPatience = std::chrono::seconds(30);
 
-/// They sway, as people do: coordinates that never change are refused as implausible.
+/// People who sway as real ones do: coordinates that never change are refused as implausible.
 std::vector<Skeleton<WorldSpace>> people(int count, Timestamp now) {
   constexpr double kSway = 0.005;                   // [m]
   constexpr std::int64_t kSwaying = 4'000'000'000;  // [ns]
@@ -101,7 +101,7 @@ struct ExactSensors::Sensor {
 
   std::string id;
   Eigen::Isometry3d world_from_sensor;
-  Duration due;  ///< Time since the beginning.
+  Duration due;  ///< Time of the next capture, since the beginning.
   std::uint64_t sequence = 0;
   std::shared_ptr<http::LiveDocument> document = std::make_shared<http::LiveDocument>();
   std::unique_ptr<http::Server> server;

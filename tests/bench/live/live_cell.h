@@ -1,5 +1,5 @@
-// A real chorus-fusion process polled by many clients, with sensors whose every capture time is
-// known: exact views of standing people, served over HTTP from this process.
+// A real chorus-fusion process polled by many clients.  Its sensors are served over HTTP from this
+// process: they see standing people exactly, and all their capture times are known.
 #pragma once
 
 #include <cstdint>
@@ -23,11 +23,12 @@ class ExactSensors {
   ExactSensors(int count, int persons);
   ~ExactSensors();
 
-  /// The fusion server's setting "sensors"; then, the content of its registration file.
+  /// The value of the fusion server's setting "sensors".
   [[nodiscard]] std::string settings() const;
   [[nodiscard]] std::string places() const;
-  /// When the last capture that the instant had to wait for was published, out of each sensor's
-  /// first capture at or after the instant.  None: one of them is not captured yet.
+  /// When the last capture that the instant needs was published; it needs each sensor's first
+  /// capture at or after the instant.  None: a sensor has not captured that one yet, or has
+  /// forgotten it.
   [[nodiscard]] std::optional<Timestamp> last_needed_capture(Timestamp instant) const;
 
  private:
@@ -58,7 +59,7 @@ struct Lateness {
 };
 [[nodiscard]] Result<Lateness> watch(const LiveCell& cell, double run_seconds);
 
-/// Typical clients: they only take what comes.
+/// How many clients of each kind there are; all of them only read.
 struct ClientCounts {
   int vrpn = 0;
   int long_polls = 0;

@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 
 constexpr int kSensors = 6;
 constexpr double kRate = 30.0;         // [Hz]
-constexpr double kLongMinutes = 60.0;  // the claim's own length
+constexpr double kLongMinutes = 60.0;  // the length that the claim states
 constexpr double kQuickMinutes = 1.0;
 constexpr double kNoise = 0.008;   // [m] of every coordinate
 constexpr double kMaxRss = 200.0;  // [MB] the claim
@@ -38,7 +38,7 @@ constexpr std::size_t kDraws = 1 << 16;
 struct OfflineCase {
   const char* name;
   int people;
-  double share;             ///< Fraction of the length.
+  double share;             ///< Length, as a fraction of the asked one.
   double least_real_times;  ///< Claimed least ratio of recorded time to run time.
 };
 constexpr std::array kCases{OfflineCase{"six-sensors", 1, 1.0, 150.0},
@@ -50,7 +50,7 @@ double minutes(const Report& report) {
   return report.quick() ? kQuickMinutes : kLongMinutes;
 }
 
-/// The same for every run with one seed, and long enough that compression finds no repetition.
+/// Noise that is the same in all runs with one seed and repeats too late for compression to notice.
 class Noise {
  public:
   explicit Noise(std::uint64_t seed) : draws_(kDraws) {

@@ -13,7 +13,7 @@ double cpu_seconds_of(pid_t pid) {
   std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
   std::string line;
   std::getline(stat, line);
-  // Fields 14 and 15 (proc(5)), counted after the name, which may contain spaces.
+  // Fields 14 and 15 of proc(5), counted after the name, which may contain spaces.
   std::istringstream fields(line.substr(std::min(line.rfind(')') + 1, line.size())));
   std::string skipped;
   constexpr int kFieldsBeforeUserTime = 11;

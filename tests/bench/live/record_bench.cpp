@@ -28,7 +28,7 @@ using std::chrono::milliseconds;
 constexpr int kSensors = 6;
 constexpr int kStreams = kSensors + 1;
 constexpr double kRate = 30.0;      // [Hz]
-constexpr double kLongRun = 60.0;   // [s]; CHORUS_RECORD_SECONDS=600 is the claim's own length
+constexpr double kLongRun = 60.0;   // [s]; the claim is for CHORUS_RECORD_SECONDS=600
 constexpr double kQuickRun = 5.0;   // [s]
 constexpr double kMaxCores = 0.10;  // the claim
 constexpr auto kPatience = std::chrono::seconds(60);
@@ -41,7 +41,7 @@ double run_seconds(const Report& report) {
 
 struct Rig {
   std::vector<ChildProcess> sensors;
-  std::vector<ChildProcess> fusion;  ///< One.
+  std::vector<ChildProcess> fusion;  ///< One process.
   std::uint16_t port = 0;
 
   [[nodiscard]] Result<nlohmann::json> ask(const std::string& method, const std::string& target,
@@ -114,7 +114,7 @@ struct Contents {
   std::size_t frames = 0;
   std::uint64_t lost = 0;
   std::size_t streams = 0;
-  std::uintmax_t json_bytes = 0;  ///< The same frames as JSON lines.
+  std::uintmax_t json_bytes = 0;  ///< Size of the frames as JSON lines.
 };
 
 Result<Contents> contents_of(const fs::path& path) {
@@ -157,8 +157,8 @@ double json_lines_cores(const fs::path& recording, const fs::path& out, double s
 }
 
 struct Measured {
-  double idle_cores = 0.0;  ///< chorus-fusion, not recording.
-  double busy_cores = 0.0;  ///< The same, recording.
+  double idle_cores = 0.0;  ///< Cores of chorus-fusion while it does not record.
+  double busy_cores = 0.0;  ///< Cores of chorus-fusion while it records.
   double json_lines_cores = kNoRatio;
   nlohmann::json report;
 };

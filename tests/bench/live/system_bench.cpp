@@ -26,11 +26,11 @@ namespace {
 constexpr double kRate = 30.0;        // [Hz], of sensors and output
 constexpr double kShortRun = 25.0;    // [s]
 constexpr double kQuickRun = 6.0;     // [s]
-constexpr double kMaxToWire = 0.050;  // [s], the claim
+constexpr double kMaxToWire = 0.050;  // [s] the claim
 constexpr double kMaxCores = 0.5;     // the claim, without the simulation
 
-/// The last frame that the instant had to wait for, out of each sensor's first frame at or after
-/// it.  Before that frame the instant cannot be answered, whatever the software does.
+/// The latest among the sensors' first frames at or after an instant.  Until it is delivered the
+/// instant cannot be fused, whatever the software does.
 struct Needed {
   Timestamp captured{};
   Timestamp delivered{};  ///< When a watcher of the sensor received that frame.
@@ -103,7 +103,7 @@ void report_frames(Report& report, const SystemCase& asked, const Observed& seen
   report.condition(c + ": no frame is lost or doubled", frames.lost == 0 && frames.doubled == 0);
   report.condition(c + ": fused frames come at 30 Hz", std::abs(hz - kRate) < 0.3);
   report.condition(c + ": delivery to wire p99 is below 50 ms", from_delivery < kMaxToWire);
-  // Other simulated devices need time from capture to delivery, as real ones do.
+  // Other profiles simulate the time from capture to delivery that real devices need.
   if (asked.profile == "gauss") {
     report.condition(c + ": capture to wire p99 is below 50 ms", from_capture < kMaxToWire);
   }
@@ -204,7 +204,7 @@ std::ptrdiff_t stepped_hosts(const Observed& seen) {
   });
 }
 
-/// If no clock was set during the run, it would say nothing about clock steps.
+/// Checks that clocks were set during the run, which otherwise would say nothing about clock steps.
 void report_steps(Report& report, const SystemCase& asked, const Observed& seen) {
   const auto due =
       std::ranges::count_if(asked.hosts, [](const HostError& h) { return h.step_ms != 0; });
@@ -244,7 +244,8 @@ using Hosts = std::array<HostError, kSystemSensors>;
 
 // Clocks behind and ahead of the server by amounts typical without NTP, and drifting.
 constexpr Hosts kApart{{{-150, 30}, {400, -50}, {-3000, 20}, {0, 50}, {35, -20}, {1200, 10}}};
-// The same; during the watch NTP sets one clock and, by less, another.
+// The clocks of kApart; during the watch, two of them are set right, as by NTP: by 150 ms and by
+// 400 ms.
 constexpr Hosts kStepped{
     {{-150, 30, 150}, {400, -50, -400}, {-3000, 20}, {0, 50}, {35, -20}, {1200, 10}}};
 

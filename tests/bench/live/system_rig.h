@@ -66,8 +66,8 @@ struct Observed {
   double elapsed = 0.0;
 };
 
-/// Long-polls the fused frame and also every sensor, so that both times are known: when light hit
-/// the sensors and when the fused frame was on the wire.
+/// Long-polls the fused frame and every sensor's frame, so that both times are known: when light
+/// hit the sensors, and when the fused frame was on the wire.
 [[nodiscard]] Observed observe(const Rig& rig, double run_seconds);
 
 /// Body of the answer to a GET; empty on failure.

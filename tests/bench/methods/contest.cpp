@@ -24,7 +24,7 @@ using baselines::Body;
 constexpr Duration kStart = std::chrono::milliseconds(500);  // tracks are confirmed by then
 constexpr Duration kTail = std::chrono::milliseconds(200);   // frames still under way at the end
 constexpr double kReach = 0.6;  // [m] horizontally: a farther answer belongs to another person
-constexpr Duration kFresh = std::chrono::milliseconds(100);  // largest age, if stated at arrival
+constexpr Duration kFresh = std::chrono::milliseconds(100);  // largest age of a stated answer
 constexpr double kPercent = 100.0;
 constexpr double kToMs = 1000.0;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();

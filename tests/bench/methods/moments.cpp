@@ -10,7 +10,7 @@ const pipeline::Histories& Arriving::until(Timestamp instant) {
     align::History& history = histories_[tracks_[i].sensor];
     while (next_[i] < frames.size() && (!history.newest() || *history.newest() < instant)) {
       SensorFrame frame = frames[next_[i]++];
-      frame.received = Timestamp{};  // true time; the stamp is by another clock
+      frame.received = Timestamp{};  // it is true time, while `captured` is by the host's clock
       history.push(std::move(frame));
     }
   }

@@ -16,11 +16,11 @@
 
 namespace chorus::bench::baselines {
 
-/// How the errors of two sensors that see the same joint correlate.
+/// Correlation of the errors of two sensors that see the same joint.
 struct SharedErrors {
-  double joints = 0.0;  ///< Correlation where both see the same side.
+  double joints = 0.0;  ///< Where both see the same side.
   double neck = 0.0;    ///< The same for neck and chest.
-  double twice = 0.0;   ///< Part of it that varies with twice the angle between the views.
+  double twice = 0.0;   ///< Its part that varies with twice the angle between the views.
 };
 
 /// The views' joints must carry their true mean square errors (judge.h, confided()); the answer

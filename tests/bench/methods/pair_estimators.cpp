@@ -16,10 +16,10 @@ namespace {
 using namespace registration;
 
 constexpr double kSpeed = 1.0;           // one second counts as this many metres
-constexpr int kYawSeeds = 24;            // as the untimed ICP
-constexpr int kIterations = 40;          // as the untimed ICP
-constexpr double kKeptShare = 0.9;       // as the untimed ICP
-constexpr std::size_t kMaxPoints = 300;  // as the untimed ICP
+constexpr int kYawSeeds = 24;            // as in registration/icp.cpp
+constexpr int kIterations = 40;          // as in registration/icp.cpp
+constexpr double kKeptShare = 0.9;       // as in registration/icp.cpp
+constexpr std::size_t kMaxPoints = 300;  // as in registration/icp.cpp
 constexpr std::size_t kMinPoints = 10;
 constexpr double kSettled = 1e-6;  // [m], [rad]
 
@@ -181,7 +181,8 @@ double spread_of(const std::vector<Eigen::Vector3d>& points) {
   return std::sqrt(squares / static_cast<double>(points.size()));
 }
 
-/// Refuses under the same conditions as ours.
+/// Refuses a walk that is too narrow and an edge whose rms is too large, by our limits; ours also
+/// refuses too few inliers.
 Result<PairwiseRegistration> unless_refused(PairwiseRegistration edge, const Walker& target,
                                             const Walker& source,
                                             const RegistrationConfig& config) {

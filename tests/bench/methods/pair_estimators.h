@@ -1,6 +1,6 @@
-// Other ways to compute an edge from two walks, for comparison with ours.  They get the same
-// frames, the same floor planes, the same refusals (too little in common, too narrow, too far
-// apart) and the same surrounding code (registration::solve_with).
+// Other ways to compute an edge from two walks, for comparison with ours.  They get the same frames
+// and floor planes, and the same code uses their edges (registration::solve_with).  Like ours they
+// refuse walks with too little in common, too narrow walks and edges with a large rms.
 #pragma once
 
 #include "fusion-server/registration/pair_registration.h"

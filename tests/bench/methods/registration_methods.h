@@ -17,7 +17,7 @@ struct RegistrationMethod {
       solve;
 };
 
-/// The shipped defaults.
+/// Our method with the shipped defaults.
 [[nodiscard]] RegistrationMethod our_registration();
 /// "trajectory-icp": time as a coordinate; "closed-form": time-interpolated pairs, least squares.
 [[nodiscard]] std::vector<RegistrationMethod> timed_baselines();

@@ -18,7 +18,7 @@ constexpr double kDistance = 2.3;       // Otto Fig. 5 shows the body there [m]
 constexpr double kSensorHeight = 1.0;   // Otto 3.1 [m]
 constexpr double kBendOverStep =
     std::numbers::sqrt3;       // ratio of second to first differences of white noise
-constexpr double kArm = 0.35;  // mount to body axis [m]
+constexpr double kArm = 0.35;  // from the mount to the body's axis [m]
 
 /// A sensor at the origin looking along +z; people are placed in front of it.
 Scene scene_with(Person mannequin) {
@@ -29,8 +29,8 @@ Scene scene_with(Person mannequin) {
   return scene;
 }
 
-/// Only what a mannequin on a robot arm shows: no frame is lost, nothing else is in the
-/// room.
+/// The profile without gross errors, lost frames and clock errors: a mannequin on a robot arm has
+/// none of them.
 kinect::Profile on_the_arm(kinect::Profile profile) {
   using kinect::Source;
   for (const Source source : {Source::Gross, Source::Delivery, Source::Clock}) {

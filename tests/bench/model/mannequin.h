@@ -16,17 +16,19 @@ struct MannequinSample {
   Skeleton<SensorSpace> exact;
 };
 
-/// 360 deg about its own vertical axis at 2.3 m, sensor level at a height of 1 m (Fig. 4A).
+/// Turns by 360 deg about the mannequin's own vertical axis, at 2.3 m, before a level sensor at a
+/// height of 1 m (Fig. 4A).
 [[nodiscard]] std::vector<MannequinSample> turn_full(const synthetic::kinect::Profile& profile,
                                                      std::uint64_t seed);
 
-/// 0 to 85 deg about a vertical axis behind its back, so that the body travels on a circle (Fig.
-/// 4B).
+/// Swings by 85 deg about a vertical axis behind the mannequin's back, so that the body travels on
+/// a circle (Fig. 4B).
 [[nodiscard]] std::vector<MannequinSample> swing_85(const synthetic::kinect::Profile& profile,
                                                     std::uint64_t seed);
 
-/// Mean displacement of one joint from frame to frame at true yaws within these bounds [m]; Otto
-/// Fig. 7.  From second differences, so that the slow turn itself does not count.
+/// Mean displacement [m] of one joint from frame to frame while the true yaw is between the two
+/// angles [rad] (Otto Fig. 7).  Computed from second differences, so that the slow turn does not
+/// count.
 [[nodiscard]] double jitter(const std::vector<MannequinSample>& samples, JointId joint,
                             double least_angle, double most_angle);
 

@@ -31,10 +31,10 @@ using namespace synthetic;
 using kinect::Profile;
 using enum JointId;
 
-constexpr auto kTurnedLog = std::chrono::seconds(32);  // 970 frames, as the real one
+constexpr auto kTurnedLog = std::chrono::seconds(32);  // 970 frames: as long as the real log
 constexpr const char* kRealLog = "tests/data/kinect2_labanotation/Ges04_comehere.csv";
 
-/// The values that each seed gives.
+/// Returns each(seed) for several seeds.
 template <class Each>
 auto over_seeds(const Report& report, const Each& each) {
   return over_draws(report.quick() ? 3 : 7, [&](std::size_t i) { return each(report.seed() + i); });
@@ -48,7 +48,7 @@ double farthest(const std::vector<double>& values, Range range) {
   });
 }
 
-/// Rows of median and worst; the condition is on the median.
+/// Reports the median and the worst value; the condition is on the median.
 void check(Report& report, const Claim& claim, const std::vector<double>& values) {
   const double least = claim.range.least;
   const double most = claim.range.most;
@@ -66,13 +66,14 @@ void check(Report& report, const Claim& claim, const std::vector<double>& values
                    value >= least * (1 - claim.tolerance) && value <= top);
 }
 
-/// Where logs are recorded, and how long each is.
+/// A scene in which logs are recorded, and the length of each.
 struct LogKind {
   Scene (*scene)(std::uint64_t seed);
   Duration length;
 };
 
-/// (a) Several logs of the same length.
+/// (a) Compares statistics of logs of several seeds, all of the same length, with those of real
+/// logs.
 void compare_with_logs(Report& report, std::span<const LogClaim> claims, const LogKind& kind) {
   const std::vector<LogStatistics> logs = over_seeds(report, [&](std::uint64_t seed) {
     return statistics_of(log_of(kind.scene(seed), seed, kind.length));
@@ -84,7 +85,7 @@ void compare_with_logs(Report& report, std::span<const LogClaim> claims, const L
   }
 }
 
-/// The depth camera's field of view, as fitted to real joints and their pixels.
+/// Compares the depth camera's field of view with the one fitted to real joints and their pixels.
 void compare_view(Report& report) {
   const kinect::ViewLimits view = kinect::nominal_profile("A").view;
   check(report, {"log-view", "width_deg", "deg", {69.9, 69.9}, 0.01},
@@ -93,7 +94,8 @@ void compare_view(Report& report) {
         {to_deg(2 * view.half_height)});
 }
 
-/// The shipped real log for comparison: a person standing and gesturing, so without conditions.
+/// Reports the shipped real log for comparison.  Its person stands and gestures instead of walking,
+/// so there are no conditions.
 Result<void> show_real_log(Report& report) {
   const auto log = importers::read_labanotation_csv(kRealLog);
   if (!log) return tl::unexpected(log.error());
@@ -114,7 +116,7 @@ Result<void> show_real_log(Report& report) {
   return {};
 }
 
-/// Six sensors, one person: seconds simulated per second of one core.
+/// Reports the seconds simulated per second of one core, for six sensors and one person.
 void measure_speed(Report& report) {
   Scene scene;
   scene.people = make_people(WalkerScript{}, 1);
@@ -138,7 +140,7 @@ void measure_speed(Report& report) {
 struct MannequinFigures {
   double head = 0, neck_front = 0, neck_rear = 0, base_side = 0;  ///< Jitter [mm]
   double flip = 0, back = 0;                                      ///< [deg]
-  double neck_worst = 0, base_worst = 0;                          ///< Beyond 60 deg [mm]
+  double neck_worst = 0, base_worst = 0;                          ///< At yaws beyond 60 deg [mm]
 };
 
 double worst_beyond_60(const std::vector<MannequinSample>& swing, JointId id) {
@@ -171,7 +173,7 @@ MannequinFigures mannequin_figures(std::uint64_t seed) {
   return figures;
 }
 
-/// (b) The mannequin (Otto Figs. 5-8).  Jitter passes from 0.2 to 1.3 times Otto's bound.
+/// (b) The mannequin (Otto Figs. 5-8).  Jitter may be 0.2 to 1.3 times Otto's bound.
 void compare_with_mannequin(Report& report) {
   const std::vector<MannequinFigures> all = over_seeds(report, mannequin_figures);
   const auto values_of = [&](double MannequinFigures::*figure) {

@@ -25,8 +25,8 @@ template <JointId kJoint>
 double inferred(const LogStatistics& s) {
   return 100.0 * s.inferred_share[index_of(kJoint)];
 }
-/// Mean of both sides: our walkers always turn the same way, so which of the labels is hidden more
-/// depends on where left and right are exchanged back.
+/// Mean over both sides.  Our walkers always turn the same way, which hides one side more than the
+/// other, so one side alone is not comparable.
 template <JointId kLeft>
 double either_bone(const LogStatistics& s) {
   return to_mm(0.5 * (s.bone_std.at(kLeft) + s.bone_std.at(mirror(kLeft))));
@@ -55,8 +55,8 @@ double step(const LogStatistics& s) {
 }
 double unoriented(const LogStatistics& s) { return static_cast<double>(s.unoriented); }
 
-// For steps, the lower end is from the gesturing person's log, with capture times; the upper end is
-// from a polled log.
+// In claims about steps between frames, the lower end is from the gesturing person's log, which has
+// capture times; the upper end is from a polled log.
 constexpr LogClaim kWalking[] = {
     {{"log-white", "neck_x_mm", "mm", {1.1, 1.2}}, white<Neck, 0>},
     {{"log-white", "neck_y_mm", "mm", {0.8, 1.8}}, white<Neck, 1>},

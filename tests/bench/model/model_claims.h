@@ -21,7 +21,7 @@ struct Claim {
   const char* case_name;
   const char* metric;
   const char* unit;
-  Range range;                    ///< Of real logs, or published.
+  Range range;                    ///< From real logs or publications.
   double tolerance = kTolerance;  ///< Tolerance at its ends.
   bool needs_long = false;        ///< Not tested in the minute of a quick run.
 };
@@ -32,10 +32,11 @@ struct LogClaim {
   double (*of)(const LogStatistics&);
 };
 
-/// From two logs of walking people and one of a gesturing person (statistics only); for one person
-/// walking in front of one sensor.
+/// Claims from two logs of walking people and one of a gesturing person (statistics only), about
+/// one person who walks in front of one sensor.
 [[nodiscard]] std::span<const LogClaim> walking_claims();
-/// From a third log: a person at 2 m, one side turned away from the sensor; for turned_scene().
+/// Claims from a third log, of a person at 2 m with one side turned away from the sensor.  They
+/// apply to turned_scene().
 [[nodiscard]] std::span<const LogClaim> turned_claims();
 
 }  // namespace chorus::bench

@@ -24,7 +24,7 @@ inline constexpr Timestamp kSomeTime = from_unix_ns(1'795'000'000'000'000'000);
 /// the log that shows how well a hidden side is tracked.  The left side is the far one.
 [[nodiscard]] synthetic::Scene turned_scene(std::uint64_t seed);
 
-/// A log of the scene by profile A; stamped with true time.
+/// A log of the scene, as a sensor of profile A records it with an exact clock.
 [[nodiscard]] std::vector<SensorFrame> log_of(const synthetic::Scene& scene, std::uint64_t seed,
                                               Duration length);
 

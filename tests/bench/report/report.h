@@ -73,8 +73,8 @@ class Report {
   [[nodiscard]] bool all_conditions_hold() const noexcept { return broken_ == 0; }
 
   void print(std::ostream& out) const;
-  /// {"name", "seed", "profile", "git", "rows": [...], "notes": [...]}; rows over draws also have
-  /// "spread", "beside" and "won_percent".
+  /// {"name", "seed", "profile", "git", "quick", "rows": [...], "notes": [...]}; rows over draws
+  /// also have "spread", "beside" and "won_percent".
   [[nodiscard]] std::string json() const;
 
  private:

@@ -27,8 +27,8 @@ double cores_used(const LiveCell& cell, double run_seconds) {
 }
 
 struct Reading {
-  double cores = 0.0;  ///< Used by the server.
-  double hz = 0.0;     ///< Received by each reader.
+  double cores = 0.0;  ///< Cores used by the server.
+  double hz = 0.0;     ///< Frames per second that each reader received.
   std::uint64_t lost = 0;
 };
 
@@ -55,7 +55,7 @@ void report_reading(Report& report, const std::string& name, const Reading& read
                    reading.hz > kMinShare * kRate && reading.lost == 0);
 }
 
-/// The cost of the readers: the server's use without them is subtracted.
+/// Measures the cost of the readers: the server's use without them is subtracted.
 Result<void> readers_300(Report& report, double run_seconds) {
   const auto cell = start_cell(3, 6);
   if (!cell) return pass(cell);

@@ -15,8 +15,8 @@ namespace {
 using http::DocumentPtr;
 
 constexpr int kConnections = 64;
-constexpr double kMinRatio = 0.85;  // Fraction of nginx's requests per second.
-constexpr double kMaxAgeMs = 5.0;   // 99 % of long-polled frames are younger.
+constexpr double kMinRatio = 0.85;  // fraction of nginx's requests per second
+constexpr double kMaxAgeMs = 5.0;   // 99 % of long-polled frames are younger
 constexpr double kFramesPerSecond = 30;
 constexpr int kJoints = 25;
 
@@ -102,7 +102,7 @@ Result<void> frame_64(Report& report) {
   const int rounds = report.quick() ? 1 : 5;
   const int run_seconds = report.quick() ? 1 : 3;
   for (int round = 0; round < rounds;
-       ++round) {  // In turns, so that both see the same machine load.
+       ++round) {  // Both run in turns and see the same machine load.
     if (auto run = add_run(*ours, run_seconds, our_load); !run) return run;
     if (auto run = add_run(*nginx, run_seconds, nginx_load); !run) return run;
     ratios.push_back(our_load.requests_per_s.back() / nginx_load.requests_per_s.back());

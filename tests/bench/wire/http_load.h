@@ -37,11 +37,11 @@ class ServingProcess {
   pid_t pid_ = -1;
   int life_line_ = -1;  ///< The child ends when this closes.
   std::uint16_t port_ = 0;
-  std::optional<ScratchFolder> folder_ = {};  ///< nginx's.
+  std::optional<ScratchFolder> folder_ = {};  ///< Configuration, document and logs of nginx.
 };
 
-/// Servers run on one core and the load on another, the same for all servers; on a machine with one
-/// core nothing is pinned.  Called in a child before it starts.
+/// Pins this process, and those it starts, to one core: servers to one, load generators to another.
+/// Does nothing on a machine with one core.
 enum class Side { Server, Load };
 void keep_to_side(Side side);
 
@@ -50,7 +50,7 @@ struct WrkResult {
   double requests = 0.0;
 };
 
-/// wrk -t1 -c64 against http://127.0.0.1:port/frame.
+/// Runs wrk with one thread and `connections` connections against http://127.0.0.1:port/frame.
 [[nodiscard]] Result<WrkResult> run_wrk(std::uint16_t port, int connections, int run_seconds);
 
 struct LongPollLoad {

@@ -28,7 +28,7 @@ Result<std::unique_ptr<Sink>> open_sink(const OutputsConfig& config) {
   return std::move(sinks->front());
 }
 
-/// An output that sends datagrams to targets.
+/// Opens an output that sends datagrams to targets.
 template <auto which>
 Result<OpenedOutput> open_datagrams() {
   auto receiver = std::make_unique<DatagramReceiver>();
@@ -43,7 +43,7 @@ Result<OpenedOutput> open_datagrams() {
   return OpenedOutput{std::move(receiver), std::move(*sink)};
 }
 
-/// Takes all bodies with all their joints.
+/// Subscribes to all bodies with all their joints.
 class VrpnReceiver final : public Receiver {
  public:
   static std::vector<std::string> bodies() {

@@ -57,7 +57,7 @@ struct OutputRow {
   Result<OpenedOutput> (*open)();
 };
 
-/// Every output with connections; each row is one output.
+/// Every output that has connections.
 [[nodiscard]] const std::vector<OutputRow>& output_rows();
 
 /// The cheapest possible output: the same hand-over and thread, and `count` datagrams of `bytes`

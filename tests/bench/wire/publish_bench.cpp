@@ -1,5 +1,5 @@
-// chorus-bench publish: how long a fused frame takes to a client of each output, and from capture
-// to a VRPN client of the real server; and whether 400 clients delay anybody.
+// chorus-bench publish: how long a fused frame takes to a client of each output, and how long from
+// capture to a VRPN client of the real server; and whether 400 clients delay anybody.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -22,7 +22,7 @@ constexpr double kRate = 30.0;  // [Hz]
 constexpr double kMs = 1e3;
 constexpr double kMaxWireMs = 2.0;        // the claim, fused instant to client, p99
 constexpr double kMaxCaptureMs = 10.0;    // the claim, last capture to VRPN client, p99
-constexpr double kLateMs = 10.0;          // the claim: no frame later than this
+constexpr double kLateMs = 10.0;          // the claim: no frame takes longer
 constexpr std::size_t kWarmUp = 30;       // frames
 constexpr double kFullDatagram = 1400.0;  // [B]
 
@@ -46,7 +46,7 @@ class Watch {
  public:
   struct Arrival {
     Steady::time_point when;
-    std::size_t units;  ///< Total number up to then.
+    std::size_t units;  ///< Number of units received until then.
   };
 
   explicit Watch(Receiver& receiver) : receiver_(receiver) {
@@ -82,7 +82,7 @@ struct Wire {
   double output_hz = 0.0;  ///< Rate of receipt.
 };
 
-/// Publishes at 30 Hz; returns the times of publication, without those of the warm-up.
+/// Publishes `frames` snapshots at 30 Hz, numbered from `first`; returns when each was published.
 std::vector<Steady::time_point> publish(Sink& sink, std::size_t frames, std::uint64_t first) {
   std::vector<Steady::time_point> times;
   auto next = Steady::now();
@@ -127,8 +127,8 @@ Result<Wire> measure(OpenedOutput& output, std::size_t frames) {
   return wire;
 }
 
-/// The same number of bytes through the same hand-over; as full datagrams for streams and for
-/// VRPN.
+/// Sends the same number of bytes through the same hand-over, in as many datagrams as the output
+/// sends; for VRPN, which packs many messages together, in full datagrams.
 Result<Wire> measure_bare(std::string_view name, const Wire& wire, std::size_t frames) {
   const bool packed = name.starts_with("vrpn");
   const auto count = packed
@@ -143,7 +143,7 @@ double late_of(const std::vector<double>& latencies) {
                                            [](double latency) { return kMs * latency > kLateMs; }));
 }
 
-/// The worst of all outputs.
+/// The worst figure of each kind among all outputs.
 struct Worst {
   double p99 = 0.0;
   double output_hz = kRate;
@@ -225,7 +225,7 @@ ClientRates rates(const ClientAnswers& before, const ClientAnswers& after,
 
 Result<void> clients_400(Report& report, const LiveCell& cell, const Lateness& alone,
                          double run_seconds) {
-  constexpr ClientCounts kClients{49, 300, 50};  // plus the witness
+  constexpr ClientCounts kClients{49, 300, 50};  // with the client of watch(), 400 in all
   const std::string name = "clients-400";
   const ClientCrowd crowd(cell, kClients);
   std::this_thread::sleep_for(std::chrono::seconds(1));

@@ -37,7 +37,8 @@ void check_resumed_reading(std::string_view bytes, const HeadEnd& whole) {
   }
 }
 
-/// RFC 9112 9.3: whoever sends close, closes.  In HTTP/1.0 Beast lets keep-alive override it.
+/// By RFC 9112 9.3 a message with "close" ends the connection.  In HTTP/1.0 Beast lets keep-alive
+/// override it.
 bool kept_alive(const beast::request_parser<beast::string_body>& parser) {
   for (const auto& field : parser.get()) {
     if (field.name() == beast::field::connection &&

@@ -1,6 +1,6 @@
-// Any lines as what a program pushes: each is read or refused with words, and what is read is a
-// frame that may be published.  A whole session of them, on clocks that go on, leaves the desk
-// alive.
+// Reads any lines as what a program pushes: each is read, or refused with a message, and what is
+// read is a frame that may be published.  After a whole session of them, during which the clocks
+// advance, the desk still reports its state.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

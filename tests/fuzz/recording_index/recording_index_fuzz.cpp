@@ -20,7 +20,7 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
-/// In memory where possible; contains one file that an index may name.
+/// A folder, in memory where possible, with one file that an index may name.
 fs::path folder() {
   static const fs::path made = [] {
     const fs::path shared = fs::exists("/dev/shm") ? "/dev/shm" : fs::temp_directory_path();

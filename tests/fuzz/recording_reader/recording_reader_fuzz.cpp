@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     if (read->messages[i].log_time < read->messages[i - 1].log_time) __builtin_trap();
   }
   if (read->notes.size() > chorus::record::kMaxNotes) __builtin_trap();
-  // Also as a recording of a cell: the frames of every stream are ordered by time.
+  // Reads it as a recording of a cell, too: the frames of every stream are ordered by time.
   const auto session = chorus::record::cell_of(*read, "fuzz", {.fused = true});
   if (!session) return 0;
   for (const auto& sensor : session->sensors) {

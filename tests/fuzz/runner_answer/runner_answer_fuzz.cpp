@@ -1,6 +1,6 @@
-// Any lines as what a runner says: the first as its hello, the others as its answers to one image,
-// with and without depth from people's size.  Each is read or refused with words, and what is read
-// may be published.
+// Reads any lines as what a runner says: the first as its hello, the others as its answers to one
+// image, with and without depth from people's size.  Each is read or refused with words, and what
+// is read may be published.
 #include <cstddef>
 #include <cstdint>
 
@@ -19,7 +19,7 @@ constexpr const char* kUsualHello =
     R"({"type": "hello", "version": 1, "name": "n", "layout": "mediapipe_33"})";
 constexpr double kFocalSigma = 0.1;
 
-/// As the device goes on with them.
+/// Processes the bodies as the device does, and checks the frame that results.
 void check_answer(std::vector<BodyFrame> bodies) {
   for (BodyFrame& body : bodies) {
     for (Joint& joint : body.skeleton.joints) widen_depth(joint, kFocalSigma);

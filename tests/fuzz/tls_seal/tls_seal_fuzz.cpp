@@ -1,7 +1,8 @@
 // Feeds any bytes to either side of TLS, during a handshake or after one, in pieces; and any text
 // as a certificate.  A side reports Done only for data that was sent, and says why it fails.
 //
-// The first byte chooses: bit 0 the side, bit 1 whether the handshake is complete, bit 2 a text.
+// The first byte chooses: bit 0 the side, bit 1 whether the handshake is complete, bit 2 whether
+// the rest is read as a certificate instead.
 #include <array>
 #include <cstddef>
 #include <cstdint>

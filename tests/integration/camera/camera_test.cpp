@@ -30,7 +30,7 @@ constexpr double kFocal = 300.0;
 /// picture.
 double red_at(int i) { return 60.0 + 8.0 * i; }
 
-/// A red square that moves to the right, and a blue one that stays; Motion JPEG.
+/// Writes a Motion JPEG video: a red square moves to the right, and a blue one stands still.
 void make_video(const std::string& path) {
   cv::VideoWriter writer(path, cv::CAP_OPENCV_MJPEG, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'),
                          kRate, {kWidth, kHeight});
@@ -83,7 +83,8 @@ class Rig {
     });
   }
   void stop() { running_ = {}; }
-  /// The captures so far, once there are `least`, or no more will come.
+  /// Waits until `least` captures have come, the device has ended or `patience` is over; returns
+  /// all captures so far.
   std::vector<Capture> captures(std::size_t least, Duration patience = 20s) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, patience, [&] { return captures_.size() >= least || over_; });

@@ -46,7 +46,7 @@ struct Told {
   std::atomic<int> looks = 0;
 };
 
-/// Repeats what it receives; "twice", "end", "throw" and "flood" do what they say.
+/// Echoes every message except "twice", "end", "throw" and "flood", which are commands.
 class Echo final : public Dialogue {
  public:
   explicit Echo(std::shared_ptr<Told> told) : told_(std::move(told)) { ++told_->open; }

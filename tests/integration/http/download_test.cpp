@@ -18,7 +18,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// A service with one route, /file, which serves the file that is at `path` at that time.
+/// A service with one route, /file, which serves the file that is at `path` when it is asked for.
 class Download : public ::testing::Test {
  protected:
   void SetUp() override {

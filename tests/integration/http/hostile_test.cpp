@@ -32,7 +32,7 @@ class HostileTest : public testing::Test {
   void TearDown() override { EXPECT_EQ(service_.ask("/frame").status, 200); }
 
   std::uint16_t port() const { return service_.server.port(); }
-  /// Sends all of it and reads to the end of input, which must come.
+  /// Sends the request and returns the answer up to the end of input, which must come.
   std::string refused(std::string_view request) {
     RawClient client(port());
     client.say(request);
@@ -207,7 +207,7 @@ TEST_F(HostileTest, AClientThatNeverReadsIsClosed) {
   std::string requests;
   for (int i = 0; i < 100; ++i) requests += "GET /big HTTP/1.1\r\nHost: localhost\r\n\r\n";
   client.say(requests);
-  // While it hangs, other clients are served; then the write deadline frees the connection.
+  // While this client hangs, others are served; then the write deadline frees its connection.
   EXPECT_EQ(service_.ask("/frame").status, 200);
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   while (service_.server.counters().connections_open > 0 &&
@@ -253,7 +253,8 @@ TEST_F(HostileTest, RunningOutOfDescriptorsDoesNotEndTheServer) {
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   address.sin_port = htons(port());
   EXPECT_EQ(::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // It tries to accept meanwhile.
+  // The server tries to accept meanwhile.
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
   ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
   for (const int fd : fillers) ::close(fd);
   ::close(highest);

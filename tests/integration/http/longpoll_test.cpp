@@ -19,7 +19,7 @@ std::string poll_for(int version, int wait_s, const std::string& accept = "*/*")
          std::to_string(version) + "-ttl\"\r\n\r\n";
 }
 
-/// Waits until the server holds `polls` long polls.
+/// Waits until the server holds `polls` long polls; false after 10 s.
 bool waiting(const Server& server, std::uint64_t polls) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
   while (server.counters().long_polls_waiting != polls) {

@@ -37,7 +37,7 @@ class RawClient {
 
   [[nodiscard]] bool connected() const { return connected_; }
 
-  /// False once the other side no longer accepts bytes.
+  /// Sends all bytes; returns false once the other side no longer accepts any.
   bool say(std::string_view bytes) {
     while (!bytes.empty()) {
       const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
@@ -47,7 +47,8 @@ class RawClient {
     return true;
   }
 
-  /// Sends what the other side accepts at once, after waiting for it to accept some; 0: it did not.
+  /// Waits until the other side accepts bytes, and sends as many as it accepts at once; returns
+  /// their number, 0 if the time is over.
   std::size_t say_some(std::string_view bytes, std::chrono::milliseconds time) {
     pollfd ready{socket_, POLLOUT, 0};
     if (::poll(&ready, 1, static_cast<int>(time.count())) <= 0) return 0;

@@ -26,7 +26,7 @@ namespace chorus::http::test {
       options);
 }
 
-/// The owner of the test server.
+/// What the test server adds to its answers.
 [[nodiscard]] inline AnswerPolicy test_policy() {
   return {"Test-Clock", "Link: </kind>; rel=\"type\"\r\n",
           "Link: </description>; rel=\"service-desc\"\r\n", "test"};
@@ -42,7 +42,7 @@ struct TestServer {
     return {"127.0.0.1", server.port(), std::move(target)};
   }
 
-  /// fetch() that must succeed.
+  /// Calls fetch(), which must succeed.
   [[nodiscard]] ClientResponse ask(const std::string& target, std::vector<Header> headers = {},
                                    const std::string& method = "GET",
                                    const std::string& body = {}) const {
@@ -52,7 +52,7 @@ struct TestServer {
   }
 
   std::shared_ptr<LiveDocument> frame = std::make_shared<LiveDocument>();
-  std::string last_body;  ///< Of POST /registration; read it only after the answer.
+  std::string last_body;  ///< Body of the last POST /registration; read it only after the answer.
   Server server;
 
  private:

@@ -125,9 +125,10 @@ TEST(Tls, AWebSocketCarriesEveryVersion) {
   EXPECT_THAT(client.hear_until("{\"n\":1}"), HasSubstr("101 Switching Protocols"));
   service.frame->publish(test::frame_document(2));
   EXPECT_THAT(client.hear_until("{\"n\":2}"), HasSubstr("{\"n\":2}"));
-  std::this_thread::sleep_for(100ms);  // a server that is writing would only close
+  // During a write the server would close without a close frame.
+  std::this_thread::sleep_for(100ms);
   std::thread stopping([&] { service.server.stop(); });
-  EXPECT_THAT(client.hear_all(), HasSubstr("\x88\x02\x03\xe9"));  // going away
+  EXPECT_THAT(client.hear_all(), HasSubstr("\x88\x02\x03\xe9"));  // a close frame: going away
   EXPECT_TRUE(client.said_end());
   client.raw().leave();
   stopping.join();

@@ -190,12 +190,12 @@ INSTANTIATE_TEST_SUITE_P(
                                   14),                             // 2^63 bytes
                       std::string("\xF3\x80\x01\x02\x03\x04", 6),  // reserved bits
                       std::string("\x83\x80\x01\x02\x03\x04", 6),  // unknown opcode
-                      masked(0x8, "x"),                            // close of one byte
-                      masked(0x8, "\x03\xE8\xFF"),                 // its reason is no UTF-8
-                      masked(0x1, "\xC3\x28"),                     // nor is this text
-                      frame_of(kText, std::string(4097, 'x')),     // more than a client may send
-                      many_fragments(),                            // nor in fragments
-                      masked(0x0, "x"),                            // continuation without a start
+                      masked(0x8, "x"),                            // a close of one byte
+                      masked(0x8, "\x03\xE8\xFF"),              // a close whose reason is not UTF-8
+                      masked(0x1, "\xC3\x28"),                  // a text message that is not UTF-8
+                      frame_of(kText, std::string(4097, 'x')),  // more than a client may send
+                      many_fragments(),                         // the same in fragments
+                      masked(0x0, "x"),                         // continuation without a start
                       std::string("\x09\x80\x01\x02\x03\x04", 6),  // a fragmented ping
                       frame_of(0x89, std::string(126, 'x')),       // a ping of more than 125 bytes
                       std::string("GET / HTTP/1.1\r\n\r\n")));
@@ -262,7 +262,7 @@ TEST(WebSocket, LongCookiesDoNotKeepAPageOut) {
   EXPECT_THAT(page.hear_until(R"({"n":1})"), HasSubstr("101 "));
 }
 
-/// False while the server still counts a connection.
+/// Waits until the server counts no open connection; false if it still counts one after 20 s.
 bool no_connection(const Server& server) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   while (server.counters().connections_open != 0) {
@@ -291,7 +291,7 @@ TEST(WebSocket, AServerThatStopsSaysSo) {
   const auto begin = std::chrono::steady_clock::now();
   std::thread stopping([&] { service.server.stop(); });
   EXPECT_EQ(client.hear_until("\xE9"), std::string("\x88\x02\x03\xE9"));
-  client.say(std::string("\xF3\x80\x01\x02\x03\x04", 6));  // no frame at all
+  client.say(std::string("\xF3\x80\x01\x02\x03\x04", 6));  // this is no valid frame
   stopping.join();
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
 }
@@ -322,7 +322,7 @@ TEST(WebSocket, WhoDoesNotAnswerACloseIsHungUpOn) {
   RawClient client(service.server.port());
   client.say(hello());
   ASSERT_TRUE(open_sockets(service.server, 1));
-  client.say(masked(0x8, std::string("\x03\xE8", 2)));  // and keeps the connection open
+  client.say(masked(0x8, std::string("\x03\xE8", 2)));  // the client keeps the connection open
   EXPECT_TRUE(open_sockets(service.server, 0));
   (void)client.hear_all();
   EXPECT_TRUE(client.ended());

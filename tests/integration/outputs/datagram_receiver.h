@@ -18,7 +18,7 @@ namespace chorus::outlet::testing {
 
 class DatagramReceiver {
  public:
-  /// `everywhere`: on all interfaces, as groups need it.
+  /// `everywhere`: listens on all interfaces, which multicast groups need.
   explicit DatagramReceiver(bool everywhere = false) : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
     sockaddr_in address = chorus::testing::loopback(0);
     if (everywhere) address.sin_addr.s_addr = htonl(INADDR_ANY);
@@ -54,7 +54,7 @@ class DatagramReceiver {
     sender_port_ = ntohs(from.sin_port);
     return got > 0 ? std::string(bytes.data(), static_cast<std::size_t>(got)) : std::string();
   }
-  /// Of the last datagram.
+  /// The port that the last datagram came from.
   [[nodiscard]] std::uint16_t sender_port() const { return sender_port_; }
 
   void say(std::string_view bytes, std::uint16_t to, const char* host = "127.0.0.1") const {

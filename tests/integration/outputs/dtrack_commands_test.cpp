@@ -39,7 +39,7 @@ std::string ask(RawClient& client, std::string_view command) {
   return client.hear_until("\0"sv);
 }
 
-/// The service still answers a well-behaved client.
+/// Requires that the service still answers a well-behaved client.
 void expect_alive(CommandServer& server) {
   ASSERT_TRUE(wait_for([&] { return server.counters().clients == 0; }));
   RawClient client(server.port());
@@ -69,7 +69,8 @@ TEST(DtrackCommandServer, TheOldestConnectionIsInControl) {
   EXPECT_NE(ask(second, "dtrack2 tracking stop").find("err 2"), std::string::npos);
   first.reset();
   ASSERT_TRUE(wait_for([&] { return server->counters().clients == 1; }));
-  EXPECT_FALSE(server->controller().has_value());  // tracking ended with the client that started it
+  // Tracking ended when the client that had started it left.
+  EXPECT_FALSE(server->controller().has_value());
   EXPECT_EQ(ask(second, "dtrack2 tracking start"), "dtrack2 ok\0"s);
   ASSERT_TRUE(server->controller().has_value());
   EXPECT_NE(server->controller(), controller);

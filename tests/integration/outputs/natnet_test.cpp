@@ -48,7 +48,7 @@ std::unique_ptr<Server> server_with(ServerOptions given) {
   return server ? std::move(*server) : nullptr;
 }
 
-/// The first byte of the frame is `number`.
+/// Publishes a frame whose first byte is `number`.
 void publish(Server& server, char number, std::size_t bytes = 60) {
   Bytes payload(bytes);
   payload.front() = number;
@@ -90,13 +90,14 @@ TEST(NatNetServer, AClientGetsFramesWhereItConnectedFrom) {
   EXPECT_TRUE(wait_for([&] { return server->counters().clients == 1; }));
   EXPECT_EQ(ask(client, *server, kFrame).substr(0, 5), "\7\0\x3C\0a"s);
   client.say(kDisconnect, server->port());
-  EXPECT_EQ(ask(client, *server, "\x0E\0\0\0"s).size(), 283u);  // earlier messages have been read
+  // This answer shows that earlier messages have been read.
+  EXPECT_EQ(ask(client, *server, "\x0E\0\0\0"s).size(), 283u);
   publish(*server, 'b');
   EXPECT_EQ(client.next(200), "");
   EXPECT_TRUE(wait_for([&] { return server->counters().clients == 0; }));
 }
 
-/// Fails once, then stands still.
+/// A clock that fails once, then stands still.
 class ClockThatFailsOnce final : public Clock {
  public:
   [[nodiscard]] Timestamp now() const override {
@@ -169,7 +170,7 @@ TEST(NatNetServer, TheGroupHearsUsByTheAddressWeListenOn) {
   EXPECT_EQ(ask(client, *server, kConnect).size(), 283u);
   publish(*server, 'a');
   const std::string heard = joined ? member.next(1000) : "";
-  EXPECT_EQ(client.next(200), "");  // it only asked where frames are sent
+  EXPECT_EQ(client.next(200), "");  // the client only asked where frames are sent
   if (heard.empty()) GTEST_SKIP() << "runs where loopback has multicast";
   EXPECT_EQ(heard.substr(0, 5), "\7\0\x3C\0a"s);
 }
@@ -234,7 +235,8 @@ TEST(NatNetServer, AFloodOfConnectionsLeavesTheClientItsFrames) {
 TEST(NatNetServer, TwoServersDoNotTalkToEachOther) {
   const auto first = server_with(options());
   const auto second = server_with(options());
-  // What the first server would send to the second if its address were forged.
+  // A request with the second server's forged address would make the first server send its answer
+  // to the second one.  This test sends that answer itself.
   DatagramReceiver stranger;
   const std::string unrecognized = ask(stranger, *first, "\x37\0\0\0"s);
   EXPECT_EQ(unrecognized, "\x64\0\0\0"s);
@@ -324,7 +326,7 @@ TEST(NatNetOutput, TellsThatBonesWereMeasuredAndDescribesThem) {
     snapshot->bodies[0].slot = 0;
     snapshot->bodies[0].skeleton = giant;
     sinks->front()->publish(snapshot);
-    const std::string frame = client.next();  // one at a time, so that none is dropped
+    const std::string frame = client.next();  // receives them one by one, so that none is dropped
     ASSERT_EQ(frame.substr(0, 2), "\7\0"s);
     changed = frame[frame.size() - 6] == 2;
     EXPECT_TRUE(!changed || i + 1 >= BoneLengths::kFrames) << i;

@@ -95,7 +95,8 @@ TEST(DtrackOutput, ReachesAGroupByTheInterfaceItIsGiven) {
   DatagramReceiver member(true);
   const bool joined = member.join(group, "127.0.0.1");
   OutputsConfig config = dtrack_to({std::string(group) + ":" + std::to_string(member.port())});
-  config.dtrack.protocol.multicast = {"127.0.0.1", 0};  // No router, not even another host.
+  // 0 hops: the datagram does not leave this host.
+  config.dtrack.protocol.multicast = {"127.0.0.1", 0};
   const auto sink = sink_of(config);
   ASSERT_TRUE(sink);
   sink->publish(somebody(3));
@@ -124,7 +125,7 @@ TEST(DtrackOutput, SendsToTheClientInControlAtThePortItOpened) {
     dtrack::Settings& settings = config.dtrack.protocol;
     settings.commands = true;
     settings.send_to_client = allowed;
-    // With port 0 the port would be unknown.
+    // With port 0 the client would not know the port.
     settings.command.port = outlet::testing::free_port();
     const auto sink = sink_of(config);
     ASSERT_TRUE(sink);

@@ -109,7 +109,7 @@ TEST(TrackdSegment, OneThatIsInUseIsRefusedAndLeftAlone) {
   EXPECT_TRUE(there(settings.tracker_key));
 }
 
-/// Creates a segment by a program that has ended since.
+/// Creates a segment in another program, which then ends.
 void leave_behind(int key, std::size_t bytes) {
   const pid_t child = ::fork();
   if (child == 0) ::_exit(::shmget(key, bytes, IPC_CREAT | IPC_EXCL | 0666) < 0 ? 1 : 0);
@@ -175,7 +175,7 @@ TEST(TrackdSegment, AnAttachedReaderSeesTheRestartAfterACrash) {
   EXPECT_FALSE(reader->sees_a_head());
   (*outlet)->send(frame_of_somebody());
   EXPECT_TRUE(reader->sees_a_head());
-  reader.reset();  // otherwise the segment would stay
+  reader.reset();  // an attached reader would keep the segment alive
 }
 
 TEST(TrackdSegment, OneTakenOverFromADeadRunIsNotTakenFromTheNewOne) {

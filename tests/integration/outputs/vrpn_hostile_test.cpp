@@ -109,7 +109,8 @@ TEST_F(HostileVrpn, AClientThatPingsAndNeverReadsIsClosed) {
   for (int i = 0; i < 1000; ++i) flood += ping;
   deaf.say(pings);
   ASSERT_TRUE(wait_until([&] { return server->counters().clients == 2; }));
-  // It sends until the server reads no more; the server's memory is limited, so that is soon.
+  // The client sends until the server stops reading, which happens soon, because the server limits
+  // the memory of its buffers.
   std::thread saying([&] {
     while (deaf.say(flood)) {
     }
@@ -136,8 +137,9 @@ std::size_t bytes_taken(http::test::RawClient& client, std::string_view repeated
 
 class PatientVrpn : public test::VrpnRig {};
 
-// Closing the client is the effect of the stall limit, reading no more from it that of kMaxAnswers:
-// with an hour of patience only the second prevents endless growth of its answers.
+// Two limits protect the server from such a client: `stall` closes it, and kMaxAnswers stops
+// reading from it.  With a stall limit of one hour, only kMaxAnswers keeps its answers from growing
+// endlessly.
 TEST_F(PatientVrpn, FromAClientThatPingsAndNeverReadsNoMoreIsRead) {
   constexpr std::size_t kMax = 32U << 20U;  // The system's own buffers take less than half of it.
   ServerOptions options;
@@ -150,7 +152,7 @@ TEST_F(PatientVrpn, FromAClientThatPingsAndNeverReadsNoMoreIsRead) {
   for (int i = 0; i < 1000; ++i) pings += vrpn_message(0, 0, "");
   EXPECT_LT(bytes_taken(deaf, pings, kMax), kMax);
   EXPECT_EQ(server->counters().clients, 1u);
-  // Its answers are being read now, so the server reads again.
+  // The client reads its answers now, so the server reads again.
   std::size_t heard = 0;
   while (deaf.say_some(pings.substr(0, 24), std::chrono::milliseconds(0)) == 0 && heard < kMax) {
     const std::size_t more = deaf.hear_some(std::chrono::seconds(10)).size();
@@ -171,7 +173,7 @@ TEST_F(HostileVrpn, TenThousandRequestsMakeFewConnections) {
              sizeof address);
   };
   for (int i = 0; i < 10'000; ++i) {
-    // Ports above those that the system assigns to others.
+    // These ports are above those that the system assigns to others.
     say("127.0.0.1 " + std::to_string(61'000 + i % 4'500) + std::string(1, '\0'));
     if (i % 100 == 0) say(std::string(static_cast<std::size_t>(i % 1400), '\xFF'));
   }
@@ -182,8 +184,7 @@ TEST_F(HostileVrpn, TenThousandRequestsMakeFewConnections) {
   ::close(asking);
 }
 
-/// Keeps asking the server, from 127.0.0.2, to connect to ports where nobody
-/// listens.
+/// Keeps asking the server, from 127.0.0.2, to connect to ports where nobody listens.
 class Flood {
  public:
   explicit Flood(std::uint16_t server) : asking_(::socket(AF_INET, SOCK_DGRAM, 0)) {
@@ -221,7 +222,7 @@ class Flood {
 TEST_F(HostileVrpn, AFloodOfRequestsFromOneHostDoesNotLockOutAnother) {
   const Flood flood(server->port());
   ASSERT_TRUE(wait_until([&] { return server->counters().refused > 500; }));
-  // One might be lucky; each asks ten times.
+  // One request might be lucky, so each client asks ten times.
   std::vector<std::unique_ptr<VrpnClient>> others;
   for (int i = 0; i < 14; ++i) {
     others.push_back(std::make_unique<VrpnClient>(std::vector<std::string>{"Body0"}));
@@ -248,7 +249,7 @@ TEST_F(HostileVrpn, ClientsBeyondTheLimitAreTurnedAway) {
   EXPECT_TRUE(wait_until([&] { return server->counters().clients == 20; }));
 }
 
-/// Three connections at a time for each address.
+/// The server accepts three connections at a time from each address.
 class FairVrpn : public test::VrpnRig {
  protected:
   void SetUp() override {

@@ -103,7 +103,7 @@ TEST_F(Vrpn, EveryClientGetsEveryFrameOnce) {
     publish(1, n);
     for (VrpnClient* client : {&by_tcp, &by_udp}) {
       double z = 0;
-      while (z < 10'000) {  // frames sent before that
+      while (z < 10'000) {  // skips the frames sent before that
         const auto message = client->next("vrpn_Tracker Pos_Quat");
         ASSERT_TRUE(message);
         z = pose_of(*message)->position.z();
@@ -130,7 +130,7 @@ TEST_F(Vrpn, RepeatedRequestsOfOneClientMakeOneConnection) {
     ::sendto(asking, text.c_str(), text.size() + 1, 0, reinterpret_cast<sockaddr*>(&address), size);
   }
   ASSERT_TRUE(wait_until([&] { return server->counters().clients == 1; }));
-  VrpnClient other({"Body0"});  // after its answer all 50 have been read
+  VrpnClient other({"Body0"});  // when it is answered, all 50 requests have been read
   ASSERT_TRUE(other.request(server->port()));
   ASSERT_TRUE(first_pose(other));
   EXPECT_EQ(server->counters().clients, 2u);

@@ -35,7 +35,8 @@ struct VrpnPose {
   double interval = 0.0;  ///< Time of a velocity's rotation [s].
 };
 
-/// None unless the payload has exactly the right size.
+/// The pose or the velocity that a message holds; none unless its payload has exactly the right
+/// size.
 [[nodiscard]] std::optional<VrpnPose> pose_of(const VrpnMessage& message);
 [[nodiscard]] std::optional<VrpnPose> velocity_of(const VrpnMessage& message);
 
@@ -60,7 +61,7 @@ class VrpnDecoder {
   std::deque<VrpnMessage> messages;  ///< Without descriptions; to be removed by the caller.
   std::map<std::int32_t, std::string> senders;
   std::map<std::int32_t, std::string> types;
-  std::vector<std::int32_t> system_types;  ///< Negative ones, in order.
+  std::vector<std::int32_t> system_types;  ///< Negative types of the messages received, in order.
   std::string error;
 
  private:
@@ -77,10 +78,10 @@ class VrpnClient {
   VrpnClient(const VrpnClient&) = delete;
   VrpnClient& operator=(const VrpnClient&) = delete;
 
-  /// Like Name@tcp://127.0.0.1:port.
+  /// Connects as VRPN's client does for Name@tcp://127.0.0.1:port.
   [[nodiscard]] bool connect(std::uint16_t port);
-  /// Like Name@127.0.0.1:port: sends a datagram, and the server connects back.  `claimed` is the
-  /// host that the datagram and message -3 name.
+  /// Connects as for Name@127.0.0.1:port: sends a datagram, and the server connects back.  The
+  /// datagram and message -3 name the host `claimed`.
   [[nodiscard]] bool request(std::uint16_t port, const std::string& claimed = "127.0.0.1");
   void ping();
   void send(std::string_view bytes);
@@ -91,7 +92,7 @@ class VrpnClient {
   /// Reads until the next message arrives, the time is over, or the server is gone.
   [[nodiscard]] std::optional<VrpnMessage> next(
       std::chrono::milliseconds time = std::chrono::seconds(10));
-  /// The next one of this type.
+  /// The next message of this type; others are dropped.
   [[nodiscard]] std::optional<VrpnMessage> next(
       std::string_view type, std::chrono::milliseconds time = std::chrono::seconds(10));
 

@@ -75,7 +75,7 @@ def heard_until_the_end(way):
 
 
 def ended(way):
-    """The other side closes the connection, sooner or later."""
+    """Whether the other side closes the connection before a time-out."""
     try:
         while way.receive() is not None:
             pass

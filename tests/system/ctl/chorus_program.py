@@ -11,6 +11,6 @@ CAMERAS = "tests/data/pose2sim_mediapipe"
 
 
 def chorus(*arguments, seconds=60):
-    """(exit code, standard output, standard error)"""
+    """Runs chorus; returns (exit code, standard output, standard error)."""
     done = subprocess.run([BIN / "chorus", *map(str, arguments)], capture_output=True, text=True, timeout=seconds)
     return done.returncode, done.stdout, done.stderr

@@ -231,7 +231,7 @@ def frame_at(url):
 
 
 def eventually(look, seconds=20):
-    """The first true answer; errors count as not yet."""
+    """Calls look() until its result is true, and returns that; an error counts as false."""
     deadline = time.monotonic() + seconds
     while True:
         try:

@@ -13,7 +13,7 @@ CAMERAS = "tests/data/pose2sim_mediapipe"
 
 
 def chorus(*arguments, feed=None):
-    """(exit code, standard output, standard error), as bytes, bytes and text."""
+    """Runs chorus; returns its exit code, standard output (bytes) and standard error (text)."""
     done = subprocess.run([BIN / "chorus", *map(str, arguments)], capture_output=True, input=feed, timeout=60)
     return done.returncode, done.stdout, done.stderr.decode()
 

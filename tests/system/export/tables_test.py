@@ -75,7 +75,7 @@ class Export(unittest.TestCase):
         cls.folder.cleanup()
 
     def export(self, file_format, *more):
-        """To standard output, from standard input: the pipe in the guide."""
+        """Exports from standard input to standard output, as the pipe in the guide does."""
         code, out, error = chorus("export", "-", "--format", file_format, "--out", "-", *more, feed=self.lines)
         self.assertEqual(code, 0, error)
         return out

@@ -17,7 +17,7 @@ def own_address():
 
 
 def heard(kind, end, words):
-    """What an output answers to these bytes; empty when it does not."""
+    """What an output answers to these bytes; empty when it does not answer."""
     with socket.socket(socket.AF_INET, kind) as client:
         client.settimeout(PATIENCE_S)
         try:

@@ -46,7 +46,7 @@ class Outputs(Rig):
         return self.fusion(sensors, **{"registration.file": self.given_ring(SENSORS), **settings})
 
     def full_sequence(self, fusion, low, bits):
-        """The newest sequence with these lowest bits: protocols have no more."""
+        """The newest sequence with these lowest bits: the protocols send only these bits."""
         now = get_json(fusion.url + "frame")["sequence"] + 30
         return now - (now - low) % 2**bits
 
@@ -94,11 +94,11 @@ class Outputs(Rig):
                 self.assert_near(a, b, 1e-4, name)
 
     def check_vmc(self, fusion, vmc, first):
-        """Both outputs got the same frames from the same one on: frame k of this one is frame first + k."""
+        """Frame k of VMC is frame first + k, because both outputs got the same frames, beginning with the same one."""
         messages, sequence, checked = [], first - 1, 0
         for _ in range(MOST):
             found = osc_messages(vmc.recv(65536))
-            if found[0][0] == "/VMC/Ext/OK":  # begins a frame
+            if found[0][0] == "/VMC/Ext/OK":  # this message begins a frame
                 checked += 1 if messages and self.matches_vmc(fusion, sequence, messages) else 0
                 if checked == ENOUGH:
                     return

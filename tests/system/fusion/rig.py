@@ -22,7 +22,7 @@ PATIENCE = 40.0  # seconds; generous for loaded machines, nothing should take th
 
 
 def get(url, accept="application/json", headers=None, timeout=10.0):
-    """(status, headers, body) of a GET; error statuses are answers too."""
+    """(status, headers, body) of a GET; an error status is returned, not raised."""
     request = urllib.request.Request(url, headers={"Accept": accept, **(headers or {})})
     return _open(request, timeout)
 

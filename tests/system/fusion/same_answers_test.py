@@ -5,7 +5,7 @@ import unittest
 
 from rig import BIN, Rig, get_json, wait_for
 
-# Headers that do not depend on the service, and headers with its own numbers.
+# Headers that differ between any two services or answers: times, tags, sizes and links.
 ITS_OWN = {"date", "chorus-clock", "server-timing", "etag", "content-length", "content-location", "link"}
 TURTLE, JSON, N_TRIPLES = "text/turtle", "application/json", "application/n-triples"
 

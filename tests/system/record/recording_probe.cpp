@@ -1,5 +1,6 @@
-// `recording_probe write FILE` makes a recording with contents known to the test, `session` one of
-// a cell; `recording_probe read FILE` prints what our reader reads from a file, as JSON.
+// `recording_probe write FILE` makes a recording with contents known to the test, and
+// `recording_probe session FILE` one of a cell; `recording_probe read FILE` prints what our reader
+// reads from a file, as JSON.
 #include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>

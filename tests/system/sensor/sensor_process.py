@@ -76,7 +76,7 @@ class Sensor:
         self.process.send_signal(number)
 
     def stop(self):
-        """Exit code and seconds it took."""
+        """Stops the sensor; returns its exit code and the seconds it took."""
         start = time.monotonic()
         if self.process.poll() is None:
             self.signal(signal.SIGTERM)

@@ -80,13 +80,13 @@ History habitual(Duration delay, int frames = 30) {
 
 TEST(Align, ASensorIsWaitedForAsLongAsItsFramesUsuallyTake) {
   const Duration instant = milliseconds(33 * 29 + 10);
-  // One period, the delay, and a short grace period.
+  // The longest wait is one period, the delay, and a short grace period.
   EXPECT_EQ(longest_wait(habitual(milliseconds(2))), milliseconds(33 + 2 + 15));
   EXPECT_EQ(ask(habitual(milliseconds(2)), instant, milliseconds(45)).basis, Basis::Pending);
   EXPECT_EQ(ask(habitual(milliseconds(2)), instant, milliseconds(55)).basis, Basis::Lost);
   EXPECT_EQ(ask(habitual(milliseconds(110)), instant, milliseconds(150)).basis, Basis::Pending);
   EXPECT_EQ(ask(habitual(milliseconds(110)), instant, milliseconds(160)).basis, Basis::Lost);
-  // Never longer than the patience.
+  // The wait is never longer than the patience.
   EXPECT_EQ(ask(habitual(milliseconds(400)), instant, milliseconds(201)).basis, Basis::Lost);
 }
 

@@ -1,4 +1,4 @@
-// One bad link does not delay everybody.
+// How long an instant waits for each sensor: one bad link does not delay everybody.
 #include "fusion-server/align/patience.h"
 
 #include <algorithm>
@@ -63,7 +63,7 @@ TEST(Patience, ASteadyOneIsGivenWhatItNeeds) {
   EXPECT_EQ(patience.of(slow).patience, AlignConfig{}.patience);
 }
 
-/// All but its last `later` frames have arrived; those were held up on the way.
+/// A history of 60 frames that took 3 ms to arrive, except frame 60 - `later`, which took `delay`.
 History held_up(Duration delay, int later = 5) {
   History history;
   for (int i = 0; i < 60; ++i) {
@@ -104,7 +104,8 @@ TEST(Patience, OnABusyMachineTheWorstOfAllIsUnsteady) {
   EXPECT_EQ(patience.of(bad).patience, *usual_wait(busy));
 }
 
-/// Five frames per second, rays or points, arriving `delay` after their capture.
+/// A camera that delivers five frames per second, of rays or of points, `delay` after their
+/// capture.
 History camera(Duration delay, bool rays = true) {
   History history;
   for (int i = 0; i < 20; ++i) {
@@ -127,7 +128,7 @@ TEST(Patience, GrowsWhereMostAreSlow) {
   const History quick = sensor(milliseconds(2), milliseconds(5));
   const Patience most(
       {{sensor_id("s1"), &quick}, {sensor_id("s2"), &slow}, {sensor_id("s3"), &slow}}, {});
-  // Twice a period and the delay.
+  // The patience is twice the period plus the delay.
   EXPECT_EQ(most.of(slow).patience, milliseconds(900));
   EXPECT_EQ(most.extension(), milliseconds(900) - AlignConfig{}.patience);
   const Patience few(
@@ -184,7 +185,7 @@ TEST(Habit, FramesThatCameAfterLaterOnesTellNothing) {
   }
   ASSERT_EQ(history.frames().size(), 23u);
   EXPECT_LE(history.habit()->late_delay, milliseconds(5));
-  // From just after frame 19 until frame 22 arrived.
+  // The longest wait is from just after frame 19 until frame 22 arrived.
   EXPECT_EQ(history.habit()->longest_wait, milliseconds(3 * 33 + 4));
 }
 

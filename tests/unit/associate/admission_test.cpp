@@ -1,4 +1,5 @@
-// Which tracks are published at once, and which wait: bodies that others should see but do not.
+// Which tracks are published at once, and which wait because other sensors should see them but do
+// not.
 #include "fusion-server/associate/admission.h"
 
 #include <algorithm>
@@ -57,7 +58,7 @@ struct Room {
     tracks = std::move(grouping.tracks);
     return std::move(grouping.people);
   }
-  /// The longest time, up to `seconds`, after which only these many people are published [s].
+  /// Time until more than `people` people are published, at most `limit` [s].
   double until_more_than(std::size_t people, const std::vector<Body>& bodies, double limit) {
     const Timestamp begun = instant;
     while (see(bodies).size() <= people && seconds(instant - begun) < limit) {
@@ -66,7 +67,7 @@ struct Room {
   }
 };
 
-constexpr double kAtOnce = 0.1 + 1e-9;  // three instants
+constexpr double kAtOnce = 0.1 + 1e-9;  // three instants [s]
 
 std::vector<Body> seen_by_all(double x, double z) {
   std::vector<Body> bodies;

@@ -30,7 +30,7 @@ TEST(Assign, EmptySidesAreFine) {
   EXPECT_EQ(assign({2, 0, {}, 1.0}), (Answer{std::nullopt, std::nullopt}));
 }
 
-/// As many pairs as possible, then the least cost: found by trying all assignments.
+/// Tries all assignments; returns the largest number of pairs, and the least cost of that many.
 std::pair<std::size_t, double> best_by_trying(const CostTable& table) {
   const std::size_t size = std::max(table.rows, table.columns);
   std::vector<std::size_t> order(size);

@@ -34,7 +34,7 @@ SensorView view_of(const Somebody& who, int sensor, std::uint64_t body) {
   return view;
 }
 
-/// Four sensors that all see everybody; what they look at is not known unless asked for.
+/// Four sensors that all see everybody; a test that needs their poses sets `observers`.
 struct Room {
   AssociationConfig config = {};
   std::vector<Observer> observers = {};
@@ -59,7 +59,7 @@ struct Room {
     for (const Timestamp begun = instant; seconds(instant - begun) < time;) found = see(people);
     return found;
   }
-  /// How long it takes until somebody is published who is seen [s].
+  /// Time until somebody whom a sensor sees is published, about 10 s at most [s].
   double until_seen(const std::vector<Somebody>& people) {
     const Timestamp begun = instant;
     const auto seen = [](const Person& person) { return !person.carried; };
@@ -154,7 +154,7 @@ TEST(Recognition, WhoIsLostAndFoundKeepsTheIdAllTheTime) {
   }
 }
 
-/// A track as it is after `time` of sight by four sensors; one that has left if `gone`.
+/// Somebody of this size: if `gone`, a person who has left, else one whom four sensors see now.
 Candidate candidate(std::uint64_t id, double size, bool gone) {
   Candidate out;
   out.track.id = PersonId{id};

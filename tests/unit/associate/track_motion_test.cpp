@@ -34,7 +34,7 @@ struct Floor {
     tracks = grouping.tracks;
     return grouping.people;
   }
-  /// A person walks along x at `speed` [m/s] for `count` instants; returns where the next would be.
+  /// A person walks along x at `speed` [m/s]; returns x at the instant after the last one.
   double walk(double speed, int instants) {
     for (int i = 0; i < instants; ++i) see({view_at({speed * kFrameSeconds * i, 1, 0})});
     return speed * kFrameSeconds * instants;
@@ -44,7 +44,8 @@ struct Floor {
 TEST(TrackMotion, SomebodyWhoWalksOnUnseenIsFoundAhead) {
   Floor floor;
   double x = floor.walk(2.5, 40);
-  for (int i = 0; i < 10; ++i, x += 2.5 * kFrameSeconds) floor.see({});  // 0.33 s, 0.83 m
+  // For 0.33 s nobody is seen; meanwhile the person walks 0.83 m.
+  for (int i = 0; i < 10; ++i, x += 2.5 * kFrameSeconds) floor.see({});
   const auto people = floor.see({view_at({x, 1, 0})});
   ASSERT_EQ(people.size(), 1u);
   EXPECT_EQ(people[0].id, PersonId{1});
@@ -96,7 +97,7 @@ TEST(TrackMotion, AViewThatComesAndGoesFakesNoSpeed) {
   Floor floor;
   for (int i = 0; i < 60; ++i) {
     std::vector<SensorView> views{view_at({0, 1, 0})};
-    if (i % 2 == 0) views.push_back(view_at({0.3, 1, 0}, 2));  // registered 0.3 m off
+    if (i % 2 == 0) views.push_back(view_at({0.3, 1, 0}, 2));  // sensor 2 is registered 0.3 m off
     floor.see(views);
     EXPECT_LT(floor.tracks.people.at(0).velocity.norm(), 1e-9) << i;
   }

@@ -13,7 +13,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// A pipe of `bytes` bytes, whose reading end the test may read or not.
+/// A pipe that buffers `bytes` bytes; the test decides whether and when it is read.
 class Pipe {
  public:
   explicit Pipe(int bytes = 4096) {
@@ -105,7 +105,7 @@ TEST(LineWriter, TellsWhatIsMissing) {
   ASSERT_GT(writer.dropped(), 0u);
   std::string text;
   Told told;
-  while (told.lines + told.missing < kWritten) {  // reported at once or in parts
+  while (told.lines + told.missing < kWritten) {  // missing lines are reported at once or in parts
     text += pipe.read_until("\n");
     told = told_in(text.substr(0, text.rfind('\n') + 1));
   }

@@ -69,7 +69,8 @@ TEST(PointFilter, LearnsAVelocityAndForgetsAfterALongGap) {
   for (int i = 0; i < 100; ++i) filter.update(at_frame(i), {0.04 * i, 0, 0}, 1e-4);  // 1 m/s
   EXPECT_NEAR(filter.at(at_frame(99))->x(), 3.96, 1e-3);
   EXPECT_NEAR(filter.at(at_frame(104))->x(), 4.16, 5e-3);
-  EXPECT_NEAR(filter.at(at_frame(50))->x(), filter.at(at_frame(99))->x(), 1e-12);  // never back
+  // The filter never goes back in time.
+  EXPECT_NEAR(filter.at(at_frame(50))->x(), filter.at(at_frame(99))->x(), 1e-12);
   filter.update(at_frame(200), {9, 0, 0}, 1e-4);
   EXPECT_EQ(filter.at(at_frame(200))->x(), 9);
 }
@@ -102,7 +103,8 @@ TEST(ArrivalKalman, StatesTheTimeOfArrivalSoAWalkerIsWhereHeWas) {
   ASSERT_GT(stated.size(), 100u);
   const Stated& last = stated.back();
   EXPECT_EQ(last.instant, at_frame(199) + late);
-  EXPECT_NEAR(x_of(last.body, Neck), 0.04 * 199, 0.01);  // 0.1 s, 100 mm behind its stamp
+  // The answer is stated for 0.1 s after the capture, so it is 100 mm behind the walker.
+  EXPECT_NEAR(x_of(last.body, Neck), 0.04 * 199, 0.01);
 }
 
 TEST(ArrivalKalman, LeavesOutSensorsWithoutAPlace) {
@@ -132,7 +134,7 @@ TEST(NearestNeighbour, DoesNotPredictSoWhoPassesCloserIsTakenForTheOther) {
   NearestNeighbour neighbour;
   for (int i = 0; i < 3; ++i)
     (void)neighbour.group({at_place(1, 0, 0), at_place(1, 1, 0)}, at_frame(i));
-  // Only one sees it, half-way beyond the middle.
+  // One sensor sees one body, just beyond the middle between the two people.
   const auto people = neighbour.group({at_place(1, 0.55, 0)}, at_frame(3));
   ASSERT_EQ(people.size(), 1u);
   EXPECT_EQ(people[0].id, PersonId{2});

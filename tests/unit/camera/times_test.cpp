@@ -37,7 +37,7 @@ TEST(StreamClock, StepsAreTheStreamsAndTheFastestPictureSetsTheRest) {
 TEST(StreamClock, FollowsAStreamWhoseClockIsSlower) {
   StreamClock clock(0ms);
   Timestamp last{};
-  for (int i = 0; i < 3000; ++i) {  // 2 minutes, 100 ppm slow
+  for (int i = 0; i < 3000; ++i) {  // 2 minutes with a clock that is 100 ppm slow
     const Duration position = i * 40ms;
     last = clock.captured(kNoon + i * (40ms + 4us), position);
   }

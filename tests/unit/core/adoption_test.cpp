@@ -120,7 +120,8 @@ TEST(Extending, GivenPlacesWithoutVerdictsAreHeldToo) {
 
 TEST(Extending, SaysSoWhenThePlacedSensorsDoNotStandAsTheWalkShowsThem) {
   Registration candidate = ring(Verdict::Good, {1, 2, 3});
-  candidate.sensors.at(id("s2")).world_from_sensor.translation().x() += 2.0;  // bumped
+  // Somebody has moved s2 by accident.
+  candidate.sensors.at(id("s2")).world_from_sensor.translation().x() += 2.0;
   const auto wider = adopted(ring(Verdict::Good, {1, 2}), candidate, SolveKind::Final, true);
   ASSERT_FALSE(wider);
   EXPECT_EQ(wider.error().code, ErrorCode::Conflict);
@@ -153,7 +154,7 @@ TEST(Refusals, AreToldOfSensorsWithoutAPlaceAndLeaveTheVerdict) {
   EXPECT_EQ(verdict_of(current, id("s1")), Verdict::Good);
   EXPECT_EQ(verdict_of(current, id("s5")), Verdict::None);
   EXPECT_EQ(current.verdicts.at(id("s5")).verdict, Verdict::Refused);
-  // Once it is placed, the old refusal is gone.
+  // Once s5 is placed, its old refusal is gone.
   const auto wider = adopted(current, ring(Verdict::Good, {1, 2, 5}), SolveKind::Final, true);
   ASSERT_TRUE(wider);
   EXPECT_TRUE(wider->reasons.empty());

@@ -1,4 +1,5 @@
-// A person in the room is told what to do next, in each state that waits for something.
+// A person in the room is told what to do next, in each state in which the server waits for
+// something.
 #include "fusion-server/core/awaited.h"
 
 #include <gmock/gmock.h>

@@ -81,7 +81,7 @@ TEST(FusionCore, FusesEveryInstantOnceAndKnowsWhoContributed) {
 TEST(FusionCore, AnswersWithoutWaitingForTheDelayWhenAllSensorsHavePassed) {
   FusionCore core(config(), ring());
   (void)run(core, Duration{0}, seconds(1));
-  // One frame interval and the phases, not the 200 ms of the alignment delay.
+  // The longest delay is one frame interval and the phases, not the 200 ms of the alignment delay.
   EXPECT_LT(run(core, seconds(1), seconds(1)).worst, milliseconds(50));
 }
 
@@ -208,7 +208,7 @@ TEST(FusionCore, ASensorTakenOutOfTheConfigNoLongerBindsTheRegistration) {
 
 TEST(FusionCore, CountsBodiesOfSensorsWithoutAPlace) {
   FusionCore core(config(), ring(2));
-  (void)run(core, Duration{0}, seconds(4));  // shares are averaged over about one
+  (void)run(core, Duration{0}, seconds(4));  // shares are averaged over about one second
   const Timestamp now = kStart + seconds(4);
   for (int i = 0; i < kSensors; ++i) EXPECT_EQ(core.bodies(sensor_id(name(i)), now), 1u);
   EXPECT_GT(core.share(sensor_id("s1")).in_time, 0.9);
@@ -241,7 +241,8 @@ TEST(FusionCore, TheRateMayChangeWhileRunning) {
   EXPECT_GT(after.front().instant, before.back().instant);
 }
 
-/// Result of run_delayed(): as run(), but frame i of the last sensor comes `lateness(i)` late.
+/// What run_delayed() saw; it runs as run() does, but frame i of the last sensor comes
+/// `lateness(i)` late.
 struct Delayed {
   Answers live;
   std::vector<Snapshot> amended;
@@ -293,7 +294,7 @@ TEST(FusionCore, OneBadLinkCostsTheOthersAtMostThirtyMillisecondsAndIsUsedAfterw
   FusionCore core(config(), ring());
   const Delayed with = run_delayed(core, seconds(10), bad);
   EXPECT_LT(p90(with.ages), before + 0.030);
-  // A second later almost all instants include what it saw, under the ids already published.
+  // A second later almost all instants include the late sensor, under the ids already published.
   std::map<std::uint64_t, const Snapshot*> afterwards;
   for (const Snapshot& snapshot : with.live) afterwards[snapshot.sequence] = &snapshot;
   for (const Snapshot& snapshot : with.amended) {

@@ -27,7 +27,8 @@ Registration refused(const std::string& reason = "sensors s1 and s2 disagree") {
   return r;
 }
 
-/// The effect of a coat stand: all others stand well, only the last sensor cannot be placed.
+/// A registration like that with a coat stand: all sensors stand well except the last, which cannot
+/// be placed.
 Registration all_but_the_last() {
   Registration r = ring(kSensors - 1);
   const std::string reason = "sensor s3 saw nobody walk";

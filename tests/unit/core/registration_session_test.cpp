@@ -51,7 +51,7 @@ TEST(RegistrationSession, SolvesProvisionallyFromSixSecondsEveryTwoAndFinallyAtT
   session.start(seconds(12));
   EXPECT_TRUE(walk(session, seconds(0), milliseconds(5900)).empty());
   const auto due = walk(session, milliseconds(5900), seconds(7));
-  ASSERT_EQ(due.size(), 4u);  // about 6, 8, 10, then 12
+  ASSERT_EQ(due.size(), 4u);  // due after about 6, 8, 10 and 12 s
   EXPECT_EQ(due[0], SolveKind::Provisional);
   EXPECT_EQ(due[2], SolveKind::Provisional);
   EXPECT_EQ(due[3], SolveKind::Final);
@@ -136,7 +136,8 @@ TEST(RegistrationSession, ASlowSolveRestsTwiceAsLongAsItWorked) {
   EXPECT_EQ(walk(session, seconds(0), seconds(7)).size(), 1u);
   session.solved_in(seconds(3));
   EXPECT_TRUE(walk(session, seconds(7), milliseconds(7500)).empty());
-  EXPECT_EQ(walk(session, milliseconds(14500), seconds(1)).size(), 1u);  // 9 s after the first
+  // This is 9 s after the first solve was due.
+  EXPECT_EQ(walk(session, milliseconds(14500), seconds(1)).size(), 1u);
 }
 
 }  // namespace

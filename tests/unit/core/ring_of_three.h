@@ -13,7 +13,7 @@ inline constexpr int kSensors = 3;
 /// "s1", "s2", "s3".
 [[nodiscard]] inline std::string name(int sensor) { return "s" + std::to_string(sensor + 1); }
 
-/// `Config` with a set of sensors: all three of them.
+/// A `Config` whose `sensors` are all three.
 template <class Config>
 [[nodiscard]] Config of_three() {
   Config config;
@@ -21,7 +21,8 @@ template <class Config>
   return config;
 }
 
-/// Version 4; the first `count` of them have a place, with this verdict.
+/// Registration version 4, in which the first `count` sensors have a place; its verdict and theirs
+/// is `verdict`.
 [[nodiscard]] inline Registration ring(int count = kSensors, Verdict verdict = Verdict::Good) {
   Registration r;
   r.verdict = verdict;

@@ -1,5 +1,5 @@
-// Cameras whose pictures take long, with the configuration as shipped: they are waited for, without
-// delaying the others.
+// Cameras whose pictures take long, with the configuration as shipped: the server waits for them,
+// without delaying the others.
 #include <algorithm>
 #include <cmath>
 
@@ -18,7 +18,7 @@ using testing::sensor_id;
 
 struct Source {
   Duration period;
-  Duration jitter;  ///< Of the period and of the delay.
+  Duration jitter;  ///< Added to the period and to the delay, at most.
   Duration delay;
   bool rays = true;
 };
@@ -49,7 +49,7 @@ SensorFrame picture(std::size_t i, const Source& source, Duration t) {
   return testing::sensor_frame(name(i), captured, {body});
 }
 
-/// The same sequence for all runs, and a different one for each sensor.
+/// A delay from 0 to `most`: the same sequence in all runs, a different one for each sensor.
 Duration uneven(Duration most, std::size_t sensor, std::uint64_t count) {
   return most * static_cast<int>((count * 7919 + sensor * 104'729) % 101) / 100;
 }
@@ -78,7 +78,7 @@ struct Outcome {
   double error = 0.0;      ///< Largest error of the neck [m].
 };
 
-/// Over the instants from `settled` to the end; fractions are of all of these.
+/// What the instants from `settled` to the end show; fractions are of all of them.
 Outcome run(const std::vector<Source>& sources, CoreConfig config = {},
             Duration length = seconds(20), Duration settled = seconds(6)) {
   Registration registration;

@@ -11,7 +11,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using Json = nlohmann::json;
 
-/// The position of the first body's head, or that the frame has nobody.
+/// Position of the first body's head; none if nobody is there or the head is not seen.
 std::optional<Eigen::Vector3d> head_of(const Json& frame) {
   if (!frame.contains("bodies") || frame.at("bodies").empty()) return std::nullopt;
   const Json& head = frame.at("bodies")[0].at("joints").at("Head");

@@ -21,7 +21,7 @@ record::SensorStay stay(const char* sensor, Duration begin, Duration length) {
   return one;
 }
 
-/// In the form that importers write.
+/// A stay with the notes that importers write.
 record::SensorStay imported(const char* sensor, Duration begin, const std::string& time) {
   auto one = stay(sensor, begin, seconds(10));
   one.about.notes = {

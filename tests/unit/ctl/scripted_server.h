@@ -19,8 +19,9 @@ class ScriptedServer {
  public:
   using Texts = std::map<std::string, std::vector<std::string>>;
 
-  /// Path -> its answers, text by text, the last one for all later requests; a path without texts
-  /// does not exist yet (503).  `refusal`: the one to POST /registration.
+  /// `texts` maps each path to its answers, one per request; the last one serves all later
+  /// requests. A path without answers does not exist yet (503).  `refusal` answers POST
+  /// /registration.
   explicit ScriptedServer(Texts texts, std::optional<Error> refusal = std::nullopt)
       : texts_(std::move(texts)), refusal_(std::move(refusal)) {
     auto router = std::make_shared<http::Router>();

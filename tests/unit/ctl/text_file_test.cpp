@@ -43,7 +43,7 @@ TEST(TextFile, WhatCannotBeWrittenLeavesWhatWasThere) {
   const TemporaryFolder folder;
   const std::string file = (folder / "a.csv").string();
   ASSERT_THAT(write_text(file, "old"), IsOk());
-  fs::create_directory(folder / "a.csv.partial");  // in the way
+  fs::create_directory(folder / "a.csv.partial");  // in the way of the temporary file
   EXPECT_THAT(write_text(file, "new"), FailsWith(ErrorCode::Io));
   EXPECT_EQ(bytes_of(file), "old");
   fs::remove(folder / "a.csv.partial");

@@ -36,7 +36,7 @@ TEST(DtrackCommandReader, TakesTwoHundredBytesAndNoMore) {
   EXPECT_EQ(commands_in(reader), (std::vector<std::string>{std::string(200, 'x')}));
   EXPECT_TRUE(reader.feed(std::string(200, 'x')));
   EXPECT_FALSE(reader.feed("x"));
-  CommandReader hidden;  // after a good one
+  CommandReader hidden;  // an overlong command follows a good one
   EXPECT_FALSE(hidden.feed("dtrack2 getmsg\0"s.append(201, 'x') + '\0'));
 }
 
@@ -86,7 +86,7 @@ TEST(DtrackCommands, StartAndStopAreSeenByAll) {
   (void)answer("dtrack2 tracking start", first, device);
   EXPECT_EQ(answer("dtrack2 get status active", second, device),
             "dtrack2 set status active mea\0"s);
-  (void)answer("dtrack2 tracking stop", second, device);  // not in control
+  (void)answer("dtrack2 tracking stop", second, device);  // the second client is not in control
   EXPECT_TRUE(device.measuring);
   (void)answer("dtrack2 tracking stop", first, device);
   EXPECT_FALSE(device.measuring);

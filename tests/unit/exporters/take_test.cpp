@@ -71,7 +71,7 @@ TEST(Take, ResamplesToTheRateAsked) {
 
 TEST(Take, ARateThatIsNoWholeNumberOfHertzKeepsItsLastFrame) {
   std::vector<FusedSample> samples;
-  constexpr double kStep = 8332986.11;  // BVH files say 0.008333
+  constexpr double kStep = 8332986.11;  // [ns]; BVH files round it to 0.008333 s
   for (int i = 0; i < 40'000; ++i)
     samples.push_back({kStart + Duration(std::llround(kStep * i)), PersonId{1}, {}});
   const auto take = make_take(samples);

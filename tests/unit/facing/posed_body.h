@@ -18,7 +18,7 @@ struct Posture {
   double knees = 0.0;
   double wrists = 0.0;
   double elbows = 0.0;
-  double shoulders = 0.0;  ///< The arms move with them.
+  double shoulders = 0.0;  ///< The arms move with the shoulders.
 };
 
 inline constexpr Posture kPlank{};

@@ -15,7 +15,7 @@ constexpr Timestamp kStart = from_unix_ns(1'790'000'000'000'000'000);
 constexpr Duration kFrame = std::chrono::milliseconds(33);
 constexpr double kStep = 0.033;  // [s]
 
-/// All habits that real trackers have shown; none of them is part of the model.
+/// The habits that real trackers have shown; the model contains none of them.
 const std::vector<std::vector<Flips>> kTrackers{
     {{deg(130), deg(100)}},         {{deg(130), deg(75)}},         {{deg(130), deg(55)}},
     {{deg(110), deg(70)}},          {{deg(97), deg(92)}},          {{deg(140), deg(40)}},
@@ -116,8 +116,8 @@ TEST(Sides, OutlastHandsBehindTheBack) {
   EXPECT_EQ(wrong_share(Ring({0.0}, {{deg(130), deg(55)}}), 30, standing, hands), 0.0);
 }
 
-/// By labels alone, a sensor that exchanges and its mirror image are indistinguishable; a sensor
-/// that does not exchange resolves this at once.
+/// By labels alone, a body seen by sensors that exchange sides cannot be told from its mirror
+/// image; sensors that never exchange them settle it at once.
 TEST(Sides, OfAPlankAreToldBySensorsThatLabelRight) {
   for (double heading = 0.0; heading < 2.0 * std::numbers::pi; heading += deg(20)) {
     const auto standing = [&](double) { return wrap_angle(heading); };
@@ -137,7 +137,7 @@ TEST(Sides, WalkingForwardsPutsAWrongBeginningRight) {
     right = is_right(person.views[0], exact);
     if (i == 0) {
       EXPECT_FALSE(right);
-    }  // stands like a plank, and the sensor shows it as facing
+    }  // at first it stands like a plank, and the sensor shows it as facing
   }
   EXPECT_TRUE(right);
   const auto exact = body_at({0, 0, -3}, deg(180));
@@ -206,12 +206,12 @@ Skeleton<WorldSpace> between(const Skeleton<WorldSpace>& a, const Skeleton<World
   return body;
 }
 
-/// It shows 65 deg until it takes the back for the front, then 120: for three frames the sides are
-/// drawn together and swept to the other side.
+/// A tracker shows 65 deg until it takes the back for the front, then 120 deg.  In between, for
+/// three frames, it draws the sides together and sweeps them to the other side.
 TEST(Sides, AreNotDraggedAlongByATrackerThatChangesItsMind) {
   const auto front = body_at({0, 0, 0}, deg(65));
   const auto rear = exchanged(body_at({0, 0, 0}, deg(120)));
-  for (const bool second : {false, true}) {  // nor with a second view that hardly shows sides
+  for (const bool second : {false, true}) {  // also beside a second view that hardly shows sides
     SidesMemory memory;
     const auto narrow = between(front, exchanged(front), 0.45);
     for (int i = 0; i < 30; ++i) {
@@ -226,8 +226,8 @@ TEST(Sides, AreNotDraggedAlongByATrackerThatChangesItsMind) {
   }
 }
 
-/// A person at work turns in front of a camera that never exchanges sides; then a plank is first
-/// seen from its side, at an angle that leaves everything open before anything is known.
+/// A person at work turns in front of a camera that never exchanges sides.  Then a plank is first
+/// seen from its side, at an angle that decides nothing for a camera whose habit is unknown.
 TEST(Sides, OfALaterPersonAreToldByTheHabitThatAnEarlierOneTaught) {
   const auto plank = body_at({0, 0, 0}, deg(150));
   const auto first_odds = [&](const SidesMemory& from) {

@@ -7,7 +7,7 @@
 namespace chorus::facing {
 namespace {
 
-/// Shoulders 0.4 m apart, symmetric about (0, 1.4, 0).
+/// Rays to shoulders that are 0.4 m apart along `left`, with their middle at (0, 1.4, 0).
 SensorView shoulders(const Eigen::Vector3d& eye, const Eigen::Vector3d& left) {
   SensorView view;
   view.eye = eye;

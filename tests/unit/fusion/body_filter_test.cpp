@@ -44,7 +44,7 @@ Skeleton<WorldSpace> standing() {
   return body;
 }
 
-/// Seen by eyes around the body, 3 m away; the first is in front of it.
+/// The body as seen by one of four sensors around it, 3 m away; sensor 1 is in front of it.
 SensorView view_of(int number, const Skeleton<WorldSpace>& body) {
   SensorView view;
   view.sensor = sensor(number);
@@ -76,7 +76,7 @@ struct Room {
     return memory.fuse({{PersonId{1}, std::move(views)}},
                        {kStart + milliseconds(33) * step, kSensors}, config)[0];
   }
-  /// All views are the same.
+  /// All four sensors see the same body.
   FusedBody all_see(int step, const Skeleton<WorldSpace>& body) {
     return at(step, {view_of(1, body), view_of(2, body), view_of(3, body), view_of(4, body)});
   }

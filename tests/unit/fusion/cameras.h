@@ -11,7 +11,7 @@
 
 namespace chorus::fusion {
 
-/// On a circle with a radius of 3 m, 1.5 m high.
+/// Place of a camera on a circle with a radius of 3 m, 1.5 m high.
 inline Eigen::Vector3d camera_eye(double angle) {
   return {3.0 * std::sin(angle), 1.5, 3.0 * std::cos(angle)};
 }
@@ -23,7 +23,8 @@ inline std::vector<Eigen::Vector3d> camera_ring(int count) {
   return eyes;
 }
 
-/// A ray of one joint whose direction has an isotropic error of `sigma` [rad], and states it.
+/// Draws views of a point as rays whose directions have an isotropic error of `sigma` [rad]; each
+/// states that error.
 class RayDraw {
  public:
   RayDraw(std::uint32_t seed, double sigma) : random_(seed), sigma_(sigma) {}

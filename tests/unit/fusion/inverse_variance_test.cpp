@@ -54,7 +54,7 @@ TEST(InverseVariance, APoseErrorIsStatedButMovesNothing) {
   for (JointView& view : views) view.pose_variance = 0.04 * 0.04;
   const FusedJoint after = inverse_variance(views, kHuber);
   EXPECT_EQ(after.joint.position, before.joint.position);
-  // Two views with 0.04 m of pose error and their own noise.
+  // Each of the two views has 0.04 m of pose error in addition to its noise.
   EXPECT_GT(after.variance, 0.04 * 0.04 / 2);
   EXPECT_GT(after.variance, 2 * before.variance);
 }

@@ -135,7 +135,8 @@ TEST(LeastSquares, ACameraThatTheJointIsBehindIsNotBelieved) {
 }
 
 TEST(LeastSquares, ARayMendsTheDepthOfAPoint) {
-  // Its depth sensor looks along z and is imprecise there; a camera looks along x.
+  // The point's depth sensor looks along z and is imprecise in that direction; a camera looks along
+  // x.
   const JointView point = point_view({0, 1, 0.10}, {1e-4, 1e-4, 0.01});
   RayDraw exact(1, 0.0);
   JointView ray = exact({-3, 1, 0}, {0, 1, 0});

@@ -74,7 +74,7 @@ TEST(PointsAndRays, AnswersForPeopleOfWhomThereAreRaysAloneWhateverTheMethod) {
   const FusedBody rays = cell.at(milliseconds(0), {ray_view(1, neck), ray_view(2, neck)});
   EXPECT_LT((rays.skeleton[JointId::Neck].position - neck).norm(), 1e-9);
   EXPECT_EQ(rays.contributors[kNeck], 0b11U);
-  // Where there is a point, the configured method decides.
+  // Where a view has a point, the configured method decides.
   const FusedBody both = cell.at(
       milliseconds(33), {ray_view(1, neck), ray_view(2, neck), neck_view(3, neck, 0.5, {0, 1, 3})});
   EXPECT_EQ(both.contributors[kNeck], 0b100U);

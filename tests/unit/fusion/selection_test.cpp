@@ -17,7 +17,7 @@ using enum JointId;
 
 const std::vector<SensorId> kSensors{sensor(1), sensor(2), sensor(3)};
 
-/// Tracks the first `count` joints, all of them at x, and faces its sensor so.
+/// A view that tracks the first `count` joints, all of them at x, of a body turned by `facing`.
 SensorView view_of(int number, std::size_t count, double facing, double x = 0.0) {
   SensorView view = neck_view(number, {x, 1, 0}, 0.5);
   view.facing = facing;
@@ -45,7 +45,7 @@ TEST(ViewScore, IsTheTrackedSharePlusHowSquarelyTheBodyFacesTheSensor) {
 TEST(JointCounting, TakesTheMostTrackedJointsWhateverTheFacing) {
   const auto body = fused(Method::JointCounting, {view_of(1, 20, 0, 1), view_of(2, 21, deg(180), 2),
                                                   view_of(3, 21, 0, 3)});
-  EXPECT_EQ(x_of(body, Neck), 2);  // of equals the least id
+  EXPECT_EQ(x_of(body, Neck), 2);  // of two equals, the one with the lower id
   EXPECT_EQ(body.contributors[index_of(Neck)], 2u);
   EXPECT_FALSE(fused(Method::JointCounting, {}).skeleton[Neck].seen());
 }
@@ -62,7 +62,7 @@ TEST(Substitution, TakesWhatTheBestSkeletonDoesNotTrackFromTheNextBestThatDoes) 
   EXPECT_EQ(x_of(body, WristLeft), 2);
   EXPECT_EQ(body.contributors[index_of(WristLeft)], 2u);
   EXPECT_GT(body.variance[index_of(WristLeft)], 0.0);
-  EXPECT_EQ(x_of(body, FootLeft), 1);  // nobody tracks it: the guess stays
+  EXPECT_EQ(x_of(body, FootLeft), 1);  // nobody tracks this joint: the guess stays
   EXPECT_EQ(body.skeleton[FootLeft].state, JointState::Inferred);
 }
 

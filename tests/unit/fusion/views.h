@@ -9,7 +9,7 @@ namespace chorus::fusion {
 
 inline SensorId sensor(int number) { return SensorId::parse("s" + std::to_string(number)).value(); }
 
-/// A view in which only the neck is seen, from an eye at 2.5 m on +z or elsewhere.
+/// A view in which only the neck is seen.
 inline SensorView neck_view(int number, const Eigen::Vector3d& neck, double weight,
                             const Eigen::Vector3d& eye = {0, 1, 5}) {
   SensorView view;

@@ -1,4 +1,4 @@
-// The laws of the rotation group, and that functions are total as the header promises.
+// The laws of the rotation group; and no input breaks a function, as the header promises.
 #include "common/geometry/rotation.h"
 
 #include <array>

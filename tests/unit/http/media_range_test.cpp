@@ -46,12 +46,12 @@ TEST(Negotiation, QualityZeroAndUnknownTypesAreNotAcceptable) {
 TEST(Negotiation, RealClients) {
   EXPECT_EQ(
       chosen("application/rdf+xml;q=0.9, text/rdf+n3, application/xhtml+xml;q=0.5, */*;q=0.1"),
-      "text/turtle");  // rdflib
+      "text/turtle");  // rdflib's Accept field
   EXPECT_EQ(chosen("application/n-quads,application/trig;q=0.95,application/ld+json;q=0.9,"
                    "application/n-triples;q=0.8,text/turtle;q=0.6"),
-            "application/ld+json");  // Comunica
+            "application/ld+json");  // Comunica's Accept field
   EXPECT_EQ(chosen("text/html,application/xhtml+xml,application/xml;q=0.9,*/*;q=0.8"),
-            "text/turtle");  // a browser, when no HTML is offered
+            "text/turtle");  // a browser's Accept field, when no HTML is offered
 }
 
 TEST(Negotiation, CaseSpaceAndParameters) {

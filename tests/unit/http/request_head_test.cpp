@@ -1,5 +1,5 @@
-// What the head reader accepts; what it refuses over sockets is tested in
-// tests/integration/http/hostile_test.
+// What the head reader accepts.  tests/integration/http/hostile_test.cpp sends a server what it
+// must refuse.
 #include "common/http/request_head.h"
 
 #include <gtest/gtest.h>

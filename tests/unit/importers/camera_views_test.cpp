@@ -24,7 +24,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Distance of each joint from the truth, split along and across the sensor's line of sight.
+/// Distance of each joint from the truth, and its part across the sensor's line of sight [m].
 struct Errors {
   std::vector<double> whole;
   std::vector<double> across;
@@ -61,7 +61,7 @@ TEST(CameraViews, ImportTheShippedFolderInStep) {
   }
 }
 
-/// Ceilings: the committed results (tests/bench/accuracy/real_bench.cpp) plus ten percent.
+/// The ceilings are the committed results of tests/bench/accuracy/real_bench.cpp plus ten percent.
 TEST(CameraViews, LieNearTheTriangulationAndBestAcrossTheLineOfSight) {
   const auto set = import_files(FileFormat::Pose2Sim, {kFolder});
   ASSERT_THAT(set, IsOk());
@@ -112,7 +112,8 @@ TEST(CameraViews, AsRaysPointAtTheTriangulation) {
   }
 }
 
-/// Our axes: x to the sensor's left, y up, z forward.  All four cameras are upright, above floor.
+/// Our axes: x to the sensor's left, y up, z forward.  All four cameras are upright and above the
+/// floor.
 TEST(CameraViews, SpeakOurAxes) {
   const auto set = import_files(FileFormat::Pose2Sim, {kFolder});
   ASSERT_THAT(set, IsOk());

@@ -49,7 +49,7 @@ TEST(JointCsv, PeopleOfOneInstantShareItsFrame) {
   ASSERT_THAT(read->frames, SizeIs(2));
   ASSERT_THAT(read->frames[0].bodies, SizeIs(2));
   EXPECT_EQ(read->frames[0].bodies[1].id, BodyId{9});
-  EXPECT_THAT(read->frames[1].bodies, SizeIs(0));  // a joint that is not there makes nobody
+  EXPECT_THAT(read->frames[1].bodies, SizeIs(0));  // joints without a place make no body
 }
 
 TEST(JointCsv, NamesTheRowTheColumnAndWhatIsWrong) {

@@ -88,7 +88,7 @@ TEST(Screen, HidesWhoCrossesBehindItFromEverySensor) {
     const Eigen::Vector3d through = eye + share * (neck - eye);
     EXPECT_LT(std::abs(through.z()), screen().half.z());
     EXPECT_LT(through.y(), 2.0 * screen().half.y());
-    EXPECT_GT((place.linear() * Eigen::Vector3d::UnitZ()).x(), 0.9);  // it looks in that direction
+    EXPECT_GT((place.linear() * Eigen::Vector3d::UnitZ()).x(), 0.9);  // the sensor looks along +x
   }
 }
 
@@ -112,7 +112,7 @@ TEST(PeopleAround, AreOppositeToEachOther) {
 
 const Timestamp kBegin = from_unix_ns(1'795'000'000'000'000'000);
 
-/// The people in the room, some time after the beginning.
+/// Which people are in the room `time` seconds after the beginning.
 std::vector<bool> inside_at(const std::vector<synthetic::Person>& people, double time) {
   std::vector<bool> inside;
   for (const auto& person : people)

@@ -88,16 +88,16 @@ TEST(JitterAtRest, CountsOnlyJointsThatRest) {
 TEST(BoneVariation, IsTheStandardDeviationOverTheMean) {
   Answers answers = exact_walk(100, 0.5);
   for (std::size_t i = 0; i < answers.size(); ++i) {
-    // Thigh: hip to knee 0.1 m long; now 0.09 or 0.11.
+    // The thigh, 0.1 m from hip to knee, becomes 0.09 m or 0.11 m long.
     answers[i].body[KneeLeft].position.y() += i % 2 == 0 ? 0.01 : -0.01;
   }
-  // The shank, also 0.1 m long, changes with it; six of eight bones do not.
+  // The shank, also 0.1 m long, changes with the thigh; six of eight bones do not change.
   EXPECT_NEAR(bone_variation(answers), 2 * 0.1 / 8, 1e-9);
 }
 
 TEST(Jumps, AreStepsMoreThan80MmLongerThanTheTrueOne) {
-  Answers answers = exact_walk(26, 1.0);              // 1 s
-  answers[10].body[WristLeft].position.z() += 0.5;    // there and back: two
+  Answers answers = exact_walk(26, 1.0);              // lasts 1 s
+  answers[10].body[WristLeft].position.z() += 0.5;    // there and back: two jumps
   answers[20].body[WristRight].position.z() += 0.05;  // no jump
   EXPECT_NEAR(jumps_per_minute(answers), 120, 1e-9);
 }
@@ -120,7 +120,8 @@ TEST(LabelErrors, AreInstantsThatFitBetterWithLeftAndRightExchanged) {
       std::swap(answers[i].body[left], answers[i].body[right]);
     }
   }
-  std::swap(answers[20].body[WristLeft], answers[20].body[WristRight]);  // only one pair
+  // Exchanges only one pair of joints.
+  std::swap(answers[20].body[WristLeft], answers[20].body[WristRight]);
   EXPECT_NEAR(label_error_share(answers), 0.25, 1e-12);
 }
 

@@ -62,7 +62,7 @@ TEST(LimbLabels, DoNotCountLimbsThatTouch) {
 TEST(BoneLength, IsTheMeanErrorOverTheTrueLength) {
   Answers answers = exact_walk(20, 0.5);
   for (Answer& answer : answers) {
-    // Only the left thigh, 0.1 m: the joints below move with the knee.
+    // Changes only the length of the left thigh, 0.1 m: the ankle moves with the knee.
     for (const JointId id : {KneeLeft, AnkleLeft}) answer.body[id].position.y() += 0.02;
   }
   const double thigh =

@@ -15,14 +15,14 @@ enum class Order { Intel = 84, Dec = 85, Mips = 86 };
 
 struct C3dSpec {
   Order order = Order::Intel;
-  float scale = -1.0f;  ///< Negative: the data are floats.
+  float scale = -1.0f;  ///< Negative: the points are stored as floats.
   std::string units = "mm";
   std::vector<std::string> labels{"HipLeft", "Wand"};
   std::string x_screen = "+X";
   std::string y_screen = "+Y";
   int frames = 2;
   int analog = 3;  ///< Analog samples after each frame.
-  /// x y z in file units and the fourth word.
+  /// Returns x, y, z in file units and the point's fourth word.
   std::function<std::array<double, 4>(int frame, int point)> at = [](int f, int p) {
     return std::array<double, 4>{100.0 + f, -200.0 * p, 1500.25, 2.0};
   };

@@ -86,7 +86,7 @@ TEST(Mvnx, SegmentsTurnJointsSoThatYLiesAlongTheBone) {
   EXPECT_THAT(Eigen::Vector3d(elbow.orientation * Eigen::Vector3d::UnitZ()),
               VectorNear(Eigen::Vector3d::UnitZ(), 1e-6))
       << "its front still faces ahead";
-  // In the T-pose: along the arm to the left, the front forwards.
+  // In the T-pose the bone points along the arm to the left, and its front forwards.
   const Joint& straight = motion.frames[1][JointId::ElbowLeft];
   EXPECT_THAT(Eigen::Vector3d(straight.orientation * Eigen::Vector3d::UnitY()),
               VectorNear(Eigen::Vector3d::UnitX(), 1e-9));

@@ -116,7 +116,7 @@ TEST(Mxtp, TheHeadOfWhomOnlyPartOfTheNeckIsSeenStaysOnIt) {
   EXPECT_NEAR(place_without(JointId::Neck), 1.4, 1e-5);
 }
 
-/// A file in MVN's format with just the content of a datagram: the neck ends where the head
+/// Makes a file in MVN's format from the content of a datagram: the neck ends where the head
 /// begins.
 motion::Mvnx file_of(const std::vector<char>& bytes) {
   constexpr std::array kLabels{"Pelvis",

@@ -33,7 +33,7 @@ std::string captured(const std::string& name) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// The first 16 bits; -1: there is no answer.
+/// The message number of a reply, its first 16 bits; -1: there is no answer.
 int message_in(const Reply& reply) {
   return reply.bytes.empty() ? -1 : NatNetReader(reply.bytes).one<std::uint16_t>();
 }
@@ -118,7 +118,8 @@ TEST(NatNetCommands, DiscoveryOnlyAsks) {
 
 TEST(NatNetCommands, SloppyClientsAreUnderstood) {
   CommandDesk desk(with_models());
-  // A header alone; "Ping" and NUL; 271 bytes and one more; no payload announced but one byte sent.
+  // Forms of "connect": a header alone; "Ping" and NUL; 271 bytes and NUL; no payload announced,
+  // but one byte sent.
   for (const std::string& connect :
        {request(0), request(0, "Ping\0"sv), request(0, std::string(271, '\0')) + '\0',
         request(0) + '\0'}) {
@@ -169,7 +170,8 @@ TEST(NatNetCommands, WhatNobodyKnowsIsUnrecognizedAndAnswersAreNot) {
   for (const int unknown : {15, 55, 99, 101, 127}) {
     EXPECT_EQ(message_in(desk.answer(request(unknown), kSomebody, at(0s))), 100);
   }
-  // Two servers that get each other's address must not exchange answers forever.
+  // Messages that are answers get no answer: two servers that get each other's address must not
+  // answer each other forever.
   for (const int answer : {1, 3, 5, 7, 8, 11, 13, 100}) {
     const Reply reply = desk.answer(request(answer, "12345678"), kSomebody, at(0s));
     EXPECT_EQ(message_in(reply), -1) << answer;
@@ -198,7 +200,7 @@ TEST(NatNetCommands, ClientsAreForgottenUnlessSomethingIsHeardOfThem) {
   EXPECT_EQ(desk.clients(at(10s).steady).size(), 2u);
   EXPECT_EQ(desk.clients(at(11s).steady), std::vector{kSomebody});
   EXPECT_EQ(desk.clients(at(20s).steady), std::vector<Address>{});
-  // A client that outlived the server or its own entry: two keep-alives are enough.
+  // For a client that outlived the server, or its own entry, two keep-alives are enough.
   (void)desk.answer(request(10), other, at(21s));
   (void)desk.answer(request(10), other, at(22s));
   EXPECT_EQ(desk.clients(at(22s).steady), std::vector{other});
@@ -244,8 +246,8 @@ TEST(NatNetCommands, AllAnswersTogetherAreLimited) {
     const Address anybody{static_cast<std::uint32_t>(i), 1000};
     said += desk.answer(request(4), anybody, at(i * 1ms)).bytes.size();
   }
-  EXPECT_GT(said, 500'000u);             // the initial allowance ...
-  EXPECT_LE(said, 524'288u + 262'144u);  // ... and that of one second
+  EXPECT_GT(said, 500'000u);             // the initial allowance
+  EXPECT_LE(said, 524'288u + 262'144u);  // the initial allowance and that of one second
   EXPECT_EQ(message_in(desk.answer(request(4), kSomebody, at(10s))), 5);
 }
 

@@ -12,7 +12,7 @@ namespace chorus::outlet::testing {
 
 struct OscMessage {
   std::string address;
-  std::string types;  ///< Without the comma.
+  std::string types;  ///< Type tags without the comma.
   std::vector<double> numbers;
   std::vector<std::string> texts;
 };

@@ -124,7 +124,8 @@ TEST(Vmc, KnownTurnsAreUnitysTurns) {
   const Poses bones = poses_at(read_osc(encode(&body, {})), "/VMC/Ext/Bone/Pos");
   EXPECT_THAT(bones.at("LeftUpperArm").q, RotationNear(about_z(90), 1e-6));     // hangs down
   EXPECT_THAT(bones.at("RightUpperArm").q, RotationNear(about_up(-90), 1e-6));  // points forwards
-  EXPECT_THAT(bones.at("Hips").q, RotationNear(about_up(-30), 1e-6));           // handedness
+  // A yaw of 30 deg, in left-handed axes.
+  EXPECT_THAT(bones.at("Hips").q, RotationNear(about_up(-30), 1e-6));
 }
 
 TEST(Vmc, SaysThatItIsCalibratedWhenAndThatTheRootStands) {

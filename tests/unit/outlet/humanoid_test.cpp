@@ -21,7 +21,7 @@ Quaternion local(const Humanoid& rig, HumanBone bone) {
   return rig[parent_of(bone)].world_from_bone.conjugate() * rig[bone].world_from_bone;
 }
 
-/// Every other bone must have the identity as its own rotation.
+/// Bones that are not in `turned` must have the identity as their own rotation.
 void expect_only(const Humanoid& rig, const std::map<HumanBone, Quaternion>& turned) {
   for (std::size_t i = 1; i < kHumanBoneCount; ++i) {
     const auto bone = static_cast<HumanBone>(i);
@@ -118,7 +118,8 @@ TEST(Humanoid, AStraightLimbTakesTheShortestTurnAndABendingOneDoesNotJump) {
   double largest = 0.0;
   Quaternion before = Quaternion::Identity();
   for (double angle = 0; angle <= 60; angle += 0.5) {
-    TrackerBody body = t_pose();  // the elbow bends upwards: finally a quarter turn of twist
+    // The elbow bends upwards, and the upper arm twists by up to 90 deg.
+    TrackerBody body = t_pose();
     turn(body, kLeftForearm, JointId::ElbowLeft, about_z(-angle));
     const Quaternion now = humanoid_of(body)[LeftUpperArm].world_from_bone;
     largest = std::max(largest, angular_distance(before, now));

@@ -21,7 +21,7 @@ struct Log {
   bool entered = false;
   std::vector<std::uint64_t> sequences;
   std::vector<Timestamp> instants;
-  std::vector<std::size_t> slots;  ///< Of all bodies received.
+  std::vector<std::size_t> slots;  ///< Slots of all bodies received.
 };
 
 class SlowOutlet final : public Outlet {

@@ -9,8 +9,8 @@
 
 namespace chorus::outlet::testing {
 
-/// Exactly at rest: looks along -z, left hand at -x, pelvis 0.95 m above the floor at x = z = 0.
-/// No joint has an orientation of its own.
+/// A person exactly at rest: looks along -z, left hand at -x, pelvis 0.95 m above the floor at x =
+/// z = 0. The joints have no orientations.
 inline outlet::TrackerBody t_pose() {
   using enum JointId;
   struct Place {
@@ -80,7 +80,7 @@ inline Eigen::Quaterniond about_z(double degrees) {
   return about(Eigen::Vector3d::UnitZ(), degrees);
 }
 
-/// The whole body after walking to `place` and turning.
+/// Turns the whole body about the origin by a yaw, and then moves it by `by`.
 inline void move(outlet::TrackerBody& body, const Eigen::Vector3d& by, double yaw_degrees) {
   for (outlet::TrackerJoint& joint : body.joints) {
     joint.position = by + about_up(yaw_degrees) * joint.position;

@@ -146,7 +146,7 @@ TEST(Outputs, DtracksGroupHasAnInterfaceAndALimit) {
                             R"("multicast_hops": 256)", R"("multicast_hops": -1)"}) {
     EXPECT_FALSE(read(std::string(R"({"outputs": {"dtrack": {)") + wrong + "}}}")) << wrong;
   }
-  // TEST-NET-1: no host has it.
+  // No host has an address of TEST-NET-1.
   EXPECT_THAT(opening_error(R"({"outputs": {"dtrack": {"enabled": true, "source_port": 0,
                   "targets": ["239.1.2.3:5000"], "multicast_address": "192.0.2.1"}}})"),
               AllOf(HasSubstr("outputs.dtrack"), HasSubstr("multicast_address")));

@@ -26,12 +26,12 @@ struct Cell {
   int people = 1;
   double noise = deg(0.3);
   Duration lone_after =
-      std::chrono::hours(1);  ///< From this time on only the first camera sees anybody.
+      std::chrono::hours(1);  ///< from this time on only the first camera sees anybody
 };
 
 SensorId camera_id(int i) { return testing::sensor_id("cam" + std::to_string(i)); }
 
-/// On a ring, at most 90 deg apart.
+/// Poses of the cameras on a ring; neighbours are at most 90 deg apart.
 Eigen::Isometry3d place_of(const Cell& cell, int i) {
   return testing::ring_sensor(i, std::max(4, cell.cameras), 3.5, 1.5);
 }

@@ -22,7 +22,7 @@ using registration::WalkTrack;
 
 constexpr double kFrameRate = 60.0;
 constexpr double kPlainMean = 0.104;        // [m] median joint error of the plain mean, data README
-constexpr double kBestSingleCamera = 0.14;  // [m] the same
+constexpr double kBestSingleCamera = 0.14;  // [m] the same of the best single camera
 
 struct Recording {
   std::vector<WalkTrack> tracks;
@@ -60,7 +60,8 @@ RegistrationConfig camera_registration() {
   config.joints = registration::JointChoice::All;
   config.along_ratio = 8.0;
   config.use_floor = false;
-  config.min_spread = 0.0;    // balancing on the spot: only the body itself has an extent
+  // The person balances on the spot, so the points spread only over the body.
+  config.min_spread = 0.0;
   config.max_edge_rms = 0.5;  // depth differs by decimetres
   config.max_speed = 10.0;    // depth jitters at 60 Hz
   config.max_position = 1.5;  // as far as such cameras can tell

@@ -36,7 +36,7 @@ inline Registration ring_registration(int count) {
   return registration;
 }
 
-/// 25 joints around (x, z); only their relative positions matter here.
+/// A body of 25 joints around (x, z); only their relative positions matter.
 inline Skeleton<WorldSpace> body_at(double x, double z) {
   Skeleton<WorldSpace> body;
   for (std::size_t i = 0; i < kJointCount; ++i) {
@@ -59,7 +59,7 @@ struct Ring {
   Duration length = std::chrono::seconds(2);
 };
 
-/// At 30 Hz, each sensor with its own phase, so that no frames are simultaneous.
+/// Histories of all sensors at 30 Hz, each with its own phase, so that no frames are simultaneous.
 inline Histories ring_histories(const Ring& ring) {
   Histories histories;
   for (int i = 0; i < ring.sensors; ++i) {

@@ -13,7 +13,7 @@ constexpr Duration kKeep = std::chrono::seconds(1);
 
 using Slots = std::vector<std::pair<std::size_t, std::uint64_t>>;
 
-/// A room that is seated instant by instant.
+/// A room whose people are seated instant by instant.
 struct Room {
   Slots at(Duration after, const std::vector<std::uint64_t>& persons) {
     std::vector<FusedBody> bodies(persons.size());
@@ -56,7 +56,7 @@ TEST(Seating, OfAHiddenPersonIsNotGivenToOneWhoEnters) {
 TEST(Seating, GoesToWhoCameMeanwhileWhenTheHiddenPersonStaysAway) {
   Room room;
   room.at(milliseconds(0), {1});
-  // The same person under a new id, then a second one.
+  // The same person comes under a new id, then a second person.
   EXPECT_EQ(room.at(milliseconds(33), {5, 6}), (Slots{{1, 5}, {2, 6}}));
   EXPECT_EQ(room.at(milliseconds(1034), {5, 6}), (Slots{{0, 5}, {2, 6}}));
 }
@@ -75,7 +75,7 @@ TEST(Seating, IsKeptAsLongAsAskedToTheInstant) {
   room.at(milliseconds(0), {1});
   EXPECT_EQ(room.at(milliseconds(200), {2}), (Slots{{1, 2}}));
   EXPECT_EQ(room.at(milliseconds(201), {2}), (Slots{{0, 2}}));
-  // A clock that is set back by more than that starts anew, as in association.
+  // A clock that is set back by more than `keep` starts anew, as in association.
   EXPECT_EQ(room.at(milliseconds(-100), {3}), (Slots{{0, 3}}));
 }
 

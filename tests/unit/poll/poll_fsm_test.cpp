@@ -199,12 +199,13 @@ TEST(PollFsm, AFloorThatNeverAnswersDoesNotKeepTheFramesAway) {
 }
 
 TEST(PollFsm, NoticesComeOnceAndAtMostOnceASecond) {
-  PollFsm fsm = live(milliseconds(0));                                 // "live" was logged at 0
-  EXPECT_FALSE(fsm.resume(reset(), milliseconds(500), kFull).notice);  // still held back
+  PollFsm fsm = live(milliseconds(0));  // "live" was logged at 0
+  // The notice of the loss is still held back.
+  EXPECT_FALSE(fsm.resume(reset(), milliseconds(500), kFull).notice);
   const Step later = fsm.resume(reset(), milliseconds(1200), kFull);
   ASSERT_TRUE(later.notice);
   EXPECT_EQ(later.notice->event, "sensor lost");
-  EXPECT_FALSE(fsm.resume(reset(), seconds(10), kFull).notice);  // the same reason again
+  EXPECT_FALSE(fsm.resume(reset(), seconds(10), kFull).notice);  // for the same reason as before
   const Error other{ErrorCode::Timeout, "127.0.0.1:8081", "no answer"};
   const Step changed = fsm.resume(Failed{other}, seconds(20), kFull);
   ASSERT_TRUE(changed.notice);

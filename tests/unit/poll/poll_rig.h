@@ -28,7 +28,8 @@ inline constexpr double kFull = 0.999999999;  ///< Jitter that keeps the whole b
   return std::get<Sleep>(*step.action).duration;
 }
 
-/// After the floor plane; the first request for a frame has been under way since `now`.
+/// A follower that has the floor plane; its first request for a frame has been under way since
+/// `now`.
 [[nodiscard]] inline PollFsm at_first_frame(Duration now) {
   PollFsm fsm;
   (void)fsm.resume(Started{}, now, kFull);
@@ -36,7 +37,8 @@ inline constexpr double kFull = 0.999999999;  ///< Jitter that keeps the whole b
   return fsm;
 }
 
-/// Live: one frame was delivered; the long poll for the second has been under way since `now`.
+/// A live follower: one frame was delivered, and the long poll for the second has been under way
+/// since `now`.
 [[nodiscard]] inline PollFsm live(Duration now) {
   PollFsm fsm = at_first_frame(now - std::chrono::milliseconds(20));
   (void)fsm.resume(frame(0, "\"1\""), now, kFull);

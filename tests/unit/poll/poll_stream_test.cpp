@@ -15,7 +15,8 @@ StreamFrame streamed(std::uint64_t sequence, int ms, bool odd = false) {
   return {sequence, at_ms(ms), odd};
 }
 
-/// Using a stream since `now`, without a request under way: asleep until the clock is due.
+/// A follower that has used a stream since `now`; it has no request under way and sleeps until its
+/// next request for the clock is due.
 PollFsm streaming(Duration now) {
   PollFsm fsm = live(now);
   (void)fsm.resume(streamed(2, 33), now, kFull);
@@ -52,7 +53,8 @@ TEST(PollFsmStream, ItsFramesAreDeliveredAndTheRequestsOnlyKeepTheClock) {
   const Step clock = fsm.resume(Woke{}, milliseconds(34) + sleep_of(old), kFull);
   EXPECT_EQ(send_of(clock).resource, Resource::Clock);
   const Step hurry =
-      fsm.resume(ClockAnswered{milliseconds(5)}, milliseconds(140), kFull);  // not accurate yet
+      // The clock is not accurate yet.
+      fsm.resume(ClockAnswered{milliseconds(5)}, milliseconds(140), kFull);
   EXPECT_LE(sleep_of(hurry), milliseconds(100));
   (void)fsm.resume(streamed(3, 66), milliseconds(141), kFull);
   (void)fsm.resume(Woke{}, milliseconds(240), kFull);
@@ -72,7 +74,8 @@ TEST(PollFsmStream, WhatItLeavesOutIsFetchedAtOnceOneByOne) {
   const Step gap = fsm.resume(streamed(5, 132), milliseconds(100), kFull);
   EXPECT_EQ(send_of(gap).resource, Resource::KeptFrame);
   EXPECT_EQ(send_of(gap).sequence, 3u);
-  EXPECT_FALSE(fsm.resume(streamed(6, 165), milliseconds(133), kFull).action);  // one in flight
+  // One request is in flight.
+  EXPECT_FALSE(fsm.resume(streamed(6, 165), milliseconds(133), kFull).action);
   const Step next = fsm.resume(KeptAnswered{true}, milliseconds(201), kFull);
   EXPECT_TRUE(next.deliver);
   EXPECT_EQ(send_of(next).sequence, 4u);
@@ -132,7 +135,7 @@ TEST(PollFsmStream, ARequestThatFailsBesideItCostsTheSensorNothing) {
   const Step lost = fsm.resume(reset(), milliseconds(1700), kFull);
   EXPECT_EQ(fsm.state(), SensorState::Lost);
   EXPECT_EQ(lost.stream, StreamOrder::Close);
-  // After coming back it is streamed from at once.
+  // Once the sensor is back, the server opens a stream at once.
   EXPECT_EQ(fsm.resume(frame(1750, "\"9\""), milliseconds(1750), kFull).stream, StreamOrder::Open);
 }
 
@@ -171,7 +174,8 @@ TEST(PollFsmStream, ASensorThatTellsNoTimeIsHardlyAskedForIt) {
   EXPECT_EQ(asked, 0);
 }
 
-/// Streaming at 30 Hz, with a single gap of 250 ms; asleep, the newest frame at `now`.
+/// A follower of a stream at 30 Hz with a single gap of 250 ms; it sleeps, and its newest frame
+/// came at `now`.
 PollFsm late_once(Duration now) {
   PollFsm fsm = streaming(now - milliseconds(600));
   for (int i = 3; i <= 10; ++i)

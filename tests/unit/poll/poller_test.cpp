@@ -124,7 +124,8 @@ class Polling : public ::testing::Test {
     }
     return false;
   }
-  /// Publishes frame by frame, each after the previous one arrived: each must come exactly once.
+  /// Publishes frames one by one, each after the previous one arrived; each must arrive exactly
+  /// once.
   void expect_every_frame(FakeSensor& sensor, const char* name, int frames) {
     const std::size_t before = count(name);
     for (int i = 0; i < frames; ++i) {
@@ -152,7 +153,7 @@ TEST_F(Polling, DeliversEveryFrameOnce) {
   EXPECT_EQ(report.frames, 20u);
   EXPECT_EQ(report.missed, 0u);
   ASSERT_TRUE(report.clock);
-  // One host, one clock: the estimate must be zero within its own bound.
+  // Both clocks are this host's: the estimate must be zero within its own bound.
   EXPECT_LE(std::chrono::abs(report.clock->ours_minus_theirs), report.clock->uncertainty);
 }
 
@@ -231,7 +232,7 @@ TEST_F(Polling, AnEndlessStreamOfTheSameFrameIsNotASpin) {
   s1.send(1, once);
   ASSERT_TRUE(wait_for("s1", 1));
   const auto before = s1.requests();
-  for (int i = 2; i < 40; ++i) {  // new tag, old capture time
+  for (int i = 2; i < 40; ++i) {  // a new tag, but the old capture time
     s1.send(static_cast<std::uint64_t>(i), once);
     std::this_thread::sleep_for(milliseconds(2));
   }
@@ -248,7 +249,7 @@ TEST_F(Polling, ASensorWithAnEventStreamIsNotPolled) {
   ASSERT_TRUE(wait_until(streams, "s1"));
   const auto before = s1.requests();
   expect_every_frame(s1, "s1", 50);
-  EXPECT_LT(s1.requests() - before, 25u);  // requests for the clock
+  EXPECT_LT(s1.requests() - before, 25u);  // these are requests for the clock
 }
 
 TEST_F(Polling, WhatAStreamLeftOutIsFetched) {

@@ -128,7 +128,8 @@ TEST_F(Session, StampsThatCannotBeTrueChangeNothing) {
   ASSERT_THAT(hear(kHello), IsOk());
   ASSERT_THAT(answer_clock(seconds(0)), IsOk());
   const Timestamp now = rig.clock->now();
-  // Answered before the question; held longer than the round trip; asked in the future.
+  // Three impossible exchanges: answered before the question; held longer than the round trip;
+  // asked in the future.
   EXPECT_THAT(hear(R"({"type":"clock","sent":)" + text(now - seconds(1)) + R"(,"received":)" +
                    text(now) + R"(,"answered":)" + text(now - seconds(1)) + "}"),
               IsOk());

@@ -1,4 +1,4 @@
-// Describes a cell's recording without reading it whole, and reads it without holding it.
+// Describes a cell's recording without reading it whole, and reads it without holding it in memory.
 #include "common/record/cell_outline.h"
 
 #include <gmock/gmock.h>

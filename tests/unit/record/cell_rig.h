@@ -8,10 +8,10 @@
 
 namespace chorus::record {
 
-inline constexpr int kCellFrames = 40;  ///< Of each sensor, and fused ones.
+inline constexpr int kCellFrames = 40;  ///< Number of frames of each sensor, and of fused ones.
 
-/// A frame as the recorder receives it: 5 ms after its capture by the recorder's clock; the
-/// sensor's clock is behind that by `applied`.
+/// A frame as the recorder receives it: 5 ms after its capture by the recorder's clock.  The
+/// sensor's clock is behind the recorder's by `applied`.
 inline RawFrame raw_frame(const char* sensor, std::shared_ptr<const resource::FrameResource> frame,
                           Duration applied = Duration{0}) {
   const Timestamp received = frame->captured + applied + std::chrono::milliseconds(5);

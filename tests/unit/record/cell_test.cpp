@@ -199,7 +199,7 @@ struct PartFile {
   std::string name;
   std::string recording;
   std::string part;
-  int first = 0;  ///< Number of its first frame; it has ten.
+  int first = 0;  ///< Number of the first of its ten frames.
 };
 
 void write_part(const std::filesystem::path& folder, const PartFile& part) {

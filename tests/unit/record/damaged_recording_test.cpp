@@ -19,7 +19,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// Three chunks of ten messages each.
+/// A file of three chunks of ten messages each.
 std::string sound_file() {
   const TemporaryFolder folder;
   auto writer = RecordingWriter::create(folder / "a.mcap");

@@ -58,7 +58,7 @@ class Disk {
 }  // namespace
 }  // namespace chorus::record
 
-// Replaces the C library's function: records the request, then carries it out.
+// Replaces the C library's function: records the file, then makes the system call.
 extern "C" int fdatasync(int file) {
   chorus::record::Disk::of_test().note(file);
   return static_cast<int>(::syscall(SYS_fdatasync, file));
@@ -207,7 +207,7 @@ TEST(Recorder, TwoRunsAreNeverTakenForOne) {
   const TemporaryFolder folder;
   RecorderOptions options = options_in(folder);
   options.folder.clear();
-  options.clock = std::make_shared<FakeClock>(kStart);  // at exactly the same instant
+  options.clock = std::make_shared<FakeClock>(kStart);  // both recordings begin at the same instant
   for (const char* name : {"b.mcap", "a.mcap"}) {
     options.file = folder / name;
     auto recorder = Recorder::start(options);

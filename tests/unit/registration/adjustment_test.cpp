@@ -72,7 +72,7 @@ TEST(AdjustTogether, FindsTheTruthOfAnExactWalkFromADisplacedStart) {
   }
 }
 
-/// By an independent sum over the pairs, moving any one sensor does not reduce the cost.
+/// Moving any one sensor does not reduce the cost, which this test sums over the pairs by itself.
 TEST(AdjustTogether, EndsWhereNoSingleMoveFitsTheWalkBetter) {
   Scene scene = scene_of({.noise = 0.01});
   scene.config.use_floor = false;
@@ -106,7 +106,7 @@ TEST(AdjustTogether, EndsWhereNoSingleMoveFitsTheWalkBetter) {
   }
 }
 
-/// Single cameras: chains of pairs leave the depth open, three rays determine it.
+/// Single cameras: chains of pairs leave the depth open; three rays determine it.
 TEST(AdjustTogether, ThreeBluntSensorsFixWhatEachPairLeavesOpen) {
   double before = 0.0;
   double after = 0.0;

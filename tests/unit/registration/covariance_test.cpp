@@ -14,7 +14,7 @@ namespace {
 const Eigen::Isometry3d kTarget = ring_place(0);
 const Eigen::Isometry3d kSource = ring_place(deg(180));
 
-/// Different in every direction, so that a missing or wrong rotation shows.
+/// A covariance that differs in every direction, so that a missing or wrong rotation shows.
 Matrix6 lopsided(double size) {
   Vector6 sigma;
   sigma << 1, 2, 3, 10, 20, 40;
@@ -73,7 +73,7 @@ TEST(ChainCovariance, OfTwoEdgesCarriesTheSecondOverTheFirst) {
   EXPECT_LT(relative_gap(chain.covariance, from_first + from_second), 1e-6);
 }
 
-/// Estimates nothing: returns the truth, with a covariance of our own.
+/// A registration whose only edge is the truth with this covariance.
 Registration solved_with(const Matrix6& covariance) {
   const PairEstimator estimate = [&](const Walker& target, const Walker& source) {
     PairwiseRegistration edge = edge_between(1, 2, kTarget.inverse() * kSource, 1.0);
@@ -124,14 +124,15 @@ TEST(ExtrinsicsCovariance, DecidesWhetherAPlaceIsGoodEnough) {
   EXPECT_EQ(complaint(solved_with(narrow)), "");
 }
 
-/// One walk without any noise, seen by a given target camera.
+/// The edge between two sensors that see the same walk without any noise.
 PairwiseRegistration edge_of(const Eigen::Isometry3d& target, const Eigen::Isometry3d& source) {
   const WalkSpec exact{.length = 6, .noise = 0.0};
   const auto edge = register_pair(watch(1, target, exact), watch(1, source, exact), {});
   return edge.value();
 }
 
-/// The part that the walk itself leaves open; views from opposite sides have the whole bias.
+/// Subtracts the bias of views from opposite sides; what remains is the part that the walk leaves
+/// open.
 Matrix6 without_bias(Matrix6 covariance) {
   covariance.bottomRightCorner<3, 3>() -= std::pow(mm(10), 2) * Eigen::Matrix3d::Identity();
   return covariance;
@@ -151,7 +152,7 @@ TEST(EdgeCovariance, IsStatedInTheTargetsOwnAxesHoweverItIsTilted) {
 TEST(EdgeCovariance, HasAFloorThatGrowsWithTheAngleBetweenTheViews) {
   const auto position_sigma = [](double angle) {
     const Matrix6 covariance = edge_of(kTarget, ring_place(deg(angle))).covariance;
-    // Evaluated at the walk, where an exact one adds almost nothing of its own.
+    // At the middle of the walk, where an exact walk leaves almost no error of its own.
     const Matrix6 shift = at_point(Eigen::Vector3d(0, 0, 3.1));
     const Matrix6 there = shift * covariance * shift.transpose();
     return std::sqrt(there.bottomRightCorner<3, 3>().trace() / 3.0);

@@ -13,7 +13,7 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-/// An asymmetric figure on the floor with some vertical motion: no rotation maps it to itself.
+/// An asymmetric path with some vertical motion: no rotation maps it to itself.
 Points walk(std::size_t count) {
   Points points;
   for (std::size_t i = 0; i < count; ++i) {
@@ -30,7 +30,7 @@ Points moved(const Eigen::Isometry3d& by, const Points& points) {
   return out;
 }
 
-/// Displaced by less than the distance between points.
+/// The pose `at`, displaced by less than the distance between points.
 Eigen::Isometry3d nearly(const Eigen::Isometry3d& at) {
   return small_motion((Vector6() << 0.004, 0.01, -0.004, 0.012, -0.01, 0.008).finished()) * at;
 }

@@ -31,14 +31,14 @@ inline Vector6 unit6(int axis, double size) { return size * Vector6::Unit(axis);
 struct CloudSpec {
   std::size_t instants = 60;
   std::size_t joints = 3;  ///< Number of joints per instant.
-  double noise = 0.0;      ///< Per axis, of the target's measurement [m].
+  double noise = 0.0;      ///< Standard deviation per axis of the target's measurement [m].
   double rho = 0.0;        ///< Correlation of the noise from instant to instant.
   bool shared = false;     ///< All joints of an instant have the same error.
   double sigma = mm(10);   ///< Stated standard deviation.
   unsigned seed = 1;
 };
 
-/// AR(1) noise of unit variance, one per joint.
+/// Noise that follows AR(1), with unit variance, one process per joint.
 class Wander {
  public:
   Wander(const CloudSpec& spec, std::mt19937& random) : spec_(spec), random_(random) {

@@ -58,7 +58,7 @@ TEST(RegisterPair, ASlightlyWrongFloorYieldsToTheWalk) {
   const auto edge = register_pair(watch(1, kTarget, {}), watch(2, source, wrong), {});
   ASSERT_TRUE(edge) << edge.error().message;
   const PlaceError off = difference(edge->target_from_source, truth(source));
-  EXPECT_LT(off.angle, deg(0.4));  // half of the error from trusting the floor
+  EXPECT_LT(off.angle, deg(0.4));  // half of the floor's error
   EXPECT_LT(off.position, mm(15));
 }
 
@@ -232,7 +232,7 @@ TEST(RegisterPair, TheIcpBaselineLeavesThePlaceAloneWhereItTakesOutATilt) {
   const auto plain = register_pair(watch(1, kTarget, spec), straight, baseline);
   const auto tilted = register_pair(watch(1, kTarget, spec), sloping, baseline);
   ASSERT_TRUE(plain && tilted);
-  // Rotated about the sensor instead of the middle of the walk: 75 mm off, 1.4 m sin 3 deg.
+  // A tilt about the sensor instead of the middle of the walk would be 75 mm off: 1.4 m sin 3 deg.
   EXPECT_LT(difference(tilted->target_from_source, plain->target_from_source).position, mm(25));
 }
 

@@ -72,7 +72,8 @@ TEST(TrailReader, RefusesWideGapsAndOtherBodies) {
   EXPECT_FALSE(narrow.at(kWalkStart + kFrame));
   TrailReader wide(trail, 2 * kFrame);
   EXPECT_TRUE(wide.at(kWalkStart + kFrame));
-  EXPECT_FALSE(wide.at(kWalkStart + 2 * kFrame + kFrame / 2));  // from then on it is another body
+  // From then on the sensor sees another body.
+  EXPECT_FALSE(wide.at(kWalkStart + 2 * kFrame + kFrame / 2));
   EXPECT_TRUE(wide.at(kWalkStart + 3 * kFrame));
 }
 

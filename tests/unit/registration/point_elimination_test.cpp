@@ -25,7 +25,7 @@ PointMeasurements sights_of(const Eigen::Vector3d& x, double error) {
 
 const Eigen::Vector3d kX(0.4, 1.3, 2.5);
 
-/// E(T) of the header: the minimum over x of the sum.
+/// E(T) of point_elimination.h: the minimum over x of the sum.
 double energy(const PointMeasurements& measurements, const Places3& places, double along_ratio) {
   const FusedPoint fused = fuse_point(measurements, places, along_ratio);
   double sum = 0.0;
@@ -87,7 +87,8 @@ TEST(FusedPoint, InformationIsSharpAcrossAndBluntAlongTheRay) {
     const Eigen::Vector3d aside = ray.unitOrthogonal();
     EXPECT_NEAR(aside.dot(fused.information[i] * aside), across, 1e-6 * across);
   }
-  const FusedPoint round = fuse_point(measurements, kPlaces, 0.5);  // less than one counts as one
+  // A ratio below one counts as one.
+  const FusedPoint round = fuse_point(measurements, kPlaces, 0.5);
   EXPECT_LT((round.information[0] * mm(10) * mm(10) - Eigen::Matrix3d::Identity()).norm(), 1e-9);
 }
 
@@ -96,11 +97,11 @@ TEST(FusedPoint, WorstNormIsTheFarthestSightInSigmas) {
                                  {0, {0, 0, 2}, {0, 0, 1}, mm(10)}};
   measurements[1].x.x() = mm(40);  // the mean is 20 mm from both
   EXPECT_NEAR(worst_norm(fuse_point(measurements, kPlaces, 1.0)), 2.0, 1e-9);
-  measurements.push_back(measurements[0]);  // now 13.3 and 26.7 mm
+  measurements.push_back(measurements[0]);  // now the norms are 13.3 and 26.7 mm
   EXPECT_NEAR(worst_norm(fuse_point(measurements, kPlaces, 1.0)), 8.0 / 3.0, 1e-9);
 }
 
-/// Isotropic errors: S does not depend on the places, so that the derivative is exact.
+/// With isotropic errors S does not depend on the places, so that the derivative is exact.
 TEST(Elimination, RightHandSideIsTheNumericGradient) {
   const PointMeasurements measurements = sights_of(kX, mm(30));
   const PlaceEquations equations = equations_of(measurements, 1.0);

@@ -10,7 +10,7 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kDepth = 2.0;  // along over across
+constexpr double kDepth = 2.0;  // sigma along the line of sight over sigma across it
 
 RobustFit start_at(const Eigen::Isometry3d& target_from_source, std::size_t pairs) {
   RobustFit fit;
@@ -82,15 +82,15 @@ TEST(Refine, InformationIsTheNumericHessianOfTheCost) {
 }
 
 TEST(Refine, TheCostCountsEachSensorsDepthForLess) {
-  const Eigen::Vector3d x(0, 0, 3);  // both look along z
+  const Eigen::Vector3d x(0, 0, 3);  // both sensors look along z
   std::vector<Pair> pair{pair_at(x, x)};
   Refined at;
   at.weights = {0.5};
   pair[0].x_in_target = x + Eigen::Vector3d(mm(10), 0, 0);
-  EXPECT_NEAR(cost_of(pair, at, kDepth), 0.5, 1e-12);  // one sigma across
+  EXPECT_NEAR(cost_of(pair, at, kDepth), 0.5, 1e-12);  // off by one sigma across
   pair[0].x_in_target = x + Eigen::Vector3d(0, 0, mm(10));
   EXPECT_NEAR(cost_of(pair, at, kDepth), 0.5 / (kDepth * kDepth), 1e-12);
-  pair[0].ray_in_source = Eigen::Vector3d::UnitX();  // now only one of them does
+  pair[0].ray_in_source = Eigen::Vector3d::UnitX();  // now only the target looks along z
   EXPECT_NEAR(cost_of(pair, at, kDepth), 0.5 / (0.5 * (1.0 + kDepth * kDepth)), 1e-12);
   at.weights = {0.0};
   EXPECT_EQ(cost_of(pair, at, kDepth), 0.0);

@@ -27,7 +27,7 @@ TEST(RobustFit, FindsExactMotionsInBothFreedoms) {
   EXPECT_LT(gap(full->target_from_source, tilted_motion()), 1e-9);
   EXPECT_LT(full->rms, 1e-9);
   EXPECT_EQ(full->inliers, 180u);
-  EXPECT_EQ(full->scale, 0.02);  // perfect pairs: the smallest scale
+  EXPECT_EQ(full->scale, 0.02);  // perfect pairs have the smallest scale
   const auto yaw = fit_robustly(pairs_of(some_motion(), {}), Freedom::Yaw);
   ASSERT_TRUE(yaw);
   EXPECT_LT(gap(yaw->target_from_source, some_motion()), 1e-9);
@@ -124,7 +124,7 @@ TEST(RobustFit, NoisierSensorsThanStatedAreNotFittedToALuckyFew) {
   const CloudSpec noisy{.instants = 200, .noise = mm(80), .sigma = mm(10)};
   const auto fit = fit_robustly(pairs_of(some_motion(), noisy), Freedom::Yaw);
   ASSERT_TRUE(fit);
-  EXPECT_GT(fit->inliers, 500u);  // of 600
+  EXPECT_GT(fit->inliers, 500u);  // of 600 pairs
   EXPECT_NEAR(fit->scale, 8.0, 0.8);
 }
 
@@ -150,7 +150,7 @@ TEST(RobustFit, ALineIsEnoughForYawButNotForSixDegreesOfFreedom) {
   ASSERT_TRUE(yaw);
   EXPECT_LT(gap(yaw->target_from_source, some_motion()), 1e-9);
   EXPECT_FALSE(fit_robustly(line, Freedom::Full));
-  EXPECT_FALSE(fit_robustly(pole, Freedom::Yaw));  // its rotation cannot be determined
+  EXPECT_FALSE(fit_robustly(pole, Freedom::Yaw));  // the yaw of a pole cannot be determined
 }
 
 TEST(RobustFit, BrokenCoordinatesAreAnErrorAndNotAPlace) {

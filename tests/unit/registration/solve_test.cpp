@@ -70,8 +70,8 @@ TEST(Solve, TheWorldIsUnderTheMasterAndLevelOnTheCommonFloor) {
   EXPECT_EQ(registration.sensors.at(sensor(2)).error, 0.0);
 }
 
-/// Four sensors side by side along a corridor, 1.2 m apart; each sees up to 3 m, and the person
-/// walks along it.
+/// Four sensors side by side along a corridor, 1.2 m apart, each of which sees up to `range`; the
+/// person walks along the corridor.
 std::vector<WalkTrack> corridor(double range) {
   const WalkSpec spec{.path =
                           [](double t) {
@@ -279,7 +279,7 @@ TEST(Solve, APlaceThatNobodyCanVouchForIsRefusedWithWhereToWalk) {
   EXPECT_EQ(solve(ring(3, {.length = 10}), kWalkStart, {}).sensors.size(), 3u);
 }
 
-/// Edges of a star: sensor 2 has an edge to every other, the others only to it.
+/// A star: only the edges of sensor 2 are accurate.
 TEST(Solve, TheMasterIsWhoReachesMostWithTheLeastError) {
   const PairEstimator star = [](const Walker& target, const Walker& source) {
     PairwiseRegistration edge{target.trail.sensor, source.trail.sensor};
@@ -308,7 +308,7 @@ TEST(Solve, AHeadDownOrBuriedSensorIsRefusedAndNamed) {
   config.master = sensor(0);
   config.adjust_together = false;
   wrong.linear() = Eigen::AngleAxisd(deg(170), Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  auto walk = ring(2, {.length = 1});  // with its own floor its place would be known
+  auto walk = ring(2, {.length = 1});  // with a floor of its own, sensor 1 would have a place
   for (SensorFrame& frame : walk[1].frames) frame.floor.reset();
   const Registration head_down = solve_with(estimate, walk, kWalkStart, config);
   EXPECT_THAT(head_down.reasons, Contains(HasSubstr("sensor s1 would hang head down")));

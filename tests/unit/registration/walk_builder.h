@@ -26,7 +26,7 @@ inline Eigen::Isometry3d place(double x, double z, double yaw) {
   return world_from_sensor;
 }
 
-/// On a circle of `radius` about the origin, looking at it.
+/// Pose of a sensor on a circle of `radius` about the origin, looking at its centre.
 inline Eigen::Isometry3d ring_place(double angle, double radius = 3.0) {
   return place(radius * std::sin(angle), radius * std::cos(angle), angle + std::numbers::pi);
 }
@@ -85,7 +85,8 @@ inline FloorPlane plane_in_sensor(const FloorPlane& in_world,
           in_world.offset + in_world.normal.dot(world_from_sensor.translation())};
 }
 
-/// Frames of a sensor at `world_from_sensor` during the walk, at 30 Hz, with a phase of its own.
+/// Frames of a sensor at `world_from_sensor` during the walk, at 30 Hz; each sensor has its own
+/// phase.
 inline WalkTrack watch(int number, const Eigen::Isometry3d& world_from_sensor,
                        const WalkSpec& spec) {
   std::mt19937 random(spec.seed * 1000 + static_cast<unsigned>(number));

@@ -84,7 +84,7 @@ TEST(SkeletonDocument, IsOneBodyInEveryFormat) {
             "../context.jsonld");
 }
 
-/// All positions that the documents together state for one joint of one body.
+/// Number of different positions that the documents together state for one joint of one body.
 std::size_t places_of(const rdf::Graph& all, const std::string& joint) {
   const rdf::Term x = rdf::iri("https://w3id.org/chorus-tracking/ns#x");
   std::set<std::string> places;

@@ -1,4 +1,4 @@
-// A single error in an otherwise good frame: refused, by name, in every format.
+// A frame with a single error is refused in every format, and the refusal names the error.
 #include <functional>
 
 #include <gtest/gtest.h>

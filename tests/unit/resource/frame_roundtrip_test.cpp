@@ -26,7 +26,7 @@ TEST(FrameRoundTrip, EveryFormatKeepsEveryValue) {
       const std::string text = write(frame, format);
       const auto back = read_frame(text, format);
       ASSERT_TRUE(back) << media_type(format) << ": " << to_string(back.error());
-      if (format != Format::NTriples) {  // its sets have no order
+      if (format != Format::NTriples) {  // sets in N-Triples have no order
         EXPECT_EQ(difference(frame, *back), "") << media_type(format) << " seed " << seed;
       }
       EXPECT_EQ(write(*back, format), text) << "write(read(x)) is stable";

@@ -15,7 +15,7 @@ using rdf::Term;
 
 double rounded(double value, double unit) { return std::round(value / unit) * unit; }
 
-/// Both are missing, or equal except for the last bits, which decimals do not preserve.
+/// Whether both are missing, or equal except for the last bits, which decimals do not preserve.
 bool same(const std::optional<double>& a, const std::optional<double>& b) {
   return a.has_value() == b.has_value() && std::abs(a.value_or(0.0) - b.value_or(0.0)) < 1e-9;
 }
@@ -156,7 +156,7 @@ FrameResource random_frame(std::uint64_t seed, const FrameKind& kind) {
   for (std::size_t b = 0; b < kind.bodies; ++b) {
     BodyResource body;
     body.id = b * 1'000 + dice.number(999);
-    if (kind.fused && b != 2) body.slot = kind.bodies - 1 - b;  // one has no slot
+    if (kind.fused && b != 2) body.slot = kind.bodies - 1 - b;  // body 2 has no slot
     if (kind.fused && b != 1) body.sides_confidence = rounded(dice.between(0, 1), 1e-4);
     if (kind.fused && b == 1) body.carried_for = rounded(dice.between(0, 3), 1e-3);
     if (b == 1) body.id = 72'057'594'037'928'018;  // like Kinect v2 ids: too large for a double

@@ -11,7 +11,7 @@ namespace chorus::resource {
 
 struct FrameKind {
   std::size_t bodies = 2;
-  bool fused = false;  ///< World space, variances, contributors.
+  bool fused = false;  ///< In world space, with variances and contributors.
 };
 
 /// A different frame for each seed; numbers are already rounded as on the wire.

@@ -115,7 +115,7 @@ TEST(NodeValues, NodesInNodesHaveSubjectsOfTheirOwn) {
     return std::count_if(graph.begin(), graph.end(),
                          [&](const auto& triple) { return triple.subject.kind == kind; });
   };
-  EXPECT_EQ(about(rdf::TermKind::Blank), 2);  // its type and its state
+  EXPECT_EQ(about(rdf::TermKind::Blank), 2);  // the type and the state of the session
   EXPECT_EQ(said(node, "sensors"), std::vector{rdf::iri("sensors/s1")});
   EXPECT_FALSE(plain(node).at("session").contains("@id"));
 }

@@ -91,7 +91,8 @@ TEST(SensorResources, ListsEverySensorAndRelaysItsFrame) {
       resource::to_resource(testing::sensor_frame("s2", kStart, {})));
   EXPECT_EQ(ask(router, "/sensors/s2/frame").error().code, ErrorCode::NotFound);
   sensors.relay(sensor_id("s1"), raw);
-  sensors.relay(sensor_id("s2"), raw);  // added after the start: no long poll, but served
+  // A sensor added after the start has no long poll, but its frame is served.
+  sensors.relay(sensor_id("s2"), raw);
   EXPECT_NE(body(ask(router, "/sensors/s1/frame"), "text/turtle").find("SensorSpace"),
             std::string::npos);
   EXPECT_TRUE(ask(router, "/sensors/s2/frame"));
@@ -246,7 +247,7 @@ TEST_F(Registering, TheOriginMovesAndIsShownFromTheAnswerOn) {
   ASSERT_TRUE(moved) << to_string(moved.error());
   EXPECT_EQ(moved->status, 200);
   EXPECT_EQ(asked_, "origin 2 -1.5 0 #1; ");
-  publish();  // a state from before it was carried out
+  publish();  // publishes a state from before the command was carried out
   EXPECT_NE(shown().find("\"x\": -2"), std::string::npos) << shown();
   EXPECT_NE(shown().find("\"z\": 1.5"), std::string::npos);
 }

@@ -85,7 +85,7 @@ TEST(SensorConfig, AFileThatIsNotThereIsNamed) {
   EXPECT_THAT(to_string(settings.error()), HasSubstr("/no/such.json"));
 }
 
-/// A key in a device's section only counts when that device is chosen.
+/// Chooses the device to whose section the key belongs, because only then does the key count.
 std::string choosing_its_device(const std::string& key, const std::string& text) {
   auto root = ConfigReader::parse(text, "test");
   for (const std::string kind : {"replay", "bridge", "camera"}) {
@@ -101,7 +101,7 @@ TEST(SensorConfig, AReloadTakesEveryKeyOverOrItWaits) {
   const std::set<std::string> live{"log.level", "log.format", "http.bearer_token", "http.tokens",
                                    "images"};
   for (const auto& [key, changed] : chorus::testing::every_key_changed(text, is_good)) {
-    if (key == "device.simulated.scene.motion") continue;  // needs a file
+    if (key == "device.simulated.scene.motion") continue;  // this key needs a file
     ASSERT_NE(changed, "") << "no other value is accepted for " << key;
     const std::string before = choosing_its_device(key, text);
     const std::string after = choosing_its_device(key, changed);

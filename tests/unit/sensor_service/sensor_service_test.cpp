@@ -232,8 +232,8 @@ TEST_F(SensorServiceTest, ImagesAreEncodedWhileSomebodyAsksAndElseOnceASecond) {
   };
   now_ += std::chrono::hours(1);
   captured(0);
-  ASSERT_TRUE(service_.encode_next(stop_.get_token()));  // the first at once
-  stop_.request_stop();  // from here on: true when a frame is due, false instead of waiting
+  ASSERT_TRUE(service_.encode_next(stop_.get_token()));  // the first frame is due at once
+  stop_.request_stop();  // from now on encode_next() returns false where it would wait
   captured(1);
   EXPECT_FALSE(service_.encode_next(stop_.get_token())) << "nobody asked";
   now_ += std::chrono::milliseconds(1001);

@@ -60,7 +60,7 @@ TEST(FusionConfig, ASensorMayHaveANoiseOfItsOwn) {
   const auto& own = config->live.pipeline.fusion.sensor_noise;
   ASSERT_EQ(own.size(), 1u);
   EXPECT_EQ(own.at(testing::sensor_id("b")).across, 0.2);
-  EXPECT_EQ(own.at(testing::sensor_id("b")).along, 0.05);  // `along` inherited from the general one
+  EXPECT_EQ(own.at(testing::sensor_id("b")).along, 0.05);  // inherited from the general `along`
 }
 
 TEST(FusionConfig, EveryMistakeIsNamedAtOnce) {

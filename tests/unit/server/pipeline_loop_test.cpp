@@ -48,7 +48,7 @@ TEST(PipelineLoop, GoesOnAfterASinkHasThrownAndCountsIt) {
   {
     PipelineLoop loop(std::move(options));
     loop.start();
-    EXPECT_TRUE(sink.wait_for(20));  // 200 ms of status and more
+    EXPECT_TRUE(sink.wait_for(20));  // enough snapshots for a report of the status
   }
   const std::string said = ::testing::internal::GetCapturedStderr();
   EXPECT_NE(said.find("pipeline step failed"), std::string::npos) << said;

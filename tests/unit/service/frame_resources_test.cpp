@@ -20,7 +20,7 @@ Timestamp instant_of(std::uint64_t sequence) {
   return kStart + kFrameInterval * static_cast<int>(sequence);
 }
 
-/// One body, number 7.
+/// A frame with one body, whose id is 7.
 FramePtr frame(std::uint64_t sequence) {
   const auto pose = testing::ring_sensor(0, 6);
   const Timestamp t = instant_of(sequence);

@@ -115,7 +115,7 @@ TEST(FrameRing, ABetterAnswerIsForWhoAsksByTimeAndNeverChangesAFrame) {
   EXPECT_DOUBLE_EQ((*ring.find("3"))->bodies[0].joints[0].position.x(), 3.0);
   const auto between = ring.at(to_iso8601(frame(3)->captured + kFrameInterval / 2));
   EXPECT_NEAR((*between)->bodies[0].joints[0].position.x(), 17.0, 0.01);
-  ring.amend(frame(77));  // not in the ring
+  ring.amend(frame(77));  // this frame is not in the ring
   EXPECT_EQ(ring.amendments(), 1u);
 }
 

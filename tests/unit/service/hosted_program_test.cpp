@@ -31,7 +31,7 @@ Result<Settings> read(ConfigReader root) {
   return out;
 }
 
-/// Answers with what it was last configured with.
+/// A host that remembers what it was last configured with.
 struct Host {
   static inline Settings made;
   static inline int volume = 0;
@@ -48,7 +48,7 @@ struct Host {
 
 ConfigReader config(const std::string& text) { return ConfigReader::parse(text, "test").value(); }
 
-/// The log of a reload, after a start with `before`.
+/// What a reload with the configuration `text` logs.
 std::string reloaded(HostedProgram<Settings, Host>& program, const std::string& text) {
   ::testing::internal::CaptureStderr();
   EXPECT_TRUE(program.reload(config(text)));

@@ -19,11 +19,11 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// Records the calls of its shell.  Sends itself the signals that the shell must handle.
+/// Records what the shell calls, and sends itself the signals that the shell must handle.
 class NotingProgram final : public Program {
  public:
   std::vector<std::string> asked;
-  std::vector<int> signals{SIGTERM};  ///< One after each start or reload.
+  std::vector<int> signals{SIGTERM};  ///< One is sent after each start or reload.
   bool starts = true;
   bool throws = false;
   std::function<void()> on_reload = [] {};

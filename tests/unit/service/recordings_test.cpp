@@ -191,7 +191,7 @@ TEST_F(RecordingRoutes, StartDescribeStopDownload) {
 TEST_F(RecordingRoutes, EndingOneWaitsForNobodyAndHalfAFileIsNotHandedOut) {
   ASSERT_EQ(ask("POST", "/recordings/", R"({"name":"walk"})").status, 201);
   const auto recorder = recordings_.recorder(Stream::Any);
-  std::promise<void> disk;  // a slow one: the writer waits until this is set
+  std::promise<void> disk;  // a slow disk: the writer waits until this is set
   recorder->offer(record::FusedFrame{{}, {}, [slow = disk.get_future().share()] {
                                        slow.wait();
                                        return resource::FrameResource{};

@@ -64,7 +64,7 @@ TEST(Simulated, TwoProcessesSeeTheSamePersonWhereverTheyStand) {
       const auto& body = capture.frame.bodies.at(0).skeleton;
       return Eigen::Vector3d(ring_place(ring, place) * body[JointId::Neck].position);
     };
-    // Captured up to one frame apart; the person walks at 0.9 m/s.
+    // The two frames are captured up to one frame interval apart; the person walks at 0.9 m/s.
     EXPECT_LT((in_world(front[i], 0) - in_world(side[i], 1)).norm(), 0.06);
     EXPECT_NE(front[i].frame.captured, side[i].frame.captured);
   }
@@ -216,13 +216,13 @@ TEST(Simulated, PlaysAMotionFileThatAllSensorsSeeAlike) {
       const auto& body = capture.frame.bodies.at(0).skeleton;
       return Eigen::Vector3d(ring_place(ring, place) * body[JointId::Neck].position);
     };
-    // Captured up to one frame apart; the person walks at 1.3 m/s.
+    // The two frames are captured up to one frame interval apart; the person walks at 1.3 m/s.
     EXPECT_LT((in_world(front[i], 0) - in_world(side[i], 1)).norm(), 0.08);
   }
 }
 
-/// Tracked joints of the person in the middle of the ring.  Nearer bodies are no people: profile C
-/// may take a pillar for one, because its fitter knows no background.
+/// Number of tracked joints of the person in the middle of the ring.  Ignores nearer bodies: the
+/// fitter of profile C knows no background and may take a pillar for a person.
 int tracked_joints(const std::string& profile, const std::string& occluders) {
   constexpr double kNearest = 2.2;  // [m]
   const std::string json = R"({"profile": ")" + profile +

@@ -27,7 +27,8 @@ TEST(Draw, GaussHasUnitMomentsOverSuccessiveKeys) {
     product += x * before;
     before = x;
   }
-  // Standard errors: 1, sqrt(2), sqrt(96), 1 over sqrt(100 000); five of these are allowed.
+  // The standard errors are 1, sqrt(2), sqrt(96) and 1, each divided by sqrt(100 000); five of them
+  // are allowed.
   EXPECT_NEAR(sum / kCount, 0.0, 0.016);
   EXPECT_NEAR(square / kCount, 1.0, 0.023);
   EXPECT_NEAR(fourth / kCount, 3.0, 0.16);

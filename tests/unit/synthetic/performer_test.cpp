@@ -197,7 +197,8 @@ TEST(Performer, SeveralPeopleStandApartAndDoNotMoveAlike) {
     const auto one = people[i](t);
     const auto other = people[(i + 1) % people.size()](t);
     EXPECT_GT((one[JointId::Neck].position - other[JointId::Neck].position).norm(), 0.5);
-    // Independent of size and place: the position of the hands relative to each other.
+    // The distance between the hands, divided by that between the hips, is independent of size and
+    // place.
     const auto spread = [](const Skeleton<WorldSpace>& body) {
       const auto between = [&](JointId a, JointId b) {
         return (body[a].position - body[b].position).norm();

@@ -186,8 +186,8 @@ TEST(Observe, SeveralPeopleAreKeptApartAndNobodyIsFine) {
 }
 
 TEST(Speed, SixSensorsRunFarFasterThanRealTime) {
-  // A generous ceiling; chorus-bench reports the value itself.  In CPU time, so that other load
-  // does not count.
+  // The ceiling is generous; chorus-bench reports the value itself.  The test measures CPU time, so
+  // that other load does not count.
   const Scene scene = six_around_one();
   const std::clock_t begin = std::clock();
   std::size_t frames = 0;

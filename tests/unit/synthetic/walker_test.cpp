@@ -115,7 +115,7 @@ TEST(Gait, TheSeamIsAsSmoothAsTheRest) {
 }
 
 TEST(Walker, StandingFeetDoNotSlideFar) {
-  // Steps that match the speed: a standing foot (low, for a while) hardly moves over the floor.
+  // The steps match the speed: a standing foot (low, for a while) hardly moves over the floor.
   WalkerScript script;
   script.path = PathKind::Circle;
   script.reach = 3.0;
@@ -170,7 +170,8 @@ TEST(Walker, TurnsInPlaceOnceRoundToEitherSideWithPauses) {
   EXPECT_NEAR(seconds(still), 3.0, 0.3);
 }
 
-/// Time at which a hand is far in front of the body, and where it is then, in one assembly loop.
+/// The times at which a hand is far in front of the body, and where it is then, in one assembly
+/// loop.
 std::vector<std::pair<Duration, Eigen::Vector3d>> reaches(const Walker& walker, bool left) {
   std::vector<std::pair<Duration, Eigen::Vector3d>> all;
   for (Duration t{}; t < walker.path().loop(); t += kStep) {

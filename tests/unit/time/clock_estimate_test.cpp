@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 
 const Timestamp kT0 = from_unix_ns(1'790'000'000'000'000'000);
 
-/// The stamps of both sides: their clock is `ahead` of ours.
+/// The four stamps of an exchange with a host whose clock is `ahead` of ours.
 ClockExchange exchange(Timestamp sent, Duration ahead, Duration there, Duration held,
                        Duration back) {
   return {sent, sent + there + ahead, sent + there + held + ahead, sent + there + held + back};

@@ -1,4 +1,4 @@
-// trackd's blocks, read at the offsets used by readers of others.
+// trackd's blocks, read at the offsets that other programs' readers use.
 #include "fusion-server/trackd/trackd_encoder.h"
 
 #include <sys/mman.h>
@@ -24,7 +24,7 @@ using outlet::testing::about_up;
 using outlet::testing::about_x;
 using outlet::testing::about_z;
 
-// As declared in C programs: no padding anywhere.
+// The blocks as C programs declare them: no padding anywhere.
 struct TrackerHeader {
   std::uint32_t version, sensors, offset, size, seconds, microseconds, command;
 };
@@ -188,7 +188,8 @@ TEST(Trackd, WhoStaysTrackedIsCalibratedAllTheTime) {
 TEST(Trackd, SlotsBeyondTheBlockAreLeftOut) {
   auto block = tracker_block(26);
   const auto before = block;
-  write_sensors(frame_with(one_joint(), 1), LengthUnit::Feet, block);  // would be sensor 26
+  // The joint would be sensor 26.
+  write_sensors(frame_with(one_joint(), 1), LengthUnit::Feet, block);
   EXPECT_EQ(block, before);
   std::vector<char> tiny(10);
   write_sensors(frame_with(one_joint(), 0), LengthUnit::Feet, tiny);

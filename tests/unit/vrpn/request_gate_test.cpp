@@ -52,8 +52,8 @@ TEST(RequestGate, MakesFewConnectionsASecond) {
   EXPECT_EQ(made(kNow + std::chrono::hours(9)), 5);
 }
 
-/// 500 requests per second from one address, each for another port, for a minute; returns what a
-/// second host that asks every two seconds gets.
+/// What a flood and other hosts get in a minute: one address asks 500 times a second, each time for
+/// another port, and every two seconds another host asks once.
 struct Flood {
   int flooded = 0;
   int refused = 0;

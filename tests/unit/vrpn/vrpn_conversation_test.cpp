@@ -63,7 +63,7 @@ struct Heard {
     last = conversation.receive(bytes, testing::kStart);
     if (last) decoder.take_stream(*last);
   }
-  /// "Body0 3" for every pose that this client receives.
+  /// Sender and sensor, such as "Body0 3", of every pose that this client receives.
   std::multiset<std::string> poses(const Reports& reports) {
     decoder.take_stream(conversation.stream(reports));
     std::multiset<std::string> out;
@@ -153,7 +153,7 @@ TEST(VrpnSession, AClientGetsTheTrackersItNames) {
   const Reports reports = encode(two_persons(), *trackers());
   Heard client;
   client.say(vrpn_cookie() + vrpn_description(-1, 0, "VRPN Control"));
-  EXPECT_EQ(client.poses(reports).size(), 98u);  // it named none of ours
+  EXPECT_EQ(client.poses(reports).size(), 98u);  // the client named no sender of ours
   client.say(vrpn_description(-1, 1, "Body1_Head"));
   EXPECT_EQ(client.poses(reports), (std::multiset<std::string>{"Body1_Head 0"}));
   client.say(vrpn_description(-1, 2, "Body0"));

@@ -100,7 +100,7 @@ class Stream {
     }
     return true;
   }
-  /// What there is, waiting so long for it; false at the end.
+  /// Appends the bytes that have arrived; waits at most `patience_ms` for the first. False at the end.
   bool receive(std::string& bytes, int patience_ms) {
     pollfd ready{};
     ready.fd = socket_;
@@ -173,8 +173,8 @@ class Pusher {
   Pusher(std::string where, std::string hello, std::string token = "")
       : where_(std::move(where)), hello_(std::move(hello)), token_(std::move(token)) {}
 
-  /// False when it was not sent: problem() says why; a later push, a second on, tries to connect again.  Also answers the sensor's
-  /// questions for the time, so push at least twice a second, an empty frame if nobody is there.
+  /// Returns false if the frame was not sent; problem() says why, and a push at least a second after the last attempt connects
+  /// again. Also answers the sensor's questions for the time: push at least twice a second, an empty frame if nobody is there.
   bool push(Frame& frame) {
     ++sequence_;
     if (!stream_.is_open()) {
@@ -242,7 +242,7 @@ class Pusher {
     }
     return true;
   }
-  /// Takes the next whole message out of what was heard.  The sensor's are short.
+  /// Takes the next whole message out of what was heard; the sensor sends only short ones.
   bool next(std::string& message) {
     if (stream_.is_local()) {
       const std::size_t end = heard_.find('\n');
@@ -274,7 +274,7 @@ class Pusher {
     if (type == "error" || type == "bye") problem_ = message;
     return true;
   }
-  /// The text at a key.  The sensor writes these without spaces or escapes.
+  /// The string at a key; the sensor writes it without spaces around the colon and without escapes.
   static std::string value(const std::string& json, const std::string& key) {
     const std::string mark = "\"" + key + "\":\"";
     const std::size_t at = json.find(mark);

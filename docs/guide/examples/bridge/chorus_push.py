@@ -34,7 +34,7 @@ _FIRST = time.time_ns() - time.perf_counter_ns()
 
 
 def now_ns():
-    """Nanoseconds since 1970 by this computer's clock, as fine on Windows, whose own counts 16 ms, as elsewhere."""
+    """Nanoseconds since 1970 by this computer's clock.  On Windows, whose clock ticks every 16 ms, a finer counter goes on from it."""
     return _FIRST + time.perf_counter_ns() if sys.platform == "win32" else time.time_ns()
 
 
@@ -199,7 +199,7 @@ class WebSocketWay:
 
 
 class Talk:
-    """A connection that is open both ways; questions for the time are answered by a thread of its own."""
+    """A connection that is open both ways; a thread of its own answers the sensor's questions for the time."""
 
     def __init__(self, way, hello, clock, tell):
         self.way, self.clock, self.tell = way, clock, tell
@@ -237,7 +237,7 @@ class Talk:
 
 
 class Post:
-    """One POST a frame.  The way back of each tells the next one our clock."""
+    """Sends each frame by a POST; it also carries the times of the previous answer, so that the sensor learns our clock."""
 
     def __init__(self, url, token, ca, hello, clock, tell):
         parts = urllib.parse.urlsplit(url)
@@ -278,7 +278,7 @@ class Post:
 
 
 class Pusher:
-    """`hello` without its type; `clock` gives nanoseconds since 1970 and is what `captured` counts by."""
+    """`hello` lacks its type; `clock` returns nanoseconds since 1970, and `captured` is by this clock."""
 
     def __init__(self, url, hello, token=None, clock=now_ns, tell=complain, ca=None):
         self.url, self.token, self.clock, self.tell, self.ca = url, token, clock, tell, ca
@@ -289,7 +289,7 @@ class Pusher:
         self._tried = -RETRY_S
 
     def push(self, bodies, captured=None, **more):
-        """One frame, [] when nobody is seen.  False when it could not be sent."""
+        """Sends one frame; `bodies` is [] when nobody is seen.  Returns False when it could not be sent."""
         self.sequence += 1
         captured = self.clock() if captured is None else captured
         frame = json.dumps({"type": "frame", "sequence": self.sequence, "captured": str(captured), "bodies": bodies, **more},

@@ -10,7 +10,7 @@
 namespace chorus::synthetic::kinect {
 namespace {
 
-/// Names of the parameters that differ.
+/// Names of the parameters that scaling `source` changes.
 std::set<std::string> changed(Source source, double factor) {
   const auto before = parameters_of(nominal_profile("B"));
   const auto after = parameters_of(with_source(nominal_profile("B"), source, factor));
@@ -37,7 +37,8 @@ TEST(WithSource, TouchesItsOwnParametersOnly) {
   }
 }
 
-/// Distances of seen joints from the truth of their own labels [m]; only `source` is on.
+/// What a profile does to a minute of frames: distances of seen joints from the truth of their own
+/// labels [m], counts, and the largest error of a stamp [s].
 struct Effect {
   double worst = 0.0;
   double mean = 0.0;
@@ -84,7 +85,7 @@ TEST(WithSource, AllOffIsThePlainTruth) {
   EXPECT_GT(none.bodies, none.frames * 9 / 10) << "only outside the view is nobody";
 }
 
-/// Everything off except this.
+/// A profile in which only this source is on.
 Profile only(Source source) {
   Profile profile = nominal_profile("B");
   for (const Source each : kAllSources) {
@@ -115,7 +116,7 @@ TEST(WithSource, EachAloneDoesItsOwnHarm) {
   EXPECT_LT(clock.worst, 1e-9) << "the stamp errs, not the place";
 }
 
-/// The quantity that this source disturbs, in any unit.
+/// The strength of the effect that this source has, in any unit.
 double harm(Source source, const Effect& effect) {
   if (source == Source::Clock) return effect.clock;
   if (source == Source::Delivery) return -static_cast<double>(effect.bodies);

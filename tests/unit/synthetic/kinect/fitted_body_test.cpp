@@ -57,7 +57,7 @@ TEST(FittedBody, LeavesAJointAloneWhoseParentIsNotSeen) {
   erring[ElbowLeft] = Joint{};
   const auto body = fitted(erring, exact, 1.2, exact_ones());
   EXPECT_FALSE(body[ElbowLeft].seen());
-  // Except for the distance by which the trunk is moved back.
+  // The wrist differs only by the distance by which the trunk is moved back.
   const Eigen::Vector3d back = body[SpineBase].position - exact[SpineBase].position;
   EXPECT_LT((body[WristLeft].position - exact[WristLeft].position - back).norm(), 1e-9);
 }

@@ -14,7 +14,7 @@ namespace {
 constexpr double kFrame = 0.033;
 using enum JointId;
 
-/// One axis over a long run.
+/// One axis of smooth noise over `length` frames.
 std::vector<double> run_of(double tau, int length) {
   SmoothNoise noise;
   std::vector<double> values;
@@ -97,7 +97,7 @@ TEST(ShownState, ChangesInRunsNotPerFrame) {
     before = now;
   }
   EXPECT_NEAR(static_cast<double>(inferred) / kFrames, 0.3, 0.05);
-  // Drawn anew for each frame, it would change 2 * 0.3 * 0.7 of the times.
+  // If it were drawn anew for each frame, it would change in 2 * 0.3 * 0.7 of the frames.
   EXPECT_LT(changes, 0.42 * kFrames / 5);
   EXPECT_GT(changes, 100);
 }
@@ -113,7 +113,7 @@ TEST(ShownState, HiddenJointsAreMostlyInferredAndAVisibleCoreNever) {
   EXPECT_NEAR(hidden / 3000.0, visibility.inferred_occluded, 0.04);
 }
 
-/// A person standing 2.5 m in front of the sensor, with all joints at this speed.
+/// A person standing 2.5 m in front of the sensor, all of whose joints move at one speed.
 struct Setting {
   Skeleton<SensorSpace> body;
   Stand stand;
@@ -164,7 +164,7 @@ Profile quiet() {
   return profile;
 }
 
-/// The setting's body with one draw of errors, one second after its beginning.
+/// The body of `setting` with one draw of errors, after an interval of one second.
 Skeleton<SensorSpace> with_errors(const Setting& setting, const Profile& profile,
                                   std::uint64_t seed) {
   ColouredState state;

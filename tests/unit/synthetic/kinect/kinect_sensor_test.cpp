@@ -147,7 +147,7 @@ bool is_exchanged(const Skeleton<SensorSpace>& body, const Skeleton<SensorSpace>
   return better > 0;
 }
 
-/// Errors of the seen joints during a minute, each divided by the rms error that it states.
+/// Errors of the seen joints during a minute, each divided by the rms error that its joint states.
 struct Honesty {
   double square = 0.0;  ///< Mean per axis: 1 is consistent.
   double count = 0.0;
@@ -169,7 +169,7 @@ Honesty honesty_of(const std::string& profile) {
       const bool exchanged = is_exchanged(body, exact);
       for (std::size_t i = 0; i < kJointCount; ++i) {
         const auto id = static_cast<JointId>(i);
-        if (!body[id].covariance.known()) continue;  // a ghost's
+        if (!body[id].covariance.known()) continue;  // the joint of a ghost
         const auto off = body[id].position - exact[exchanged ? mirror(id) : id].position;
         const Eigen::Matrix3d moment = body[id].covariance.matrix();
         honesty.square += off.dot(moment.ldlt().solve(off)) / 3.0;

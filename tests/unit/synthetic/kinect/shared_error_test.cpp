@@ -10,7 +10,7 @@ namespace {
 using enum JointId;
 const ColouredError kColoured = nominal_profile("A").coloured;
 
-/// The neck as measured by a sensor at this angle around a person; world space.
+/// The shared error of the neck for a sensor at this angle around a person; world space.
 Eigen::Vector3d seen_from(double around, const Eigen::Vector2d& place, const SharedKeys& keys) {
   SharedError error;
   // The body looks along the world's +z; the sensor's own axes are rotated by `around`.

@@ -10,7 +10,7 @@ namespace {
 
 using enum JointId;
 
-/// A person 2.5 m in front of a level sensor at a height of 1 m; 0 = facing it.
+/// A person 2.5 m in front of a level sensor at a height of 1 m; `facing` 0: facing the sensor.
 Skeleton<SensorSpace> person(double facing, double x = 0.0, double distance = 2.5) {
   const Eigen::Isometry3d world_from_sensor = testing::sensor_pose({0, 1, 0}, 0.0);
   return to_sensor(world_from_sensor.inverse(),

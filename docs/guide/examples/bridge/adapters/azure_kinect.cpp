@@ -11,7 +11,7 @@
 
 namespace {
 
-/// The SDK stamps by the computer's monotonic clock when an image arrives.
+/// UTC of the SDK's stamp [ns]; the SDK stamps an image by the computer's monotonic clock when it arrives.
 std::int64_t utc_of(std::uint64_t monotonic_ns) {
   const auto now = std::chrono::steady_clock::now().time_since_epoch();
   return chorus::now_ns() - std::chrono::duration_cast<std::chrono::nanoseconds>(now).count() +

@@ -1,11 +1,11 @@
 """MediaPipe's landmarks, lifted with the depth that a camera measured at their pixels.
 
-Depth is that of the body's surface.  Where a landmark is hidden, what hides it was measured: such depths, far from the body's
-own, are left out, and so is what has none.
+Depth is that of the body's surface.  Where something hides a landmark, the camera measured the depth of that instead: landmarks
+whose depth is far from the body's are left out, and so are landmarks without a depth.
 """
 import statistics
 
-REACH = 2  # the patch around a pixel is this many to each side
+REACH = 2  # the patch around a pixel has this many pixels to each side
 BODY_DEPTH_M = 0.8  # nothing of a person is farther than this from its middle, along the view
 HIPS_AND_SHOULDERS = (11, 12, 23, 24)
 

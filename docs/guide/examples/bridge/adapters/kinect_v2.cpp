@@ -14,7 +14,7 @@
 
 namespace {
 
-/// The hello once the floor is known: the normal points up, w is the camera's height [m].
+/// The hello, with the floor once that is known: its normal points up, and w is the camera's height [m].
 std::string hello_with(const Vector4& floor) {
   std::string hello = R"({"type":"hello","name":"Kinect v2","layout":"kinect_v2_25","axes":"left up ahead")";
   if (floor.y > 0.5f && floor.w > 0.0f)
@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
       continue;
     }
-    chorus::Frame frame(chorus::now_ns());  // of arrival; the exposure was some 60 ms earlier
+    chorus::Frame frame(chorus::now_ns());  // time of arrival; the exposure was some 60 ms earlier
     Vector4 floor{};
     news->get_FloorClipPlane(&floor);
     if (pusher == nullptr) pusher = new chorus::Pusher(where, hello_with(floor), argc > 2 ? argv[2] : "");

@@ -26,7 +26,7 @@ pusher = Pusher(sys.argv[1], {"name": "Orbbec", "layout": "mediapipe_33", "axes"
 landmarks_in = Landmarker()
 while True:
     frames = pipeline.wait_for_frames(100)
-    captured = now_ns()  # of arrival
+    captured = now_ns()  # time of arrival
     color = frames.get_color_frame() if frames else None
     depth = frames.get_depth_frame() if frames else None
     if color is None or depth is None:

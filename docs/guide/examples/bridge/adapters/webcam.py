@@ -21,7 +21,7 @@ pusher = Pusher(url, {"name": "webcam", "layout": "mediapipe_33", "intrinsics": 
 landmarks_in = Landmarker()
 while True:
     alive, image = video.read()
-    captured = now_ns()  # of arrival; the exposure was one or two frames earlier
+    captured = now_ns()  # time of arrival; the exposure was one or two frames earlier
     if not alive:
         break
     landmarks = landmarks_in(cv2.cvtColor(image, cv2.COLOR_BGR2RGB))
