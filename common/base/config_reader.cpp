@@ -20,10 +20,10 @@ using nlohmann::json;
 
 constexpr JsonLimits kLimits{.bytes = 1024 * 1024, .nesting = 16, .comments = true};
 constexpr std::size_t kMaxArrayLength = 4096;  ///< Also the largest array index that --set accepts.
-constexpr std::size_t kShownCharacters = 80;   ///< Of a foreign text, for messages.
+constexpr std::size_t kShownCharacters = 80;   ///< Of a value from outside, for messages.
 constexpr double kMillisecondsPerSecond = 1e3;
 
-/// What is wrong with a text; names the key that was given twice, if any.
+/// What is wrong with a value; names the key that was given twice, if any.
 std::string reason_of(const Error& error) {
   return error.context.empty() ? error.message : "'" + error.context + "': " + error.message;
 }
@@ -84,10 +84,10 @@ struct ConfigReader::Node {
   std::string path;  ///< "sensors.0"; empty at the root
   std::shared_ptr<std::vector<std::string>> problems;
   std::string origin;                        ///< Set only at the root.
-  std::set<std::string, std::less<>> known;  ///< Every key that was asked for.
+  std::set<std::string, std::less<>> known;  ///< Every key that the caller read.
   std::map<std::string, std::shared_ptr<Node>> children;
 
-  /// The value at a key, which counts as known from now on; null when the key is absent.
+  /// The value at a key, null when the key is absent.  From now on the key counts as known.
   const json* find(std::string_view key) {
     known.emplace(key);
     const auto found = value.find(std::string(key));
@@ -151,7 +151,7 @@ Result<void> ConfigReader::set(std::string_view assignment) {
   const std::string_view text = assignment.substr(equals + 1);
   auto parsed = parse_json(text, kLimits);
   if (!parsed) {
-    // 127.0.0.1 or a path is a text without quotes, but a broken list or object is a mistake.
+    // 127.0.0.1 or a path may stand without quotes, but a broken list or object is a mistake.
     if (!text.empty() && std::string_view("[{\"").find(text.front()) != std::string_view::npos)
       return fail(ErrorCode::Malformed, context, reason_of(parsed.error()));
   }

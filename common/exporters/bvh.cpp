@@ -81,7 +81,8 @@ class BvhWriter {
 
   const SkeletonFit& fit_;
   const BvhOptions& options_;
-  std::vector<std::size_t> order_;  ///< Order of the joints when writing their channels.
+  std::vector<std::size_t> order_;  ///< The order in which the hierarchy lists the joints, and so
+                                    ///< that of their channels.
   std::string text_ = "HIERARCHY\n";
 };
 
