@@ -1,4 +1,4 @@
-// The direction that a pixel shows, and its uncertainty.  Pure.
+// The direction that a pixel shows, and the uncertainty of that direction.
 #pragma once
 
 #include "common/base/result.h"
@@ -16,22 +16,23 @@ struct Size {
 
 struct Lens {
   Intrinsics camera;         ///< For the whole picture; pixel centres are at whole coordinates.
-  double focal_sigma = 0.0;  ///< Standard deviation of the focal length, relative to it.
+  double focal_sigma = 0.0;  ///< Relative standard deviation of the focal length.
 };
 
-/// The lens for pictures of this size: the configured one, scaled if the pictures are larger or
-/// smaller with the same shape, else one from the field of view.  InvalidArgument if the configured
-/// one is for another shape.
+/// The lens for pictures of this size: the configured one, scaled if the pictures have the same
+/// shape and another size; if none is configured, one made from the field of view.  InvalidArgument
+/// if the configured lens is for another shape.
 [[nodiscard]] Result<Lens> lens_for(const CameraSettings& settings, Size picture);
 
 /// The size at which a picture is sent: at most `max_side` in either direction.
 [[nodiscard]] Size sent_size(Size picture, int max_side);
 
-/// The camera for landmarks in the picture as sent, where [0, 0] is the upper left corner.
+/// The camera for landmarks in the picture in the size `sent`, where [0, 0] is the upper left
+/// corner.
 [[nodiscard]] Intrinsics sent_camera(const Intrinsics& camera, Size sent);
 
-/// How a ray turns with the relative error of the focal length [rad]: towards the camera's axis. In
-/// sensor axes.
+/// Derivative of a ray's direction with respect to the relative error of the focal length [rad]; it
+/// points towards the camera's axis.  In sensor axes.
 [[nodiscard]] Eigen::Vector3d turn_of_focal(const Eigen::Vector3d& ray);
 
 /// Adds the effect of an uncertain focal length to a ray's covariance: nothing in the middle of the

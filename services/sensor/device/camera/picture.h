@@ -1,4 +1,4 @@
-// One picture of a camera, and its conversion.  OpenCV's own type stays in .cpp files.
+// One picture of a camera, and its conversion.  OpenCV's type is used only in .cpp files.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ struct Picture {
   Size size;
 };
 
-/// Red, green and blue of the picture scaled to that size, row by row.
+/// The picture scaled to `size`, as red, green and blue, row by row.
 [[nodiscard]] std::string rgb_bytes(const Picture& picture, Size size);
 
 [[nodiscard]] Result<std::string> jpeg_of(const Picture& picture);

@@ -10,7 +10,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Looks next to the sources, among the installed files, and in the working directory.
+/// Finds the runner's folder: among the installed files, next to the sources, or in the working
+/// directory.
 Result<std::string> shipped_runner() {
   std::error_code failed;
   const fs::path here = fs::read_symlink("/proc/self/exe", failed).parent_path();
