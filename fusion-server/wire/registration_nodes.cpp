@@ -16,7 +16,7 @@ constexpr std::array<std::pair<Verdict, std::string_view>, 4> kVerdicts{{
     {Verdict::Refused, "Refused"},
 }};
 
-/// Row by row; squared units of 0.1 mm and of 0.01 degree, with two more digits.
+/// The covariance row by row, with enough digits for squares of 0.1 mm and 0.01 degree.
 std::vector<Decimal> decimals_of(const Eigen::Matrix<double, 6, 6>& covariance) {
   constexpr int kCovarianceDigits = 10;
   std::vector<Decimal> values;
@@ -48,7 +48,7 @@ Node sensor_node(const SensorId& id, const Extrinsics& place) {
   put("qw", q.w(), kRotationDigits);
   put("error", place.error, kPlaceDigits);
   node.properties.emplace_back("chain", names_of(place.chain));
-  if (!place.covariance.isZero(0.0))  // zero: the covariance is unknown
+  if (!place.covariance.isZero(0.0))  // All zero means that the covariance is unknown.
     node.properties.emplace_back("covariance", decimals_of(place.covariance));
   return node;
 }
@@ -77,7 +77,7 @@ Node edge_node(const PairwiseRegistration& edge) {
            {"inliers", static_cast<std::int64_t>(edge.inliers)}}};
 }
 
-/// The session that is running, else the last one; "idle" if none is running.
+/// The newest session; its state is "idle" unless it is running.
 Node newest_session(const RegistrationProgress& progress) {
   constexpr int kDigits = 1;
   const SessionStatus session =
@@ -105,7 +105,7 @@ void add_storage(Node& node, const StorageStatus& storage) {
                                    : storage.trouble);
 }
 
-/// Sensors that took part in a walk but have no place.
+/// The sensors that took part in a walk but have no place.
 std::vector<Node> unplaced_nodes(const Registration& registration) {
   std::vector<Node> nodes;
   for (const auto& [id, own] : registration.verdicts) {
