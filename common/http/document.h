@@ -41,8 +41,8 @@ struct DocumentOptions {
   std::optional<Timestamp> captured = {};
 };
 
-/// The bytes of one representation.  The server writes the status line and the headers that belong
-/// to one answer only before these bytes, which all answers share.
+/// The bytes of one representation, shared by all its answers.  Before them, the server writes the
+/// status line and the header lines of the single answer.
 struct Rendered {
   std::string media_type;
   std::string etag;  ///< Quoted.

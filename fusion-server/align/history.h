@@ -35,10 +35,10 @@ struct HistoryLimits {
 
 /// How a sensor's recent frames have arrived.
 struct Habit {
-  /// The longest time from an instant until a frame captured at it or later arrived, of instants
-  /// just after a capture, which wait longest.  Frames that arrived after later ones do not count.
+  /// The longest time that an instant just after a capture, which waits longest, had to wait until
+  /// a frame captured at or after it arrived.  Frames that arrived after later ones do not count.
   Duration longest_wait{0};
-  Duration usual_wait{0};   ///< The median of these times.
+  Duration usual_wait{0};   ///< The median time that such instants had to wait.
   Duration least_delay{0};  ///< The shortest time from capture to receipt.
   Duration late_delay{0};   ///< The time from capture to receipt, 90th percentile.
 

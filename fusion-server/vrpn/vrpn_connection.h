@@ -39,8 +39,8 @@ struct ConnectionContext {
 
 /// A client that does not read costs memory for one frame only: while a write is in progress, only
 /// the newest frame waits, and older ones are dropped; after ClientLimits::stall the client is
-/// disconnected.  Its answers are limited too: while more than kMaxAnswers bytes of them are
-/// waiting, nothing is read from it.
+/// disconnected.  Its answers are limited too: while kMaxAnswers bytes of them or more are waiting,
+/// nothing is read from it.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   using Closed = std::function<void(const Connection*)>;
