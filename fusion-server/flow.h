@@ -82,7 +82,8 @@ struct ClockOffset {
 struct Registration {
   std::uint64_t version = 0;
   Timestamp solved;
-  Verdict verdict = Verdict::None;   ///< On all sensors that have a place, together.
+  /// The verdict on all sensors that have a place, taken together.
+  Verdict verdict = Verdict::None;
   std::vector<std::string> reasons;  ///< Why the verdict is not Good, and why sensors are missing.
   SensorId master;
   std::map<SensorId, Extrinsics> sensors;

@@ -25,7 +25,8 @@ struct SensorStatus {
   double weight = 0.0;     ///< Largest Otto weight of its views; only "otto" methods use weights.
   double share = 0.0;  ///< Share of the joints fused in the last second to which it contributed.
   double share_afterwards = 0.0;  ///< The same, including its late frames, as /frame?at= shows it.
-  double awaited = 0.0;           ///< Share of the instants that waited for it to the end.
+  /// Share of the instants that waited for this sensor as long as they could.
+  double awaited = 0.0;
   std::optional<Duration> clock_offset;  ///< Our clock minus the sensor's.
   std::optional<Duration> clock_uncertainty;
   bool clock_corrected = false;  ///< True if the offset is added to its capture times.
@@ -52,7 +53,7 @@ struct SessionStatus {
   Timestamp started;
   double elapsed = 0.0;             ///< Length of the walk collected so far [s].
   double target = 0.0;              ///< Length of the walk that is wanted [s].
-  Verdict verdict = Verdict::None;  ///< Of the last solve.
+  Verdict verdict = Verdict::None;  ///< The verdict of the last solve.
   bool adopted = false;  ///< True if its result is, or was, in use and was not withdrawn.
   /// What the last solve lacked, and what became of its result.
   std::vector<std::string> reasons;

@@ -19,8 +19,9 @@ namespace {
 using nlohmann::json;
 
 constexpr JsonLimits kLimits{.bytes = 1024 * 1024, .nesting = 16, .comments = true};
-constexpr std::size_t kMaxArrayLength = 4096;  ///< Also the largest array index that --set accepts.
-constexpr std::size_t kShownCharacters = 80;   ///< Of a value from outside, for messages.
+/// Limits the length of arrays, and the array index in --set.
+constexpr std::size_t kMaxArrayLength = 4096;
+constexpr std::size_t kShownCharacters = 80;  ///< How much of a wrong value messages quote.
 constexpr double kMillisecondsPerSecond = 1e3;
 
 /// What is wrong with a value; names the key that was given twice, if any.

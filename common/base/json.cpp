@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kShownKey = 80;  // Of a key from outside, for messages.
+constexpr std::size_t kShownKey = 80;  // How much of a wrong key messages quote [bytes].
 
 /// Thrown by the parser's callback; never leaves this file.
 struct TooDeep : std::runtime_error {

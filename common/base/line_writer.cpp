@@ -22,8 +22,8 @@ namespace {
 
 constexpr int kLookMs = 1000;  // A stuck writer checks this often whether it is still needed.
 
-/// Blocks all signals in a thread that is created meanwhile: signals are meant for the program's
-/// own threads.
+/// While this exists, new threads begin with all signals blocked: signals are meant for the
+/// program's own threads.
 class SignalsBlocked {
  public:
   SignalsBlocked() {

@@ -81,8 +81,8 @@ class BvhWriter {
 
   const SkeletonFit& fit_;
   const BvhOptions& options_;
-  std::vector<std::size_t> order_;  ///< The order in which the hierarchy lists the joints, and so
-                                    ///< that of their channels.
+  /// The joints in the order of the hierarchy, in which the channels follow, too.
+  std::vector<std::size_t> order_;
   std::string text_ = "HIERARCHY\n";
 };
 

@@ -12,7 +12,8 @@ namespace chorus::exporters {
 namespace {
 
 constexpr std::size_t kBlock = 512;
-constexpr std::size_t kMaxBlocks = 255;  // Of parameters: one byte counts them.
+// The parameters may fill so many blocks, because one byte counts these.
+constexpr std::size_t kMaxBlocks = 255;
 constexpr std::size_t kMaxPersons = 100;
 constexpr std::size_t kLabelsPerParameter = 255;  // A dimension is stored in a byte.
 constexpr std::size_t kMaxFrames = 65535;         // The limit of a 16-bit word.

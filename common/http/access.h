@@ -19,7 +19,7 @@ struct Peer {
   std::uint16_t local_port = 0;
   /// True if the peer is one of ServerConfig::trusted_proxies: it forwards the requests of others.
   bool proxy = false;
-  std::string account = {};  ///< The account that limits count the peer for (net::account_of).
+  std::string account = {};  ///< The account under which limits count the peer (net::account_of).
 };
 
 /// What a token allows; each role includes the roles before it.

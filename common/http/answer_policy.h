@@ -1,4 +1,4 @@
-// What the owner of a server adds to its answers, in addition to what HTTP requires.
+// What the owner of a server adds to its answers besides what HTTP requires.
 #pragma once
 
 #include <string>

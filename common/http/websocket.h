@@ -21,7 +21,7 @@ struct WebSocketOpening {
   std::string peer_address;
   const Router::Entry* entry = nullptr;
   std::shared_ptr<Dialogue> dialogue = {};  ///< Null for a client that only reads a live document.
-  std::string protocol = {};                ///< As Reaction::protocol.
+  std::string protocol = {};                ///< Has the meaning of Reaction::protocol.
 };
 
 /// Answers the handshake, then streams the document or carries the dialogue until the client

@@ -14,8 +14,9 @@
 namespace chorus::importers {
 
 struct TextFormat {
-  std::string device;                        ///< The value of FrameRecording::device.
-  std::map<std::string, std::string> notes;  ///< "origin" is added to them.
+  std::string device;  ///< The value of FrameRecording::device.
+  /// Notes of the recording, to which the note "origin" is added.
+  std::map<std::string, std::string> notes;
   std::string unit;  ///< For the error message: what a file without frames does not contain.
   std::function<Result<void>(LineReader&, const ImportOptions&, record::FrameRecording&)> read;
 };

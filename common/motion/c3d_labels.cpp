@@ -67,7 +67,7 @@ constexpr LabelRow kLabelRows[] = {
 
 constexpr std::size_t kFewestJoints = 2;
 constexpr std::size_t kShownLabels = 12;
-// Of all subjects together; they need 800 MB.
+// The limit for all subjects together, which then need 800 MB.
 constexpr std::size_t kMaxSkeletons = 2 * kMaxFrames;
 
 /// The index of each point, by its label without the subject.

@@ -230,7 +230,7 @@ void Recorder::Impl::run() {
     for (bool last = false; how && !last;) {
       {
         const std::scoped_lock lock(mutex);
-        last = stopping;  // Of the events, those queued now are the last to be written.
+        last = stopping;  // The events that are queued now are the last to be written.
       }
       for (const RecordedEvent& event : take()) {
         if (how) how = write(event);

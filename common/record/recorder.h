@@ -19,10 +19,13 @@
 namespace chorus::record {
 
 struct RecorderLimits {
-  std::uintmax_t max_file_bytes = 1ull << 30;  ///< A new file begins when this one is so large.
-  /// Or when its unpacked size is this: some programs read a whole file into memory.
+  /// A new file begins when the current one has this size.
+  std::uintmax_t max_file_bytes = 1ull << 30;
+  /// A new file also begins when the current one has this unpacked size, because some programs read
+  /// a whole file into memory.
   std::uintmax_t max_unpacked_bytes = 2ull << 30;
-  Duration max_file_duration = std::chrono::minutes(10);  ///< Or after this time.
+  /// A new file also begins after this time.
+  Duration max_file_duration = std::chrono::minutes(10);
   /// The recording ends when the free space would fall below this.
   std::uintmax_t min_free_bytes = 200ull << 20;
   std::size_t max_queue = 2048;  ///< A few seconds of ten sensors.

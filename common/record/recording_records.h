@@ -1,6 +1,6 @@
 // Internal to common/record: reads single records of a recording, and checks every field.
 //
-// read_...() return "", or what is wrong with the record.
+// The functions read_...() return "" or what is wrong with the record.
 #pragma once
 
 #include <cstdint>

@@ -17,7 +17,8 @@ struct Loaded {
   std::string bytes;
   std::vector<RawMessage> messages;
   std::size_t next = 0;
-  std::size_t order = 0;  ///< Of messages with equal times, those of the earlier piece come first.
+  /// Among messages with equal times, those of the piece with the lower number come first.
+  std::size_t order = 0;
 
   [[nodiscard]] Timestamp due() const { return messages[next].log_time; }
 };

@@ -24,7 +24,7 @@ using mcap::Op;
 
 constexpr int kCompressionLevel = 3;  // zstd's default; packs a frame's JSON to a tenth.
 constexpr std::size_t kMaxMessageBytes = 32u << 20;  // Half of our reader's limit for a chunk.
-constexpr std::size_t kMaxTextBytes = 16u << 20;     // Of schemas and metadata.
+constexpr std::size_t kMaxTextBytes = 16u << 20;     // The limit for a schema, and for metadata.
 
 struct IndexEntry {
   std::uint64_t log_time;

@@ -87,8 +87,8 @@ template <class T>
 /// differs from what the template writes.
 [[nodiscard]] std::optional<FrameResource> read_template(std::string_view turtle);
 
-/// The same for JSON (not JSON-LD) written by our own template.  What it accepts, read_json_frame()
-/// reads as the same frame.
+/// Reads JSON (not JSON-LD) written by our own template in the same way.  What it accepts,
+/// read_json_frame() reads as the same frame.
 [[nodiscard]] std::optional<FrameResource> read_json_template(std::string_view json);
 
 [[nodiscard]] Result<FrameResource> read_rdf_frame(std::string_view text, Format format);

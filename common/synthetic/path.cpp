@@ -29,14 +29,14 @@ constexpr double kMinAmplitude = 0.3;
 constexpr double kMaxAmplitude = 1.4;
 constexpr int kRedraws = 20;
 constexpr double kTurnPause = 1.5;    // Between full turns [s].
-constexpr int kStations = 3;          // Of a workplace, side by side.
+constexpr int kStations = 3;          // A workplace has this many stations, side by side.
 constexpr double kStationStep = 0.4;  // from one station to the next [m]
 constexpr int kReachesPerStation = 4;
-constexpr double kReachTime = 0.7;      // Of a hand, each way [s].
+constexpr double kReachTime = 0.7;      // A hand needs this time each way [s].
 constexpr double kMinHold = 0.3;        // [s]
 constexpr double kMaxHold = 1.2;        // [s]
 constexpr double kAsideSpeed = 0.35;    // Mean, when stepping aside [m/s].
-constexpr double kReachForward = 0.42;  // Of targets, in front of the body [m].
+constexpr double kReachForward = 0.42;  // Targets are this far in front of the body [m].
 constexpr std::array kReachHeights{0.85, 1.10, 1.35, 1.60};  // [m]
 
 constexpr std::uint64_t kDrawWander = 101;

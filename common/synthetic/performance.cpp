@@ -26,7 +26,7 @@ constexpr double kStandingShare = 0.05;
 constexpr double kMinThigh = 0.25;
 constexpr double kMaxThigh = 0.65;
 constexpr double kMaxRate = 1000.0;  // [Hz]
-constexpr double kFastest = 30.0;    // Of any joint, even a thrower's hand [m/s].
+constexpr double kFastest = 30.0;    // No joint is faster, not even a thrower's hand [m/s].
 
 constexpr std::array kRequired{JointId::HipLeft,       JointId::HipRight,   JointId::KneeLeft,
                                JointId::KneeRight,     JointId::AnkleLeft,  JointId::AnkleRight,

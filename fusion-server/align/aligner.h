@@ -28,7 +28,7 @@ struct AlignConfig {
   /// Where most sensors are slow (cameras whose pictures take long), `max_gap` and `patience` grow
   /// with their periods and delays, up to this.  If this is less than both, they never grow.
   Duration slowest = std::chrono::milliseconds(2000);
-  double max_speed = 6.0;  ///< Of the mean of a body's core joints [m/s].
+  double max_speed = 6.0;  ///< Greatest speed of the mean of a body's core joints [m/s].
 
   bool operator==(const AlignConfig&) const = default;
 };

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kHabit = 30;     ///< Newest frames that make up a habit: one second.
 constexpr std::size_t kMinHabit = 10;  ///< With fewer there is no habit, except for a slow sensor.
-constexpr std::size_t kMinSlow = 4;    ///< As many are enough for a slow sensor.
+constexpr std::size_t kMinSlow = 4;    ///< A slow sensor needs only this many.
 constexpr Duration kSlow = std::chrono::seconds(1);
 
 /// Keeps only the first of several bodies with the same id, because they cannot be told apart

@@ -25,7 +25,7 @@ class Patience {
 
  private:
   AlignConfig config_;
-  Duration patience_;        ///< Of steady sensors.
+  Duration patience_;        ///< The patience for steady sensors.
   Duration common_;          ///< The median of what the sensors usually need.
   Duration steady_;          ///< A sensor with a wider spread is unsteady.
   bool all_needed_ = false;  ///< True if a body needs all of them.

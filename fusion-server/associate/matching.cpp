@@ -14,7 +14,7 @@ namespace chorus::associate {
 namespace {
 
 constexpr int kRounds = 3;  // After each round, sensors use each other's matches.
-// Of the place where a track is expected, relative to one sensor's view of the person.
+// The weight of the place where a track is expected; one sensor's view of the person has weight 1.
 constexpr double kOwnWeight = 1.0;
 constexpr double kSizeReach = 0.5;  // [m]; cost of a body that is larger by a factor of e.
 constexpr double kKnown = 1.0;      // [s] of sight, from which on a build is informative.

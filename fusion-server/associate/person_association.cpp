@@ -13,8 +13,9 @@
 namespace chorus::associate {
 namespace {
 
-constexpr std::size_t kMaxTracks = 256;                      // Four times what a frame may contain.
-constexpr Duration kCoastUnknown = std::chrono::seconds(1);  // Of tracks that were never published.
+constexpr std::size_t kMaxTracks = 256;  // Four times what a frame may contain.
+// How long a track that was never published is looked for.
+constexpr Duration kCoastUnknown = std::chrono::seconds(1);
 // A person through whose place sensors have seen for this long has left.
 constexpr Duration kGone = std::chrono::milliseconds(200);
 

@@ -36,7 +36,7 @@ class FrozenBodies {
     std::uint64_t coordinates = 0;  ///< A hash of the coordinates.
     Timestamp since;                ///< Capture of the first frame that had them.
   };
-  std::map<BodyId, Still> bodies_;  ///< Of the last frame.
+  std::map<BodyId, Still> bodies_;  ///< The bodies of the last frame.
 };
 
 }  // namespace chorus::associate

@@ -25,7 +25,8 @@ struct Track {
   int hits = 0;                                        ///< Number of instants with a view.
   Eigen::Vector3d core = Eigen::Vector3d::Zero();      ///< Mean of the core joints, world [m].
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
-  std::vector<Footprint> footprints = {};  ///< Of the instant when the person was last seen.
+  /// The bodies that sensors showed when the person was last seen.
+  std::vector<Footprint> footprints = {};
   /// Number of consecutive instants at an older track's spot without a common sensor.
   int shadowed = 0;
   Located joints;         ///< Where the joints were when last seen; known while cameras show rays.

@@ -8,7 +8,7 @@
 
 namespace chorus::outlet {
 
-/// x_in_target = scale * target_from_world * x_in_world.  `target_from_world` is orthonormal, and a
+/// x_in_target = scale * C * x_in_world, where C is `target_from_world`.  C is orthonormal, and a
 /// reflection for left-handed targets; a rotation R becomes C R C^T, which is a rotation in either
 /// case.
 struct Axes {

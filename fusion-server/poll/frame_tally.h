@@ -43,7 +43,7 @@ class AgeWatch {
   [[nodiscard]] bool strange(const SensorFrame& frame) const;
 
   std::deque<Duration> ages_;
-  std::uint64_t sequence_ = 0;  ///< Of the previous frame.
+  std::uint64_t sequence_ = 0;  ///< The previous frame's sequence.
   Timestamp captured_{};
   int odd_in_row_ = 0;
 };

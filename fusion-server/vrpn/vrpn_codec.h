@@ -16,9 +16,10 @@ namespace chorus::vrpn {
 
 inline constexpr std::size_t kCookieBytes = 24;
 inline constexpr std::size_t kHeaderBytes = 24;
-inline constexpr std::size_t kSequenceOffset = 20;  ///< Of the sequence number within a message.
-inline constexpr std::size_t kMaxMessage = 64000;   ///< Largest value of the length field.
-inline constexpr std::size_t kMaxDatagram = 1472;   ///< Size of a client's buffer.
+/// Where the sequence number is within a message.
+inline constexpr std::size_t kSequenceOffset = 20;
+inline constexpr std::size_t kMaxMessage = 64000;  ///< Largest value of the length field.
+inline constexpr std::size_t kMaxDatagram = 1472;  ///< Size of a client's buffer.
 /// The payload of a description has room for 100 bytes.
 inline constexpr std::size_t kMaxName = 95;
 /// Limit of the senders, and of the types, of each side.

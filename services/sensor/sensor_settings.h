@@ -31,7 +31,8 @@ struct StartSettings {
   http::ServerConfig http = {.port = 8081};    ///< Without tokens and identity.
   bool secure = false;                         ///< True if there is an identity.
   Duration history = std::chrono::seconds(3);  ///< How far back /frames/{seq} and ?at= reach.
-  ClockErrors clock;  ///< Of a simulated host; NTP keeps the clock of a real one.
+  /// The errors of a simulated host's clock; NTP keeps the clock of a real host.
+  ClockErrors clock;
   service::RecordingConfig recording;
   DeviceChoice device;
 

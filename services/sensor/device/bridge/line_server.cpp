@@ -175,7 +175,7 @@ Result<void> LineServer::Impl::open() {
   if (!failed) acceptor.bind(local_stream::endpoint(path), failed);
   if (failed) return cannot(path, failed.message());
   bound = true;
-  // Still before listen(), so that nobody can connect with another mode.
+  // Done before listen(), so that nobody can connect while the socket has another mode.
   if (::chmod(path.c_str(), kMode) != 0) return cannot(path, "its mode cannot be set");
   acceptor.listen(asio::socket_base::max_listen_connections, failed);
   if (failed) return cannot(path, failed.message());

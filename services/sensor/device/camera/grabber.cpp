@@ -74,7 +74,8 @@ bool Grabber::is_over(const VideoMoment& taken) const {
 /// True if the runner should get this picture: limits the rate to max_rate_hz, and to one picture a
 /// second while a file is read too slowly.
 bool Grabber::is_wanted(Timestamp captured) const {
-  constexpr double kNearly = 0.9;  // As a share of a step, because pictures are not evenly spaced.
+  // A picture after this share of a step is wanted, because pictures are not evenly spaced.
+  constexpr double kNearly = 0.9;
   if (!given_ || captured < *given_) return true;
   const Duration since = captured - *given_;
   if (late_ > kTooLate) return since >= kSlowest;

@@ -29,7 +29,7 @@
 namespace chorus::sensor_service {
 
 struct SimulatedSettings {
-  synthetic::Scene scene;          ///< Its only sensor is this one.
+  synthetic::Scene scene;          ///< This sensor is the only one in it.
   synthetic::SensorChoice choice;  ///< The sensor model.
   std::string people;              ///< Where their motion comes from: "CMU walking".
   Duration latency{0};
