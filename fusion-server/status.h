@@ -67,7 +67,7 @@ struct SessionStatus {
 
 /// Where the registration is kept across restarts.
 struct StorageStatus {
-  std::string folder;   ///< Empty: it is not kept.
+  std::string folder;   ///< Empty: the registration is not kept.
   std::string trouble;  ///< Why the last attempt to store it failed; empty if that succeeded.
 
   bool operator==(const StorageStatus&) const = default;

@@ -72,7 +72,7 @@ bool LineWriter::State::write_out(std::string_view rest) {
   while (!rest.empty() && !ended) {
     pollfd ready{options.descriptor, POLLOUT, 0};
     if (::poll(&ready, 1, kLookMs) <= 0 || ended) continue;
-    // At most as much as a pipe takes at once, so that no write blocks halfway.
+    // Writes at most as much as a pipe takes at once, so that no write blocks halfway.
     const ssize_t taken =
         ::write(options.descriptor, rest.data(), std::min<std::size_t>(rest.size(), PIPE_BUF));
     if (taken < 0 && (errno == EINTR || errno == EAGAIN)) continue;

@@ -27,7 +27,7 @@ class Covariance {
   [[nodiscard]] Eigen::Matrix3d matrix() const;
   [[nodiscard]] double term(std::size_t i) const { return static_cast<double>(upper_[i]); }
 
-  /// R C R^T: the covariance after its joint's space has been turned by `rotation`.
+  /// R C R^T with R = `rotation`: the covariance after the joint's space has been turned by R.
   [[nodiscard]] Covariance turned(const Eigen::Matrix3d& rotation) const;
 
   /// True when every term is finite and no direction has a negative variance, apart from what

@@ -26,7 +26,7 @@ struct Answer {
   bool close = false;
 };
 
-/// What the first lines of an answer say that only the moment of sending decides.
+/// What the first lines of an answer contain that is known only when it is sent.
 struct AnswerStamp {
   Timestamp received;  ///< When the request was complete: t1 of the clock field.
   Timestamp sent;      ///< t2, and Date.

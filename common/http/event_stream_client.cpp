@@ -120,8 +120,8 @@ void AsyncEventStream::Impl::write() {
 void AsyncEventStream::Impl::read_head() {
   parser.emplace();
   parser->header_limit(kMaxAnswerHeadBytes);
-  parser->body_limit(
-      std::numeric_limits<std::uint64_t>::max());  // a stream lasts until one side hangs up
+  // A stream lasts until one side hangs up.
+  parser->body_limit(std::numeric_limits<std::uint64_t>::max());
   in.reserve(kMaxAnswerHeadBytes);
   beast::http::async_read_header(
       stream, in, *parser,

@@ -10,8 +10,8 @@ namespace chorus::http {
 namespace {
 
 constexpr std::size_t kMaxSaid = 4096;  ///< Limit of one message from a client.
-/// Beast ends a broken or closed conversation by waiting for the client to hang up.  We check this
-/// often whether the conversation is over, and hang up ourselves.
+/// Beast ends a broken or closed conversation by waiting for the client to hang up.  At this
+/// interval we check whether the conversation is over, and then hang up ourselves.
 constexpr std::chrono::milliseconds kLook{250};
 constexpr std::string_view kMediaType = "application/json";
 

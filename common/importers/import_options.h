@@ -26,8 +26,8 @@ struct ImportLimits {
   std::size_t max_frames = 1'000'000;  ///< Nine hours at 30 Hz.
 };
 
-/// Limit of a distance from the sensor [m]: beyond it is a unit mistake (millimetres) or noise, not
-/// a person.  Tighter than kMaxCoordinate, because these files do not state their unit.
+/// Limit of a distance from the sensor [m]: a larger one is due to a wrong unit (millimetres) or to
+/// noise.  Tighter than kMaxCoordinate, because these files do not state their unit.
 inline constexpr double kMaxImported = 100.0;
 
 struct ImportOptions {

@@ -78,7 +78,7 @@ class Sorting {
     std::optional<Duration> shift;
     double clock_sigma = kUnknownClock;
     std::size_t kept = 0;
-    std::optional<Timestamp> newest;  ///< Of the frames that were kept.
+    std::optional<Timestamp> newest;  ///< Capture time of the newest frame kept.
     std::size_t left_out = 0;
     std::size_t kept_before = 0;          ///< The value of `kept` when the current file began.
     std::optional<Timestamp> newest_out;  ///< Newest of the frames left out of the current file.

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 constexpr auto kRest = std::chrono::seconds(1);
 /// Events are taken in batches, because waking up for each one would cost more than encoding it.
 constexpr auto kBatch = std::chrono::milliseconds(100);
-constexpr std::size_t kEarly = 4;  // wakes up early when the queue is 1/4 full
+constexpr std::size_t kEarly = 4;  // The thread wakes up early when the queue is 1/4 full.
 
 Result<void> enough_space(const fs::path& folder, std::uintmax_t wanted) {
   std::error_code error;

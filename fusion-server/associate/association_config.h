@@ -8,10 +8,11 @@
 namespace chorus::associate {
 
 struct AssociationConfig {
-  double gate = 0.6;  ///< A body is not this person if their core joints are farther apart [m].
-  double gate_growth = 0.3;  ///< By this the gate grows per second without a view [m/s].
-  double cluster = 0.4;  ///< New bodies of different sensors are one person if they are closer [m].
-  /// Rays of different cameras can found a new person if they pass each other closer [m].
+  /// A body whose core joints are farther from a person's than this is not that person [m].
+  double gate = 0.6;
+  double gate_growth = 0.3;  ///< The gate grows by this per second without a view [m/s].
+  double cluster = 0.4;  ///< New bodies of different sensors closer than this are one person [m].
+  /// Rays of different cameras can found a new person if they pass each other closer than this [m].
   double ray_cluster = 0.15;
   int confirm_frames = 3;  ///< Number of instants with a view before a new person is published.
   Duration coast = std::chrono::seconds(3);  ///< How long an unseen person is looked for.

@@ -9,7 +9,7 @@ namespace chorus::facing {
 
 struct LimbLimits {
   bool mend = true;
-  double apart = 0.15;  ///< A pair whose joints are closer together is not changed [m].
+  double apart = 0.15;  ///< A pair whose joints are closer together than this is not changed [m].
   /// Exchanging a pair must reduce its squared error to at most this fraction.
   double better = 0.3;
 

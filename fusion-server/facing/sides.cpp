@@ -86,7 +86,8 @@ Spans joined(const Instant& now) {
 /// the sides together, and the spans may point anywhere.  A real body does not become narrower, so
 /// spans much shorter than the held ones show no direction.
 double trust_in(const Spans& now, const Spans& before) {
-  constexpr double kNone = 0.5;  // As a share of the held length.
+  // Spans this short, relative to the held ones, are not trusted at all.
+  constexpr double kNone = 0.5;
   constexpr double kFull = 0.8;
   const double part = size_of(now) / std::max(size_of(before), kMinLength);
   return std::clamp((part - kNone) / (kFull - kNone), 0.0, 1.0);
