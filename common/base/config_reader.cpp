@@ -32,7 +32,8 @@ std::string reason_of(const Error& error) {
 std::string shown(std::string_view text) {
   if (text.size() <= kShownCharacters) return std::string(text);
   std::size_t end = kShownCharacters;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // whole UTF-8
+  // Cuts only between characters.
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
   return std::string(text.substr(0, end)) + "...";
 }
 

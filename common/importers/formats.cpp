@@ -109,8 +109,8 @@ Duration boot_time_of(const record::FrameRecording& recording) {
   return Duration(std::stoll(recording.notes.at(kBootTicksNote)) * kNanosecondsPerTick);
 }
 
-/// If the times of several files count from one sensor's start, as they do when all fit into one
-/// afternoon, keeps the time between these files.  Files that state no times stay unchanged.
+/// Keeps the time between files whose times count from the start of one sensor; that is assumed if
+/// all of these times fit into one afternoon.  Files that state no times stay unchanged.
 void keep_common_counter(std::vector<record::FrameRecording>& recordings) {
   constexpr Duration kOneAfternoon = std::chrono::hours(6);
   std::vector<record::FrameRecording*> counted;
