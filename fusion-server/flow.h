@@ -90,7 +90,8 @@ struct Registration {
   /// One for each sensor that took part in a walk, whether it has a place or not.
   std::map<SensorId, SensorVerdict> verdicts;
   std::vector<PairwiseRegistration> edges;
-  /// Found from the walk because some sensor's clock was not known; empty when all were.
+  /// Offsets found from the walk because the clock of some sensor was not known; empty if all were
+  /// known.
   std::map<SensorId, ClockOffset> clocks = {};
 };
 

@@ -24,7 +24,8 @@ struct SensorFrame {
   Timestamp received;          ///< When this process got the frame, by its own clock.
   std::vector<BodyFrame> bodies;
   std::optional<FloorPlane> floor;
-  /// How far the capture time may be off the other sensors' clocks, as a standard deviation [s].
+  /// How far the capture time may be wrong relative to other sensors' clocks, as a standard
+  /// deviation [s].
   double clock_sigma = 0.0;
 };
 

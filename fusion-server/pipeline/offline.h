@@ -38,8 +38,8 @@ using TakeSnapshot = std::function<Result<void>(Snapshot)>;
 [[nodiscard]] Result<Registration> register_recordings(OfflineInput input,
                                                        const OfflineConfig& config);
 
-/// Fuses every instant that any sensor covers; keeps only a few seconds of frames in memory.  Adds to
-/// the capture times what the registration says about the sensors' clocks.
+/// Fuses every instant that any sensor covers; keeps only a few seconds of frames in memory.  Adds
+/// to the capture times what the registration says about the sensors' clocks.
 [[nodiscard]] Result<void> fuse_recordings(OfflineInput input, const Registration& registration,
                                            const OfflineConfig& config, const TakeSnapshot& take);
 

@@ -171,7 +171,7 @@ Result<Extrinsics> extrinsics_of(const json& object, const std::string& where) {
   return out;
 }
 
-/// The offset of a sensor's clock, if one was found from the walk.
+/// Reads the offset of a sensor's clock, which is there if it was found from the walk.
 Result<void> read_clock(const json& object, const std::string& where, const SensorId& sensor,
                         Registration& out) {
   if (!object.contains(kClockOffset)) return {};

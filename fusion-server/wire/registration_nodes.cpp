@@ -53,7 +53,7 @@ Node sensor_node(const SensorId& id, const Extrinsics& place) {
   return node;
 }
 
-/// The offset of its clock, where one was found from the walk.
+/// Adds the offset of the sensor's clock, if one was found from the walk.
 void add_clock(Node& node, const Registration& registration, const SensorId& id) {
   const auto clock = registration.clocks.find(id);
   if (clock == registration.clocks.end()) return;
