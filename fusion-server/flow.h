@@ -21,17 +21,18 @@ namespace chorus {
 
 /// How the answer for an instant was obtained.
 enum class Basis {
-  Exact,         ///< There is a capture at exactly that instant.
-  Interpolated,  ///< Between two captures.
+  Exact,         ///< The sensor captured at exactly that instant.
+  Interpolated,  ///< The instant is between two captures.
   Pending,       ///< A later capture may still arrive: ask again.
-  Lost,          ///< There will be none: the sensor is past the instant, or the gap is too wide.
+  /// There will be none: the sensor is past the instant, or the gap between captures is too wide.
+  Lost,
 };
 
 /// One sensor's bodies, moved to the common instant.
 struct AlignedSensor {
   SensorId sensor;
   Basis basis = Basis::Lost;
-  /// `captured` is the common instant; empty unless Exact or Interpolated.
+  /// Their `captured` is the common instant; empty unless Exact or Interpolated.
   std::vector<BodyFrame> bodies;
   std::optional<FloorPlane> floor;
 };
@@ -46,8 +47,8 @@ struct Extrinsics {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
-/// An edge: the registration of one overlapping pair, as the client's pose seen from the master's
-/// side.  It is never silently inverted.
+/// An edge: the registration of one overlapping pair, with the direction in which it was computed;
+/// code that needs the reverse inverts it explicitly.
 struct PairwiseRegistration {
   SensorId target;
   SensorId source;
@@ -56,9 +57,10 @@ struct PairwiseRegistration {
   double icp_rms = 0.0;   ///< Residual after ICP refinement [m].
   std::size_t pairs = 0;  ///< Time-paired correspondences.
   std::size_t inliers = 0;
-  double spread = 0.0;     ///< rms radius of the walk about its centroid, horizontally [m].
-  double inflation = 1.0;  ///< Correlation: number of pairs per independent pair.
-  /// Covariance of a small motion exp(omega), tau on the target side [rad^2, rad m, m^2].
+  double spread = 0.0;     ///< RMS distance of the walk from its centroid, horizontally [m].
+  double inflation = 1.0;  ///< Because pairs are correlated: number of pairs per independent pair.
+  /// Covariance of a small motion (omega, tau) on the target side: exp(omega), then tau [rad^2, rad
+  /// m, m^2].
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
@@ -67,32 +69,34 @@ enum class Verdict { None, Provisional, Good, Refused };
 /// How far one sensor's place may be trusted.
 struct SensorVerdict {
   Verdict verdict = Verdict::None;   ///< Refused: the sensor has no place.
-  std::vector<std::string> reasons;  ///< Why it is not good, as sentences for people.
+  std::vector<std::string> reasons;  ///< Human-readable: why the verdict is not Good.
 };
 
-/// How far one sensor's clock is off, as seen from the walk.
+/// The error of one sensor's clock, as found from the walk.
 struct ClockOffset {
-  Duration added{0};  ///< Added to its capture times, they are by the common clock.
+  Duration added{0};  ///< After this is added to them, its capture times are by the common clock.
   Duration sigma{0};  ///< Standard deviation; zero for the sensor whose clock is the common one.
 };
 
-/// The places of all sensors; replaced as a whole, stored, versioned.
+/// The places of all sensors.  It is replaced as a whole, stored, and has a version.
 struct Registration {
   std::uint64_t version = 0;
   Timestamp solved;
-  Verdict verdict = Verdict::None;   ///< Of all sensors that have a place, together.
-  std::vector<std::string> reasons;  ///< Why it is not good, and why sensors are missing.
+  /// The verdict on all sensors that have a place, taken together.
+  Verdict verdict = Verdict::None;
+  std::vector<std::string> reasons;  ///< Why the verdict is not Good, and why sensors are missing.
   SensorId master;
   std::map<SensorId, Extrinsics> sensors;
-  /// For each sensor that took part in a walk, whether it has a place or not.
+  /// One for each sensor that took part in a walk, whether it has a place or not.
   std::map<SensorId, SensorVerdict> verdicts;
   std::vector<PairwiseRegistration> edges;
-  /// Found from the walk because some sensor's clock was not known; empty when all were.
+  /// Offsets found from the walk because the clock of some sensor was not known; empty if all were
+  /// known.
   std::map<SensorId, ClockOffset> clocks = {};
 };
 
 /// One sensor's view of one person at the common instant, with everything that fusion needs to know
-/// about it.
+/// about the view.
 struct SensorView {
   SensorId sensor;
   BodyId body;
@@ -110,20 +114,23 @@ struct SensorView {
 struct Person {
   PersonId id;
   std::vector<SensorView> views;
-  /// Probability that left and right are not exchanged; none: the sides were not resolved.
+  /// Probability that left and right are not exchanged; none if the sides were not resolved.
   std::optional<double> sides_confidence = {};
-  /// Nobody sees them: where their middle is expected, world [m].  There are no views then.
+  /// Set if nobody sees the person: where their middle is expected, world [m].  Then there are no
+  /// views.
   std::optional<Eigen::Vector3d> carried = {};
 };
 
 struct FusedBody {
   PersonId id;
   Skeleton<WorldSpace> skeleton;
-  std::array<double, kJointCount> variance{};             ///< Mean per-axis variance [m^2].
-  std::array<std::uint64_t, kJointCount> contributors{};  ///< Bit i: Snapshot::sensors[i].
-  std::optional<std::size_t> slot;              ///< Its number in every output; none: no slot.
+  std::array<double, kJointCount> variance{};  ///< Mean per-axis variance [m^2].
+  /// Bit i: Snapshot::sensors[i] contributed.
+  std::array<std::uint64_t, kJointCount> contributors{};
+  std::optional<std::size_t> slot;  ///< The person's slot in every output; none: no slot.
   std::optional<double> sides_confidence = {};  ///< Copied from Person.
-  /// For how long nobody has seen them [s]: they are where they are expected.  None: seen.
+  /// For how long nobody has seen the person [s]; meanwhile they are where they are expected.  None
+  /// while they are seen.
   std::optional<double> carried_for = {};
 };
 
@@ -132,7 +139,7 @@ struct SensorReport {
   SensorId sensor;
   Basis basis = Basis::Lost;
   std::size_t bodies = 0;
-  double weight = 0.0;  ///< Largest weight of the views that it has.
+  double weight = 0.0;  ///< Largest weight of the sensor's views.
 };
 
 /// All fused bodies at one instant.  Immutable once published.

@@ -9,17 +9,18 @@
 
 namespace chorus {
 
-/// Counters of one output for /metrics; all except `clients` only increase.
+/// Counters of one output for /metrics; all except `clients` only grow.
 struct SinkCounters {
-  std::uint64_t frames = 0;   ///< Handed to the protocol.
-  std::uint64_t dropped = 0;  ///< Oldest frames, dropped because the output did not keep up.
-  std::uint64_t failed = 0;   ///< Sends refused by the operating system; frames that threw.
+  std::uint64_t frames = 0;   ///< Handed over to the protocol.
+  std::uint64_t dropped = 0;  ///< Oldest frames, dropped because the output was too slow.
+  /// Sends that the operating system refused, and frames whose sending threw.
+  std::uint64_t failed = 0;
   std::uint64_t refused = 0;  ///< Clients or messages turned away: malformed, or over a limit.
-  std::uint64_t clients = 0;  ///< Connected now.
+  std::uint64_t clients = 0;  ///< Number connected now.
 };
 
 /// publish() is called on the pipeline's thread at the output rate and must return at once: a sink
-/// that communicates has a Handover and a thread of its own (see outlet.h).
+/// that communicates has a Handover and its own thread (see outlet.h).
 class Sink {
  public:
   virtual ~Sink() = default;

@@ -1,7 +1,6 @@
-// The state of the fusion server apart from the fused bodies: its sensors and its
-// registration.
+// The state of the fusion server apart from the fused bodies: its sensors and its registration.
 //
-// A value, replaced as a whole a few times a second; readers hold a shared_ptr to const.
+// A plain value, replaced as a whole a few times a second; readers hold a shared_ptr to const.
 #pragma once
 
 #include <cstdint>
@@ -18,22 +17,23 @@ struct SensorStatus {
   SensorId id;
   std::string url;
   std::string state;            ///< "live", "connecting", "lost", "refused"
-  std::string last_error;       ///< What is wrong at present; empty: nothing.
-  bool streaming = false;       ///< Its frames come by event stream instead of polling.
-  std::optional<Duration> age;  ///< Since the newest capture, by our clock; none: no frame yet.
+  std::string last_error;       ///< What is wrong at present; empty if nothing is.
+  bool streaming = false;       ///< True while its frames come by event stream instead of polling.
+  std::optional<Duration> age;  ///< Since its newest capture, by our clock; none: no frame yet.
   double rate_hz = 0.0;
-  std::size_t bodies = 0;         ///< In its newest frame.
-  double weight = 0.0;            ///< Largest Otto weight of its views; only "otto" methods use it.
-  double share = 0.0;             ///< Fraction of joints it contributed to in the last second.
-  double share_afterwards = 0.0;  ///< The same including its late frames, as /frame?at= has it.
-  double awaited = 0.0;           ///< Fraction of instants that waited for it to the end.
+  std::size_t bodies = 0;  ///< In its newest frame.
+  double weight = 0.0;     ///< Largest Otto weight of its views; only "otto" methods use weights.
+  double share = 0.0;  ///< Share of the joints fused in the last second to which it contributed.
+  double share_afterwards = 0.0;  ///< The same, including its late frames, as /frame?at= shows it.
+  /// Share of the instants that waited for this sensor as long as they could.
+  double awaited = 0.0;
   std::optional<Duration> clock_offset;  ///< Our clock minus the sensor's.
   std::optional<Duration> clock_uncertainty;
-  bool clock_corrected = false;  ///< The offset is added to its capture times.
+  bool clock_corrected = false;  ///< True if the offset is added to its capture times.
   std::uint64_t frames = 0;      ///< Delivered since start.
-  std::uint64_t missed = 0;      ///< Gaps in the sensor's own sequence that were not filled.
+  std::uint64_t missed = 0;      ///< Gaps in the sensor's frame numbers that were not filled.
   std::uint64_t refused = 0;     ///< Frames that went back in time or had an implausible time.
-  std::uint64_t failures = 0;    ///< Requests that got no usable answer.
+  std::uint64_t failures = 0;    ///< Requests without a usable answer.
 
   /// How far from where the others see people it sees them, beyond what is usual for it [m]; none
   /// until somebody has walked in view of it and of another one.
@@ -73,15 +73,15 @@ struct CoveredCell {
 
 /// One registration session: its progress, then its outcome.
 struct SessionStatus {
-  std::uint64_t id = 0;  ///< Increases; never reused.
+  std::uint64_t id = 0;  ///< Increases with each session; never reused.
   SessionState state = SessionState::Done;
-  bool automatic = false;  ///< Started by itself.
+  bool automatic = false;  ///< True if the server started it without a client's request.
   Timestamp started;
-  double elapsed = 0.0;             ///< Length of walk collected so far [s].
-  double target = 0.0;              ///< Length of walk wanted [s].
-  Verdict verdict = Verdict::None;  ///< Verdict of its last solve.
-  bool adopted = false;             ///< Its result is in use, or was, and was not withdrawn.
-  /// What was missing for the last solve, and what became of its result.
+  double elapsed = 0.0;             ///< Length of the walk collected so far [s].
+  double target = 0.0;              ///< Length of the walk that is wanted [s].
+  Verdict verdict = Verdict::None;  ///< The verdict of the last solve.
+  bool adopted = false;  ///< True if its result is, or was, in use and was not withdrawn.
+  /// What the last solve lacked, and what became of its result.
   std::vector<std::string> reasons;
   std::vector<PairCoverage> pairs;  ///< What the walk has covered; by pairs of sensors ...
   std::vector<CoveredCell> cells;   ///< ... and from above, once sensors have places.
@@ -95,8 +95,8 @@ struct SessionStatus {
 
 /// Where the registration is kept across restarts.
 struct StorageStatus {
-  std::string folder;   ///< Empty: nowhere.
-  std::string trouble;  ///< Why the last attempt to store failed; empty: it succeeded.
+  std::string folder;   ///< Empty: the registration is not kept.
+  std::string trouble;  ///< Why the last attempt to store it failed; empty if that succeeded.
 
   bool operator==(const StorageStatus&) const = default;
 };
@@ -105,7 +105,7 @@ struct StorageStatus {
   return !storage.folder.empty() && storage.trouble.empty();
 }
 
-/// The progress of registration, in addition to the registration in use.
+/// The progress of registration; the registration in use is separate.
 struct RegistrationProgress {
   std::vector<SessionStatus> sessions;  ///< The last few, newest first.
   std::uint64_t next_session = 1;       ///< Id of the next one.
@@ -113,7 +113,7 @@ struct RegistrationProgress {
   std::optional<Registration> earlier;  ///< In use before this one; an undo goes back to it.
   std::vector<std::string> alarms;      ///< Sensors that were moved, as sentences for people.
   StorageStatus storage;
-  std::uint64_t commands = 0;  ///< Number of clients' commands carried out.
+  std::uint64_t commands = 0;  ///< Number of clients' commands that were carried out.
 };
 
 struct Counters {
@@ -122,9 +122,9 @@ struct Counters {
   std::uint64_t ticks_skipped = 0;
   std::uint64_t displaced = 0;       ///< How often a sensor lost its place because it was moved.
   std::uint64_t frames_dropped = 0;  ///< Lost between poller and pipeline.
-  std::uint64_t steps_failed = 0;    ///< Pipeline iterations that threw.
-  std::uint64_t jobs_failed = 0;     ///< The same of the registration worker.
-  double step_seconds = 0.0;         ///< Time for fusing and handing over, by a steady clock.
+  std::uint64_t steps_failed = 0;    ///< Runs of the pipeline that threw an exception.
+  std::uint64_t jobs_failed = 0;     ///< Jobs of the registration worker that threw an exception.
+  double step_seconds = 0.0;         ///< Time spent fusing and handing over, by a steady clock.
   Histogram::Snapshot age;           ///< Time from instant to publication [s].
 };
 

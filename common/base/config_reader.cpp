@@ -19,11 +19,12 @@ namespace {
 using nlohmann::json;
 
 constexpr JsonLimits kLimits{.bytes = 1024 * 1024, .nesting = 16, .comments = true};
-constexpr std::size_t kMaxArrayLength = 4096;  ///< Also the largest array index that --set accepts.
-constexpr std::size_t kShownCharacters = 80;   ///< Of a foreign text, for messages.
+/// Limits the length of arrays, and the array index in --set.
+constexpr std::size_t kMaxArrayLength = 4096;
+constexpr std::size_t kShownCharacters = 80;  ///< How much of a wrong value messages quote.
 constexpr double kMillisecondsPerSecond = 1e3;
 
-/// What is wrong with a text; names the key that was given twice, if any.
+/// What is wrong with a value; names the key that was given twice, if any.
 std::string reason_of(const Error& error) {
   return error.context.empty() ? error.message : "'" + error.context + "': " + error.message;
 }
@@ -31,7 +32,8 @@ std::string reason_of(const Error& error) {
 std::string shown(std::string_view text) {
   if (text.size() <= kShownCharacters) return std::string(text);
   std::size_t end = kShownCharacters;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // whole UTF-8
+  // Cuts only between characters.
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
   return std::string(text.substr(0, end)) + "...";
 }
 
@@ -84,10 +86,10 @@ struct ConfigReader::Node {
   std::string path;  ///< "sensors.0"; empty at the root
   std::shared_ptr<std::vector<std::string>> problems;
   std::string origin;                        ///< Set only at the root.
-  std::set<std::string, std::less<>> known;  ///< Every key that was asked for.
+  std::set<std::string, std::less<>> known;  ///< Every key that the caller read.
   std::map<std::string, std::shared_ptr<Node>> children;
 
-  /// The value at a key, which counts as known from now on; null when the key is absent.
+  /// The value at a key, null when the key is absent.  From now on the key counts as known.
   const json* find(std::string_view key) {
     known.emplace(key);
     const auto found = value.find(std::string(key));
@@ -151,7 +153,7 @@ Result<void> ConfigReader::set(std::string_view assignment) {
   const std::string_view text = assignment.substr(equals + 1);
   auto parsed = parse_json(text, kLimits);
   if (!parsed) {
-    // 127.0.0.1 or a path is a text without quotes, but a broken list or object is a mistake.
+    // 127.0.0.1 or a path may stand without quotes, but a broken list or object is a mistake.
     if (!text.empty() && std::string_view("[{\"").find(text.front()) != std::string_view::npos)
       return fail(ErrorCode::Malformed, context, reason_of(parsed.error()));
   }

@@ -1,4 +1,4 @@
-// Parse, don't validate: reads JSON with // comments into a plain struct and names every mistake.
+// Reads JSON with // comments into a plain struct and reports every mistake.
 //
 //   auto root = ConfigReader::parse(text, "deploy/config/fusion.json");
 //   root->read("port", config.port);
@@ -6,9 +6,9 @@
 //   quality.read("best_distance_m", config.quality.best_distance);
 //   if (auto ok = root->finish(); !ok) return pass(ok);   // unknown keys, wrong types, ranges
 //
-// An absent key leaves the default.  finish() reports all problems at once: unknown keys with their
-// full path and the nearest known key, wrong types, values out of range.  Keys carry their unit as
-// a suffix.
+// An absent key leaves the default unchanged.  finish() reports all problems at once: unknown keys
+// with their full path and the nearest known key, wrong types, values out of range.  The names of
+// keys end in their unit.
 #pragma once
 
 #include <cstdint>
@@ -24,10 +24,12 @@ namespace chorus {
 
 class ConfigReader {
  public:
-  /// `origin` names the file in messages.  Nesting is bounded; duplicate keys are refused.
+  /// `origin` names the file in messages.  Nesting deeper than a limit and duplicate keys are
+  /// refused.
   [[nodiscard]] static Result<ConfigReader> parse(std::string_view text, std::string_view origin);
 
-  /// Replaces one value before reading: "sensors.0.port=8082" (the --set option of every program).
+  /// Replaces one value; to be called before it is read: "sensors.0.port=8082" (the --set option of
+  /// every program).
   [[nodiscard]] Result<void> set(std::string_view assignment);
 
   void read(std::string_view key, bool& out);
@@ -42,7 +44,7 @@ class ConfigReader {
   void read_s(std::string_view key, Duration& out, Duration least, Duration most);
   /// The key ends in _deg; the value is in degrees, `out` in radians.
   void read_deg(std::string_view key, double& out, double least_deg, double most_deg);
-  /// One of `names`; an absent key leaves `index` unchanged.
+  /// Sets `index` to the position in `names` of the value; an absent key leaves it unchanged.
   void read_choice(std::string_view key, std::size_t& index,
                    const std::vector<std::string_view>& names);
 
@@ -51,16 +53,16 @@ class ConfigReader {
   /// The objects of an array; none when it is absent.
   [[nodiscard]] std::vector<ConfigReader> items(std::string_view key);
   [[nodiscard]] bool has(std::string_view key) const;
-  /// The value at the key, set() included, as JSON without comments; "" when it is absent.
+  /// The value at the key, as JSON without comments and as changed by set(); "" when it is absent.
   [[nodiscard]] std::string text(std::string_view key) const;
-  /// The whole object.
+  /// The whole object, in the same form.
   [[nodiscard]] std::string text() const;
 
-  /// Adds a problem that the caller found at this key ("must be below ...").
+  /// Adds a problem that the caller found with the value of this key ("must be below ...").
   void complain(std::string_view key, std::string message);
 
   /// All problems in one Error (Malformed or InvalidArgument), or success.  Call it on the root,
-  /// once, last.
+  /// once, after everything has been read.
   [[nodiscard]] Result<void> finish() const;
 
   struct Node;  ///< Private: the parsed tree and the problem list.

@@ -1,4 +1,5 @@
-// Duration: nanoseconds, for both clocks.  In its own header so that configs can use times.
+// Duration: nanoseconds, for both clocks.  It has its own header so that configs can use durations
+// without including the clocks.
 #pragma once
 
 #include <chrono>

@@ -1,7 +1,8 @@
-// Errors: why something that can be expected to fail did fail.
+// Errors: why an operation failed that is expected to fail sometimes.
 //
-// An Error says what (code), where (context: a URI, a config key path, a joint, a file and line)
-// and what to change (message, a full sentence for a person).  Every code maps to one HTTP status.
+// An Error holds what went wrong (code), where (context: a URI, a config key path, a joint, a file
+// and line) and what to change (message: a full, human-readable sentence).  Every code maps to one
+// HTTP status.
 #pragma once
 
 #include <string>
@@ -10,8 +11,7 @@
 namespace chorus {
 
 enum class ErrorCode {
-  InvalidArgument,  ///< The caller's value is wrong; the message says which and what would be
-                    ///< right.
+  InvalidArgument,  ///< The caller's value is wrong; the message says which and what is right.
   Malformed,        ///< Bytes that do not follow their format.
   TooLarge,         ///< A stated limit was exceeded.
   NotFound,
@@ -20,11 +20,11 @@ enum class ErrorCode {
   Unsupported,    ///< Well-formed, but we lack this method, version or feature.
   Unauthorized,
   Forbidden,
-  Conflict,     ///< Not now: the state forbids it (a session is running already).
+  Conflict,     ///< The current state forbids it (for example, a session is running already).
   Unavailable,  ///< Not ready, or the other side does not answer; trying again may help.
   Timeout,
-  Io,        ///< The operating system refused.
-  Internal,  ///< A fault of ours.
+  Io,        ///< The operating system reported an error.
+  Internal,  ///< An error in this program.
 };
 
 struct Error {
@@ -35,7 +35,8 @@ struct Error {
   bool operator==(const Error&) const = default;
 };
 
-/// "not-found", "too-large": stable, for logs and problem documents.
+/// The name of a code, such as "not-found" or "too-large".  It never changes: logs and problem
+/// documents use it.
 [[nodiscard]] std::string_view name_of(ErrorCode code) noexcept;
 
 /// The HTTP status that answers a request with this error (400, 404, 413, ...).

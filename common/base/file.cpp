@@ -86,13 +86,14 @@ Result<std::string> read_file(const fs::path& path, std::uintmax_t max_bytes) {
 }
 
 Result<void> replace_file(const fs::path& path, std::string_view text) {
-  constexpr mode_t kFresh = 0666;  // minus the user's umask
+  constexpr mode_t kFresh = 0666;  // Before the user's umask is applied.
   constexpr mode_t kRights = 07777;
   struct stat before {};
   const bool there = ::stat(path.c_str(), &before) == 0;
   if (there && !S_ISREG(before.st_mode)) return write_into(path, text);
   std::error_code error;
-  const fs::path target = there ? fs::canonical(path, error) : path;  // keeps a symbolic link
+  // A symbolic link stays; its target is replaced.
+  const fs::path target = there ? fs::canonical(path, error) : path;
   if (error) return fail(ErrorCode::Io, path.string(), error.message());
   const fs::path partial = target.string() + ".partial";
   auto ok = write_synced(partial, text, kFresh);

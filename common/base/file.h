@@ -1,4 +1,4 @@
-// Whole files: read up to a limit, replaced atomically.
+// Whole files: reads them up to a size limit, replaces them atomically.
 #pragma once
 
 #include <cstdint>
@@ -10,17 +10,18 @@
 
 namespace chorus {
 
-/// NotFound when the file does not exist, TooLarge beyond max_bytes; pipes are read to their end.
+/// The file's bytes.  NotFound when the file does not exist, TooLarge when it has more than
+/// max_bytes; a pipe is read to its end.
 [[nodiscard]] Result<std::string> read_file(const std::filesystem::path& path,
                                             std::uintmax_t max_bytes);
 
-/// Even after a crash or a power cut the file holds either the whole old text or the whole new one:
-/// the new text is written to a second file, synced and renamed.  A pipe or a device (/dev/null) is
-/// written directly.
+/// Replaces the content of a file.  Even after a crash or a power cut the file holds either the
+/// whole old content or the whole new one: the new content is written to a second file, which is
+/// synced and then renamed.  A pipe or a device (/dev/null) is written directly.
 [[nodiscard]] Result<void> replace_file(const std::filesystem::path& path, std::string_view text);
 
-/// Syncs a folder, so that files created or renamed in it survive a power cut; best effort.  "":
-/// the current folder.
+/// Syncs a folder, so that files created or renamed in it survive a power cut; "" is the current
+/// folder.  Failures are ignored.
 void sync_folder(const std::filesystem::path& folder);
 
 }  // namespace chorus

@@ -1,7 +1,7 @@
 // A queue between two threads whose producer never waits.
 //
-// Bounded: when it is full, the oldest element is dropped and counted.  The consumer gets the
-// newest elements and learns how many it missed.
+// The queue is bounded: when it is full, the oldest element is dropped and counted.  So the
+// consumer gets the newest elements and can ask how many it missed.
 #pragma once
 
 #include <chrono>

@@ -11,9 +11,9 @@ namespace chorus {
 /// Counts values by bucket.  Any thread may call observe().
 class Histogram {
  public:
-  /// Upper bounds, ascending and finite; a last bucket without a bound is added.
+  /// `bounds` are upper bounds, ascending and finite; a last bucket without a bound is added.
   explicit Histogram(std::vector<double> bounds);
-  /// NaN is not counted.
+  /// Counts `value` in its bucket; ignores NaN.
   void observe(double value);
 
   struct Snapshot {

@@ -12,14 +12,14 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kShownKey = 80;  // characters of a foreign key that our messages quote
+constexpr std::size_t kShownKey = 80;  // How much of a wrong key messages quote [bytes].
 
 /// Thrown by the parser's callback; never leaves this file.
 struct TooDeep : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Refuses what the parser would silently accept: a repeated key, and unlimited nesting.
+/// Refuses what the parser would silently accept: repeated keys and unlimited nesting.
 class StructureGuard {
  public:
   explicit StructureGuard(int nesting) : nesting_(nesting) {}

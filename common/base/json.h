@@ -1,4 +1,5 @@
-// JSON from outside: limited in size and nesting, no repeated keys, no exceptions.
+// Parses JSON from outside the program: size and nesting are limited, repeated keys are refused,
+// and no exception is thrown.
 #pragma once
 
 #include <cstddef>

@@ -22,7 +22,8 @@ namespace {
 
 constexpr int kLookMs = 1000;  // A stuck writer checks this often whether it is still needed.
 
-/// Blocks all signals in the new thread: they are meant for the program's own threads.
+/// While this exists, new threads begin with all signals blocked: signals are meant for the
+/// program's own threads.
 class SignalsBlocked {
  public:
   SignalsBlocked() {
@@ -61,7 +62,7 @@ struct LineWriter::State {
   std::uint64_t untold = 0;            ///< Missing, not yet reported; writer's thread only.
   std::atomic<std::size_t> bytes = 0;  ///< Waiting or being written.
   std::atomic<std::uint64_t> dropped = 0;
-  /// Number of pieces that the reader has taken, or that are lost for good.
+  /// Number of pieces that the reader has taken or that are lost for good.
   std::atomic<std::uint64_t> progress = 0;
   std::atomic<bool> ended = false;
 };
@@ -71,7 +72,7 @@ bool LineWriter::State::write_out(std::string_view rest) {
   while (!rest.empty() && !ended) {
     pollfd ready{options.descriptor, POLLOUT, 0};
     if (::poll(&ready, 1, kLookMs) <= 0 || ended) continue;
-    // At most what a pipe takes at once, so that no piece waits halfway for the reader.
+    // Writes at most as much as a pipe takes at once, so that no write blocks halfway.
     const ssize_t taken =
         ::write(options.descriptor, rest.data(), std::min<std::size_t>(rest.size(), PIPE_BUF));
     if (taken < 0 && (errno == EINTR || errno == EAGAIN)) continue;

@@ -1,7 +1,7 @@
 // Writes lines to a file descriptor from its own thread, so that no caller waits for a reader.
 //
-// Writing to a full pipe blocks until somebody reads it.  So lines are queued here, up to a limit;
-// further ones are dropped and counted, and the count is written once the reader continues.
+// Writing to a full pipe blocks until somebody reads from it.  So lines are queued here, up to a
+// limit; further lines are dropped and counted, and the count is written once the reader continues.
 #pragma once
 
 #include <chrono>
@@ -15,7 +15,7 @@ namespace chorus {
 
 struct LineWriterOptions {
   int descriptor = 2;
-  std::size_t most_bytes = 1u << 20;  ///< Limit of the queued lines.
+  std::size_t most_bytes = 1u << 20;  ///< Limit of the bytes queued.
   /// Makes the line that says how many lines are missing.  Called on the writer's thread.
   std::function<std::string(std::uint64_t dropped)> gap;
 };
@@ -34,14 +34,15 @@ class LineWriter {
   /// Waits until all queued lines are written; false if the reader takes nothing for `patience`.
   bool flush(std::chrono::milliseconds patience);
 
-  /// The same for a signal handler: takes no lock and allocates nothing.
+  /// The same, for a signal handler: takes no lock and allocates nothing.
   void flush_in_signal_handler(std::chrono::milliseconds patience) const noexcept;
 
   [[nodiscard]] std::uint64_t dropped() const noexcept;
 
  private:
   struct State;
-  std::shared_ptr<State> state_;  ///< Outlives the writer if its thread is stuck.
+  std::shared_ptr<State> state_;  ///< Shared with the thread, which may be stuck in a write when
+                                  ///< the LineWriter is destroyed.
 };
 
 }  // namespace chorus

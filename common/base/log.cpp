@@ -55,7 +55,7 @@ class QueueSink final : public spdlog::sinks::base_sink<std::mutex> {
 struct Sink {
   spdlog::logger logger{"chorus", std::make_shared<spdlog::sinks::stderr_sink_mt>()};
   std::atomic<Format> format{Format::Text};
-  std::atomic<LineWriter*> writer = nullptr;  ///< Set by configuring; never destroyed.
+  std::atomic<LineWriter*> writer = nullptr;  ///< Set by configure(); never destroyed.
   std::once_flag queued;
 
   Sink() { logger.set_pattern(kTextPattern, spdlog::pattern_time_type::utc); }
@@ -84,7 +84,7 @@ bool plain(char c) {
          std::string_view("_-./:+@%,").find(c) != std::string_view::npos;
 }
 
-/// Plain words stay unquoted; text that could be mistaken for the next field or line is quoted.
+/// Plain words stay unquoted; a value that could be mistaken for the next field or line is quoted.
 std::string as_word(std::string_view text) {
   for (const char c : text) {
     if (!plain(c)) return json_text(text);
@@ -94,8 +94,8 @@ std::string as_word(std::string_view text) {
 
 std::string text_line(const LevelName& level, std::string_view name, Fields fields) {
   std::string line(level.name);
-  line.resize(6, ' ');  // aligned: longest level name, plus a space
-  // An event name is ours and may hold spaces, but never a line break.
+  line.resize(6, ' ');  // Room for the longest level name and a space.
+  // Event names are our own and may contain spaces, but must not break the line.
   for (const char c : name) line += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
   for (const Field& field : fields) {
     line.append(" ").append(field.key).append("=").append(as_word(field.value));
@@ -118,7 +118,8 @@ std::string line_of(const LevelName& level, std::string_view name, Fields fields
                                 : text_line(level, name, fields);
 }
 
-/// Reports dropped lines.  Bypasses the queue, because the report belongs where they are missing.
+/// Says how many lines were dropped.  It bypasses the queue, because it belongs where they are
+/// missing.
 std::string gap_line(std::uint64_t lines) {
   const Format format = sink().format.load();
   const LevelName& level = row_of(Level::Warn);
@@ -139,7 +140,8 @@ void flush_on_crash(int signal) {
   std::raise(signal);  // SA_RESETHAND: this time it ends the process
 }
 
-/// Installs the handler only if nothing else, such as a sanitizer, handles the signal.
+/// Installs the handler only if nothing else, such as a sanitizer, has installed one for the
+/// signal.
 void watch_for_crash(int signal) {
   struct sigaction now {};
   if (::sigaction(signal, nullptr, &now) != 0 || now.sa_handler != SIG_DFL) return;

@@ -1,7 +1,7 @@
-// Logging: one line per event, an event name and its fields, as text or JSON.
+// Logging: one line per event, with an event name and fields, as plain text or JSON.
 //
 // `log::warn("sensor lost", {{"sensor", id.str()}, {"after_ms", 1500}});`
-// Events that can repeat at frame rate go through RateReport (rate_report.h), never here directly.
+// Events that can repeat at frame rate are logged through RateReport (rate_report.h), not directly.
 #pragma once
 
 #include <concepts>
@@ -16,7 +16,7 @@ namespace chorus::log {
 enum class Level { Debug, Info, Warn, Error };
 enum class Format { Text, Json };
 
-/// The shortest decimal that reads back as the same double; "nan" and "inf" for those.
+/// The shortest decimal that reads back as the same double, or "nan", "inf", "-inf".
 [[nodiscard]] std::string number_text(double value);
 
 struct Field {
@@ -35,15 +35,17 @@ struct Field {
 };
 using Fields = std::initializer_list<Field>;
 
-/// Sets level and format; from now on a separate thread writes the lines (log_queue.h).
+/// Sets the lowest level that is logged, and the format; from now on a separate thread writes the
+/// lines (log_queue.h).
 void configure(Level least, Format format);
 
-/// Reads "debug", "info", "warn" or "error" / "text" or "json", as in config and command line.
+/// Parses the words of the configuration and the command line: "debug", "info", "warn", "error";
+/// "text", "json".
 [[nodiscard]] Result<Level> parse_level(std::string_view text);
 [[nodiscard]] Result<Format> parse_format(std::string_view text);
 
-/// True if lines of this level are written; worth checking before building the fields of a frequent
-/// line.
+/// True if lines of this level are written.  Worth checking where the fields of a frequent line are
+/// costly to build.
 [[nodiscard]] bool is_wanted(Level level);
 
 void event(Level level, std::string_view name, Fields fields = {});

@@ -8,7 +8,7 @@
 
 namespace chorus {
 
-/// For an even number of values the upper of the two middle ones.  There must be at least one.
+/// For an even number of values, the upper of the two middle ones.  `values` must not be empty.
 template <class Value>
 [[nodiscard]] Value median(std::vector<Value> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

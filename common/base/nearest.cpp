@@ -7,7 +7,7 @@
 namespace chorus {
 namespace {
 
-/// Words longer than this are not worth comparing: the cost is quadratic and no key is that long.
+/// Longer words are not compared: the cost is quadratic, and no key is that long.
 constexpr std::size_t kMaxWord = 64;
 
 std::size_t allowed_distance(std::size_t longer) {

@@ -1,4 +1,4 @@
-// Reads numbers from foreign text: the whole text or nothing.
+// Reads numbers from text that others wrote.
 #pragma once
 
 #include <charconv>
@@ -11,7 +11,8 @@
 
 namespace chorus {
 
-/// The number that `text` begins with; what follows it stays in `text`.
+/// The number at the beginning of `text`, which is removed from `text`; none, and `text` unchanged,
+/// if it does not begin with a number.
 template <class Number>
 [[nodiscard]] std::optional<Number> take_number(std::string_view& text) {
   Number value{};
@@ -21,14 +22,14 @@ template <class Number>
   return value;
 }
 
-/// The number that the whole text spells; no spaces, no plus sign, nothing after it.
+/// The number that the whole string spells: no spaces, no plus sign, nothing after it.
 template <class Number>
 [[nodiscard]] std::optional<Number> parse_number(std::string_view text) {
   const auto value = take_number<Number>(text);
   return text.empty() ? value : std::nullopt;
 }
 
-/// As parse_number, but a plus sign is allowed.
+/// Like parse_number, but a plus sign is allowed.
 template <class Number>
 [[nodiscard]] std::optional<Number> parse_signed(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
@@ -36,7 +37,7 @@ template <class Number>
 }
 
 /// A finite number as other programs write it: a plus sign is allowed, and a number too small for a
-/// double ("7.6e-400") is zero.
+/// double ("7.6e-400") becomes zero.
 [[nodiscard]] inline std::optional<double> parse_finite(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0.0;

@@ -1,9 +1,9 @@
 // Counts repeated events and lets one log line per second through for each event.
 //
 // Thread-safe.  `RateReport dropped("frame dropped"); dropped.hit("queue full");` logs the first
-// hit at once, and then at most one summary line a second with the count since the last line; a hit
-// writes it when it is due.  The destructor reports what is still unreported, with the detail of
-// the last hit, so no event goes uncounted.
+// hit at once.  A later hit logs the count since the last line, but only if that line is at least a
+// second old.  The destructor logs what has not been logged yet, with the detail of the last hit,
+// so every event is counted in some line.
 #pragma once
 
 #include <chrono>
@@ -23,7 +23,7 @@ class RateReport {
   RateReport(const RateReport&) = delete;
   RateReport& operator=(const RateReport&) = delete;
 
-  /// Counts one event; `detail` of the latest one is shown in the line.
+  /// Counts one event; the log line shows the `detail` of the latest one.
   void hit(std::string_view detail = {});
 
  private:

@@ -26,7 +26,8 @@ class SensorId {
   std::string text_;
 };
 
-/// A sensor's own number for a body it tracks.  Unique within the sensor; may swap and be reused.
+/// A sensor's own number for a body that it tracks.  Unique within the sensor at one time; the
+/// numbers of two bodies may swap, and a number may be reused.
 struct BodyId {
   std::uint64_t value = 0;
   auto operator<=>(const BodyId&) const = default;

@@ -1,4 +1,5 @@
-// Units: radians and metres internally; degrees and millimetres only for people to read.
+// Units: radians and metres everywhere inside; degrees and millimetres only where humans read or
+// write them.
 #pragma once
 
 #include <numbers>

@@ -9,7 +9,8 @@
 
 namespace chorus {
 
-/// "SpineBase", "HandTipLeft": as in the Kinect v2 SDK; also used in URI fragments and JSON keys.
+/// "SpineBase", "HandTipLeft": the names of the Kinect v2 SDK; also used in URI fragments and JSON
+/// keys.
 // clang-format off
 inline constexpr std::array<std::string_view, kJointCount> kJointNames{
     "SpineBase", "SpineMid", "Neck", "Head",
@@ -68,7 +69,7 @@ inline constexpr std::array<MirrorPair, 10> kMirrorPairs{{
 /// The joint on the other side; a centre joint is its own mirror.
 [[nodiscard]] JointId mirror(JointId id);
 
-/// Joints on the body's centre axis: the same seen from the front and from behind (Otto 3.2).
+/// Joints on the body's centre axis: they look the same from the front and from behind (Otto 3.2).
 inline constexpr std::array kCoreJoints{JointId::SpineBase, JointId::SpineMid,
                                         JointId::SpineShoulder, JointId::Neck, JointId::Head};
 

@@ -45,7 +45,7 @@ bool Covariance::plausible() const {
       std::all_of(upper_.begin(), upper_.end(), [](float term) { return std::isfinite(term); });
   if (!finite) return false;
   const Eigen::Matrix3d full = matrix();
-  // Most pass here, which spares them the eigenvalues; those take longer than writing the joint.
+  // Most matrices pass here without eigenvalues, which take longer than writing the joint.
   if (is_positive_definite(full + kWireRounding * Eigen::Matrix3d::Identity())) return true;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(full, Eigen::EigenvaluesOnly);
   const double largest = solver.eigenvalues().cwiseAbs().maxCoeff();

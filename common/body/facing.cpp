@@ -8,7 +8,7 @@
 namespace chorus {
 namespace {
 
-/// Unit vector in the x-z plane that the body faces: its right-to-left line crossed with +y.
+/// Unit vector in the x-z plane in which the body faces: its right-to-left line crossed with +y.
 std::optional<Eigen::Vector3d> forward_of(const Joint& left, const Joint& right) {
   if (!left.seen() || !right.seen()) return std::nullopt;
   Eigen::Vector3d to_left = left.position - right.position;

@@ -10,14 +10,15 @@
 namespace chorus {
 
 /// Yaw of the body away from facing the sensor squarely, in (-pi, pi]; 0: chest towards the sensor.
-/// Computed from the anatomical shoulder line (hips when a shoulder is not seen) and the horizontal
-/// line of sight; none when neither pair is seen or the line is vertical.
+/// Computed from the line between the shoulders (between the hips when a shoulder is not seen) and
+/// the horizontal line of sight; none when neither line is seen or the line of sight is vertical.
 [[nodiscard]] std::optional<double> facing_angle(const Skeleton<SensorSpace>& body);
 
 /// Horizontal angle of the neck off the optical axis; none when the neck is not seen.
 [[nodiscard]] std::optional<double> bearing_angle(const Skeleton<SensorSpace>& body);
 
-/// The same of the joint on the centre axis that is farthest off; none when none of them is seen.
+/// The bearing of whichever joint on the centre axis is farthest off the optical axis; none when
+/// none of them is seen.
 [[nodiscard]] std::optional<double> axis_bearing_angle(const Skeleton<SensorSpace>& body);
 
 /// Distance from the sensor to the neck [m]; none when the neck is not seen.

@@ -1,4 +1,4 @@
-// A body by the places of its joints alone.
+// Located: the positions of a body's joints, without states and orientations.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace chorus {
 
-/// Positions of a person's joints, as far as known; world [m].
+/// Positions of a person's joints [m], where known; in world space.
 using Located = std::array<std::optional<Eigen::Vector3d>, kJointCount>;
 
 /// The joints of the body that have a position.

@@ -1,9 +1,8 @@
 // One tracked body at one instant: 25 joints in one coordinate space.
 //
-// Units:  metres, unit quaternions (Hamilton; orientation takes joint axes to Space axes).
-// Spaces: right-handed, +y up.  The space is part of the type, so a sensor-space skeleton
-//         cannot reach fusion unregistered.  See docs/terminology.md.
-// Value type: copied and compared freely, never mutated once another thread can see it.
+// Units: metres, unit quaternions (Hamilton; an orientation takes joint axes to the axes of Space).
+// Spaces: right-handed, +y up.  The space is part of the type, so a skeleton in sensor space cannot
+// reach fusion without its sensor's registration.  See docs/terminology.md.
 #pragma once
 
 #include <array>
@@ -36,7 +35,8 @@ inline constexpr std::size_t kJointCount = 25;
   return static_cast<std::size_t>(id);
 }
 
-/// What the sensor reports about a joint.  Inferred joints are guesses behind an occlusion.
+/// What the sensor reports about a joint.  Inferred: the sensor guesses the joint behind an
+/// occlusion.
 enum class JointState : std::uint8_t { NotTracked, Inferred, Tracked };
 
 /// What a sensor measures of a joint.  A camera without depth knows only its direction.
@@ -50,7 +50,7 @@ struct Joint {
   Measurement measurement = Measurement::Point;
   Covariance covariance = {};  ///< Covariance of `position`, if the sensor knows it.
 
-  /// True for a tracked or inferred point.  Code that cannot use rays checks only this.
+  /// True for a tracked or inferred point.  Code that cannot use rays asks only this.
   [[nodiscard]] bool seen() const { return measurement == Measurement::Point && given(); }
   /// True for a tracked or inferred ray.
   [[nodiscard]] bool bears() const { return measurement == Measurement::Ray && given(); }
@@ -72,7 +72,7 @@ struct Skeleton {
 };
 
 /// The same body in world space.  There is no other way from sensor space to world space.  Rays are
-/// turned, not moved: they begin at the sensor, wherever it stands.
+/// turned, not moved: a ray still begins at its sensor, which the result does not name.
 [[nodiscard]] Skeleton<WorldSpace> to_world(const Eigen::Isometry3d& world_from_sensor,
                                             const Skeleton<SensorSpace>& body);
 

@@ -81,7 +81,8 @@ class BvhWriter {
 
   const SkeletonFit& fit_;
   const BvhOptions& options_;
-  std::vector<std::size_t> order_;  ///< Order of the joints when writing their channels.
+  /// The joints in the order of the hierarchy, in which the channels follow, too.
+  std::vector<std::size_t> order_;
   std::string text_ = "HIERARCHY\n";
 };
 

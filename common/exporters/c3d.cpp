@@ -12,14 +12,15 @@ namespace chorus::exporters {
 namespace {
 
 constexpr std::size_t kBlock = 512;
-constexpr std::size_t kMaxBlocks = 255;  // of parameters, because one byte counts them
+// The parameters may fill so many blocks, because one byte counts these.
+constexpr std::size_t kMaxBlocks = 255;
 constexpr std::size_t kMaxPersons = 100;
-constexpr std::size_t kLabelsPerParameter = 255;  // dimensions are stored in bytes
-constexpr std::size_t kMaxFrames = 65535;         // limit of a 16-bit word
+constexpr std::size_t kLabelsPerParameter = 255;  // A dimension is stored in a byte.
+constexpr std::size_t kMaxFrames = 65535;         // The limit of a 16-bit word.
 constexpr char kKey = 0x50;
 constexpr char kIntel = 84;
-constexpr float kFloatsInMillimetres = -1.0f;  // POINT:SCALE: negative means floats; 1 mm is
-// the unit of residuals; as integers, coordinates then reach 32 m
+/// POINT:SCALE.  Negative: coordinates are floats.  The magnitude is the unit of residuals [mm].
+constexpr float kFloatsInMillimetres = -1.0f;
 constexpr int kMaxResidual = 255;
 
 void append_word(std::string& bytes, std::size_t value) {
@@ -46,7 +47,7 @@ Content word(std::size_t value) {
   return content;
 }
 
-/// A 32-bit count as two words, as TRIAL stores it.
+/// A 32-bit count as two 16-bit words, which is how TRIAL stores it.
 Content two_words(std::size_t value) {
   Content content{2, {2}, {}};
   append_word(content.values, value & 0xffff);
@@ -62,7 +63,7 @@ Content real(double value) {
 
 Content text(std::string_view value) { return {-1, {value.size()}, std::string(value)}; }
 
-/// A column of texts, padded with blanks.
+/// A column of strings, padded with blanks.
 Content texts(const std::vector<std::string>& values) {
   std::size_t longest = 1;
   for (const std::string& value : values) longest = std::max(longest, value.size());
@@ -101,7 +102,7 @@ class Parameters {
   }
 
  private:
-  /// Length of the name, number, name, offset to the next entry, content; no description.
+  /// An entry: length of the name, number, name, offset to the next entry, content; no description.
   void entry(int number, std::string_view name, std::string_view content) {
     entries_ += static_cast<char>(name.size());
     entries_ += static_cast<char>(number);
@@ -167,7 +168,8 @@ std::string parameters_of(const Take& take, std::size_t data_start) {
   parameters.group("ANALOG");
   parameters.add("USED", word(0));
   parameters.add("GEN_SCALE", real(1.0));
-  parameters.add("RATE", real(0.0));  // no analog samples; py-c3d compares it with the header's
+  // No analog samples; py-c3d compares this rate with the header's.
+  parameters.add("RATE", real(0.0));
   for (const std::string_view name : {"LABELS", "DESCRIPTIONS", "UNITS"})
     parameters.add(name, {-1, {0, 0}, {}});
   parameters.add("SCALE", {4, {0}, {}});

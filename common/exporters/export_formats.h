@@ -1,4 +1,4 @@
-// Every format by name: `chorus export` calls this.
+// The table of all export formats, for `chorus export`.
 #pragma once
 
 #include <array>
@@ -38,10 +38,10 @@ struct ExportedFile {
 
 struct Exported {
   std::vector<ExportedFile> files;
-  std::vector<std::string> remarks;  ///< For people: how well bones of constant length fit.
+  std::vector<std::string> remarks;  ///< Human-readable: how well bones of constant length fit.
 };
 
-/// Several files result only if the format holds one person and the take has several.
+/// Several files result only if the format holds a single person and the take has several.
 [[nodiscard]] Result<Exported> exported(const Take& take, ExportFormat format,
                                         const ExportOptions& options = {});
 

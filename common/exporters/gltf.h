@@ -14,7 +14,8 @@
 
 namespace chorus::exporters {
 
-/// Seconds count from the start of the take; all fits have as many frames as the take.
+/// The samplers' times are seconds since the start of the take; every fit has as many poses as the
+/// take has frames.
 [[nodiscard]] std::string gltf_of(std::span<const SkeletonFit> fits, double rate_hz);
 
 }  // namespace chorus::exporters

@@ -1,4 +1,4 @@
-// The binary side of a glTF file: views and accessors over one buffer, and the GLB container.
+// The binary part of a glTF file: views and accessors over one buffer, and the GLB container.
 //
 // glTF 2.0, sections 3.6 (buffers, views, accessors) and 4 (GLB): little-endian, aligned to four
 // bytes, two chunks.
@@ -19,12 +19,13 @@ enum class ViewTarget { None = 0, Vertices = 34962, Indices = 34963 };
 
 class GltfBuffer {
  public:
-  /// Each returns the number of the new accessor.
+  /// Each of these functions appends values and returns the number of the new accessor.
   std::size_t scalars(std::span<const float> values);  ///< With minimum and maximum.
   std::size_t vectors(std::span<const Eigen::Vector3f> values, ViewTarget target);
-  std::size_t quaternions(std::span<const Eigen::Quaternionf> values);   ///< In the order x y z w.
-  std::size_t matrices(std::span<const Eigen::Matrix4f> values);         ///< Column by column.
-  std::size_t vertex_joints(std::span<const std::uint8_t> first_joint);  ///< Joints 2 to 4 are 0.
+  std::size_t quaternions(std::span<const Eigen::Quaternionf> values);  ///< In the order x y z w.
+  std::size_t matrices(std::span<const Eigen::Matrix4f> values);        ///< Column by column.
+  /// Joints 2 to 4 of each vertex are 0.
+  std::size_t vertex_joints(std::span<const std::uint8_t> first_joint);
   std::size_t vertex_weights(std::size_t count);  ///< All weight on the first joint.
   std::size_t indices(std::span<const std::uint16_t> values);
 

@@ -7,7 +7,7 @@
 namespace chorus::exporters {
 namespace {
 
-constexpr std::size_t kLongest = 512;  // the largest double in fixed notation, with its decimals
+constexpr std::size_t kLongest = 512;  // Room for the largest double in fixed notation.
 
 }  // namespace
 

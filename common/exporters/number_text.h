@@ -1,5 +1,5 @@
-// Numbers that every reader understands: with a decimal point and without exponent, locale, "-0" or
-// "nan".
+// Writes numbers as every reader understands them: with a decimal point, independent of the locale,
+// and without an exponent, "-0" or "nan".
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@ namespace chorus::exporters {
 /// Appends a number with `digits` after the point; 0 if it is not finite.
 void append_fixed(std::string& text, double value, int digits);
 
-/// Appends the shortest text that reads back as the same number.
+/// Appends the shortest string that reads back as the same number.
 void append_exact(std::string& text, double value);
 
 }  // namespace chorus::exporters

@@ -14,7 +14,7 @@ namespace chorus::exporters {
 namespace {
 
 constexpr double kMinBone = 1e-4;           // [m]; a shorter bone has no direction
-constexpr int kProcrustesRounds = 3;        // by then the shape no longer changes
+constexpr int kProcrustesRounds = 3;        // After this many, the shape no longer changes.
 constexpr std::size_t kShapeFrames = 2000;  // enough for a mean shape
 constexpr double kFootOut = 0.3;
 
@@ -78,7 +78,7 @@ std::vector<FittedJoint> tree_of(const PersonTrack& track) {
   return joints;
 }
 
-/// The rotation nearest to a 3x3 matrix (sum of target * source^T): Kabsch.
+/// The rotation nearest to `cross`, the sum of target * source^T (Kabsch).
 Eigen::Quaterniond nearest_rotation(const Eigen::Matrix3d& cross) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d turn = svd.matrixU() * svd.matrixV().transpose();
@@ -89,15 +89,15 @@ Eigen::Quaterniond nearest_rotation(const Eigen::Matrix3d& cross) {
   return Eigen::Quaterniond(turn).normalized();
 }
 
-/// Pairs of a bone at rest and the same bone as seen, for the children that are seen.
+/// Bones at rest and the same bones as seen, for those children of a joint that are seen.
 struct BonePairs {
   std::vector<Eigen::Vector3d> rest;
   std::vector<Eigen::Vector3d> seen;
 };
 
 Eigen::Quaterniond turn_between(const BonePairs& pairs, const Eigen::Quaterniond& likely) {
-  // A tiny weight on the likely rotation determines what the children leave free, and hardly
-  // affects the rest.
+  // A tiny weight on the likely rotation determines what the children leave undetermined, and
+  // hardly affects the rest.
   constexpr double kLikely = 1e-6;
   Eigen::Matrix3d cross = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < pairs.rest.size(); ++i)
@@ -105,7 +105,8 @@ Eigen::Quaterniond turn_between(const BonePairs& pairs, const Eigen::Quaterniond
   return nearest_rotation(cross + kLikely * cross.norm() * likely.toRotationMatrix());
 }
 
-/// Replaces the offsets of one joint's children by the mean shape in which they are seen.
+/// Replaces the rest offsets of one joint's children by the mean of the shapes in which they are
+/// seen.
 void average_shape(const PersonTrack& track, std::vector<FittedJoint>& joints, std::size_t joint,
                    const std::vector<std::size_t>& children) {
   std::vector<Eigen::Vector3d> sums(children.size(), Eigen::Vector3d::Zero());
@@ -164,8 +165,8 @@ Eigen::Quaterniond ChainFollower::turn_of(std::size_t joint, const Skeleton<Worl
   const Eigen::Quaterniond& last = pose_.turns[joint];
   if (pairs.rest.empty()) return last;
   if (pairs.rest.size() > 1) return turn_between(pairs, last);
-  // A joint's only child: the shortest arc from rest, whatever the last pose was.  If only one of
-  // several children is visible: from the last pose.
+  // A joint with a single child turns by the shortest arc from rest, whatever the last pose was;
+  // one with several children, of which one is visible, from the last pose.
   const bool alone = children_[joint].size() == 1;
   const Eigen::Quaterniond start = alone ? Eigen::Quaterniond::Identity() : last;
   return Eigen::Quaterniond::FromTwoVectors(start * pairs.rest[0], pairs.seen[0]) * start;

@@ -26,13 +26,14 @@ namespace chorus::exporters {
 
 struct FittedJoint {
   JointId id = JointId::SpineBase;
-  std::size_t parent = 0;                            ///< Index; parents come first; 0: the root.
+  /// Index of the parent, which comes before its children; the root's is 0.
+  std::size_t parent = 0;
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< From the parent, at rest [m].
 };
 
 struct FittedPose {
   Eigen::Vector3d root = Eigen::Vector3d::Zero();
-  /// parent_from_joint, in the order of the joints; without sign jumps from frame to frame.
+  /// parent_from_joint, in the order of the joints; no sign jumps from frame to frame.
   std::vector<Eigen::Quaterniond> turns;
 };
 
@@ -40,8 +41,8 @@ struct FittedPose {
 struct FitResidual {
   double rms = 0.0;                    ///< Over all seen joints of all frames with a SpineBase [m].
   double largest = 0.0;                ///< [m]
-  JointId joint = JointId::SpineBase;  ///< Which joint has the largest error,
-  std::size_t frame = 0;               ///< and in which frame.
+  JointId joint = JointId::SpineBase;  ///< The joint with the largest error.
+  std::size_t frame = 0;               ///< The frame with the largest error.
 };
 
 struct SkeletonFit {
@@ -58,10 +59,11 @@ struct SkeletonFit {
 [[nodiscard]] std::vector<Eigen::Vector3d> chain_positions(const SkeletonFit& fit,
                                                            const FittedPose& pose);
 
-/// Their positions at rest, with SpineBase at the origin [m].
+/// Positions of the chain's joints at rest, with SpineBase at the origin [m].
 [[nodiscard]] std::vector<Eigen::Vector3d> rest_positions(const SkeletonFit& fit);
 
-/// End of a joint without children, from that joint [m]: half a bone farther in its direction.
+/// The end of a joint without children, relative to that joint [m]: half the bone's length farther
+/// in the bone's direction.
 [[nodiscard]] Eigen::Vector3d end_offset(const FittedJoint& leaf);
 
 }  // namespace chorus::exporters

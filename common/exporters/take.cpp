@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kNanosecondsPerSecond = 1e9;
 constexpr Duration kSameInstant = std::chrono::microseconds(1);
-constexpr double kWholeHertz = 1e-6;  // relative tolerance, as instants are whole ns
-constexpr double kUsualHz = 30.0;     // for a single sample
+constexpr double kWholeHertz = 1e-6;  // Relative tolerance: instants are rounded to nanoseconds.
+constexpr double kUsualHz = 30.0;     // For a single sample.
 constexpr double kMaxRateHz = 1000.0;
 
 using Samples = std::vector<FusedSample>;
@@ -40,8 +40,7 @@ double usual_rate(const Samples& sorted) {
   }
   if (steps.empty()) return kUsualHz;
   const Duration usual = median(std::move(steps));
-  // The usual step, adjusted to the nanosecond so that the last sample is a whole number of steps
-  // away.
+  // The usual step, adjusted so that a whole number of steps leads to the last sample.
   const auto span = static_cast<double>((sorted.back().instant - sorted.front().instant).count());
   const double count = std::round(span / static_cast<double>(usual.count()));
   const double rate = count * kNanosecondsPerSecond / span;

@@ -52,16 +52,18 @@ struct Take {
 };
 
 struct TakeOptions {
-  double rate_hz = 0.0;  ///< 0: near the median step's; the last sample is on the grid.
+  /// 0: derived from the median step, so that the last sample lies on the grid.
+  double rate_hz = 0.0;
   Duration max_gap = std::chrono::milliseconds(200);
   std::optional<PersonId> person = {};  ///< Export only this person.
 };
 
-/// Limit for the poses of all persons together; a pose takes 2 kB.
+/// Limit for the poses of all persons together; one pose takes 2 kB.
 inline constexpr std::size_t kMaxPoses = 500'000;
 
-/// Refuses: no samples; an unknown person (the error names the known ones); a person twice at one
-/// instant; more than kMaxPoses.  Samples may come in any order.
+/// Puts the samples, which may come in any order, on the grid.  Refuses: no samples; an unknown
+/// person (the error names the known ones); two samples of a person at one instant; more than
+/// kMaxPoses.
 [[nodiscard]] Result<Take> make_take(std::vector<FusedSample> samples,
                                      const TakeOptions& options = {});
 

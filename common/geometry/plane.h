@@ -11,7 +11,7 @@ namespace chorus {
 
 struct Plane {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitY();  ///< Unit length.
-  double offset = 0.0;                                ///< d [m]; signed distance of the origin.
+  double offset = 0.0;  ///< d [m]: signed distance of the origin from the plane.
 
   /// Signed distance of a point; positive on the side the normal points to.
   [[nodiscard]] double distance(const Eigen::Vector3d& x) const { return normal.dot(x) + offset; }
@@ -25,12 +25,12 @@ struct Plane {
 /// Normalises (a, b, c, d); refuses a zero or non-finite normal.
 [[nodiscard]] Result<Plane> make_plane(double a, double b, double c, double d);
 
-/// Least-squares plane through at least three points that are not on one line (Otto 5.2.1's
-/// regression plane); the sign of the normal is chosen so that y is positive.
+/// Least-squares plane (Otto 5.2.1's regression plane); needs at least three points that are not on
+/// one line.  The sign of the normal is chosen so that its y is positive.
 [[nodiscard]] Result<Plane> fit_plane(std::span<const Eigen::Vector3d> points);
 
-/// The rotation and height that move the plane to y = 0: levelled_from_sensor.  Turns the normal
-/// onto +y by the shortest way, so yaw is kept.
+/// levelled_from_sensor: the rotation and the height that move the plane to y = 0.  Turns the
+/// normal onto +y by the shortest arc, so yaw is kept.
 [[nodiscard]] Eigen::Isometry3d level(const Plane& floor_in_sensor);
 
 }  // namespace chorus

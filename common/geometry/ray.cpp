@@ -10,7 +10,7 @@
 namespace chorus {
 namespace {
 
-constexpr double kLeastSpread = 0.0038;  // 1 - cos 5 deg; smaller: the rays are nearly parallel
+constexpr double kLeastSpread = 0.0038;  // 1 - cos 5 deg; below it the rays are nearly parallel.
 
 double along(const Ray& ray, const Eigen::Vector3d& point) {
   return ray.direction.dot(point - ray.eye);

@@ -22,11 +22,11 @@ struct Ray {
 /// Projector onto the plane perpendicular to a unit direction: I - d d^T.
 [[nodiscard]] Eigen::Matrix3d across(const Eigen::Vector3d& direction);
 
-/// The point with the least sum of squared distances to the lines.  None for fewer than two lines,
-/// or when all are parallel to within about 5 degrees, so that their depth would be a guess.
+/// The point with the least sum of squared distances to the rays' lines.  None for fewer than two
+/// rays, or when all are parallel to within about 5 degrees, so that the depth would be a guess.
 [[nodiscard]] std::optional<Eigen::Vector3d> meeting_point(std::span<const Ray> rays);
 
-/// Shortest distance between two rays [m]; none where meeting_point finds no point, or finds it
+/// Shortest distance between two rays [m]; none where meeting_point() returns none or a point
 /// behind an eye.
 [[nodiscard]] std::optional<double> distance(const Ray& a, const Ray& b);
 

@@ -15,12 +15,14 @@ struct RigidFit {
 };
 
 /// Minimises sum w |target - target_from_source * source|^2 over rotation and translation.  Needs
-/// three pairs that are not on one line; weights must be finite and >= 0 (empty: all are 1).
+/// three pairs that are not on one line.  Weights must be finite and >= 0; if `weights` is empty,
+/// all are 1.
 [[nodiscard]] Result<RigidFit> fit_rigid(std::span<const Eigen::Vector3d> source,
                                          std::span<const Eigen::Vector3d> target,
                                          std::span<const double> weights = {});
 
-/// The same, but rotates about +y only (both sides are levelled); two distinct pairs suffice.
+/// Like fit_rigid(), but rotates about +y only (both sides are levelled); two distinct pairs
+/// suffice.
 [[nodiscard]] Result<RigidFit> fit_yaw(std::span<const Eigen::Vector3d> source,
                                        std::span<const Eigen::Vector3d> target,
                                        std::span<const double> weights = {});

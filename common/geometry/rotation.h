@@ -1,6 +1,7 @@
 // Rotations: logarithm, exponential, distance, mean, yaw.  Radians; Hamilton quaternions.
 //
-// Total functions: a zero or non-finite quaternion counts as identity; q and -q are equivalent.
+// Every function accepts every input: a zero or non-finite quaternion counts as identity; q and -q
+// are equivalent.
 #pragma once
 
 #include <span>
@@ -12,8 +13,8 @@ namespace chorus {
 /// Unit quaternion nearest to q; identity when q is zero or not finite.
 [[nodiscard]] Eigen::Quaterniond normalised_or_identity(const Eigen::Quaterniond& q);
 
-/// True when all four parts are finite and the norm is within 1e-3 of 1 (the Kinect gives leaf
-/// joints 0 0 0 0).
+/// True when all four parts are finite and the norm is within 1e-3 of 1.  Not so for the leaf
+/// joints of the Kinect, whose orientation is 0 0 0 0.
 [[nodiscard]] bool is_unit(const Eigen::Quaterniond& q);
 
 /// Rotation vector of q: axis times angle, angle in [0, pi].

@@ -30,13 +30,13 @@ std::string_view host_part(std::string_view authority) {
   return authority.substr(0, colon);
 }
 
-/// True for an address or localhost: DNS cannot point such a name somewhere else.
+/// True for an address or localhost: nobody can make DNS resolve these to another host.
 bool is_fixed_name(std::string_view host) {
   if (equal_ignoring_case(host, "localhost") || host.starts_with('[')) return true;
   return !host.empty() && host.find_first_not_of("0123456789.") == std::string_view::npos;
 }
 
-/// What follows "scheme " in an Authorization field of that scheme.
+/// What follows "scheme " in an Authorization field; none if the field has another scheme.
 std::optional<std::string_view> credentials(const RequestHead& head, std::string_view scheme) {
   const std::string_view given = head.authorization;
   if (given.size() <= scheme.size() || given[scheme.size()] != ' ' ||
@@ -46,7 +46,7 @@ std::optional<std::string_view> credentials(const RequestHead& head, std::string
   return trimmed(given.substr(scheme.size()));
 }
 
-/// The password of Basic credentials (RFC 7617): what follows the colon, decoded.
+/// The password in Basic credentials (RFC 7617): what follows the colon, decoded.
 std::optional<std::string> password_in(std::string_view encoded) {
   constexpr std::size_t kMost = 4096;
   if (encoded.empty() || encoded.size() % 4 != 0 || encoded.size() > kMost) return std::nullopt;
@@ -66,8 +66,8 @@ bool is_reading(const RequestHead& head) {
   return head.method == Method::Get || head.method == Method::Head;
 }
 
-/// Browsers attach Basic credentials to any request that any page makes, so Basic credentials never
-/// allow writing, not even by a WebSocket's GET.
+/// The token in the request.  Browsers attach Basic credentials to any request that any page makes,
+/// so these never allow writing, not even by the GET that opens a WebSocket.
 std::optional<std::string> secret_in(const RequestHead& head, Role needed) {
   if (const auto bearer = credentials(head, "bearer")) return std::string(*bearer);
   const bool reads = needed != Role::Control && is_reading(head);
@@ -75,8 +75,8 @@ std::optional<std::string> secret_in(const RequestHead& head, Role needed) {
   return basic ? password_in(*basic) : std::nullopt;
 }
 
-/// The role that the request has proved; none without one of our tokens.  Every token is compared,
-/// so that the time does not reveal which one matched.
+/// The role of the request's token; none without one of our tokens.  Every token is compared, so
+/// that the time does not reveal which one matched.
 std::optional<Role> role_of(const RequestHead& head, Role needed, const Guard& guard) {
   const auto secret = secret_in(head, needed);
   if (!secret) return std::nullopt;
@@ -118,7 +118,7 @@ bool is_own_host(std::string_view host, const std::vector<std::string>& names) {
 std::vector<std::string> host_names() { return net::names_of(net::host_name()); }
 
 bool from_own_page(const RequestHead& head) {
-  // A proxy in front of us may end TLS; the page is https then.
+  // If a proxy in front of us ends TLS, the page's origin is https.
   for (const std::string_view scheme : {"http://", "https://"}) {
     if (is_present(head.origin) && head.origin.starts_with(scheme) &&
         equal_ignoring_case(head.origin.substr(scheme.size()), head.host))

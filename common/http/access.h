@@ -15,18 +15,18 @@ namespace chorus::http {
 /// Both ends of the connection that a request came over.
 struct Peer {
   bool loopback = false;
-  std::string local_address = {};  ///< Our address on this connection, as text without the port.
+  std::string local_address = {};  ///< Our address on this connection, without the port.
   std::uint16_t local_port = 0;
-  /// The peer is one of ServerConfig::trusted_proxies and forwards the requests of others.
+  /// True if the peer is one of ServerConfig::trusted_proxies: it forwards the requests of others.
   bool proxy = false;
-  std::string account = {};  ///< The account that limits count it for (net::account_of).
+  std::string account = {};  ///< The account under which limits count the peer (net::account_of).
 };
 
-/// What a token allows; each role includes the ones before it.
+/// What a token allows; each role includes the roles before it.
 enum class Role {
   Read,     ///< Everything except pictures and recordings.
-  Images,   ///< Pictures and recordings as well (Router::shows_people).
-  Control,  ///< Writing methods.
+  Images,   ///< In addition, pictures and recordings (Router::shows_people).
+  Control,  ///< In addition, writing methods.
 };
 
 struct Token {
@@ -39,19 +39,20 @@ struct Token {
 /// What a server requires of its clients.
 struct Guard {
   std::vector<Token> tokens = {};
-  bool open = false;  ///< The server listens to more than this host.
+  bool open = false;  ///< True if other hosts can reach the server.
 
-  /// At least one token is for reading, so every reader needs one.
+  /// True if at least one token is for reading only; then every reader needs a token.
   [[nodiscard]] bool knows_readers() const;
-  /// Reading needs a token, at least for clients on other hosts.
+  /// True if reading needs a token, at least for clients on other hosts.
   [[nodiscard]] bool guards_reading() const { return open || knows_readers(); }
 };
 
-/// Compares SHA-256 digests, so the time does not depend on the bytes.
+/// Compares SHA-256 digests, so the time that it takes does not depend on the bytes.
 [[nodiscard]] bool same_secret(std::string_view a, std::string_view b);
 
 /// True when a Host field names this service: by an address, as localhost, or by one of `names`.
-/// Any other name may belong to a web page whose owner points it here (DNS rebinding).
+/// Any other name may belong to a foreign web page whose owner lets the name resolve to our address
+/// (DNS rebinding).
 [[nodiscard]] bool is_own_host(std::string_view host, const std::vector<std::string>& names);
 
 /// The names under which this host is asked (net::names_of).
@@ -60,28 +61,28 @@ struct Guard {
 /// True for a request that comes from one of this service's own pages.
 [[nodiscard]] bool from_own_page(const RequestHead& head);
 
-/// True for a request from a person or program on this host: not one that a proxy forwarded, and
-/// not one that a web page of another origin made in a browser on this host (DNS rebinding
-/// included).
+/// True for a request that a person or program on this host made itself.  False for one that a
+/// proxy forwarded, and for one that a web page of another origin made in a browser on this host
+/// (DNS rebinding included).
 [[nodiscard]] bool is_trusted_local(const RequestHead& head, const Peer& peer);
 
-/// No error when the request may do what it needs.  Writing needs a token of role Control if any
-/// token is configured; otherwise only trusted local requests may write.  Reading needs a token
-/// once one for reading is configured.  Until then, reading from an open server needs any token or
-/// a trusted local request, and reading from any other server needs nothing.  A local request does
-/// not do without a reading token, because a proxy on this host is local as well.  For GET and HEAD
-/// the token may also come as the password of Basic authentication, for which browsers prompt.
+/// Returns no error when the request may do what `needed` covers.  Writing needs a token of role
+/// Control if any token is configured; otherwise only trusted local requests may write.  If a token
+/// for reading is configured, every reader needs a token, also on this host, because a proxy on
+/// this host looks like a local client.  If none is, reading from an open server needs any token or
+/// a trusted local request, and reading from any other server needs nothing.  For GET and HEAD the
+/// token may also come as the password of Basic authentication, for which browsers prompt.
 [[nodiscard]] std::optional<Error> refuse_access(const RequestHead& head, const Peer& peer,
                                                  Role needed, const Guard& guard);
 
-/// True when the request carries a token that is none of ours.
+/// True when the request carries a token that is not one of ours.
 [[nodiscard]] bool has_wrong_token(const RequestHead& head, const Guard& guard);
 
 [[nodiscard]] std::string_view name_of(Role role) noexcept;
-/// "read", "images" or "control".
+/// The role called "read", "images" or "control".
 [[nodiscard]] std::optional<Role> role_named(std::string_view name);
 
-/// True when `authority` (host[:port] of an absolute-form target) names our end of the connection.
+/// True when `authority` (host[:port] of an absolute-form target) names our end of this connection.
 [[nodiscard]] bool is_our_authority(std::string_view authority, const Peer& peer);
 
 }  // namespace chorus::http

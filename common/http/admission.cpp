@@ -12,10 +12,10 @@
 namespace chorus::http {
 namespace {
 
-// Connections accepted beyond the limit: each is told so, and may read what is vital.
+// Connections accepted beyond the limit: they may read what is vital and get 503 for the rest.
 constexpr std::size_t kReserve = 32;
 constexpr std::size_t kReservePerAddress = 4;
-// Descriptors for everything else: polled sensors, tracker outputs, files, the log.
+// Descriptors for everything besides HTTP clients: polled sensors, tracker outputs, files, the log.
 constexpr std::size_t kDescriptorsOfOthers = 192;
 
 }  // namespace
@@ -65,7 +65,7 @@ void ServerCore::welcome(net::Socket socket) {
   if (gone || connections.size() >= most_connections + kReserve ||
       (limited && of_it >= most_of_it + kReservePerAddress)) {
     if (of_it == 0) per_peer.erase(account);
-    return;  // Dropping the socket closes it.
+    return;  // Destroying the socket closes it.
   }
   ++of_it;
   const bool surplus_of_it = of_it > most_of_it;
@@ -80,8 +80,8 @@ void ServerCore::welcome(net::Socket socket) {
   connection->start_in_reserve();
 }
 
-/// Closes an idle connection: one of the newcomer's own address, or one of the address with the
-/// most connections; among those, the one that has been idle longest.
+/// Closes one idle connection.  `of_its_address`: one of the newcomer's address; otherwise one of
+/// the address with the most connections.  Among those, the one that has been idle longest.
 bool ServerCore::close_an_idle_one(const Connection* newcomer, bool of_its_address) {
   std::shared_ptr<Connection> least;
   std::size_t most = 0;

@@ -8,8 +8,8 @@
 
 namespace chorus::http {
 
-/// The client that a proxy names: the last address of X-Forwarded-For, which the proxy itself wrote
-/// (those before it came from the client).
+/// The account of the client that a proxy names: the last address of X-Forwarded-For, which the
+/// proxy itself wrote (the addresses before it came from the client and cannot be trusted).
 [[nodiscard]] std::optional<std::string> forwarded_account(const RequestHead& head);
 
 }  // namespace chorus::http

@@ -52,7 +52,7 @@ void append_number(std::string& out, std::int64_t value) {
   out.append(digits.data(), end);
 }
 
-/// The Date field changes only once a second, so many answers share one text.
+/// The Date field's value.  It changes only once a second, so it is formatted only that often.
 const std::string& date_of(Timestamp t) {
   thread_local std::int64_t second = -1;
   thread_local std::string text;
@@ -72,7 +72,7 @@ void append_clock(std::string& out, const AnswerStamp& stamp) {
   out.append("\r\n");
 }
 
-/// Milliseconds with three decimals; a capture clock ahead of ours gives age 0.
+/// Appends milliseconds with three decimals; 0 if the capture clock is ahead of ours.
 void append_age(std::string& out, Duration age) {
   const auto us =
       std::max<std::int64_t>(0, std::chrono::duration_cast<std::chrono::microseconds>(age).count());

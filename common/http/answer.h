@@ -1,4 +1,5 @@
-// One answer, ready to be written: its few header lines first, then shared bytes.
+// One answer, ready to be written: a few header lines of its own, then bytes shared between
+// answers.
 #pragma once
 
 #include <memory>
@@ -15,21 +16,23 @@ struct Answer {
   int status = 200;
   std::string extra = {};       ///< Header lines of this answer alone.
   std::string_view route = {};  ///< Header lines of the route; the responder owns them.
-  std::string_view own = {};    ///< The other header lines and the blank line.
+  std::string_view own = {};    ///< The remaining header lines and the blank line.
   std::string_view body = {};
   std::shared_ptr<const void> owner = {};     ///< Keeps `own` and `body` alive.
-  std::shared_ptr<const FileBody> file = {};  ///< What follows `body`.
-  std::optional<Timestamp> captured = {};     ///< Server-Timing tells its age at sending.
-  bool close = false;                         ///< Framing is lost: close after this answer.
+  std::shared_ptr<const FileBody> file = {};  ///< Sent after `body`.
+  /// When set, Server-Timing tells the age of the capture at sending.
+  std::optional<Timestamp> captured = {};
+  /// Close after this answer, because the beginning of the next request is unknown.
+  bool close = false;
 };
 
-/// What the first lines say in addition to the answer itself.
+/// What the first lines of an answer contain that is known only when it is sent.
 struct AnswerStamp {
   Timestamp received;  ///< When the request was complete: t1 of the clock field.
   Timestamp sent;      ///< t2, and Date.
   bool close = false;
   bool keep_alive_http10 = false;     ///< Sends keep-alive, for HTTP/1.0.
-  std::string_view clock_field = {};  ///< See AnswerPolicy.
+  std::string_view clock_field = {};  ///< The name of the clock field: see AnswerPolicy.
 };
 
 /// Appends the status line and the header lines of this answer alone, up to `route`.

@@ -1,4 +1,4 @@
-// What the owner of a server adds to its answers, in addition to what HTTP requires.
+// What the owner of a server adds to its answers besides what HTTP requires.
 #pragma once
 
 #include <string>
@@ -6,12 +6,12 @@
 namespace chorus::http {
 
 struct AnswerPolicy {
-  /// A header field that tells clients our clock: when the request was complete and when the answer
-  /// left, "t1 t2" in UTC nanoseconds.  Empty: no such field.
+  /// The name of a header field that tells clients our clock, as "t1 t2" in UTC nanoseconds: when
+  /// the request was complete and when the answer left.  Empty: no such field.
   std::string clock_field = {};
   std::string resource_lines = {};  ///< Header lines, each with CR LF, for every known path.
   std::string lines = {};           ///< Header lines, each with CR LF, for every answer.
-  std::string realm = "service";    ///< What the bearer token opens (RFC 9110 11.5).
+  std::string realm = "service";    ///< What the bearer token gives access to (RFC 9110 11.5).
 
   bool operator==(const AnswerPolicy&) const = default;
 };

@@ -57,7 +57,7 @@ struct AsyncClient::Impl : std::enable_shared_from_this<AsyncClient::Impl> {
   net::Timer timer;
 
   Callback callback;          ///< Set while a request is under way.
-  std::uint64_t attempt = 0;  ///< Handlers of an older attempt do nothing.
+  std::uint64_t attempt = 0;  ///< Handlers that belong to an older attempt do nothing.
   bool connected = false;
   bool reused = false;  ///< The connection has answered before, so the server may have closed it.
   bool closed = false;
@@ -151,7 +151,7 @@ void AsyncClient::Impl::read() {
 void AsyncClient::Impl::on_head(net::error_code failed) {
   if (failed) return on_failed_read(failed);
   if (parser->get().result_int() < unsigned{status::kOk}) return read();  // 100 Continue
-  // Beast 1.74 does not check a response's Content-Length against its body limit.
+  // Beast 1.74 does not compare a response's Content-Length with its body limit.
   const auto length = parser->content_length();
   if (!head_only && length && *length > limits.max_body_bytes) return too_large();
   if (parser->is_done()) return on_answer();
@@ -182,12 +182,13 @@ void AsyncClient::Impl::on_answer() {
   response.body = std::move(parser->get().body());
   response.sent_ns = sent_ns;
   response.received_ns = to_unix_ns(SystemClock().now());
-  // Bytes after the answer belong to no request of ours.
+  // Bytes after the answer do not belong to any request of ours.
   if (!parser->keep_alive() || in.size() > 0) drop();
   finish(std::move(response));
 }
 
-/// If the server has closed a kept-alive connection meanwhile, asks again on a new one.
+/// Repeats the request on a new connection if the server may have closed the kept-alive one;
+/// otherwise fails.
 void AsyncClient::Impl::retry_or_fail(net::error_code failed, std::string_view doing) {
   if (reused && repeatable) return connect();
   finish(fail(ErrorCode::Unavailable, authority,
@@ -199,7 +200,8 @@ void AsyncClient::Impl::arm(std::chrono::milliseconds time, std::string_view doi
   timer.async_wait(
       [self = shared_from_this(), mine = attempt, doing, time](net::error_code cancelled) {
         if (cancelled || self->attempt != mine || !self->callback) return;
-        // The timer was re-armed after expiry but before this handler ran: the newer wait counts.
+        // The timer was set again after it expired but before this handler ran: the newer wait
+        // counts.
         if (self->timer.expiry() > std::chrono::steady_clock::now()) return;
         self->finish(
             fail(ErrorCode::Timeout, self->authority,

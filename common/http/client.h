@@ -27,8 +27,8 @@ struct Url {
   bool secure = false;  ///< https
 };
 
-/// Reads http://host[:port][/path][?query], or https:// (port 443 then); anything else is
-/// InvalidArgument.
+/// Parses http://host[:port][/path][?query], or https:// with 443 as the default port; anything
+/// else is InvalidArgument.
 [[nodiscard]] Result<Url> parse_url(std::string_view text);
 
 /// "https://host:port/path"
@@ -45,8 +45,8 @@ struct ClientResponse {
   int status = 0;
   std::map<std::string, std::string, std::less<>> headers;  ///< The names are in lower case.
   std::string body;
-  std::int64_t sent_ns = 0;      ///< UTC by our clock when the request left
-  std::int64_t received_ns = 0;  ///< and when the answer was complete: t0, t3.
+  std::int64_t sent_ns = 0;      ///< UTC by our clock when the request left: t0.
+  std::int64_t received_ns = 0;  ///< UTC by our clock when the answer was complete: t3.
 };
 
 struct ClientLimits {
@@ -55,16 +55,17 @@ struct ClientLimits {
   std::chrono::milliseconds answer_timeout{10000};
 };
 
-/// Sends one request on its own connection; blocks.
+/// Sends one request on its own connection and blocks until the answer is complete.
 /// `trust`: the authorities accepted for an https:// server.
 [[nodiscard]] Result<ClientResponse> fetch(const Url& url, const ClientRequest& request,
                                            const ClientLimits& limits = {},
                                            const tls::Trust& trust = {});
 
-/// One kept-alive connection on the caller's io_context: one request at a time, callbacks on its
-/// thread.  Reconnects on demand; a GET on a connection that was closed meanwhile is repeated on a
-/// new one.  The destructor and close() cancel: the callback is then never called.  All calls and
-/// the destructor belong on the io_context's thread (or before it runs, or after).
+/// One kept-alive connection on the caller's io_context: one request at a time, callbacks on the
+/// io_context's thread.  Reconnects on demand; if the server has closed the connection meanwhile, a
+/// GET is repeated on a new one.  The destructor and close() cancel the request: its callback is
+/// then never called.  Call all functions and the destructor on the io_context's thread, or while
+/// the io_context does not run.
 class AsyncClient {
  public:
   using Callback = std::function<void(Result<ClientResponse>)>;

@@ -18,7 +18,7 @@ bool none_match_lists(std::string_view if_none_match, std::string_view etag) {
 }
 
 std::optional<std::chrono::seconds> wait_preference(std::string_view prefer) {
-  constexpr std::uint64_t kLongest = 86400;  // A day; the servers' own caps are far lower.
+  constexpr std::uint64_t kLongest = 86400;  // A day; the servers' own limits are far lower.
   while (!prefer.empty()) {
     std::string_view preference = next_element(prefer, ',');
     std::string_view token = next_element(preference, ';');

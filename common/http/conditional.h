@@ -1,4 +1,4 @@
-// Conditional requests and requests to wait: If-None-Match (RFC 9110 13.1.2), Prefer: wait (RFC
+// Parses If-None-Match (conditional requests, RFC 9110 13.1.2) and Prefer: wait (long polls, RFC
 // 7240 4.3).
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace chorus::http {
 
-/// True when the list holds `etag` (weak comparison) or is "*".  Empty matches nothing.
+/// True when the list contains `etag` (weak comparison) or is "*".  An empty list matches nothing.
 [[nodiscard]] bool none_match_lists(std::string_view if_none_match, std::string_view etag);
 
 /// Seconds of "wait=N" in a Prefer field; none when it is absent or not a number.

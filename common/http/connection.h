@@ -15,16 +15,16 @@ class Connection : public std::enable_shared_from_this<Connection> {
   explicit Connection(std::string peer_address) : peer_address_(std::move(peer_address)) {}
   virtual ~Connection() = default;
 
-  /// The document that this client waits for or streams has changed.
+  /// Called when the document that this client waits for or streams has changed.
   virtual void wake() = 0;
-  /// The deadline has passed.
+  /// Called when the deadline has passed.
   virtual void expire() = 0;
-  /// The server is stopping: finish what is under way, begin nothing new.
+  /// Called when the server is stopping: finish what is under way, begin nothing new.
   virtual void stop() = 0;
   virtual void close() = 0;
 
   [[nodiscard]] SteadyTime deadline() const { return deadline_; }
-  /// True between requests: it may be closed when others need the room.
+  /// True between requests: the connection may be closed to make room for others.
   [[nodiscard]] virtual bool idle() const { return false; }
 
   /// The account that limits count this connection for: see net::account_of.

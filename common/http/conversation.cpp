@@ -12,13 +12,13 @@ namespace chorus::http {
 namespace {
 
 constexpr std::chrono::seconds kLingerTime{2};
-constexpr std::size_t kLingerBytes = 1u << 20;  // How much a refused client may still send.
+constexpr std::size_t kLingerBytes = 1u << 20;  // How much of a refused request is still read.
 
-// The client holds the body back until it reads this.
+// The client sends the body only after it has read this.
 constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
 
-/// For debugging (log.level "debug").  Logs neither the query nor the fields, because they may hold
-/// secrets.
+/// Logs a request, for debugging (log.level "debug"), without query and fields, because these may
+/// contain secrets.
 void note(const RequestHead& head, const Peer& peer, int status) {
   if (!log::is_wanted(log::Level::Debug)) return;
   log::debug("request", {{"method", name_of(head.method)},
@@ -66,7 +66,8 @@ Orders Conversation::input_ended(bool cleanly, SteadyTime now) {
   return resume(now, [this, cleanly] {
     reading_ = false;
     end_of_input_ = true;
-    // Requests made before the end of input are still answered, but none of them waits any longer.
+    // Requests that came before the end of input are still answered, but none of them waits any
+    // longer.
     if (!cleanly || state_ != State::Writing) hang_up();
   });
 }
@@ -136,7 +137,7 @@ void Conversation::on_input(std::size_t size) {
       buffer_.clear();
       return drained_ > kLingerBytes ? hang_up() : read();
     default:
-      return;  // The client sent a request ahead; it stays in the buffer.
+      return;  // The client has sent a request ahead; it stays in the buffer.
   }
 }
 
@@ -193,7 +194,7 @@ std::string Conversation::handshake() const {
   return handshake_of(head_, unread().substr(request_size_));
 }
 
-/// True when there is room for this request's sender; beyond the limits, only for a vital path.
+/// True when the sender of this request has room for it; beyond the limits, only for a vital path.
 bool Conversation::may_ask() {
   if (peer_.proxy) {
     if (const auto account = forwarded_account(head_)) {
@@ -214,11 +215,11 @@ void Conversation::begin_body() {
 }
 
 void Conversation::advance_body() {
-  // The head stays in the buffer, for the action to read; only the body after it is moved out.
+  // The head stays in the buffer, because the action reads it; only the body is moved out.
   const auto wanted = static_cast<std::size_t>(head_.content_length) - body_.size();
   buffer_.take_body(request_size_, wanted, body_);
   if (body_.size() < head_.content_length) {
-    // A head that fills the buffer leaves no room for reading its body.
+    // A head that nearly fills the buffer leaves no room for reading the body.
     if (buffer_.full())
       return refuse(status::kFieldsTooLarge, "shorten the header fields of a request with a body");
     return read();
@@ -280,11 +281,12 @@ void Conversation::end_download() {
   if (std::exchange(downloading_, false)) uncount(context_.counters.downloads_open);
 }
 
-/// The next piece of the answer's file; false when there is none left.
+/// Sends the next piece of the answer's file; false when none is left.
 bool Conversation::send_piece() {
   if (!answer_.file || sent_of_file_ >= answer_.file->size()) return false;
   if (!answer_.file->read(sent_of_file_, piece_)) {
-    hang_up();  // the announced length cannot be kept; only hanging up can say so
+    hang_up();  // The file became too short for the announced length; hanging up is the only way to
+                // say so.
     return true;
   }
   sent_of_file_ += piece_.size();
@@ -307,8 +309,8 @@ void Conversation::next_request() {
   advance();
 }
 
-/// Tells the client that nothing more follows and reads until the client has closed: closing with
-/// unread input would reset the connection and destroy the answer on its way.
+/// Shuts down sending and reads until the client has closed: closing with unread input would reset
+/// the connection, and the client might not get the answer.
 void Conversation::linger() {
   if (end_of_input_) return hang_up();
   state_ = State::Lingering;

@@ -1,4 +1,5 @@
-// One client's requests and our answers, as a state machine without IO: events in, orders out.
+// One client's requests and our answers, as a state machine without IO: it takes events and returns
+// orders.
 //
 // Requests are read one after the other and answered in order; what a client sends ahead waits in
 // the buffer.  Long polls and event streams wait for publishes.  Time is an argument; the Asio
@@ -30,27 +31,30 @@ struct ConversationContext {
 
 class Conversation {
  public:
-  /// Counts the connection for the account that a trusted proxy names; false when it is full.
+  /// Counts the connection for the account that a trusted proxy names; false when that account has
+  /// too many connections.
   using Charge = std::function<bool(const std::string& account)>;
 
   Conversation(ConversationContext context, Peer peer, Charge charge);
 
-  /// Called before begin when the client speaks without TLS to a server that requires it.  Its
-  /// request is refused, with what to do.
+  /// Call this before begin() when the client speaks without TLS to a server that requires it.  Its
+  /// request is then refused, with advice to use https.
   void expect_tls() { expects_tls_ = true; }
 
   [[nodiscard]] Orders begin(SteadyTime now);
-  /// Called when there are too many connections: answers one request, if it is for something vital.
+  /// Call this instead of begin() when there are too many connections: answers one request, if its
+  /// path is vital.
   [[nodiscard]] Orders begin_in_reserve(SteadyTime now);
   [[nodiscard]] Orders received(std::size_t size, SteadyTime now);
-  /// `cleanly`: the client has closed its side; otherwise the connection is broken.
+  /// `cleanly`: the client has closed its sending side; otherwise the connection is broken.
   [[nodiscard]] Orders input_ended(bool cleanly, SteadyTime now);
   [[nodiscard]] Orders sent(std::size_t size, SteadyTime now);
   [[nodiscard]] Orders send_failed(std::size_t size, SteadyTime now);
   [[nodiscard]] Orders settled(SteadyTime now);
-  /// A new version of the entry's document has been published; the wait is no longer registered.
+  /// Call this when a new version of the entry's document was published and the wait is no longer
+  /// registered.
   [[nodiscard]] Orders woken(SteadyTime now);
-  /// The wait has just been registered: checks whether a version was published before that.
+  /// Call this when the wait has just been registered: checks for a version published before that.
   [[nodiscard]] Orders look(SteadyTime now);
   [[nodiscard]] Orders expired(SteadyTime now);
   /// The server is stopping: finishes what is under way and begins nothing new.
@@ -59,9 +63,9 @@ class Conversation {
 
   [[nodiscard]] std::span<char> room() { return buffer_.room(); }
   [[nodiscard]] const std::array<std::string_view, 4>& output() const { return output_; }
-  /// For Beast, from the request that asked for an upgrade: see handshake_of.
+  /// The request that asked for an upgrade, in the form that Beast reads: see handshake_of.
   [[nodiscard]] std::string handshake() const;
-  /// Its entry says which document to wait for, or which WebSocket to upgrade to.
+  /// The reaction's entry says which document to wait for, or which WebSocket to upgrade to.
   [[nodiscard]] const Reaction& reaction() const { return reaction_; }
   [[nodiscard]] SteadyTime deadline() const { return deadline_; }
   [[nodiscard]] bool closed() const { return state_ == State::Closed; }

@@ -1,4 +1,4 @@
-// Waiting for the next version: long polls, and server-sent events (WHATWG HTML 9.2), which carry
+// Waiting for the next version: long polls, and server-sent events (WHATWG HTML 9.2), which send
 // the newest document as often as the reader can take it.
 #include <utility>
 
@@ -38,7 +38,7 @@ void Conversation::on_woken() {
   orders_.wait = state_ == State::Waiting || reaction_.kind == Reaction::Kind::Stream;
 }
 
-/// A publish wakes only registered waits, so look for one that came just before.
+/// A publish wakes only registered waits, so this looks for a version published just before.
 void Conversation::on_look() {
   if (state_ == State::Streaming) return push_event();
   if (state_ != State::Waiting) return;
@@ -53,8 +53,8 @@ void Conversation::end_wait(Answer answer) {
   send(std::move(answer));
 }
 
-/// Keeps reading while there is nothing to answer, to notice when the client leaves; not if more
-/// requests are in the buffer already, because compact() must then be possible.
+/// Keeps reading while there is nothing to answer, to notice when the client leaves.  Not if the
+/// buffer contains more requests, because compact() must be possible then.
 void Conversation::watch() {
   if (unread().size() == request_size_) read();
 }

@@ -6,7 +6,7 @@
 
 namespace chorus::http {
 
-/// The ServerCounters while the server's thread counts; other threads may read them.
+/// The ServerCounters in a form that other threads may read while the server's thread counts.
 struct AtomicCounters {
   using Count = std::atomic<std::uint64_t>;
   Count requests = 0, refused = 0, not_modified = 0, connections_total = 0, connections_open = 0,
@@ -15,7 +15,8 @@ struct AtomicCounters {
         handshakes_failed = 0, connections_limit = 0;
 };
 
-/// There is only one writer, and a plain load and store is cheaper than a locked add.
+/// Adds to a counter.  Only one thread writes, so a plain load and store suffice; they are cheaper
+/// than a locked add.
 inline void count(AtomicCounters::Count& counter, std::uint64_t by = 1) {
   counter.store(counter.load(std::memory_order_relaxed) + by, std::memory_order_relaxed);
 }

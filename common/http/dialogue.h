@@ -13,33 +13,34 @@
 
 namespace chorus::http {
 
-/// What to send to the client, in order, and whether the dialogue ends after that.
+/// What to send to the client, in order, and whether the dialogue ends afterwards.
 struct Reply {
   std::vector<std::string> messages = {};
   bool over = false;
 };
 
-/// The server speaks only through the replies of these calls.
+/// The dialogue can send messages only as replies of these calls.
 class Dialogue {
  public:
-  virtual ~Dialogue() = default;  ///< The client has left, or is disconnected.
+  virtual ~Dialogue() = default;  ///< Called when the client has left or has been disconnected.
   /// Called with one complete message.
   [[nodiscard]] virtual Reply hear(std::string_view message) = 0;
-  /// Called four times a second; returns what the server has to say unasked.
+  /// Called four times a second, so that the dialogue can send something without being asked.
   [[nodiscard]] virtual Reply look() = 0;
 };
 
-/// Begins a dialogue with a client at this address; an Error refuses it with a problem document.
+/// Begins a dialogue with the client at this address; if it returns an Error, the client is refused
+/// with a problem document.
 using Opener = std::function<Result<std::unique_ptr<Dialogue>>(const std::string& address)>;
 
 /// How a pattern's WebSockets are answered.
 struct DialogueRoute {
   Opener open;
-  std::string protocol;                       ///< Its name in Sec-WebSocket-Protocol.
-  std::size_t max_message_bytes = 64 * 1024;  ///< A client that sends a longer one is disconnected.
+  std::string protocol;                       ///< The protocol's name in Sec-WebSocket-Protocol.
+  std::size_t max_message_bytes = 64 * 1024;  ///< Longer messages disconnect their client.
 };
 
-/// A client that does not read is disconnected when this many bytes wait for it.
+/// A client that does not read is disconnected when this many bytes are waiting for it.
 inline constexpr std::size_t kMaxUnread = 64 * 1024;
 
 }  // namespace chorus::http

@@ -15,7 +15,7 @@ namespace {
 struct TypeRow {
   std::string_view media_type;
   std::string_view tag;         ///< The last part of the ETag.
-  std::string_view parameters;  ///< Sent after the type.
+  std::string_view parameters;  ///< Sent after the media type.
 };
 
 constexpr std::array kTypes{
@@ -32,14 +32,15 @@ constexpr std::array kTypes{
 constexpr std::string_view kJson = "application/json";
 constexpr std::array<std::string_view, 2> kEventTypes{kJson, "text/turtle"};
 
-/// A line break in JSON is only white space, but in an event it would end the field.
+/// Writes JSON, where a line break is only white space, as one data line; a line break would end
+/// the field.
 void append_as_one_line(std::string& out, std::string_view text) {
   out += "data: ";
   for (const char c : text) out += c == '\n' || c == '\r' ? ' ' : c;
   out += '\n';
 }
 
-/// One data line for each line of the text: the reader joins them again with line feeds.
+/// Writes one data line for each line of the text; the reader joins them with line feeds.
 void append_line_by_line(std::string& out, std::string_view text) {
   for (std::size_t begin = 0;;) {
     const std::size_t end = text.find_first_of("\r\n", begin);
@@ -62,7 +63,8 @@ std::string content_type(const std::string& media_type) {
   return media_type + std::string(row->parameters);
 }
 
-/// Strong and quoted; characters that an entity tag cannot hold become '_' (RFC 9110 8.8.3).
+/// The ETag: strong and quoted; characters that an entity tag cannot contain become '_' (RFC 9110
+/// 8.8.3).
 std::string entity_tag(const DocumentOptions& options, const Variant& variant, std::size_t index) {
   const TypeRow* row = row_of(variant.media_type);
   std::string text = options.version + "-";
@@ -74,15 +76,16 @@ std::string entity_tag(const DocumentOptions& options, const Variant& variant, s
   return '"' + text + '"';
 }
 
-/// A line break in a value would begin another header field; it becomes a space.
+/// Appends a header line.  A line break in the value would begin another header field, so it
+/// becomes a space.
 void add_line(std::string& out, std::string_view name, std::string_view value) {
   out.append(name).append(": ");
   for (const char c : value) out += c == '\r' || c == '\n' ? ' ' : c;
   out.append("\r\n");
 }
 
-/// Runs something once, on whichever thread comes first; after an exception it may be tried again.
-/// Not std::call_once, because the thread sanitizer hangs when that throws.
+/// Runs an action once, on whichever thread comes first; an action that throws may be tried again.
+/// Not std::call_once: with it the thread sanitizer hangs when the action throws.
 class Once {
  public:
   template <class Action>
@@ -105,13 +108,13 @@ struct Document::Impl {
   std::vector<Variant> variants;
   DocumentOptions options;
   std::vector<std::string_view> offers;  ///< Media types without parameters, by variant.
-  std::vector<Rendered> rendered;        ///< By variant; after them the same in gzip.
+  std::vector<Rendered> rendered;  ///< By variant; then the gzip form of each, in the same order.
   std::unique_ptr<Once[]> once;
   struct Event {
     Once once;
     std::shared_ptr<const std::string> text;
     Once coded_once;
-    std::shared_ptr<const std::string> coded;  ///< A gzip_piece of the text.
+    std::shared_ptr<const std::string> coded;  ///< The event as a gzip_piece.
   };
   std::array<Event, kEventTypes.size()> events;  ///< In the order of kEventTypes.
 
@@ -154,7 +157,8 @@ struct Document::Impl {
     out.not_modified = content.lines + "\r\n";
   }
 
-  /// In gzip it is another representation, so its tag differs: "42-json" and "42-json-gz".
+  /// Renders the gzip form.  It is another representation, so its ETag differs: "42-json" and
+  /// "42-json-gz".
   void compress(std::size_t index) {
     const Rendered& plain = rendered[index];
     Rendered& out = rendered[variants.size() + index];
@@ -176,7 +180,7 @@ struct Document::Impl {
     }
   }
 
-  /// rendered_at(), in gzip if that is worth it.
+  /// rendered_at(), in its gzip form if that is worth it.
   Result<const Rendered*> coded_at(std::size_t index, Coding coding) {
     auto plain = rendered_at(index);
     if (!plain || coding == Coding::Identity || options.file) return plain;
@@ -215,7 +219,7 @@ Document::~Document() = default;
 
 Result<const Rendered*> Document::choose(std::string_view accept, std::string_view profile,
                                          Coding coding) const {
-  // The usual request has no preference and no profile.
+  // Most requests have no preference and no profile.
   const auto& variants = impl_->variants;
   if (accept.empty() && profile.empty() && !variants.empty() && variants[0].profile.empty())
     return impl_->coded_at(0, coding);

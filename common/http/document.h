@@ -1,4 +1,4 @@
-// One version of one resource: its representations, their validators, and the bytes that are sent.
+// One version of one resource: its representations, their ETags, and the bytes that are sent.
 //
 // Immutable once built and shared between threads.  A representation is rendered at most once, when
 // the first client asks for it; after that every answer is one write of the same bytes.
@@ -22,25 +22,27 @@ namespace chorus::http {
 
 using Header = std::pair<std::string, std::string>;
 
-/// One representation of the resource; the variants' order in Document is the server's preference.
+/// One representation of the resource; the server prefers the variants in the order they have in
+/// Document.
 struct Variant {
-  std::string media_type;               ///< "text/turtle"; sent with parameters, if it has any.
+  std::string media_type;               ///< "text/turtle"; may have parameters, which are sent too.
   std::function<std::string()> render;  ///< Pure and thread-safe; called at most once.
   std::string profile = {};             ///< Chosen only by ?profile=NAME; empty is the default.
   std::string_view lines = {};          ///< The variant's header lines, each with CR LF; constant.
 };
 
 struct DocumentOptions {
-  std::string version;  ///< The ETag is "<version>-<variant>", strong.
+  std::string version;  ///< Part of the ETag, which is "<version>-<variant>" and strong.
   std::string cache_control = "no-cache";
   std::string content_location = {};  ///< Relative IRI of the immutable version: "frames/42".
   std::vector<Header> headers = {};   ///< Further headers, such as Link.
-  std::shared_ptr<const FileBody> file = {};  ///< The body; replaces what the variant renders.
-  std::optional<Timestamp> captured = {};     ///< Adds Server-Timing with the age of the capture.
+  std::shared_ptr<const FileBody> file = {};  ///< The body, instead of what the variant renders.
+  /// If set, adds Server-Timing with the age of the capture.
+  std::optional<Timestamp> captured = {};
 };
 
-/// The bytes of one representation.  The server writes the status line and the headers of the
-/// single answer before them; all answers share the rest.
+/// The bytes of one representation, shared by all its answers.  Before them, the server writes the
+/// status line and the header lines of the single answer.
 struct Rendered {
   std::string media_type;
   std::string etag;  ///< Quoted.
@@ -62,16 +64,16 @@ class Document {
   Document(const Document&) = delete;
   Document& operator=(const Document&) = delete;
 
-  /// Negotiates by RFC 9110 12.5.1 over this document's variants; an absent or empty Accept takes
-  /// the first variant of the profile.  NotAcceptable lists the available types; an unknown profile
-  /// is NotFound.  Coding::Gzip compresses where that is worth it, once for all clients.
+  /// Chooses a representation by RFC 9110 12.5.1; without an Accept, the first variant of the
+  /// profile. NotAcceptable, with a list of the available types, if none is acceptable; NotFound
+  /// for an unknown profile.  Coding::Gzip compresses where that is worth it, once for all clients.
   [[nodiscard]] Result<const Rendered*> choose(std::string_view accept,
                                                std::string_view profile = {},
                                                Coding coding = Coding::Identity) const;
 
   /// The default representation in JSON or Turtle as one server-sent event (id = version), with
-  /// Coding::Gzip as a gzip_piece; null when it has no such type.  Each is written at most
-  /// once.
+  /// Coding::Gzip as a gzip_piece; null when the document has no variant of that type.  Each event
+  /// is rendered at most once.
   [[nodiscard]] std::shared_ptr<const std::string> event(std::string_view media_type,
                                                          Coding coding = Coding::Identity) const;
 

@@ -7,14 +7,15 @@ namespace chorus::http {
 
 namespace {
 
-/// Finds the ends of lines in order; looks at each byte once for '\r' and once for '
-/// '. (find_first_of would call memchr for every byte.)
+/// Finds the ends of lines in order; examines each byte once for a carriage return and once for a
+/// line feed.  (find_first_of would call memchr for every byte.)
 class LineEnds {
  public:
   explicit LineEnds(std::string_view bytes)
       : bytes_(bytes), feed_(next('\n', 0)), return_(next('\r', 0)) {}
 
-  /// The position of the first '\r' or '\n' from here on; the size when there is none.
+  /// The position of the first carriage return or line feed at or after `here`; the size when there
+  /// is none.
   [[nodiscard]] std::size_t after(std::size_t here) {
     if (feed_ < here) feed_ = next('\n', here);
     if (return_ < here) return_ = next('\r', here);

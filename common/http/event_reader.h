@@ -1,4 +1,4 @@
-// Parses server-sent events from bytes as they arrive (WHATWG HTML 9.2.6).  No socket.
+// Parses server-sent events from bytes as they arrive (WHATWG HTML 9.2.6), without a socket.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 namespace chorus::http {
 
 struct ServerEvent {
-  std::string id;    ///< The last id named, by this event or an earlier one.
-  std::string data;  ///< Lines joined with line feeds; events without data are left out.
+  std::string id;    ///< The last id given, by this event or an earlier one.
+  std::string data;  ///< The data lines joined with line feeds; events without data are left out.
 
   bool operator==(const ServerEvent&) const = default;
 };
@@ -21,8 +21,8 @@ class EventReader {
  public:
   explicit EventReader(std::size_t max_event_bytes) : most_(max_event_bytes) {}
 
-  /// The events that these bytes complete.  TooLarge when an event or a line exceeds the bound;
-  /// nothing more may be read from the stream then.
+  /// Returns the events that these bytes complete.  TooLarge when an event or a line exceeds the
+  /// limit; then do not read on from the stream.
   [[nodiscard]] Result<std::vector<ServerEvent>> take(std::string_view bytes);
 
  private:
@@ -34,8 +34,9 @@ class EventReader {
   std::string data_;
   std::string id_;
   bool any_data_ = false;
-  bool after_return_ = false;  ///< The last byte was a carriage return; a line feed belongs to it.
-  bool at_begin_ = true;       ///< A byte order mark is skipped at the beginning only.
+  /// The last byte was a carriage return; if a line feed follows, both end one line.
+  bool after_return_ = false;
+  bool at_begin_ = true;  ///< A byte order mark is skipped at the beginning only.
 };
 
 }  // namespace chorus::http

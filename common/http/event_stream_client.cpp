@@ -120,8 +120,8 @@ void AsyncEventStream::Impl::write() {
 void AsyncEventStream::Impl::read_head() {
   parser.emplace();
   parser->header_limit(kMaxAnswerHeadBytes);
-  parser->body_limit(
-      std::numeric_limits<std::uint64_t>::max());  // a stream lasts until one side hangs up
+  // A stream lasts until one side hangs up.
+  parser->body_limit(std::numeric_limits<std::uint64_t>::max());
   in.reserve(kMaxAnswerHeadBytes);
   beast::http::async_read_header(
       stream, in, *parser,
@@ -185,7 +185,7 @@ void AsyncEventStream::Impl::arm(std::chrono::milliseconds time, std::string_vie
   timer.expires_after(time);
   timer.async_wait(
       [self = shared_from_this(), mine = attempt, doing, time](net::error_code cancelled) {
-        // Re-armed or cancelled after expiry but before this handler ran: a newer wait, or none.
+        // Set again, or cancelled, after it expired but before this handler ran.
         if (cancelled || !self->is(mine) || self->has_head()) return;
         if (self->timer.expiry() > std::chrono::steady_clock::now()) return;
         self->end({ErrorCode::Timeout, self->authority,

@@ -12,16 +12,17 @@
 
 namespace chorus::http {
 
-/// One stream at a time on its own connection.  Callbacks come on the io_context's thread, and all
-/// calls must be made there.  The destructor and close() cancel: no callback comes after that. It
-/// does not reconnect.
+/// Reads one stream at a time on its own connection; does not reconnect.  Callbacks come on the
+/// io_context's thread, and all calls must be made there.  After the destructor or close(), no
+/// callback comes.
 class AsyncEventStream {
  public:
   struct Handlers {
-    /// Status, fields and time stamps of the answer's head, even if it is no event stream.
+    /// Gets the status, the fields and the time stamps of the answer's head, even if the answer is
+    /// no event stream.
     std::function<void(const ClientResponse&)> on_head;
     std::function<void(std::vector<ServerEvent>)> on_events;  ///< Never empty.
-    /// The last call for a stream.  Unsupported: the answer is no event stream.
+    /// The last call for a stream.  Unsupported: the answer is not an event stream.
     std::function<void(Error)> on_end;
   };
 
@@ -35,11 +36,11 @@ class AsyncEventStream {
   AsyncEventStream(const AsyncEventStream&) = delete;
   AsyncEventStream& operator=(const AsyncEventStream&) = delete;
 
-  /// Ends the current stream, if there is one.
+  /// Opens a stream; ends the current one, if there is one.
   void open(const ClientRequest& request, Handlers handlers);
   void close();
 
-  /// Stops reading for this long; the server then has to wait and may skip events.
+  /// Stops reading for `time`; meanwhile the server cannot send and may skip events.
   void pause(std::chrono::milliseconds time);
 
  private:

@@ -1,4 +1,5 @@
-// A file as the body of an answer: read piece by piece while it is sent, never whole in memory.
+// A file as the body of an answer: it is read piece by piece while it is sent, and never held whole
+// in memory.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +11,8 @@
 
 namespace chorus::http {
 
-/// Stays open while it is being read.  A file that grows is sent with the length it had at first.
+/// The file stays open as long as the object exists.  A file that grows meanwhile is sent with the
+/// length that it had at first.
 class FileBody {
  public:
   /// NotFound for anything other than a regular file.
@@ -21,7 +23,7 @@ class FileBody {
   FileBody& operator=(const FileBody&) = delete;
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  /// Reads up to 256 KiB from `offset`; false when the file has become shorter.
+  /// Replaces `piece` with up to 256 KiB from `offset`; false when the file has become shorter.
   [[nodiscard]] bool read(std::uint64_t offset, std::string& piece) const;
 
  private:

@@ -11,12 +11,12 @@
 namespace chorus::http {
 namespace {
 
-constexpr std::size_t kMin = 512;       // Below this, headers are most of the answer.
-constexpr std::size_t kMax = 1u << 20;  // Takes about 12 ms.
+constexpr std::size_t kMin = 512;       // Below this size, headers are most of the answer.
+constexpr std::size_t kMax = 1u << 20;  // Compressing this much takes about 12 ms.
 constexpr int kGzipFormat = 16 + MAX_WBITS;
 constexpr int kRawFormat = -MAX_WBITS;
 
-/// zlib's state is 256 KiB, so each thread keeps one Deflater for each format.
+/// zlib's state needs 256 KiB, so each thread keeps one Deflater per format.
 class Deflater {
  public:
   explicit Deflater(int format) {

@@ -1,4 +1,4 @@
-// Calls a handler for a request, and answers when it fails.
+// Calls a handler for a request and turns its failure into an answer.
 #pragma once
 
 #include <exception>
@@ -14,11 +14,11 @@
 
 namespace chorus::http {
 
-/// `path` is decoded.  Malformed when the query is malformed.
+/// The Request for a handler; `path` is decoded already.  Malformed when the query is malformed.
 [[nodiscard]] Result<Request> request_of(const RequestHead& head, const Peer& peer,
                                          std::string_view path);
 
-/// An answer to this request that carries the problem.
+/// An answer with a problem document; `route`: see Answer.
 [[nodiscard]] Answer complaint(Problem problem, const RequestHead& head, std::string_view route);
 
 /// Runs a handler; an exception becomes an Error.

@@ -1,4 +1,4 @@
-// Makes text from outside safe in a page for browsers.
+// Escapes strings from outside for use in HTML.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace chorus::http {
 
-/// Safe between tags and in quoted attributes: & < > " become entities.
+/// Replaces & < > " by entities, so that `text` is safe between tags and in quoted attributes.
 [[nodiscard]] std::string escaped_html(std::string_view text);
 
 }  // namespace chorus::http

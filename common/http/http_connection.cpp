@@ -49,7 +49,7 @@ void HttpConnection::begin(Beginning beginning) {
   carry_out((conversation_.*beginning)(core_.now));
 }
 
-/// First the handshake, within the time that a request may take.
+/// Does the TLS handshake first; it gets as much time as a request's head.
 void HttpConnection::seal(Beginning beginning) {
   deadline_ = core_.now + core_.config.limits.header_timeout;
   stream_.seal_as_server(
@@ -115,7 +115,7 @@ void HttpConnection::settle() {
   });
 }
 
-/// Hands the socket, and what was read from it, to a connection that speaks the other protocol.
+/// Hands the socket, and the bytes read from it, to a connection that speaks WebSocket.
 void HttpConnection::upgrade() {
   const Reaction& chosen = conversation_.reaction();
   WebSocketOpening opening{std::move(stream_), conversation_.handshake(), peer_address(),

@@ -1,8 +1,8 @@
-// One client that speaks HTTP: the socket for its conversation.
+// The connection of one client that speaks HTTP: connects its conversation to a socket.
 //
 // Everything runs on the server's only thread.  At most one read and one write are under way.  The
-// server sweeps the deadlines four times a second, because a timer for each request costs 2 us; so
-// they are exact to a quarter of a second.
+// server checks all deadlines four times a second, because a timer for each request costs 2 us; so
+// a deadline may be noticed a quarter of a second late.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,8 @@ class HttpConnection final : public Connection {
   HttpConnection(ServerCore& core, net::Socket socket, const net::tcp::endpoint& remote);
 
   void start();
-  /// Used when there are too many connections: answers one request, if it is vital, and closes.
+  /// Call this instead of start() when there are too many connections: answers one request, if its
+  /// path is vital, and closes.
   void start_in_reserve();
   void wake() override;
   void expire() override;

@@ -13,7 +13,7 @@ void LiveDocument::publish(DocumentPtr next) {
   std::vector<std::function<void()>> to_tell;
   {
     const std::lock_guard lock(mutex_);
-    current_.swap(next);  // The old document is destroyed outside the lock, with `next`.
+    current_.swap(next);  // `next` destroys the old document, outside the lock.
     to_tell = subscribers_;
   }
   for (const auto& on_change : to_tell) on_change();

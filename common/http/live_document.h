@@ -1,4 +1,4 @@
-// A resource that changes: the current Document, and all who wait for the next one.
+// A resource that changes: the current Document, and callbacks for when it is replaced.
 #pragma once
 
 #include <functional>
@@ -10,14 +10,15 @@
 
 namespace chorus::http {
 
-/// Thread-safe.  Publishers replace the document; servers subscribe once and wake their long polls.
+/// Thread-safe.  Publishers replace the document; a server subscribes once, to wake its long polls.
 class LiveDocument {
  public:
-  /// Null until the first publish: the resource answers 503 with Retry-After.
+  /// Null until the first publish; until then the resource answers 503 with Retry-After.
   [[nodiscard]] DocumentPtr current() const;
   void publish(DocumentPtr next);
 
-  /// `on_change` is called after each publish, on the publisher's thread; it must only post.
+  /// `on_change` is called after each publish on the publisher's thread, so it must not do more
+  /// than post a task.
   void subscribe(std::function<void()> on_change);
 
  private:

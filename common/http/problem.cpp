@@ -7,7 +7,7 @@
 namespace chorus::http {
 namespace {
 
-/// Holds the text that an Answer points to.
+/// Owns the strings that an Answer points to.
 struct Text {
   std::string head;
   std::string body;

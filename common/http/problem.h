@@ -14,12 +14,12 @@ struct Problem {
   int status = 500;
   std::string_view code = {};      ///< name_of(ErrorCode), for programs.
   std::string_view instance = {};  ///< The requested path.
-  std::string_view context = {};   ///< What the error is about: a path, a key, a field.
-  std::string_view detail = {};    ///< What to change, for people to read.
+  std::string_view context = {};   ///< What the error is about, such as a path, a key or a field.
+  std::string_view detail = {};    ///< What to change, human-readable.
   std::vector<std::string_view> available = {};  ///< For 406: the available media types.
 };
 
-/// Its views point into `error`.
+/// The problem document for an error; its views point into `error`.
 [[nodiscard]] Problem problem_of(const Error& error);
 Problem problem_of(Error&&) = delete;
 
@@ -27,7 +27,7 @@ Problem problem_of(Error&&) = delete;
 /// replaced.
 [[nodiscard]] std::string problem_json(const Problem& problem);
 
-/// The whole answer; `head_only` leaves the body out and keeps its length.
+/// The whole answer; `head_only` leaves the body out, but Content-Length states its length.
 [[nodiscard]] Answer problem_answer(const Problem& problem, bool head_only);
 
 }  // namespace chorus::http

@@ -1,4 +1,4 @@
-// The received bytes that are not yet dealt with: one head at most, and what follows it.
+// The received bytes that have not been handled yet: at most one head and what follows it.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace chorus::http {
 
-/// Has a fixed size; what does not fit stays in the kernel.  Bytes stay where they are until
+/// The buffer has a fixed size; further bytes stay in the kernel.  Bytes are not moved before
 /// compact(), so views of a head remain valid while its body is read.
 class RequestBuffer {
  public:
@@ -25,15 +25,16 @@ class RequestBuffer {
   [[nodiscard]] bool full() const { return end_ == capacity_; }
   [[nodiscard]] std::size_t capacity() const { return capacity_; }
 
-  /// Looks for the end of a head; checks each byte once.
+  /// Looks for the end of a head; examines each byte only once, however often it is called.
   [[nodiscard]] HeadEnd find_head();
-  /// Moves up to `most` bytes from after the first `head_size` bytes to the end of `body`.
+  /// Moves up to `most` bytes that follow the first `head_size` bytes to the end of `body`.
   void take_body(std::size_t head_size, std::size_t most, std::string& body);
-  /// The first `size` bytes are dealt with.
+  /// Drops the first `size` bytes, which have been handled.
   void drop(std::size_t size);
-  /// Makes room by moving unread bytes to the front; not while bytes are being read into room().
+  /// Makes room by moving unread bytes to the front.  Do not call it while bytes are being read
+  /// into room().
   void compact();
-  /// Forgets everything.
+  /// Drops all bytes.
   void clear() { begin_ = end_ = checked_ = 0; }
 
  private:
@@ -41,7 +42,7 @@ class RequestBuffer {
   std::size_t capacity_;
   std::size_t begin_ = 0;
   std::size_t end_ = 0;
-  std::size_t checked_ = 0;  ///< Length of the part of unread() known to hold no end of a head.
+  std::size_t checked_ = 0;  ///< The length of the beginning of unread() in which no head ends.
 };
 
 }  // namespace chorus::http

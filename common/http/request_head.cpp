@@ -30,7 +30,7 @@ constexpr CharSet kToken = chars("!#$%&'*+-.^_`|~", '0', '9');        // RFC 911
 constexpr CharSet kTarget = chars("-._~!$&'()*+,;=:@/?%", '0', '9');  // RFC 3986, no '#', no '[]'
 constexpr CharSet kHost = chars("-._~!$&'()*+,;=%[]:", '0', '9');     // RFC 3986 3.2.2 and port
 
-/// Visible, space, tab, and bytes above ASCII: no control characters (RFC 9110 5.5).
+/// Visible characters, space, tab and bytes above ASCII, but no control characters (RFC 9110 5.5).
 constexpr CharSet value_chars() {
   CharSet set = chars("\t", ' ', '~');
   for (std::size_t c = 0x80; c < set.size(); ++c) set[c] = true;
@@ -46,7 +46,7 @@ bool all_in(std::string_view text, const CharSet& set) {
 struct KnownField {
   std::string_view name;
   std::string_view RequestHead::*member;
-  bool list;  ///< It may be repeated; the values form one list (RFC 9110 5.3).
+  bool list;  ///< The field may be repeated; its values form one list (RFC 9110 5.3).
 };
 
 constexpr std::array kKnown{

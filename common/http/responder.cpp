@@ -21,8 +21,8 @@ constexpr std::string_view kWaitApplied = "Preference-Applied: wait\r\n";
 
 bool is_head(const RequestHead& head) { return head.method == Method::Head; }
 
-/// Chooses between event stream and document: the better quality wins, and the stream counts only
-/// if a range names it.
+/// True if the request prefers an event stream to a document: the stream must have the higher
+/// quality, and a range must name it.
 bool wants_events(const RequestHead& head, const Document& document) {
   const int events = explicit_quality_of(kEventStream, head.accept).value_or(0);
   if (events == 0) return false;
@@ -55,21 +55,21 @@ Result<std::string> profile_of(const RequestHead& head) {
   return profile == query->end() ? std::string() : profile->second;
 }
 
-/// True for a query like GET /frame?at=TIME, if the route has a getter for that key.
+/// True for a request like GET /frame?at=TIME, if the route has a getter for that key.
 bool asks_by_query(const RequestHead& head, const Router::Entry& entry) {
   if (!entry.by_query || head.query.empty()) return false;
   const auto query = decode_query(head.query);
   return query && query->contains(entry.query_key);
 }
 
-/// A name ending in ".json" replaces the Accept header for clients that cannot send one, unless the
-/// resource itself has such a name.
+/// The Accept header; a path that ends in ".json" replaces it, for clients that cannot send one,
+/// unless a resource has that very name.
 std::string_view accept_of(const RequestHead& head, const Router& router) {
   const bool added = head.path.ends_with(kJsonSuffix) && !router.match(head.path);
   return added ? "application/json, */*;q=0.5" : head.accept;
 }
 
-/// The route that a path names, or would name without ".json".
+/// The route for a path, or for the path without its ".json".
 Result<Router::Match> named(const Router& router, std::string_view path) {
   auto match = router.match(path);
   if (match || !path.ends_with(kJsonSuffix)) return match;
@@ -167,9 +167,9 @@ Reaction Responder::react(const RequestHead& head, const Peer& peer) const {
   }
 }
 
-/// True for a client that may not read: a browser's preflight from it gets the same answer for
-/// every path.  A preflight comes without a token; if there is one, it is ignored, because the
-/// answer would reveal whether it is right.
+/// True for a client that may not read without a token.  A browser's preflight from such a client
+/// gets the same answer for every path.  A preflight normally comes without a token; if it has one,
+/// the token is ignored, because the answer would reveal whether it is right.
 bool Responder::is_stranger(const RequestHead& head, const Peer& peer) const {
   RequestHead anonymous = head;
   anonymous.authorization = {};
@@ -202,7 +202,8 @@ Reaction Responder::read(const RequestHead& head, const Router::Match& match, co
   const Router::Entry& entry = *match.entry;
   const std::string_view route = route_lines(entry);
   if (!entry.readable())
-    return write(head, match, peer);  // For this entry GET is just another method that it lacks.
+    // An entry that cannot be read refuses GET like any other method that it lacks.
+    return write(head, match, peer);
   const auto document = guarded<DocumentPtr>(head, [&]() -> Result<DocumentPtr> {
     if (entry.files) return entry.files->document(match.rest);
     const auto request = request_of(head, peer, path);

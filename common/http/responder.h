@@ -1,4 +1,5 @@
-// Decides without a socket what a request gets: an answer, or what the connection has to do first.
+// Decides, without a socket, how a request is answered, or what the connection has to do before
+// that.
 #pragma once
 
 #include <chrono>
@@ -19,14 +20,14 @@
 
 namespace chorus::http {
 
-/// What the connection does next with a request.
+/// What the connection has to do with a request.
 struct Reaction {
   enum class Kind {
     Answer,    ///< Send `answer`.
     ReadBody,  ///< Read content_length bytes, then call act().
-    Wait,      ///< Call waited() after each publish of `entry`, and given_up() after `wait`.
-    Stream,    ///< Send `answer`, then the events of `entry` until the client leaves.
-    Upgrade,   ///< Hand the socket to a WebSocket connection of `entry`, or of `dialogue`.
+    Wait,  ///< Call waited() after each publish of `entry`; after the time `wait`, call given_up().
+    Stream,   ///< Send `answer`, then the events of `entry` until the client leaves.
+    Upgrade,  ///< Hand the socket to a WebSocket connection for `entry` or, if set, `dialogue`.
   };
   Kind kind = Kind::Answer;
   Answer answer = {};
@@ -34,9 +35,9 @@ struct Reaction {
   const Action* action = nullptr;
   PathParams params = {};
   std::chrono::seconds wait{0};
-  std::string_view event_type = {};  ///< For Stream: the media type inside the events.
+  std::string_view event_type = {};  ///< For Stream: the media type of the events' data.
   std::shared_ptr<Dialogue> dialogue = {};
-  std::string protocol = {};  ///< For Upgrade: the chosen subprotocol; empty: none.
+  std::string protocol = {};  ///< For Upgrade: the chosen subprotocol; empty if there is none.
 
   [[nodiscard]] static Reaction of(Answer ready) {
     Reaction reaction;
@@ -53,16 +54,17 @@ class Responder {
   [[nodiscard]] Answer act(const Reaction& reaction, const RequestHead& head, const Peer& peer,
                            std::string_view body) const;
 
-  /// The answer to a long poll if the document has changed since.
+  /// The answer to a long poll if the document has changed since the request's ETag; otherwise
+  /// none.
   [[nodiscard]] std::optional<Answer> waited(const Router::Entry& entry,
                                              const RequestHead& head) const;
   /// The 304 that ends a long poll when nothing has changed.
   [[nodiscard]] Answer given_up(const Router::Entry& entry, const RequestHead& head) const;
 
-  /// A problem document for bytes that are not a valid request.
+  /// The problem document for bytes that are not a valid request.
   [[nodiscard]] Answer refuse(const Refusal& refusal) const;
 
-  /// True for a request for a vital path, which is answered even beyond the limit of connections.
+  /// True for a request whose path is vital: it is answered even beyond the limit of connections.
   [[nodiscard]] bool is_vital(const RequestHead& head) const;
 
   [[nodiscard]] const Router& router() const { return *router_; }
@@ -93,12 +95,12 @@ class Responder {
   Guard guard_;
   std::string allowed_origin_;
   std::string challenge_;           ///< Header line of a 401.
-  std::string reading_challenge_;   ///< The same for a GET: another way to log in.
-  std::vector<std::string> hosts_;  ///< The names of this service.
+  std::string reading_challenge_;   ///< The same for a GET, with Basic authentication added.
+  std::vector<std::string> hosts_;  ///< The names of this service, for is_own_host().
   ServerLimits limits_;
   std::shared_ptr<const Router> router_;
-  std::string any_route_;                 ///< Header lines for answers without a route.
-  std::vector<std::string> route_lines_;  ///< Header lines for the answers of each entry.
+  std::string any_route_;                 ///< Header lines of answers that belong to no route.
+  std::vector<std::string> route_lines_;  ///< Header lines of each entry's answers.
   std::unique_ptr<RateReport> faults_;
   std::unique_ptr<RateReport> wrong_tokens_;
   std::unique_ptr<TokenTries> tries_;

@@ -8,14 +8,15 @@
 namespace chorus::http {
 namespace {
 
-/// The answer with the resource that an action returned, or without any.
+/// The answer with the document that an action returned, or without a body.
 Result<Answer> answer_of(const ActionResult& done, std::string_view accept) {
   Answer answer;
   answer.status = done.status;
   if (!done.location.empty()) answer.extra = "Location: " + done.location + "\r\n";
   answer.own = done.status == status::kNoContent ? "\r\n" : "Content-Length: 0\r\n\r\n";
   if (done.status == status::kNoContent || !done.document) return answer;
-  // The action is done: a client that accepts none of our types gets the default, not an error.
+  // The action has been done: a client that accepts none of our types gets the default, not an
+  // error.
   auto chosen = done.document->choose(accept);
   if (!chosen) chosen = done.document->choose("");
   if (!chosen) return pass(chosen);
@@ -25,7 +26,8 @@ Result<Answer> answer_of(const ActionResult& done, std::string_view accept) {
   return answer;
 }
 
-/// Browsers cannot send Authorization with a WebSocket, so the token may come as a subprotocol.
+/// A request for a dialogue.  Browsers cannot send Authorization with a WebSocket, so the token may
+/// come as a subprotocol.
 struct Asking {
   Asking(const RequestHead& as_sent, const Router::Entry& entry)
       : offered(subprotocols_of(as_sent, entry.dialogue->protocol)),
@@ -43,7 +45,7 @@ struct Asking {
 
 }  // namespace
 
-/// The answer that refuses this request; none when it may do what it needs.
+/// The answer that refuses this request; none when the request may do what it needs.
 std::optional<Answer> Responder::turn_down(const RequestHead& head, const Peer& peer, Role needed,
                                            std::string_view route) const {
   const auto now = std::chrono::steady_clock::now();
@@ -65,7 +67,8 @@ std::optional<Answer> Responder::turn_down(const RequestHead& head, const Peer& 
   return fault(*refused, head, route);
 }
 
-/// Checked whether or not the path exists: a client that may not read learns neither.
+/// Refuses a client that may not read, whether or not the path exists, so that the client does not
+/// learn which paths do.
 std::optional<Answer> Responder::turn_away(const RequestHead& head, const Peer& peer,
                                            const Router::Entry* entry) const {
   const bool for_everybody = entry != nullptr && entry->for_everybody;
@@ -102,7 +105,7 @@ Reaction Responder::write(const RequestHead& head, Router::Match match, const Pe
   return reaction;
 }
 
-/// Opens a WebSocket whose client speaks.
+/// Opens a WebSocket for a dialogue.
 Reaction Responder::converse(const RequestHead& head, const Router::Entry& entry,
                              const Peer& peer) const {
   const std::string_view route = route_lines(entry);

@@ -4,7 +4,7 @@ namespace chorus::http {
 
 namespace {
 
-/// CORS: lets web pages of `origin` read the answers; without these lines browsers refuse.
+/// The CORS lines that let web pages of `origin` read the answers; without them browsers refuse.
 std::string sharing_lines(const std::string& origin, const AnswerPolicy& policy) {
   if (origin.empty()) return {};
   const std::string clock = policy.clock_field.empty() ? "" : policy.clock_field + ", ";
@@ -32,7 +32,8 @@ std::string common_lines(const ServerConfig& config) {
 std::string lines_of(const ServerConfig& config, const Router::Entry& entry) {
   std::string lines = "Allow: " + allowed_methods(entry) + "\r\n" + config.policy.resource_lines;
   if (!entry.shows_people) return lines + common_lines(config);
-  // Nor may such a page embed it in an element, for which no permission is needed otherwise.
+  // A foreign page must not embed the resource in an element either, which needs no permission by
+  // default.
   lines += "Cross-Origin-Resource-Policy: same-origin\r\n";
   return lines +
          lines_for(config.allowed_origin == "*" ? "" : config.allowed_origin, config.policy);

@@ -8,7 +8,7 @@
 
 namespace chorus::http {
 
-/// For answers without a route.
+/// The lines of answers that belong to no route.
 [[nodiscard]] std::string common_lines(const ServerConfig& config);
 
 [[nodiscard]] std::string lines_of(const ServerConfig& config, const Router::Entry& entry);

@@ -1,4 +1,4 @@
-// What the router holds: one entry per pattern.  Read by the server only.
+// What the router holds: one entry per pattern.  Only the server reads it.
 #pragma once
 
 #include <map>
@@ -16,13 +16,14 @@ namespace chorus::http {
 /// Everything that one pattern answers.
 struct Router::Entry {
   std::string pattern;
-  std::vector<std::string> segments;  ///< Between the slashes; "{name}" kept with its braces.
+  std::vector<std::string> segments;  ///< The parts between the slashes; "{name}" keeps its braces.
   std::size_t index = 0;              ///< The index of this entry in the router.
 
   Getter getter;
   std::shared_ptr<LiveDocument> live;
-  std::string query_key;  ///< With `live`: requests with this key in their query ...
-  Getter by_query;        ///< ... are answered here.
+  /// With `live`: requests whose query has this key are answered by `by_query`.
+  std::string query_key;
+  Getter by_query;  ///< Answers the requests whose query has `query_key`.
   std::map<Method, Action> actions;
   std::optional<DialogueRoute> dialogue;  ///< Answers WebSockets.
   bool vital = false;                     ///< See Router::vital.
@@ -36,7 +37,7 @@ struct Router::Entry {
 struct Router::Match {
   const Entry* entry = nullptr;
   PathParams params = {};
-  std::string_view rest = {};  ///< What follows the prefix of files(); it points into the path.
+  std::string_view rest = {};  ///< For files(): what follows the prefix; points into the path.
 };
 
 /// "GET, HEAD, OPTIONS, POST": what an entry answers, for the Allow header.

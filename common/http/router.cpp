@@ -45,7 +45,7 @@ bool fits(const Router::Entry& entry, std::span<const std::string_view> segments
   return true;
 }
 
-/// True when, at the first segment where only one of the two is literal, `a` is the one.
+/// True when `a` has the literal at the first segment where only one of the two patterns has one.
 bool more_literal(const Router::Entry& a, const Router::Entry& b) {
   for (std::size_t i = 0; i < a.segments.size(); ++i) {
     const bool literal_a = !is_parameter(a.segments[i]);

@@ -1,4 +1,5 @@
-// Which handler answers which path.  A table, filled at start, read-only while serving.
+// Decides which handler answers which path.  It is filled at start and does not change while the
+// server runs.
 #pragma once
 
 #include <functional>
@@ -21,21 +22,22 @@ enum class Method { Get, Head, Options, Post, Put, Patch, Delete };
 struct Request {
   Method method = Method::Get;
   std::string_view path;  ///< Percent-decoded, without query.
-  /// Decoded; a repeated key keeps the last.
+  /// Decoded; of a repeated key, the last value.
   std::map<std::string, std::string, std::less<>> query;
   std::map<std::string, std::string, std::less<>> headers;  ///< Lower-case names.
   std::string_view body;
   bool from_loopback = false;
 };
 
-/// The {name} parts of the pattern.
+/// The values that the {name} parts of the pattern have in the path.
 using PathParams = std::map<std::string, std::string, std::less<>>;
 
-/// A GET/HEAD handler: the resource as it is now.  Runs on the server's thread, so it must be
-/// quick. Errors become RFC 9457 problem documents.
+/// A GET/HEAD handler: returns the resource as it is now.  It runs on the server's thread, so it
+/// must be quick.  Errors become RFC 9457 problem documents.
 using Getter = std::function<Result<DocumentPtr>(const Request&, const PathParams&)>;
 
-/// The result of a writing method: status 200, 201 (with Location), 202 or 204, and the resource.
+/// The result of a writing method: status 200, 201 (with Location), 202 or 204, and the resource's
+/// new document.
 struct ActionResult {
   int status = 200;
   DocumentPtr document = {};  ///< May be null with 204.
@@ -43,8 +45,9 @@ struct ActionResult {
 };
 using Action = std::function<Result<ActionResult>(const Request&, const PathParams&)>;
 
-/// Patterns are literal segments and {name}; a literal wins over a {name}.  A trailing slash is
-/// significant (slash = container).  Filling the same pattern and method twice asserts.
+/// A pattern consists of literal segments and {name} segments; where both match, the literal one
+/// wins. A trailing slash is significant (slash = container).  Asserts that no pattern gets the
+/// same method twice.
 class Router {
  public:
   Router();
@@ -55,22 +58,23 @@ class Router {
   void get(std::string pattern, Getter getter);
   /// GET/HEAD of a live document, with long polling by Prefer: wait and with event streams.
   void live(std::string pattern, std::shared_ptr<LiveDocument> document);
-  /// GET/HEAD with ?key=... on a path given to live(): the getter answers instead.
+  /// On a path that was given to live(): GET/HEAD with ?key=... are answered by this getter
+  /// instead.
   void by_query(const std::string& pattern, std::string key, Getter getter);
   /// A writing method; refuse_access() in access.h says which requests may use it.
   void action(Method method, std::string pattern, Action action);
-  /// WebSockets whose clients speak.  That counts as writing: Role::Control.
+  /// WebSockets whose clients send messages too.  Opening one counts as writing: Role::Control.
   void dialogue(const std::string& pattern, DialogueRoute route);
-  /// GET/HEAD of the files in `folder` and below, never outside it; types by extension.  The prefix
-  /// ends in '/'.
-  /// `lines`: header lines for each of these files, with CR LF; constant.
+  /// GET/HEAD of the files in `folder` and below, never outside it; media types by extension.  The
+  /// prefix ends in '/'.  `lines`: header lines for each of these files, each with CR LF; must be a
+  /// constant.
   void files(std::string prefix, std::string folder, std::string_view lines = {});
 
-  /// Is answered without a token, even if all else needs one.
+  /// The pattern is answered without a token, even if everything else needs one.
   void for_everybody(const std::string& pattern);
-  /// For monitors: is still answered when the limit of connections is reached.
+  /// For monitors: the pattern is still answered when the limit of connections is reached.
   void vital(const std::string& pattern);
-  /// For pictures and recordings: a web page of another origin reads them only if exactly that
+  /// For pictures and recordings: a web page of another origin may read them only if exactly that
   /// origin is allowed; "*" is not enough.
   void shows_people(const std::string& pattern);
 

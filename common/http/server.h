@@ -19,12 +19,13 @@
 namespace chorus::http {
 
 struct ServerLimits {
-  /// Fewer when the system allows fewer descriptors.  A few more are accepted, only to be told so
-  /// and to read what is vital (Router::vital).
+  /// Lower when the system allows fewer descriptors.  A few connections beyond the limit are
+  /// accepted, only to answer 503 or a request for a vital path (Router::vital).
   std::size_t max_connections = 2000;
   std::size_t max_per_address = 64;  ///< Does not apply to loopback and trusted proxies.
   std::size_t max_long_polls = 1500;
-  std::size_t max_downloads = 16;  ///< Files being sent at once; each costs 256 KiB.
+  /// Files being sent at the same time; each needs a buffer of 256 KiB.
+  std::size_t max_downloads = 16;
   std::size_t max_header_bytes = 8192;
   std::size_t max_body_bytes = 65536;  ///< Only for routes with an action; GET takes no body.
   std::chrono::seconds idle_timeout{60};
@@ -39,19 +40,22 @@ struct ServerLimits {
 struct ServerConfig {
   std::string address = "127.0.0.1";
   std::uint16_t port = 0;  ///< 0: any free port; ask port() after start.
-  /// A token of role Control; empty: none.  Without any token, only direct requests from loopback
-  /// may write.
+  /// A token of role Control; empty: none.  If no token is configured at all, only direct requests
+  /// from loopback may write.
   std::string bearer_token = {};
   /// The origin whose web pages may read, in addition to our own; "*": all origins.  Empty: none.
   std::string allowed_origin = {};
-  /// Names of this service, in addition to addresses, localhost and the name of this host.
+  /// Names of this service that a Host field may have, besides addresses, localhost and the name of
+  /// this host.
   std::vector<std::string> hosts = {};
-  /// Numeric addresses whose X-Forwarded-For is believed for limits; never treated as this host.
+  /// Numeric addresses of proxies: limits count their clients by X-Forwarded-For.  Their requests
+  /// are never treated as coming from this host.
   std::vector<std::string> trusted_proxies = {};
-  /// If set, all connections use TLS; a client without TLS is told so (400).
+  /// If set, all connections use TLS; a client without TLS gets 400 with an explanation.
   std::optional<tls::Identity> identity = {};
-  std::vector<Token> tokens = {};           ///< In addition to bearer_token.  See Guard.
-  std::shared_ptr<const Clock> clock = {};  ///< Time-stamps the answers; null: the host's clock.
+  std::vector<Token> tokens = {};  ///< In addition to bearer_token; see Guard.
+  /// The clock of the answers' time stamps; null: the host's clock.
+  std::shared_ptr<const Clock> clock = {};
   AnswerPolicy policy = {};
   ServerLimits limits = {};
 
@@ -65,7 +69,7 @@ struct ServerConfig {
 /// True for an address that only this host can reach ("127.0.0.1", "::1").
 [[nodiscard]] bool is_loopback(const std::string& address);
 
-/// Values for /metrics; they only grow, except those with _open, _waiting or _limit.
+/// Values for /metrics.  They only grow, except those named _open, _waiting or _limit.
 struct ServerCounters {
   std::uint64_t requests = 0;
   std::uint64_t refused = 0;  ///< Malformed requests, or requests over a limit.
@@ -78,10 +82,13 @@ struct ServerCounters {
   std::uint64_t events_skipped = 0;  ///< Events that a slow reader of a stream did not get.
   std::uint64_t bytes_sent = 0;
   std::uint64_t downloads_open = 0;
-  std::uint64_t unauthorized = 0;       ///< Requests with a wrong token, or without one they need.
-  std::uint64_t closed_for_room = 0;    ///< Idle connections closed to make room for others.
-  std::uint64_t handshakes_failed = 0;  ///< Of TLS: broken off, garbage, or refused by the client.
-  std::uint64_t connections_limit = 0;  ///< Most connections at once, given the descriptors.
+  /// Requests without a token that they need, or with a wrong one.
+  std::uint64_t unauthorized = 0;
+  std::uint64_t closed_for_room = 0;  ///< Idle connections closed to make room for others.
+  /// TLS handshakes that were broken off, malformed, or refused by the client.
+  std::uint64_t handshakes_failed = 0;
+  /// The most connections at once that the descriptors allow.
+  std::uint64_t connections_limit = 0;
 };
 
 /// Owns one thread that runs all sockets.
@@ -90,22 +97,25 @@ class Server {
   Server(ServerConfig config, std::shared_ptr<const Router> router);
   ~Server();  ///< Calls stop().
 
-  /// Binds and starts to serve; Io names address, port and reason ("address in use: ...").
+  /// Binds and begins to serve; if that fails, Io with address, port and reason ("address in use:
+  /// ...").
   [[nodiscard]] Result<void> start();
   [[nodiscard]] std::uint16_t port() const;
   [[nodiscard]] ServerCounters counters() const;
 
-  /// Replaces the tokens from the next request on; from any thread, before or while serving.
+  /// Replaces the tokens for all further requests; may be called from any thread, before or while
+  /// serving.
   void set_tokens(std::vector<Token> tokens);
-  /// Uses another certificate from the next connection on; from any thread.  Does nothing on a
-  /// server without TLS.
+  /// Uses another certificate for all further connections; may be called from any thread.  Does
+  /// nothing on a server without TLS.
   void set_identity(tls::Identity identity);
 
-  /// Posts a task to the server's thread; false when the task of the last call has not been done:
-  /// if the calls are seconds apart, the thread hangs.  Call it from one thread only.
+  /// Whether the server's thread has done the task that the last call posted; posts the next one.
+  /// If calls are seconds apart, false means that the thread hangs.  Call it from one thread only.
   [[nodiscard]] bool alive();
 
-  /// Stops accepting, answers waiting long polls with 503, lets writes finish (2 s) and joins.
+  /// Stops accepting, answers waiting long polls with 503, lets writes finish for up to 2 s, and
+  /// joins the thread.
   void stop();
 
  private:

@@ -23,28 +23,30 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   ServerCore(ServerConfig server_config, std::shared_ptr<const Router> routes);
 
   [[nodiscard]] Result<void> listen();
-  /// Starts whatever must always be running and is not running.
+  /// Starts what must always be running (accepting, sweeping) if it is not running.
   void ensure();
   void welcome(net::Socket socket);
-  /// Counts the connection for another address from now on, which a trusted proxy names; false when
-  /// that address already has too many connections.
+  /// From now on counts the connection for `account`, which a trusted proxy named; false when that
+  /// account already has too many connections.
   [[nodiscard]] bool charge(Connection& connection, const std::string& account);
   [[nodiscard]] bool is_proxy(const asio::ip::address& address) const;
   void sweep();
   void subscribe();
-  /// From any thread: soon wakes all connections that wait for the entry.  Several calls before
-  /// that count as one; when none waits, the server's thread is not woken at all.
+  /// Wakes, soon, all connections that wait for the entry; may be called from any thread.  Calls
+  /// before the waking count as one.  When no connection waits, the server's thread is not woken.
   void post_wake(std::size_t entry);
   void wake(std::size_t entry);
-  /// Afterwards look at the document again: a publish just before this call did not wake it.
+  /// Registers a connection that waits for the entry.  Look at the document again afterwards: a
+  /// publish just before this call did not wake the connection.
   void wait_for(std::size_t entry, std::shared_ptr<Connection> connection);
   void stop_waiting(std::size_t entry, const Connection* connection);
   void forget(const Connection* connection);
-  /// Puts another connection in the place of one; it is the same client, still counted once.
+  /// Puts `by` in the place of a connection; both are the same client, which stays counted once.
   void replace(const Connection* connection, std::shared_ptr<Connection> by);
   void begin_stop();
 
-  asio::io_context io{1};  // First member, so destroyed last, after everything that uses it.
+  // The first member, so it is destroyed last, after everything that uses it.
+  asio::io_context io{1};
   ServerConfig config;
   Responder responder;
   AtomicCounters counters;
@@ -52,12 +54,13 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   net::Every sweeping;
   RateReport failed_handshakes{"TLS handshake failed"};
 
-  SteadyTime now;  ///< Coarse: the time of the last sweep.
+  SteadyTime now;  ///< The time of the last sweep.
   bool stopping = false;
   SteadyTime stop_deadline{};
   std::unordered_map<const Connection*, std::shared_ptr<Connection>> connections;
-  std::map<std::string, std::size_t> per_peer;  ///< Number of connections by account_of the client.
-  /// limits.max_connections, or fewer if there are few descriptors.
+  /// Number of connections by net::account_of the client.
+  std::map<std::string, std::size_t> per_peer;
+  /// limits.max_connections, or fewer if the system allows fewer descriptors.
   std::size_t most_connections = 0;
   std::vector<std::vector<std::shared_ptr<Connection>>> waiting;  ///< By entry.
   std::unique_ptr<std::atomic<bool>[]> wake_posted;               ///< By entry.

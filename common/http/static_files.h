@@ -1,4 +1,5 @@
-// A folder of files as resources: nothing outside it, types by extension, limited size.
+// A folder of files as resources: serves nothing outside the folder, media types by extension,
+// limited size.
 #pragma once
 
 #include <cstddef>
@@ -14,16 +15,18 @@ namespace chorus::http {
 /// Media type by file extension; application/octet-stream when unknown.
 [[nodiscard]] std::string_view media_type_of_file(std::string_view name);
 
-/// Reads files on request and keeps the documents until mtime or size change.  Thread-safe.
+/// Reads files on request and keeps each document until the file's mtime or size changes.
+/// Thread-safe.
 class StaticFiles {
  public:
-  /// `lines`: header lines for the answer of every file, each with CR LF; constant.
+  /// `lines`: header lines for the answers of all files, each with CR LF; must be a constant.
   explicit StaticFiles(std::string folder, std::string_view lines = {},
                        std::size_t max_file_bytes = 16u << 20);
   ~StaticFiles();
 
-  /// `path` is decoded and relative; "" and "sub/" mean index.html.  NotFound unless it is a
-  /// regular file inside the folder, symbolic links resolved; Forbidden above the size limit.
+  /// `path` is decoded and relative; "" and "sub/" stand for the index.html there.  NotFound unless
+  /// the path, with symbolic links resolved, is a regular file inside the folder; Forbidden above
+  /// the size limit.
   [[nodiscard]] Result<DocumentPtr> document(std::string_view path);
 
  private:

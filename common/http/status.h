@@ -1,15 +1,15 @@
-// Status codes that we send or act on (RFC 9110 15, RFC 6585).
+// The status codes that we send or act on (RFC 9110 15, RFC 6585).
 #pragma once
 
 namespace chorus::http::status {
 
-inline constexpr int kOk = 200;  ///< Lower ones are not final answers.
+inline constexpr int kOk = 200;  ///< Lower codes are not final answers.
 inline constexpr int kCreated = 201;
 inline constexpr int kAccepted = 202;
 inline constexpr int kNoContent = 204;
 inline constexpr int kNotModified = 304;
 inline constexpr int kPermanentRedirect = 308;
-inline constexpr int kBadRequest = 400;  ///< The lowest error.
+inline constexpr int kBadRequest = 400;  ///< The lowest code of an error.
 inline constexpr int kUnauthorized = 401;
 inline constexpr int kForbidden = 403;
 inline constexpr int kNotFound = 404;
@@ -25,7 +25,7 @@ inline constexpr int kExpectationFailed = 417;
 inline constexpr int kMisdirected = 421;
 inline constexpr int kTooManyRequests = 429;
 inline constexpr int kFieldsTooLarge = 431;
-inline constexpr int kInternal = 500;  ///< The lowest error that is the server's fault.
+inline constexpr int kInternal = 500;  ///< The lowest code of an error that is the server's fault.
 inline constexpr int kNotImplemented = 501;
 inline constexpr int kUnavailable = 503;
 inline constexpr int kGatewayTimeout = 504;

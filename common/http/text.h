@@ -1,4 +1,4 @@
-// Small functions that read header text: ASCII only, no locale, no allocation.
+// Small functions for header values: ASCII only, no locale.
 #pragma once
 
 #include <string>
@@ -31,8 +31,8 @@ namespace chorus::http {
   return text;
 }
 
-/// Cuts `text` at the first `separator` outside double quotes; returns the part before, trimmed,
-/// and leaves the rest in `text` (empty at the end).
+/// Cuts `text` at the first `separator` outside double quotes: returns the part before, trimmed,
+/// and leaves the part after in `text` (empty at the end).
 [[nodiscard]] constexpr std::string_view next_element(std::string_view& text,
                                                       char separator) noexcept {
   bool quoted = false;

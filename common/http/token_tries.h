@@ -8,9 +8,9 @@
 
 namespace chorus::http {
 
-/// Ten wrong tokens from one address are checked at once, after that one a second.  Until that
-/// second is over not even the right one is checked, because the answer would reveal it.  Addresses
-/// beyond the first few thousand share one account.
+/// Ten wrong tokens from one address are checked without delay; after that, one a second.  In
+/// between not even the right token is checked, because the answer would reveal that it is right.
+/// After the first few thousand addresses, all further ones are counted as one.
 class TokenTries {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -21,7 +21,8 @@ class TokenTries {
  private:
   [[nodiscard]] const std::string& account(const std::string& address) const;
 
-  std::map<std::string, Time> forgiven_;  ///< When the record of an address is clean again.
+  /// For each address, the time at which its wrong tokens are forgotten.
+  std::map<std::string, Time> forgiven_;
 };
 
 }  // namespace chorus::http

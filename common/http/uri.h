@@ -12,12 +12,13 @@ namespace chorus::http {
 using Query = std::map<std::string, std::string, std::less<>>;
 
 /// Decodes a path.  Refuses broken escapes, escaped control characters, escaped '/' and '\', and
-/// "." or ".." segments, so that a decoded path is unambiguous.  The result points into `raw` or,
-/// if something was decoded, into `storage`.
+/// "." or ".." segments, so that a decoded path has one meaning only.  The result points into `raw`
+/// or, if something had to be decoded, into `storage`.
 [[nodiscard]] Result<std::string_view> decode_path(std::string_view raw, std::string& storage);
 
-/// Reads "a=1&b=%20" without '?'; of a repeated key the last value counts, and a key without '='
-/// has an empty value.  '+' stands for itself, not for a space: time zones are written "+01:00".
+/// Decodes "a=1&b=%20" (without '?').  Of a repeated key the last value counts; a key without '='
+/// has an empty value.  '+' stands for itself, not for a space, because time zones are written
+/// "+01:00".
 [[nodiscard]] Result<Query> decode_query(std::string_view raw);
 
 }  // namespace chorus::http

@@ -9,9 +9,9 @@
 namespace chorus::http {
 namespace {
 
-constexpr std::size_t kMaxSaid = 4096;  ///< Bytes of one message from a client.
-/// Beast ends a broken or closed conversation by waiting for the client to hang up; we check this
-/// often for one that is over, and hang up ourselves.
+constexpr std::size_t kMaxSaid = 4096;  ///< Limit of one message from a client.
+/// Beast ends a broken or closed conversation by waiting for the client to hang up.  At this
+/// interval we check whether the conversation is over, and then hang up ourselves.
 constexpr std::chrono::milliseconds kLook{250};
 constexpr std::string_view kMediaType = "application/json";
 
@@ -47,7 +47,7 @@ class WebSocketConnection final : public Connection {
   State state_ = State::Opening;
   DocumentPtr shown_;  ///< The last version sent, or being sent.
   bool writing_ = false;
-  std::size_t sent_ = 0;  ///< Bytes of that version.
+  std::size_t sent_ = 0;  ///< How much of that version has been sent [bytes].
   bool pending_ = false;
 };
 

@@ -1,7 +1,7 @@
-// WebSockets that send live documents (RFC 6455): each version in JSON as one text message.
+// WebSockets that send a live document (RFC 6455): each version as one text message in JSON.
 //
 // Messages from a client are read and ignored, up to a small size; ping and close are answered.  A
-// client that reads slowly skips versions and gets the newest, as with events.
+// client that reads slowly misses versions and gets the newest one, as with event streams.
 #pragma once
 
 #include <memory>
@@ -17,18 +17,18 @@ struct ServerCore;
 
 struct WebSocketOpening {
   net::Stream stream;
-  std::string received;  ///< See handshake_of.
+  std::string received;  ///< The request, as handshake_of() gives it.
   std::string peer_address;
   const Router::Entry* entry = nullptr;
-  std::shared_ptr<Dialogue> dialogue = {};  ///< Null: a reader of a live document.
-  std::string protocol = {};                ///< See Reaction.
+  std::shared_ptr<Dialogue> dialogue = {};  ///< Null for a client that only reads a live document.
+  std::string protocol = {};                ///< Has the meaning of Reaction::protocol.
 };
 
-/// Answers the handshake and streams, or converses, until the client leaves; in `core` the new
-/// connection replaces `asker`.
+/// Answers the handshake, then streams the document or carries the dialogue until the client
+/// leaves.  In `core` the new connection replaces `asker`.
 void open_websocket(ServerCore& core, WebSocketOpening opening, const Connection* asker);
 
-/// A WebSocket whose client speaks: it carries `opening.dialogue`.
+/// Carries `opening.dialogue` over a WebSocket.
 void talk_by_websocket(ServerCore& core, WebSocketOpening opening, const Connection* asker);
 
 }  // namespace chorus::http

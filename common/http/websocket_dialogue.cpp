@@ -10,7 +10,8 @@ namespace chorus::http {
 namespace {
 
 constexpr std::chrono::milliseconds kLook{250};
-constexpr std::chrono::seconds kGoodbye{2};  // how long the client may take for its own close
+// How long the client may take for its own close frame.
+constexpr std::chrono::seconds kGoodbye{2};
 
 class DialogueConnection final : public Connection {
  public:
@@ -81,7 +82,7 @@ void DialogueConnection::on_heard(net::error_code failed) {
   if (state_ != State::Closed) listen();
 }
 
-/// An exception from the dialogue ends this dialogue only.
+/// Calls the dialogue; an exception from it ends this dialogue only.
 template <class Speaking>
 void DialogueConnection::react(const Speaking& speaking) {
   Reply reply;
@@ -124,7 +125,7 @@ void DialogueConnection::expire() {
   if (!over_) react([this] { return dialogue_->look(); });
 }
 
-/// Ends the dialogue properly, once; a client that does not reply is cut off.
+/// Ends the dialogue with a close frame, once; a client that does not reply is cut off.
 void DialogueConnection::say_goodbye(Goodbye code) {
   if (state_ != State::Open || !unsent_.empty() || !stream_.say_goodbye(code)) return close();
   state_ = State::Closing;

@@ -14,7 +14,7 @@ bool names(std::string_view list, std::string_view word) {
   return false;
 }
 
-constexpr std::size_t kLongestValue = 64;  // of a key or a version; valid ones are shorter
+constexpr std::size_t kLongestValue = 64;  // A valid key or version is shorter.
 
 void add(std::string& text, const Field& field) {
   text.append(field.name).append(": ").append(field.value.substr(0, kLongestValue)).append("\r\n");

@@ -51,7 +51,7 @@ WebSocketStream::WebSocketStream(net::Stream from, const WebSocketOptions& optio
   stream.set_option(patience);
   stream.read_message_max(options.max_message);
   stream.text(true);
-  stream.auto_fragment(false);  // in pieces of 4 KiB a message costs three times the CPU time
+  stream.auto_fragment(false);  // In pieces of 4 KiB a message would cost three times the CPU time.
   if (options.protocol.empty()) return;
   stream.set_option(websocket::stream_base::decorator(
       [protocol = options.protocol](websocket::response_type& response) {
@@ -96,8 +96,8 @@ void WebSocketStream::write(std::string_view text, Done done) {
       });
 }
 
-/// Written by hand: Beast's close waits for its read, and a read that meets a broken frame at that
-/// moment waits for the close (1.74: close.hpp, read.hpp), whatever happens to the socket.
+/// Not done by Beast: its close waits for its read, and a read that meets a broken frame at that
+/// moment waits for the close, whatever happens to the socket (1.74: close.hpp, read.hpp).
 bool WebSocketStream::say_goodbye(Goodbye code) {
   if (beast_->writing || !is_open()) return false;
   const auto number = static_cast<std::uint16_t>(code);

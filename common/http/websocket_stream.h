@@ -1,7 +1,8 @@
-// One WebSocket (RFC 6455) of the server: Boost.Beast's stream with workarounds, compiled once.
+// One WebSocket (RFC 6455) of the server: Boost.Beast's stream with workarounds, compiled in one
+// file only.
 //
-// Everything runs on the server's thread.  Each callback is called once and keeps what it owns
-// alive until then.
+// Everything runs on the server's thread.  Each callback is called once; until then, what it
+// captures stays alive.
 #pragma once
 
 #include <cstddef>
@@ -38,9 +39,10 @@ class WebSocketStream {
   WebSocketStream(const WebSocketStream&) = delete;
   WebSocketStream& operator=(const WebSocketStream&) = delete;
 
-  /// `received`: see handshake_of (websocket_handshake.h).  May call `done` before it returns.
+  /// Answers the handshake; `received` is what handshake_of() returned.  May call `done` before it
+  /// returns.
   void accept(std::string received, Done done);
-  /// `hang_up` is called for a client that sends more pings than anyone needs.
+  /// `hang_up` is called when the client sends far more pings than it needs.
   void on_flood(std::function<void()> hang_up);
 
   void read(Done done);
@@ -50,8 +52,8 @@ class WebSocketStream {
 
   /// Sends one text message; `text` must stay valid until `done`.
   void write(std::string_view text, Done done);
-  /// Sends a close frame; nothing may be written after it.  While a write is under way, or when the
-  /// frame does not fit, it does nothing and returns false: close the socket then.
+  /// Sends a close frame; nothing may be written after it.  Does nothing and returns false while a
+  /// write is under way or when the frame does not fit: then close the socket.
   [[nodiscard]] bool say_goodbye(Goodbye code);
 
   [[nodiscard]] bool is_open() const;

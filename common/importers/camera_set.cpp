@@ -13,9 +13,9 @@
 namespace chorus::importers {
 namespace {
 
-constexpr std::size_t kMaxCameras = 64;  // as many as a Snapshot can name
+constexpr std::size_t kMaxCameras = 64;  // As many as a Snapshot can name.
 constexpr double kMaxPixels = 1e5;
-constexpr double kRotationSlack = 1e-3;  // largest |R R^T - 1|, because files round
+constexpr double kRotationSlack = 1e-3;  // Largest |R R^T - 1|; files round.
 
 Result<Eigen::Matrix3d> read_matrix(const nlohmann::json& rows, double bound,
                                     const std::string& at) {

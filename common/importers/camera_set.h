@@ -1,4 +1,4 @@
-// Calibrated cameras as published with their recording: intrinsics and extrinsics of each.
+// Calibrated cameras as they are published with a recording: intrinsics and extrinsics of each.
 #pragma once
 
 #include <filesystem>
@@ -14,12 +14,12 @@ namespace chorus::importers {
 struct CalibratedCamera {
   SensorId sensor;
   Intrinsics intrinsics;
-  Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();  ///< In our axes.
+  Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();  ///< In our world's axes.
 };
 
-/// [{"camera", "width", "height", "K": 3x3, "distortion_k1k2p1p2k3": 5,
-///   "camera_from_world": {"R": 3x3, "t_m": 3}}]: OpenCV camera axes, world z up.
-/// Refuses an R that is no rotation, repeated names, and more than 64 cameras.
+/// Reads [{"camera", "width", "height", "K": 3x3, "distortion_k1k2p1p2k3": 5, "camera_from_world":
+/// {"R": 3x3, "t_m": 3}}], with OpenCV camera axes and world z up.
+/// Refuses an R that is not a rotation, repeated names, and more than 64 cameras.
 [[nodiscard]] Result<std::vector<CalibratedCamera>> read_cameras(const std::filesystem::path& file,
                                                                  const ImportLimits& limits = {});
 

@@ -19,7 +19,8 @@ struct Form {
   Lateral lateral;
 };
 
-/// Empty when nobody was detected; `unfitted` counts detections that fit no body.
+/// The bodies of one frame; none when nobody was detected.  `unfitted` counts detections that fit
+/// no body.
 std::vector<BodyFrame> bodies_of(const LandmarkFrame& frame, Timestamp captured,
                                  const Intrinsics& intrinsics, const Form& form,
                                  std::size_t& unfitted) {
@@ -42,7 +43,7 @@ Result<Landmarks> read_truth_landmarks(const nlohmann::json& points, const std::
     return fail(ErrorCode::Malformed, at, fmt::format("must hold {} landmarks.", kLandmarkCount));
   Landmarks landmarks;
   for (std::size_t i = 0; i < kLandmarkCount; ++i) {
-    if (points[i].is_null()) continue;  // too few cameras saw it
+    if (points[i].is_null()) continue;  // Too few cameras saw the landmark.
     std::array<double, 3> x{};
     const auto read = read_numbers(points[i], x, kMaxImported, fmt::format("{}[{}]", at, i));
     if (!read) return pass(read);

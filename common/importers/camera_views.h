@@ -1,8 +1,9 @@
-// Real camera views as recordings: landmarks + calibration -> 25 joints in each camera's own space.
+// Views of real cameras as recordings: turns landmarks and calibration into 25 joints in each
+// camera's sensor space.
 //
-// The folder holds cameras.json (camera_set.h), one landmark file per camera (landmarks.h) and, if
-// the truth is known, triangulated.json.  The published extrinsics and the truth are imported too,
-// in our world.
+// The folder contains cameras.json (camera_set.h), one landmark file per camera (landmarks.h) and,
+// if the truth is known, triangulated.json.  The published extrinsics and the truth are imported
+// too, and moved into our world.
 #pragma once
 
 #include <filesystem>
@@ -15,12 +16,13 @@
 
 namespace chorus::importers {
 
-/// One view; a frame without detections, or whose landmarks fit no body, is empty.
+/// Reads one view.  A frame in which nobody was detected, or whose landmarks fit no body, has no
+/// bodies.
 [[nodiscard]] Result<record::FrameRecording> read_camera_view(
     const std::filesystem::path& file, const std::vector<CalibratedCamera>& cameras,
     const ImportOptions& options = {}, Lateral lateral = Lateral::PixelRay);
 
-/// The person as triangulated from all views, at the instant of the views' frame `index`.
+/// The person as triangulated from all views, at the instant of frame `index` of the views.
 struct TruthFrame {
   std::uint64_t index = 0;
   Skeleton<WorldSpace> skeleton;

@@ -35,7 +35,7 @@ Result<ImportedSet> import_motion(const std::filesystem::path& file, const Impor
   return set;
 }
 
-/// Reads either one file as one sensor, or one input as the whole set.
+/// How a format is read: either one file is one sensor, or one input is the whole set.
 struct ReaderRow {
   FileFormat format;
   FileReader file = nullptr;
@@ -115,8 +115,8 @@ Duration boot_time_of(const record::FrameRecording& recording) {
   return Duration(std::stoll(recording.notes.at(kBootTicksNote)) * kNanosecondsPerTick);
 }
 
-/// Keeps the distances between times that count from one sensor's start, if they fit one afternoon:
-/// then they are counts of one clock.  Files that state no times stay unchanged.
+/// Keeps the time between files whose times count from the start of one sensor; that is assumed if
+/// all of these times fit into one afternoon.  Files that state no times stay unchanged.
 void keep_common_counter(std::vector<record::FrameRecording>& recordings) {
   constexpr Duration kOneAfternoon = std::chrono::hours(6);
   std::vector<record::FrameRecording*> counted;
@@ -172,7 +172,8 @@ void note_set_times(std::vector<record::FrameRecording>& recordings) {
   }
 }
 
-/// Whatever was imported: told apart, and with times that belong together.
+/// Finishes any imported set: refuses copies and repeated sensors, and makes the times of its files
+/// consistent.
 Result<ImportedSet> finished(Result<ImportedSet> set) {
   if (!set) return set;
   if (const auto distinct = refuse_copies(set->recordings); !distinct) return pass(distinct);

@@ -1,4 +1,4 @@
-// Every format by name, and whole sets of files: `chorus import` calls this.
+// The table of all formats, and the import of whole sets of files, for `chorus import`.
 #pragma once
 
 #include <array>
@@ -55,28 +55,28 @@ inline constexpr std::array<FormatRow, 11> kFormats{{
 [[nodiscard]] std::optional<FileFormat> format_named(std::string_view name);
 
 struct ImportedSet {
-  /// Distinct sensors, in the order of the inputs.
+  /// One per sensor, in the order of the inputs.
   std::vector<record::FrameRecording> recordings;
   std::map<SensorId, Eigen::Isometry3d> world_from_sensor;  ///< Published extrinsics, if any.
   std::vector<TruthFrame> truth;                            ///< Published truth, if any.
-  std::vector<Error> empty = {};  ///< Inputs without content, which were left out.
+  std::vector<Error> empty = {};  ///< Inputs without frames, which were left out.
 };
 
-/// Each input is one sensor; for pose2sim the only input is the folder; for c3d, bvh and mvnx it is
-/// a file whose world becomes ours (motion_file.h), and so does that of a single csv or ndjson file
-/// without a floor.  Refuses sets in which two inputs would be the same sensor or hold the same
-/// numbers.  The notes of every recording say when the set begins and how long it lasts
-/// (set_origin, set_period_ns), so that several replays loop in step.  Files that count from the
-/// start of one sensor keep their distance in time.
+/// Reads a set of files.  Usually each input is one sensor.  For pose2sim the only input is the
+/// folder. For c3d, bvh and mvnx, and for a single csv or ndjson file without a floor, the only
+/// input is a file whose world becomes ours (motion_file.h).  Refuses sets in which two inputs
+/// would be the same sensor or have the same numbers.  The notes of every recording say when the
+/// set begins and how long it lasts (set_origin, set_period_ns), so that several replays loop in
+/// step.  If files count from the start of one sensor, the time between them is kept.
 [[nodiscard]] Result<ImportedSet> import_files(FileFormat format,
                                                const std::vector<std::filesystem::path>& inputs,
                                                const ImportOptions& options = {});
 
-/// Reads input number `index`, with its floor.
+/// Reads the input with this index, and its floor.
 using ReadRecording = std::function<Result<record::FrameRecording>(
     const std::filesystem::path& file, const ImportOptions& options, std::size_t index)>;
 
-/// The same for files that the caller's function reads, one sensor each.
+/// Like import_files(), but the caller's function reads each file, one sensor per file.
 [[nodiscard]] Result<ImportedSet> import_recordings(
     const std::vector<std::filesystem::path>& inputs, const ImportOptions& options,
     const ReadRecording& read);

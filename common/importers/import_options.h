@@ -1,5 +1,4 @@
-// What every importer needs in addition to the
-// file: the sensor, the floor, and the start time.
+// What an importer needs in addition to the file: the sensor, the floor, the start time, limits.
 #pragma once
 
 #include <cstddef>
@@ -14,29 +13,30 @@
 
 namespace chorus::importers {
 
-/// 2020-01-01T00:00:00Z: time of the first frame in recordings that do not say when they were made,
-/// so that importing a file twice gives the same bytes.
+/// 2020-01-01T00:00:00Z: time of the first frame in recordings that do not say when they were made.
+/// It is fixed, so that importing a file twice gives the same bytes.
 inline constexpr Timestamp kDefaultStart = from_unix_ns(1'577'836'800'000'000'000);
 
-/// Memory stays below about four times max_text_bytes: the densest format has 24 bytes per joint,
-/// we have 64.
+/// Limits of one import.  Memory stays below about four times max_text_bytes: the densest format
+/// needs 24 bytes per joint, we need 64.
 struct ImportLimits {
   std::uintmax_t max_text_bytes = 256u << 20;
-  std::uintmax_t max_json_bytes = 32u << 20;  ///< A JSON tree takes about twenty times its text.
-  std::size_t max_frames = 1'000'000;         ///< Nine hours at 30 Hz.
+  /// A parsed JSON tree needs about twenty times the memory of its text.
+  std::uintmax_t max_json_bytes = 32u << 20;
+  std::size_t max_frames = 1'000'000;  ///< Nine hours at 30 Hz.
 };
 
-/// Farther from the sensor than this is a unit mistake (millimetres) or noise, not a person [m].
-/// Tighter than kMaxCoordinate, because a foreign file does not state its unit.
+/// Limit of a distance from the sensor [m]: a larger one is due to a wrong unit (millimetres) or to
+/// noise.  Tighter than kMaxCoordinate, because these files do not state their unit.
 inline constexpr double kMaxImported = 100.0;
 
 struct ImportOptions {
   std::optional<SensorId> sensor;   ///< None: sensor_named_after(file).
   std::optional<FloorPlane> floor;  ///< In sensor space; put into every frame.
-  /// Replaces `floor`: one for each of several inputs.
+  /// If not empty, one for each input; `floor` is then ignored.
   std::vector<FloorPlane> floors = {};
   Timestamp start = kDefaultStart;  ///< Time of the first frame, if the file has no UTC.
-  bool rays = false;  ///< Turns camera landmarks into rays instead of fitting their depth.
+  bool rays = false;  ///< Turns camera landmarks into rays instead of estimating their depth.
   double metres_per_unit = 0.01;  ///< For BVH files, which do not state it; usually cm.
   ImportLimits limits;
 };
@@ -44,7 +44,7 @@ struct ImportOptions {
 /// "data/Ges01_wavehand.csv" -> Ges01_wavehand; characters other than [A-Za-z0-9_-] become '-'.
 [[nodiscard]] Result<SensorId> sensor_named_after(const std::filesystem::path& file);
 
-/// The sensor named in the options, else sensor_named_after(file).
+/// The sensor in the options, if set; otherwise sensor_named_after(file).
 [[nodiscard]] Result<SensorId> sensor_for(const std::filesystem::path& file,
                                           const ImportOptions& options);
 

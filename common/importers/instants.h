@@ -1,4 +1,4 @@
-// Collects bodies that come row by row into frames.  Private to this folder's .cpp files.
+// Collects bodies that are read row by row into frames.  Private to this folder's .cpp files.
 #pragma once
 
 #include "common/importers/import_options.h"
@@ -12,10 +12,11 @@ class Instants {
   Instants(const ImportOptions& options, record::FrameRecording& recording)
       : options_(options), recording_(recording) {}
 
-  /// Adds a frame for this instant, which may stay without bodies.
+  /// Adds a frame for this instant if there is none; the frame may stay without bodies.
   [[nodiscard]] Result<void> reach(const LineReader& at, Timestamp captured);
-  /// The body with this id at this instant, added if it is new.  Refuses instants that go back, too
-  /// many frames, and too many bodies; `at` names the row.
+  /// Returns the body with this id at this instant, adding it if it is new.  Refuses an instant
+  /// before the last one, too many frames, and too many bodies; `at` names the row in error
+  /// messages.
   [[nodiscard]] Result<BodyFrame*> body(const LineReader& at, Timestamp captured, BodyId id);
 
  private:

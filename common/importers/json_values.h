@@ -1,4 +1,5 @@
-// For JSON formats: limited reading, and checked numbers.  Private to this folder's .cpp files.
+// Helpers for JSON formats: read files up to a size limit, and check numbers.  Private to this
+// folder's .cpp files.
 //
 #pragma once
 
@@ -13,7 +14,7 @@
 
 namespace chorus::importers {
 
-/// A whole document; errors name the file and, for broken syntax, line and column.
+/// Reads a whole document; errors name the file and, for broken syntax, line and column.
 [[nodiscard]] Result<nlohmann::json> read_json(const std::filesystem::path& file,
                                                std::uintmax_t max_bytes);
 

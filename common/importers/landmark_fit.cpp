@@ -10,7 +10,7 @@
 namespace chorus::importers {
 namespace {
 
-/// A pixel ray closer than this to the camera's plane says nothing [m].
+/// A landmark nearer to the camera's plane than this, or behind it, is not tracked [m].
 constexpr double kMinDepth = 0.1;
 
 cv::Matx33d camera_matrix(const Intrinsics& k) {
@@ -37,8 +37,8 @@ struct CameraFit {
   std::vector<cv::Point2d> ray;                           ///< x/z, y/z of each undistorted pixel.
 };
 
-/// SQPnP, then Levenberg-Marquardt: the usual iterative start ends in mirrored poses on views from
-/// behind (metres off for one of the four bundled cameras).  May throw cv::Exception.
+/// SQPnP, then Levenberg-Marquardt.  OpenCV's default iterative start ends in mirrored poses for
+/// views from behind (off by metres for one of the four bundled cameras).  May throw cv::Exception.
 std::optional<CameraFit> fit_camera(const PixelsAndBody& points, const Intrinsics& intrinsics) {
   const cv::Matx33d k = camera_matrix(intrinsics);
   const std::vector<double> distortion(intrinsics.distortion.begin(), intrinsics.distortion.end());
@@ -97,8 +97,8 @@ Result<Landmarks> fit_landmarks(const DetectedLandmarks& detected, const Intrins
 
 Covariance fit_error(const Joint& joint) {
   constexpr double kAcross = 0.025;  // [m]
-  constexpr double kOfRange = 0.06;  // of the distance
-  constexpr double kInferred = 2.0;  // times as much
+  constexpr double kOfRange = 0.06;  // [1], of the distance
+  constexpr double kInferred = 2.0;  // Factor for an Inferred joint.
   const double range = joint.position.norm();
   if (!joint.seen() || !(range > 0.0)) return {};
   const double factor = joint.state == JointState::Inferred ? kInferred : 1.0;

@@ -43,8 +43,8 @@ Result<DetectedLandmarks> read_detected(const nlohmann::json& image, const nlohm
   return detected;
 }
 
-/// The files round t_s to microseconds; if it stands for a whole frame, that frame's exact instant
-/// is used.
+/// The time of a frame.  The files round t_s to microseconds; if t_s is within that of a whole
+/// frame, the exact instant of that frame is used.
 Duration frame_time(double t_s, int hz) {
   constexpr double kRounding = 2e-6;
   const double index = std::round(t_s * hz);

@@ -1,4 +1,4 @@
-// Pose landmarks in files: the 33 of MediaPipe Pose (common/layout/mediapipe.cpp).
+// Files with pose landmarks: the 33 of MediaPipe Pose (common/layout/mediapipe.cpp).
 #pragma once
 
 #include <array>
@@ -16,9 +16,10 @@
 
 namespace chorus::importers {
 
-inline constexpr std::size_t kLandmarkCount = 33;  ///< 0 nose, 11/12 shoulders, ...; odd = left.
+/// 0: nose, 11/12: shoulders, ...; odd numbers: left.
+inline constexpr std::size_t kLandmarkCount = 33;
 
-/// Below this MediaPipe visibility a landmark is a guess: Inferred.
+/// A landmark with a lower MediaPipe visibility is a guess: Inferred.
 inline constexpr double kTrackedVisibility = 0.6;
 
 /// What the detector found in one image.
@@ -38,12 +39,12 @@ struct LandmarkView {
   std::vector<LandmarkFrame> frames;
 };
 
-/// {"camera", "fps", "frames": [{"t_s", "image": 33 x [u, v, visibility], "world": 33 x [x, y,
-/// z]}]}.
+/// Reads {"camera", "fps", "frames": [{"t_s", "image": 33 x [u, v, visibility], "world": 33 x [x,
+/// y, z]}]}.
 [[nodiscard]] Result<LandmarkView> read_landmark_view(const std::filesystem::path& file,
                                                       const ImportLimits& limits = {});
 
-/// In any metric space; the order is that of layout::kMediapipe.
+/// Landmarks in any metric space, in the order of layout::kMediapipe.
 using Landmarks = std::array<layout::Landmark, kLandmarkCount>;
 
 }  // namespace chorus::importers

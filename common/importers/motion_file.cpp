@@ -25,7 +25,7 @@ constexpr std::size_t kShownLabels = 40;
 constexpr double kNanosecondsPerSecond = 1e9;
 constexpr double kMaxSeconds = 7 * 24 * 3600.0;
 
-/// The common result of all readers: one motion per person, all of one length.
+/// What every reader returns: one motion per person, all of the same length.
 struct Captured {
   std::string device;
   std::vector<motion::Motion> persons;
@@ -40,14 +40,14 @@ std::string list_of(const std::vector<std::string>& labels) {
   return labels.size() > kShownLabels ? text + " ..." : text;
 }
 
-/// "P10" -> 10: our own export names persons like this.
+/// "P10" -> 10: files that Chorus exports name persons like this.
 std::optional<std::uint64_t> person_named(std::string_view name) {
   if (!name.starts_with('P')) return std::nullopt;
   return parse_number<std::uint64_t>(name.substr(1));
 }
 
-/// The ids in the names, if every name has a different one; otherwise 1, 2, ... in the order of the
-/// file.
+/// The ids in the subjects' names, if every name has a different one; otherwise 1, 2, ... in the
+/// order of the file.
 std::vector<std::uint64_t> ids_of(const std::vector<motion::C3dSubject>& subjects) {
   std::vector<std::uint64_t> ids;
   for (const auto& subject : subjects) {
@@ -112,7 +112,7 @@ Result<Captured> captured(const std::filesystem::path& file, MotionFormat format
 
 FloorPlane floor_of_world() { return {Eigen::Vector3d::UnitY(), 0.0}; }
 
-/// World and sensor space coincide here.
+/// The body as the ideal sensor sees it: world and sensor space coincide.
 Skeleton<SensorSpace> as_seen(const Skeleton<WorldSpace>& body) {
   return to_sensor(Eigen::Isometry3d::Identity(), body);
 }

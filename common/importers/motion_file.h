@@ -1,8 +1,9 @@
-// Recorded human motion as truth: turns C3D, BVH and MVNX (common/motion) into a recording of an
-// ideal sensor.
+// Recorded human motion as truth: turns C3D, BVH and MVNX files (common/motion) into a recording of
+// an ideal sensor.
 //
-// The sensor's space is the world of the file: +y up, floor y = 0, identity extrinsics.  So motion
-// capture data can be replayed, fused and exported like any recording, and serves as the truth.
+// The sensor's space is the world of the file: +y up, floor y = 0, extrinsics identity.  So motion
+// capture data can be replayed, fused and exported like any recording, and also serves as the
+// truth.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +22,7 @@ struct MotionRecording {
   std::vector<TruthFrame> truth;     ///< The same in world space.
 };
 
-/// Notes of the recording: "labels": points of a C3D file that are not joints; "joints": the number
+/// The recording's notes: "labels": points of a C3D file that are not joints; "joints": the number
 /// of joints; "time": that the file states only a rate.  BVH lengths are centimetres unless
 /// `options.metres_per_unit` says otherwise.
 [[nodiscard]] Result<MotionRecording> read_motion_file(const std::filesystem::path& file,

@@ -34,7 +34,7 @@ Result<Timestamp> instant_of(const Table& row, const ImportOptions& options) {
   return options.start + from_seconds(**since);
 }
 
-/// All the numbers; none if the fields are empty.
+/// The numbers in these columns; none if the fields are empty.
 template <std::size_t Count>
 Result<std::optional<std::array<double, Count>>> numbers(
     const Table& row, const std::array<std::string_view, Count>& columns, double bound) {
@@ -110,7 +110,7 @@ Result<void> read_joint_rows(LineReader& lines, const ImportOptions& options,
     const auto joint = joint_of(*table);
     if (!joint) return pass(joint);
     if (auto ok = instants.reach(lines, *captured); !ok) return ok;
-    if (!joint->given()) continue;  // a missing joint has a row too
+    if (!joint->given()) continue;  // A missing joint has a row too.
     const auto body = instants.body(lines, *captured, BodyId{*person});
     if (!body) return pass(body);
     (*body)->skeleton[*id] = *joint;

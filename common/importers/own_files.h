@@ -1,5 +1,5 @@
-// Reads the files of other trackers in two simple formats, which `chorus export --format csv` and
-// `chorus fuse --out X.ndjson` write too.
+// Reads two simple formats, which `chorus export --format csv` and `chorus fuse --out X.ndjson`
+// write, and in which other trackers' data can be imported.
 //
 // CSV: one row per joint; the first row names the columns; docs/guide/recording.md explains them.
 // NDJSON: one /frame document per line (proto/README.md, section 3).
@@ -11,7 +11,7 @@
 namespace chorus::importers {
 
 /// Requires the columns joint, x_m, y_m, z_m and utc or time_s; person, state and qx..qw are
-/// optional. Rows of one instant are adjacent, and instants are in order.
+/// optional. The rows of one instant must be adjacent, and the instants in order.
 [[nodiscard]] Result<record::FrameRecording> read_joint_csv(const std::filesystem::path& file,
                                                             const ImportOptions& options = {});
 

@@ -20,7 +20,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \r") - first + 1);
 }
 
-/// The separator that is most frequent in the first row.
+/// The separator that is most frequent in the first row; a comma if none is.
 char separator_of(std::string_view header) {
   char best = ',';
   for (const char each : {';', '\t'}) {

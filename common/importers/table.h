@@ -13,20 +13,20 @@ namespace chorus::importers {
 
 class Table {
  public:
-  /// Reads the first row; refuses a text without one, and repeated names.
+  /// Reads the first row; refuses an empty file and repeated names.
   [[nodiscard]] static Result<Table> open(LineReader& lines);
 
-  /// Reads the next row; false at the end.  Refuses rows with more or fewer fields than columns.
+  /// Reads the next row; false at the end.  Refuses a row with more or fewer fields than columns.
   [[nodiscard]] Result<bool> next();
 
   [[nodiscard]] bool has(std::string_view column) const { return columns_.contains(column); }
-  /// This row's field in the column; empty if there is no such column.
+  /// The field of this row in the column; empty if there is no such column.
   [[nodiscard]] std::string_view field(std::string_view column) const;
-  /// A finite number within +-bound; none if the field is empty.
+  /// The field as a finite number within +-bound; none if the field is empty.
   [[nodiscard]] Result<std::optional<double>> number(std::string_view column, double bound) const;
-  /// A whole number of 0 or more; `absent` if the field is empty.
+  /// The field as a whole number of 0 or more; `absent` if the field is empty.
   [[nodiscard]] Result<std::uint64_t> natural(std::string_view column, std::uint64_t absent) const;
-  /// Malformed at this row; names the column and its content.
+  /// A Malformed error for this row, with the column's name and content.
   [[nodiscard]] tl::unexpected<Error> wrong(std::string_view column, std::string_view what) const;
 
  private:

@@ -11,7 +11,7 @@ std::ptrdiff_t separators(std::string_view line) {
   return std::ranges::count_if(line, [](char c) { return c == ',' || c == ' ' || c == '\t'; });
 }
 
-/// True when the last line has no line end, and fewer values than the line before it.
+/// True when the last line has no line end and fewer separators than the line before.
 bool cut_off(std::string_view text) {
   const std::size_t end = text.rfind('\n');
   if (end == std::string_view::npos || end + 1 == text.size()) return false;

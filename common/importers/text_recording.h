@@ -1,4 +1,5 @@
-// What all line-by-line formats share: reads the file, names the sensor, refuses an empty file.
+// What all line-by-line formats share: reads the file, names the sensor, and refuses a file without
+// frames.
 #pragma once
 
 #include <filesystem>
@@ -13,9 +14,10 @@
 namespace chorus::importers {
 
 struct TextFormat {
-  std::string device;                        ///< FrameRecording::device
-  std::map<std::string, std::string> notes;  ///< "origin" is added to them.
-  std::string unit;                          ///< What an empty file lacks, for the message.
+  std::string device;  ///< The value of FrameRecording::device.
+  /// Notes of the recording, to which the note "origin" is added.
+  std::map<std::string, std::string> notes;
+  std::string unit;  ///< For the error message: what a file without frames does not contain.
   std::function<Result<void>(LineReader&, const ImportOptions&, record::FrameRecording&)> read;
 };
 

@@ -12,7 +12,7 @@ namespace chorus::importers {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
-constexpr std::size_t kShownFieldBytes = 24;  // longest quotation of a wrong field
+constexpr std::size_t kShownFieldBytes = 24;  // Limit for quoting a wrong field in a message.
 
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(kBlanks);
@@ -20,7 +20,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
-/// Cuts the next field off `rest`; none when nothing is left.
+/// Cuts the next field off `rest`; none when no field is left.
 std::optional<std::string_view> cut_field(std::string_view& rest, char separator, bool first) {
   if (separator == ' ') {
     const auto begin = rest.find_first_not_of(kBlanks);

@@ -1,4 +1,4 @@
-// Text formats, row by row: limited reading, and errors that name file, line and column.
+// Reads text formats row by row, up to a size limit; errors name file, line and column.
 #pragma once
 
 #include <cstddef>
@@ -14,20 +14,21 @@
 
 namespace chorus::importers {
 
-/// Reads a whole file; refuses one that is larger than max_bytes, missing, or not a plain file.
+/// Reads a whole file; refuses one that is larger than max_bytes, missing, or not a regular file.
 [[nodiscard]] Result<std::string> read_bounded(const std::filesystem::path& file,
                                                std::uintmax_t max_bytes);
 
-/// Walks through the lines of a text that outlives it; accepts "\r\n" and a missing last line end.
+/// Walks through the lines of a string, which must outlive the reader; accepts "\r\n" and a last
+/// line without an end.
 class LineReader {
  public:
   LineReader(std::string_view text, std::string origin) : rest_(text), origin_(std::move(origin)) {}
 
-  /// The next line without its end; none at the end of the text.
+  /// The next line, without its line end; none at the end of the text.
   [[nodiscard]] std::optional<std::string_view> next();
   /// The next line that is not blank.
   [[nodiscard]] std::optional<std::string_view> next_filled();
-  /// Malformed at "file:line" of the line returned last.
+  /// A Malformed error for "file:line", the line returned last.
   [[nodiscard]] tl::unexpected<Error> malformed(std::string message) const;
 
  private:
@@ -36,17 +37,17 @@ class LineReader {
   std::size_t line_ = 0;
 };
 
-/// The fields of one row.  A ',' separates two fields exactly, but may also end the row
-/// (LabanotationSuite writes that); ' ' stands for any run of blanks.
+/// The fields of one row.  A ',' separates exactly two fields, except that one at the end of the
+/// row is ignored (LabanotationSuite writes one); ' ' stands for any run of blanks.
 class Row {
  public:
-  /// Refuses a row that does not have exactly `expected` fields (such as a truncated one).
+  /// Refuses a row that does not have exactly `expected` fields, such as a truncated one.
   [[nodiscard]] static Result<Row> split(const LineReader& at, std::string_view line,
                                          char separator, std::size_t expected);
 
   [[nodiscard]] Result<std::int64_t> integer(std::size_t column) const;
   [[nodiscard]] Result<std::uint64_t> natural(std::size_t column) const;
-  /// Reads finite numbers from field `first` on, as many as `out` holds, each within +-bound.
+  /// Reads as many finite numbers as `out` holds, from field `first` on, each within +-bound.
   [[nodiscard]] Result<void> numbers(std::size_t first, std::span<double> out, double bound) const;
 
  private:

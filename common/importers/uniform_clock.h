@@ -1,4 +1,4 @@
-// Capture times for formats that count frames but store no times.
+// Capture times for formats that number frames but store no times.
 #pragma once
 
 #include <cstddef>
@@ -7,14 +7,15 @@
 
 namespace chorus::importers {
 
-inline constexpr int kKinectHz = 30;  ///< Nominal rate of Kinect v1 and v2; real ones drop frames.
+/// Nominal rate of Kinect v1 and v2; real devices drop frames.
+inline constexpr int kKinectHz = 30;
 
-/// The note for times made this way.
+/// The note that recordings with such times get.
 inline constexpr const char* kUniformTimeNote =
     "no times in the file; an exact 30 Hz is assumed, dropped frames are invisible";
 
-/// The instant of frame `index`, to the nearest nanosecond, without accumulated error: the same
-/// grid as the pipeline's.
+/// The instant of frame `index`, rounded to the nearest nanosecond; errors do not accumulate.  The
+/// pipeline's grid is computed in the same way.
 [[nodiscard]] constexpr Timestamp uniform_instant(Timestamp start, std::size_t index, int hz) {
   constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
   const auto twice = 2 * static_cast<std::int64_t>(index) * kNanosecondsPerSecond / hz;

@@ -1,4 +1,4 @@
-// Azure Kinect Body Tracking SDK (k4abt), also for Orbbec Femto cameras through Orbbec's wrapper.
+// Azure Kinect Body Tracking SDK (k4abt), and Orbbec Femto cameras through Orbbec's wrapper.
 #include "common/layout/tables.h"
 
 namespace chorus::layout {
@@ -12,7 +12,8 @@ constexpr std::array<std::string_view, 32> kNames{
     "HIP_LEFT", "KNEE_LEFT", "ANKLE_LEFT", "FOOT_LEFT", "HIP_RIGHT", "KNEE_RIGHT", "ANKLE_RIGHT", "FOOT_RIGHT",
     "HEAD", "NOSE", "EYE_LEFT", "EAR_LEFT", "EYE_RIGHT", "EAR_RIGHT"};
 
-// Its NECK is the base of the neck, level with the clavicles, and its HEAD the base of the skull.
+// The tracker's NECK is the base of the neck, level with the clavicles; its HEAD is the base of the
+// skull.
 constexpr std::array kRecipes{
     only(JointId::SpineBase, 0), middle(JointId::SpineMid, 1, 2), neck(3, 29, 31), middle(JointId::Head, 29, 31),
     only(JointId::ShoulderLeft, 5), only(JointId::ElbowLeft, 6), only(JointId::WristLeft, 7), only(JointId::HandLeft, 8),
@@ -26,7 +27,8 @@ constexpr std::array kRecipes{
 
 }  // namespace
 
-/// Confidence is the level times 0.5: 0 none, 0.5 low (predicted behind an occlusion), 1 medium.
+/// Confidence is the SDK's level times 0.5: 0: none, 0.5: low (predicted behind an occlusion), 1:
+/// medium.
 const Layout kAzureKinect{"azure_kinect_32",
                           "Azure Kinect Body Tracking SDK",
                           "https://learn.microsoft.com/en-us/azure/kinect-dk/body-joints",

@@ -1,4 +1,4 @@
-// OpenPose's default model.
+// OpenPose's default model, BODY_25.
 #include "common/layout/tables.h"
 
 namespace chorus::layout {
@@ -10,7 +10,7 @@ constexpr std::array<std::string_view, 25> kNames{
     "RHip", "RKnee", "RAnkle", "LHip", "LKnee", "LAnkle", "REye", "LEye", "REar", "LEar",
     "LBigToe", "LSmallToe", "LHeel", "RBigToe", "RSmallToe", "RHeel"};
 
-// Its Neck is the centre of the shoulders.
+// The tracker's Neck is the centre of the shoulders.
 constexpr std::array kRecipes{
     only(JointId::SpineBase, 8), middle(JointId::SpineMid, 1, 8),
     neck(1, 17, 18), only(JointId::Neck, 1),

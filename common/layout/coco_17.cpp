@@ -9,7 +9,7 @@ constexpr std::array<std::string_view, 17> kNames{
     "nose", "left_eye", "right_eye", "left_ear", "right_ear", "left_shoulder", "right_shoulder", "left_elbow", "right_elbow",
     "left_wrist", "right_wrist", "left_hip", "right_hip", "left_knee", "right_knee", "left_ankle", "right_ankle"};
 
-// From the side a detector misses the far ear: the other ear or the nose is the head then.
+// From the side a detector misses the far ear; then the other ear or the nose stands for the head.
 constexpr std::array kRecipes{
     middle(JointId::SpineBase, 11, 12), middle(JointId::SpineMid, 11, 12, 5, 6),
     neck(5, 6, 3, 4), middle(JointId::Neck, 5, 6),

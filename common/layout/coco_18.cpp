@@ -1,4 +1,4 @@
-// OpenPose's COCO model with 18 key points, and BODY_18 of the ZED SDK, which adopted them.
+// OpenPose's COCO model with 18 key points, and the ZED SDK's BODY_18, which has the same ones.
 #include "common/layout/tables.h"
 
 namespace chorus::layout {
@@ -10,7 +10,7 @@ constexpr std::array<std::string_view, 18> kNames{
     "RIGHT_HIP", "RIGHT_KNEE", "RIGHT_ANKLE", "LEFT_HIP", "LEFT_KNEE", "LEFT_ANKLE",
     "RIGHT_EYE", "LEFT_EYE", "RIGHT_EAR", "LEFT_EAR"};
 
-// Its NECK is the centre of the shoulders.
+// The tracker's NECK is the centre of the shoulders.
 constexpr std::array kRecipes{
     middle(JointId::SpineBase, 8, 11), middle(JointId::SpineMid, 8, 11, 2, 5),
     neck(1, 16, 17), only(JointId::Neck, 1),

@@ -10,7 +10,7 @@ constexpr std::array<std::string_view, 26> kNames{
     "LHip", "RHip", "LKnee", "RKnee", "LAnkle", "RAnkle", "Head", "Neck", "Hip",
     "LBigToe", "RBigToe", "LSmallToe", "RSmallToe", "LHeel", "RHeel"};
 
-// Its Head is the top of the head, so our Head is made from the ears.
+// The tracker's Head is the top of the head, so our Head is made of the ears.
 constexpr std::array kRecipes{
     only(JointId::SpineBase, 19), middle(JointId::SpineMid, 11, 12, 5, 6),
     neck(5, 6, 3, 4), only(JointId::Neck, 18),

@@ -1,4 +1,4 @@
-// Kinect for Windows v2, whose joints are ours.
+// Kinect for Windows v2; its joints are ours.
 #include "common/body/bones.h"
 #include "common/layout/tables.h"
 

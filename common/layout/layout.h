@@ -1,5 +1,5 @@
 // Skeleton layouts: which landmarks a tracker provides, in which order, and how our joints are made
-// of them.  One table per file, each with the published source of its order.
+// of them.  Each layout's table is in its own file, with the published source of the order.
 #pragma once
 
 #include <array>
@@ -28,21 +28,21 @@ struct Recipe {
 
 struct Layout {
   std::string_view name;                        ///< "mediapipe_33"
-  std::string_view tracker;                     ///< Its name for people.
-  std::string_view source;                      ///< Where its order is published.
+  std::string_view tracker;                     ///< The tracker's human-readable name.
+  std::string_view source;                      ///< Where the order of the landmarks is published.
   std::span<const std::string_view> landmarks;  ///< By number, in the spelling of the source.
-  /// The tracker does not provide a joint that no entry makes.  If
-  /// several entries make one joint, the first that is seen counts;
-  /// the others are substitutes and make the joint Inferred at best.
+  /// How the joints are made; a joint without an entry is not provided.  Where several entries make
+  /// the same joint, the first entry that is seen counts; the later ones are substitutes, which
+  /// make the joint Inferred at best.
   std::span<const Recipe> recipes;
-  double tracked_from = 0.0;   ///< Lowest confidence (0 to 1) of a Tracked landmark ...
-  double inferred_from = 0.0;  ///< ... and of an Inferred one.
+  double tracked_from = 0.0;   ///< Lowest confidence (0 to 1) of a Tracked landmark.
+  double inferred_from = 0.0;  ///< Lowest confidence of an Inferred landmark.
 };
 
 /// All layouts.
 [[nodiscard]] std::span<const Layout* const> layouts();
 
-/// NotFound lists the known layouts.
+/// The layout with this name; otherwise NotFound, with a list of the known layouts.
 [[nodiscard]] Result<const Layout*> find_layout(std::string_view name);
 
 [[nodiscard]] std::optional<std::size_t> landmark_named(const Layout& layout,
@@ -58,11 +58,12 @@ struct Landmark {
   Covariance covariance = {};
 };
 
-/// `landmarks` are in the layout's order; those missing at the end are not tracked.  A joint is as
-/// certain as its least certain landmark; its covariance assumes that the landmarks' errors are
-/// independent, and is known if all of theirs are.  Rays are averaged in direction: for landmarks
-/// at different depths the result is only nearly the ray to their centre (off by 3 mm for hips at 3
-/// m). Landmarks have no orientation, so the joints have none.
+/// Makes our joints of landmarks, which are in the layout's order; landmarks missing at the end are
+/// not tracked.  A joint is as certain as its least certain landmark.  Its covariance assumes that
+/// the landmarks' errors are independent, and is known if all their covariances are.  Of rays, the
+/// directions are averaged: for landmarks at different depths the result is only nearly the ray to
+/// their centre (off by 3 mm for hips at 3 m).  Landmarks have no orientation, so the joints have
+/// none.
 [[nodiscard]] std::array<Joint, kJointCount> joints_of(const Layout& layout,
                                                        std::span<const Landmark> landmarks);
 

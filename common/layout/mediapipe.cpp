@@ -29,7 +29,7 @@ constexpr std::array kRecipes{
 
 }  // namespace
 
-/// Confidence is "visibility"; an invisible landmark is a guess, never absent.
+/// Confidence is "visibility"; MediaPipe guesses an invisible landmark, it never leaves it out.
 const Layout kMediapipe{"mediapipe_33",
                         "MediaPipe Pose, BlazePose",
                         "https://ai.google.dev/edge/mediapipe/solutions/vision/pose_landmarker",

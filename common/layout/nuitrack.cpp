@@ -13,7 +13,7 @@ constexpr std::array<std::string_view, 25> kNames{
     "JOINT_LEFT_HIP", "JOINT_LEFT_KNEE", "JOINT_LEFT_ANKLE", "JOINT_LEFT_FOOT",
     "JOINT_RIGHT_HIP", "JOINT_RIGHT_KNEE", "JOINT_RIGHT_ANKLE", "JOINT_RIGHT_FOOT"};
 
-// It has numbers for fingertips and feet, but never fills them.
+// The tracker has numbers for fingertips and feet, but never fills them.
 constexpr std::array kRecipes{
     only(JointId::SpineBase, 4), only(JointId::SpineMid, 3), only(JointId::Neck, 2), only(JointId::Head, 1),
     only(JointId::ShoulderLeft, 6), only(JointId::ElbowLeft, 7), only(JointId::WristLeft, 8), only(JointId::HandLeft, 9),

@@ -10,7 +10,7 @@ constexpr std::array<std::string_view, 19> kNames{
     "MID_SPINE", "BASE_SPINE", "LEFT_HIP", "LEFT_KNEE", "LEFT_FOOT", "RIGHT_HIP", "RIGHT_KNEE", "RIGHT_FOOT",
     "LEFT_WRIST", "RIGHT_WRIST", "NECK"};
 
-// It has no ankles.
+// The tracker has no ankles.
 constexpr std::array kRecipes{
     only(JointId::SpineBase, 9), only(JointId::SpineMid, 8), only(JointId::Neck, 18), only(JointId::Head, 0),
     only(JointId::ShoulderLeft, 2), only(JointId::ElbowLeft, 3), only(JointId::WristLeft, 16), only(JointId::HandLeft, 4),

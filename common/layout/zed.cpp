@@ -31,7 +31,7 @@ constexpr std::array<std::string_view, 38> kNames38{
     "LEFT_SMALL_TOE", "RIGHT_SMALL_TOE", "LEFT_HEEL", "RIGHT_HEEL", "LEFT_HAND_THUMB_4", "RIGHT_HAND_THUMB_4",
     "LEFT_HAND_INDEX_1", "RIGHT_HAND_INDEX_1", "LEFT_HAND_MIDDLE_4", "RIGHT_HAND_MIDDLE_4", "LEFT_HAND_PINKY_1", "RIGHT_HAND_PINKY_1"};
 
-// In the names of the hand, ..._1 is a knuckle and ..._4 a tip.
+// Among the landmarks of the hand, ..._1 is a knuckle and ..._4 a tip.
 constexpr std::array kRecipes38{
     only(JointId::SpineBase, 0), only(JointId::SpineMid, 2),
     neck(12, 13, 8, 9), only(JointId::Neck, 4),

@@ -20,7 +20,7 @@ Eigen::Quaterniond fixed_xyz(double x, double y, double z) {
          Eigen::AngleAxisd(x, Eigen::Vector3d::UnitX());
 }
 
-/// A bone as the file has it, before the hierarchy puts the bones in order.
+/// A bone as the file states it, before the hierarchy defines the order of the bones.
 struct WrittenBone {
   AsfBone bone;
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();

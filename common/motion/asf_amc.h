@@ -1,12 +1,13 @@
 // Acclaim ASF (skeleton) and AMC (motion), as the CMU motion capture library uses them.
 //
-// A bone starts at its parent's end, and the bone's name stands for its own end.  With C the
-// rotation of the bone's `axis` and R that of its channels (both about fixed axes, x first:
-// Rz Ry Rx),
+// A bone starts at its parent's end; where the file names a bone as a point, it means that bone's
+// end. With C the rotation of the bone's `axis` and R that of its channels (both about fixed axes,
+// x first: Rz Ry Rx),
 //   world_from_bone = world_from_parent * C * R * C^-1,
 //   end = parent end + length * world_from_bone * direction
 // (Lander, "Working with motion capture file formats"; checked against a second reader and by
-// tests: feet on the floor, left on the left).  CMU writes lengths in inches times the unit
+// tests: feet on the floor, left on the left).  In CMU files, lengths are inches times the unit
+// `length` of the header.
 // `length` of the header.
 #pragma once
 
@@ -24,11 +25,12 @@ namespace chorus::motion {
 
 struct AsfBone {
   std::string name;
-  std::size_t parent = 0;  ///< Index into AsfSkeleton::bones; parents come first; 0 is the root.
+  /// Index into AsfSkeleton::bones, less than the bone's own; 0 is the root.
+  std::size_t parent = 0;
   Eigen::Vector3d reach = Eigen::Vector3d::Zero();           ///< length * direction [m]
-  Eigen::Quaterniond axis = Eigen::Quaterniond::Identity();  ///< C
+  Eigen::Quaterniond axis = Eigen::Quaterniond::Identity();  ///< The rotation C.
   std::array<bool, 3> turns{};    ///< Which of rx, ry, rz have a channel, in this order.
-  std::size_t first_channel = 0;  ///< Index of its first channel in AmcFrame.
+  std::size_t first_channel = 0;  ///< Index of the bone's first channel in AmcFrame.
 };
 
 struct AsfSkeleton {
@@ -47,11 +49,11 @@ using AmcFrame = std::vector<double>;
                                                       std::string_view origin,
                                                       const AsfSkeleton& skeleton);
 
-/// The end points of all bones, in the order of the bones, world space of the file (y up) [m].
+/// The end points of all bones, in the order of the bones, in the file's world space (y up) [m].
 [[nodiscard]] std::vector<Eigen::Vector3d> bone_ends(const AsfSkeleton& skeleton,
                                                      const AmcFrame& frame);
 
-/// The index of the bone with this name; the number of bones when there is none.
+/// The index of the bone with this name; bones.size() when there is none.
 [[nodiscard]] std::size_t bone_named(const AsfSkeleton& skeleton, std::string_view name);
 
 }  // namespace chorus::motion

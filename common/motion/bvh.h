@@ -18,8 +18,8 @@
 namespace chorus::motion {
 
 struct BvhJoint {
-  std::string name;                                  ///< End sites are called "<parent> End".
-  std::size_t parent = 0;                            ///< Index; parents come first; 0 is the root.
+  std::string name;        ///< An end site is called "<parent> End".
+  std::size_t parent = 0;  ///< Index, less than the joint's own; 0 is the root.
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< From the parent [m]
   std::vector<std::uint8_t> channels;                ///< 0-2: x y z position, 3-5: x y z rotation.
   std::size_t first_channel = 0;
@@ -28,14 +28,15 @@ struct BvhJoint {
 struct Bvh {
   std::vector<BvhJoint> joints;
   std::size_t channel_count = 0;
-  double frame_time = 0.0;                  ///< [s]
-  std::vector<std::vector<double>> frames;  ///< Positions [m], rotations [rad], as in `channels`.
+  double frame_time = 0.0;  ///< [s]
+  /// Positions [m], rotations [rad], in the order of the channels.
+  std::vector<std::vector<double>> frames;
 };
 
 [[nodiscard]] Result<Bvh> parse_bvh(std::string_view text, std::string_view origin,
                                     double metres_per_unit = 0.01);
 
-/// Position of every joint in one frame, world space of the file [m].
+/// Position of every joint in one frame, in the file's world space [m].
 [[nodiscard]] std::vector<Eigen::Vector3d> joint_positions(const Bvh& bvh, std::size_t frame);
 
 }  // namespace chorus::motion

@@ -16,7 +16,7 @@ namespace chorus::motion {
 namespace {
 
 constexpr std::size_t kBlock = 512;
-constexpr std::uint8_t kKey = 0x50;  // second byte of every C3D file
+constexpr std::uint8_t kKey = 0x50;  // The second byte of every C3D file.
 constexpr std::uint8_t kFirstProcessor = 84;
 constexpr std::array<std::string_view, 3> kProcessors{"Intel", "DEC", "MIPS"};
 constexpr std::size_t kMaxPoints = 4096;
@@ -25,7 +25,7 @@ constexpr double kMaxWordFrames = 65535;
 
 enum Processor : std::uint8_t { kIntel, kDec, kMips };
 
-/// Reads numbers of one byte order at offsets that have been checked.
+/// Reads numbers of one byte order; the caller has checked the offsets.
 class Numbers {
  public:
   Numbers(std::string_view bytes, Processor processor) : bytes_(bytes), processor_(processor) {}
@@ -33,7 +33,7 @@ class Numbers {
   [[nodiscard]] std::uint8_t byte(std::size_t at) const {
     return static_cast<std::uint8_t>(bytes_[at]);
   }
-  /// -128 to 127.
+  /// A signed byte, -128 to 127.
   [[nodiscard]] int small(std::size_t at) const {
     const int value = byte(at);
     return value < 128 ? value : value - 256;
@@ -63,7 +63,7 @@ class Numbers {
 };
 
 struct Parameter {
-  int type = 0;  ///< Bytes per element: -1 (text), 1, 2, 4 (float).
+  int type = 0;  ///< Bytes per element: 1, 2, 4 (float) or -1 (text).
   std::vector<std::size_t> dimensions;
   std::size_t at = 0;     ///< File offset of its first element.
   std::size_t count = 0;  ///< Number of elements.
@@ -88,7 +88,7 @@ struct Entry {
   Parameter parameter;
 };
 
-/// "POINT:RATE" -> where its value is.
+/// Where each parameter's value is, by names such as "POINT:RATE".
 using Parameters = std::map<std::string, Parameter>;
 
 struct Layout {
@@ -173,7 +173,7 @@ Result<void> C3dReader::read_processor() {
 
 Result<void> C3dReader::read_parameters() {
   const std::size_t blocks = static_cast<std::uint8_t>(bytes_[parameters_at_ + 2]);
-  // Some writers leave the count at 0; then only the list itself says where it ends.
+  // Some writers leave the count at 0; then only the list of parameters says where it ends.
   const std::size_t end =
       std::min(bytes_.size(), parameters_at_ + (blocks == 0 ? 255 : blocks) * kBlock);
   std::size_t at = parameters_at_ + 4;
@@ -237,7 +237,7 @@ std::optional<double> C3dReader::number(const std::string& name, std::size_t i) 
     case 1:
       return numbers.byte(at + i);
     case 2:
-      return numbers.word(at + 2 * i);  // counts are unsigned today
+      return numbers.word(at + 2 * i);  // Counts above 32767 are stored unsigned.
     case 4:
       return numbers.real(at + 4 * i);
     default:
@@ -267,8 +267,8 @@ std::vector<std::string> C3dReader::labels(std::size_t points) const {
   return all;
 }
 
-/// POINT:FRAMES unless it has its largest value; then POINT:LONG_FRAMES or the fields of TRIAL
-/// (c3d.org, "Reading the frame count").
+/// POINT:FRAMES, unless it has the largest value of its type; then POINT:LONG_FRAMES or the fields
+/// of TRIAL (c3d.org, "Reading the frame count").
 double C3dReader::frame_count() const {
   const Numbers numbers(bytes_, processor_);
   const double of_header = numbers.word(8) - numbers.word(6) + 1.0;
@@ -335,7 +335,7 @@ C3dPoint C3dReader::read_point(const Layout& layout, std::size_t at) const {
   const double metres = (floats ? 1.0 : layout.scale) * layout.metres_per_unit;
   C3dPoint point;
   const Eigen::Vector3d position = metres * Eigen::Vector3d(xyzw.data());
-  // The fourth number: camera bits in the high byte, residual / scale in the low byte.
+  // The fourth number contains camera bits in the high byte and residual / scale in the low byte.
   if (!(xyzw[3] >= 0 && xyzw[3] < 32768) || !position.allFinite() ||
       position.cwiseAbs().maxCoeff() > kMaxCoordinate)
     return point;

@@ -27,17 +27,17 @@ struct C3d {
   std::vector<std::string> labels;  ///< One per point; "" if the file has no name for it.
   double rate_hz = 0.0;
   std::vector<std::vector<C3dPoint>> frames;
-  /// Turns the file's axes into ours (+y up), by POINT:X_SCREEN and Y_SCREEN; if the file does not
-  /// say, +z is up, as is usual in biomechanics.
+  /// Turns the file's axes into ours (+y up), by POINT:X_SCREEN and Y_SCREEN.  In a file without
+  /// these, +z is up, as is usual in biomechanics.
   Eigen::Matrix3d world_from_file = Eigen::Matrix3d::Identity();
   std::string processor;  ///< "Intel", "DEC" or "MIPS"
 };
 
-/// Larger files are refused.
+/// A larger file is refused.
 inline constexpr std::size_t kMaxC3dBytes = 128u << 20;
 
-/// Refuses headers and parameters that point outside the file or announce more frames than it has;
-/// coordinates that are not finite, or beyond 10 km, count as missing.
+/// Parses a file.  Refuses headers and parameters that point outside the file or announce more
+/// frames than it contains.  Coordinates that are not finite, or beyond 10 km, count as missing.
 [[nodiscard]] Result<C3d> parse_c3d(std::string_view bytes, std::string_view origin);
 
 /// One person of a C3D file.
@@ -48,13 +48,13 @@ struct C3dSubject {
 
 struct C3dMotion {
   std::vector<C3dSubject> subjects;        ///< In the order in which the file names them.
-  std::vector<std::string> unused_labels;  ///< Points that are none of our joints.
+  std::vector<std::string> unused_labels;  ///< Labels of points that make no joint.
 };
 
-/// Finds joints by label: first our own 25 names, then joint centres (LHJC, LKJC, ...), Plug-in
-/// Gait's segment origins (LFEP, LFEO, ...), and last the means of skin markers, which count as
-/// inferred. c3d_labels.cpp has the table.  Refuses a file in which no subject has two joints; the
-/// error names its labels.
+/// Finds joints by label: first our own 25 names, then joint centres (LHJC, LKJC, ...), then
+/// Plug-in Gait's segment origins (LFEP, LFEO, ...), and last the means of skin markers, which
+/// count as inferred. c3d_labels.cpp has the table.  Refuses a file in which no subject has two
+/// joints; the error names the file's labels.
 [[nodiscard]] Result<C3dMotion> motion_from_c3d(const C3d& c3d);
 
 }  // namespace chorus::motion

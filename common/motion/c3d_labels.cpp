@@ -1,4 +1,4 @@
-// The table of which points of a C3D file make a Kinect v2 joint.
+// The table that says which points of a C3D file make which Kinect v2 joint.
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -15,9 +15,9 @@ namespace chorus::motion {
 namespace {
 
 struct LabelRow {
-  JointId left;  ///< The centre joint itself if there are no sides.
+  JointId left;  ///< For a joint without sides, the joint itself.
   JointId right;
-  JointState state;                          ///< Inferred if it is a mean of skin markers.
+  JointState state;                          ///< Inferred for a mean of skin markers.
   std::array<std::string_view, 4> labels{};  ///< The joint is their mean; '<' stands for L or R.
 };
 
@@ -67,13 +67,14 @@ constexpr LabelRow kLabelRows[] = {
 
 constexpr std::size_t kFewestJoints = 2;
 constexpr std::size_t kShownLabels = 12;
-constexpr std::size_t kMaxSkeletons = 2 * kMaxFrames;  // of all subjects together: 800 MB
+// The limit for all subjects together, which then need 800 MB.
+constexpr std::size_t kMaxSkeletons = 2 * kMaxFrames;
 
-/// Label without its subject -> index of the point.
+/// The index of each point, by its label without the subject.
 using Labels = std::map<std::string, std::size_t>;
 
 struct Source {
-  std::vector<std::size_t> points;  ///< Empty: no such labels.
+  std::vector<std::size_t> points;  ///< Empty if the file lacks such labels.
   JointState state = JointState::NotTracked;
 };
 using Sources = std::array<Source, kJointCount>;

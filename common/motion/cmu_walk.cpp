@@ -8,7 +8,7 @@
 namespace chorus::motion {
 namespace {
 
-/// If a built-in file does not parse, the build is broken; the input is not to blame.
+/// The value.  If a built-in file does not parse, the build is broken, so the program aborts.
 template <class Value>
 Value built_in(Result<Value> parsed) {
   if (parsed) return *std::move(parsed);

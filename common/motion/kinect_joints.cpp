@@ -1,4 +1,4 @@
-// Two tables of which points of a CMU or BVH skeleton make a Kinect v2 joint.
+// Two tables that say which points of a CMU or a BVH skeleton make which Kinect v2 joint.
 #include <algorithm>
 #include <cctype>
 #include <map>
@@ -19,16 +19,16 @@ struct Share {
   double weight;
 };
 
-/// A joint is a weighted sum of bone ends; the weights sum to one and may lie outside [0, 1] to
-/// extend a bone.
+/// A joint as a weighted sum of bone ends; the weights sum to one, and a weight outside [0, 1]
+/// extends a bone.
 struct CmuRow {
   JointId joint;
   std::array<Share, 3> shares;
 };
 
-// The places follow where a Kinect v2 reports its joints: SpineBase slightly above the hip line,
+// The places are those where a Kinect v2 reports its joints: SpineBase slightly above the hip line,
 // Head at the middle of the head, Hand in the palm, HandTip at the finger tips.  The CMU forearm is
-// "radius" plus "wrist".
+// the bones "radius" and "wrist".
 constexpr Share kNone{"", 0};
 constexpr CmuRow kCmuRows[] = {
     {JointId::SpineBase, {{{"root", 0.3}, {"lhipjoint", 0.35}, {"rhipjoint", 0.35}}}},
@@ -58,10 +58,10 @@ constexpr CmuRow kCmuRows[] = {
     {JointId::FootRight, {{{"rfoot", 1}, kNone, kNone}}},
 };
 
-/// The names that a BVH joint may have, best first, as plain() returns them; "<" stands for left or
-/// right.
+/// The names that a joint may have in a BVH file, best first, in the form that plain() gives them;
+/// "<" stands for left or right.
 struct BvhRow {
-  JointId left;  ///< The centre joint itself if there are no sides.
+  JointId left;  ///< For a joint without sides, the joint itself.
   JointId right;
   bool required;
   std::array<std::string_view, 6> names;
@@ -90,7 +90,8 @@ constexpr BvhRow kBvhRows[] = {
      {"<toebase", "toes<", "<toe", "<footend", "<ankleend"}},
 };
 
-/// "mixamorig:LeftUpLeg" -> "leftupleg", "Hand_L" -> "handleft", "CC_Base_L_Thigh" -> "leftthigh".
+/// A name without its dialect: "mixamorig:LeftUpLeg" -> "leftupleg", "Hand_L" -> "handleft",
+/// "CC_Base_L_Thigh" -> "leftthigh".
 std::string plain(std::string_view name) {
   if (const std::size_t colon = name.rfind(':'); colon != std::string_view::npos) {
     name.remove_prefix(colon + 1);
@@ -125,11 +126,11 @@ std::optional<std::size_t> find_named(const Names& names, const BvhRow& row,
   return std::nullopt;
 }
 
-/// Kinect joint -> BVH joint; kJointCount entries, none where the file lacks one.
+/// The BVH joint for each Kinect joint; none where the file lacks one.
 using Sources = std::array<std::optional<std::size_t>, kJointCount>;
 
-/// Files with our own joint names (chorus export) come first, because "HandLeft" would be a wrist
-/// in other dialects.
+/// Matches our own joint names (chorus export), if the file has a SpineBase.  This is tried first,
+/// because "HandLeft" is a wrist in other dialects.
 std::optional<Sources> match_own_names(const Bvh& bvh) {
   Sources sources;
   for (std::size_t i = 0; i < bvh.joints.size(); ++i) {
@@ -159,7 +160,7 @@ void place(Skeleton<WorldSpace>& body, JointId id, const Eigen::Vector3d& where,
   body[id].state = state;
 }
 
-/// Guesses the joints that BVH skeletons lack from their neighbours; these are inferred.
+/// Guesses the joints that BVH skeletons lack from their neighbours; these joints become inferred.
 void infer_absent(Skeleton<WorldSpace>& body) {
   const auto p = [&](JointId id) { return body[id].position; };
   const Eigen::Vector3d shoulders = 0.5 * (p(JointId::ShoulderLeft) + p(JointId::ShoulderRight));
@@ -171,7 +172,7 @@ void infer_absent(Skeleton<WorldSpace>& body) {
     place(body, JointId::SpineMid, 0.5 * (shoulders + p(JointId::SpineBase)), JointState::Inferred);
   }
   constexpr double kHandReach = 0.25;  // wrist to palm, as a fraction of the forearm's length
-  constexpr double kTipReach = 0.55;   // wrist to finger tips, likewise
+  constexpr double kTipReach = 0.55;   // Wrist to finger tips, also as a fraction.
   for (const auto& [elbow, wrist, hand, tip] :
        {std::array{JointId::ElbowLeft, JointId::WristLeft, JointId::HandLeft, JointId::HandTipLeft},
         std::array{JointId::ElbowRight, JointId::WristRight, JointId::HandRight,
@@ -233,8 +234,8 @@ Result<Motion> motion_from_bvh(const Bvh& bvh) {
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const auto& source = (*sources)[j];
       if (!source) continue;
-      if (!(positions[*source].norm() <=
-            kMaxCoordinate))  // also refuses NaN, from numbers that overflowed
+      // Also refuses NaN, which numbers that overflow lead to.
+      if (!(positions[*source].norm() <= kMaxCoordinate))
         return fail(ErrorCode::Malformed, "frame " + std::to_string(i + 1),
                     "a joint is farther than 10 km; is the unit of lengths right?");
       place(body, static_cast<JointId>(j), positions[*source], JointState::Tracked);

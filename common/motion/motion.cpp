@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kTiny = 1e-6;
 
-/// The joints to which Kinect v2 gives no orientation.
+/// The joints whose orientation a Kinect v2 does not give.
 constexpr std::array kLeaves{JointId::Head,         JointId::HandTipLeft, JointId::ThumbLeft,
                              JointId::HandTipRight, JointId::ThumbRight,  JointId::FootLeft,
                              JointId::FootRight};
@@ -26,7 +26,7 @@ Eigen::Vector3d forward_of(const Skeleton<WorldSpace>& body) {
 Eigen::Quaterniond segment_frame(const Eigen::Vector3d& along, const Eigen::Vector3d& forward) {
   const Eigen::Vector3d y = along.stableNormalized();
   Eigen::Vector3d x = y.cross(forward);
-  // For a bone that points forward, forward is undefined; its back faces up instead.
+  // For a bone that points forward, this x is undefined; the other x makes the bone's back face up.
   if (x.norm() < 0.1) x = y.cross(Eigen::Vector3d::UnitY());
   if (x.norm() < kTiny || y.norm() < kTiny) return Eigen::Quaterniond::Identity();
   Eigen::Matrix3d world_from_segment;

@@ -19,8 +19,8 @@ struct Motion {
 /// The frame rate of the CMU library; AMC files do not state it.
 inline constexpr double kCmuRateHz = 120.0;
 
-/// One frame of a CMU skeleton as Kinect joints, all 25; hands, tips and thumbs extend the bones
-/// that the skeleton has.  The skeleton must have the CMU bones (see has_cmu_bones).
+/// One frame of a CMU skeleton as all 25 Kinect joints; hands, hand tips and thumbs are placed on
+/// extensions of its bones.  The skeleton must have the CMU bones (see has_cmu_bones).
 [[nodiscard]] Skeleton<WorldSpace> kinect_skeleton(const AsfSkeleton& skeleton,
                                                    const AmcFrame& frame);
 [[nodiscard]] Result<void> has_cmu_bones(const AsfSkeleton& skeleton);
@@ -29,19 +29,20 @@ inline constexpr double kCmuRateHz = 120.0;
                                              const std::vector<AmcFrame>& frames,
                                              double rate_hz = kCmuRateHz);
 
-/// Knows the joint names of the usual BVH dialects, and our own 25 names, which are used if there
-/// is a SpineBase.  A joint that the file lacks is not tracked or, in dialects other than ours,
-/// inferred from its neighbours; such a file is refused unless it has hips, knees, shoulders,
-/// elbows and a neck.
+/// Makes joints by name: our own 25 names if the file has a SpineBase, otherwise the names of the
+/// usual BVH dialects.  A joint that the file lacks is not tracked or, in those dialects, inferred
+/// from its neighbours; a file in a dialect is refused unless it has hips, knees, shoulders, elbows
+/// and a neck.
 [[nodiscard]] Result<Motion> motion_from_bvh(const Bvh& bvh);
 
-/// The skeleton at `time` [s] after the first frame: positions linear, orientations by sign-aligned
-/// LERP; constant beyond both ends.  Without any frames nothing is tracked.
+/// The skeleton at `time` [s] after the first frame: positions are interpolated linearly,
+/// orientations by sign-aligned LERP.  Before the first and after the last frame it is constant.
+/// If there are no frames, nothing is tracked.
 [[nodiscard]] Skeleton<WorldSpace> at(const Motion& motion, double time);
 
 /// Gives each joint the orientation of its segment: +y along the bone that ends there, +z as near
-/// to the body's forward as possible.  Head, hand tips, thumbs and feet stay all-zero, as with a
-/// Kinect v2.
+/// to the body's forward direction as possible.  Head, hand tips, thumbs and feet stay all-zero, as
+/// with a Kinect v2.
 void orient_segments(Skeleton<WorldSpace>& body);
 
 }  // namespace chorus::motion

@@ -18,7 +18,8 @@ constexpr std::size_t kMaxElementText = 1u << 20;  // a frame's positions take a
 constexpr std::size_t kMaxPointsPerSegment = 256;
 constexpr double kMaxRateHz = 1e4;
 
-/// Numbers of one element, in groups of `width`; none if a group is incomplete or one is no number.
+/// The numbers in an element, in groups of `width`; none if a group is incomplete or a word is not
+/// a number.
 std::optional<std::vector<double>> numbers_in(std::string_view text, std::size_t width) {
   constexpr std::string_view kBlanks = " \t\r\n";
   std::vector<double> numbers;
@@ -66,7 +67,7 @@ class MvnxReader {
   std::vector<std::string> path_;  ///< Names of the open elements.
   std::string text_;               ///< Text of the innermost element.
   MvnxFrame frame_;
-  bool in_frame_ = false;  ///< In a frame that is kept.
+  bool in_frame_ = false;  ///< True in a frame of type "normal".
   std::optional<Error> wrong_;
 };
 

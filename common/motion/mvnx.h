@@ -2,7 +2,7 @@
 //
 // One subject with named segments and points on them, then frames: position and orientation of
 // every segment in a right-handed space with +x ahead, +y left, +z up; metres; quaternions w x y z.
-// In the T-pose all segments have the axes of that space.
+// In the T-pose the axes of all segments are those of that space.
 #pragma once
 
 #include <string>
@@ -38,19 +38,19 @@ struct Mvnx {
   double rate_hz = 0.0;
   std::vector<MvnxSegment> segments;
   std::vector<std::string> sensors;
-  std::vector<MvnxFrame> frames;  ///< Only type="normal"; calibration poses are left out.
+  std::vector<MvnxFrame> frames;  ///< Only frames of type="normal"; calibration poses are left out.
 };
 
-/// Larger files are refused.
+/// A larger file is refused.
 inline constexpr std::size_t kMaxMvnxBytes = 512u << 20;
 
-/// Refuses entity declarations, elements nested deeper than 32, frames whose numbers do not match
-/// the segments, and text that is not a number.  Skips unknown elements.
+/// Parses a file.  Refuses entity declarations, elements nested deeper than 32, frames whose
+/// numbers do not match the segments, and text where a number should be.  Skips unknown elements.
 [[nodiscard]] Result<Mvnx> parse_mvnx(std::string_view xml, std::string_view origin);
 
-/// mvnx_joints.cpp has the table of which point of which segment is which joint; the segments'
-/// rotations become joint orientations, twist included.  A joint whose segment or point is missing
-/// is not tracked; a file without Pelvis is refused.
+/// Makes joints of points on segments (mvnx_joints.cpp has the table); the segments' rotations,
+/// twist included, become joint orientations.  A joint whose segment or point is missing is not
+/// tracked; a file without Pelvis is refused.
 [[nodiscard]] Result<Motion> motion_from_mvnx(const Mvnx& mvnx);
 
 }  // namespace chorus::motion

@@ -1,4 +1,4 @@
-// The table of which points of an Xsens suit's segments make a Kinect v2 joint.
+// The table that says which points of an Xsens suit's segments make which Kinect v2 joint.
 #include <algorithm>
 #include <optional>
 
@@ -7,19 +7,21 @@
 namespace chorus::motion {
 namespace {
 
-/// The direction of a bone in its segment's axes (x ahead, y left, z up in the T-pose).
+/// The direction of a bone in the axes of its segment (x ahead, y left, z up in the T-pose).
 enum class Along { None, Up, Down, Left, Right };
 
 struct SegmentRow {
   JointId joint;
   std::string_view segment;
-  std::string_view point;     ///< A point of the segment; "": its origin.
-  double share;               ///< Place of the joint, 0: the origin, 1: the point.
-  std::string_view oriented;  ///< Segment of the bone that ends here; "": no orientation.
+  std::string_view point;  ///< A point of the segment; "": its origin.
+  double share;            ///< Where the joint lies between the origin (0) and the point (1).
+  /// Segment that has the orientation of the bone ending here; "": the joint gets none.
+  std::string_view oriented;
   Along along;
 };
 
-// Places as with Kinect v2: Head in its middle, Hand in the palm, SpineShoulder at the neck's base.
+// The places are those of a Kinect v2: Head in the head's middle, Hand in the palm, SpineShoulder
+// at the neck's base.
 // clang-format off
 constexpr SegmentRow kSegmentRows[] = {
     {JointId::SpineBase,     "Pelvis",        "", 0, "Pelvis", Along::Up},
@@ -55,7 +57,7 @@ Eigen::Quaterniond world_from_xsens() {
   return Eigen::Quaterniond(turn);
 }
 
-/// Our joint axes in those of the segment: +y along the bone, +z ahead.
+/// Turns our joint axes (+y along the bone, +z ahead) into the axes of the segment.
 Eigen::Quaterniond segment_from_joint(Along along) {
   Eigen::Vector3d y = Eigen::Vector3d::UnitZ();
   if (along == Along::Down) y = -Eigen::Vector3d::UnitZ();

@@ -19,7 +19,7 @@ inline constexpr std::size_t kMaxWordsPerLine = 4096;
 
 class TextLines {
  public:
-  /// `origin` names the text in messages ("02_01.amc").
+  /// `origin` names the file in messages ("02_01.amc").
   TextLines(std::string_view text, std::string_view origin) : rest_(text), origin_(origin) {}
 
   /// Moves to the next line that is neither empty nor a '#' comment; false at the end.
@@ -35,7 +35,7 @@ class TextLines {
   /// Reads `count` finite numbers from word `first` on.
   [[nodiscard]] Result<std::vector<double>> numbers(std::size_t first, std::size_t count) const;
 
-  /// A Malformed error for this line: "02_01.amc:17".
+  /// A Malformed error that names this line: "02_01.amc:17".
   [[nodiscard]] tl::unexpected<Error> wrong(std::string message) const;
   [[nodiscard]] tl::unexpected<Error> too_large(std::string message) const;
 

@@ -1,4 +1,4 @@
-// The addresses that a server of a protocol without passwords answers.
+// The addresses that a server answers if its protocol has no passwords.
 #pragma once
 
 #include <array>
@@ -12,10 +12,11 @@
 
 namespace chorus::net {
 
-/// This host itself, and the listed addresses and networks.
+/// Contains this host itself and the listed addresses and networks.
 class AllowList {
  public:
-  /// Reads "10.0.0.20", "10.0.0.0/24", "fd00::/8"; InvalidArgument names any other entry.
+  /// Parses "10.0.0.20", "10.0.0.0/24", "fd00::/8"; InvalidArgument names an entry of any other
+  /// form.
   [[nodiscard]] static Result<AllowList> parse(const std::vector<std::string>& entries);
 
   [[nodiscard]] bool allows(const asio::ip::address& address) const;
@@ -26,7 +27,7 @@ class AllowList {
   bool operator==(const AllowList&) const = default;
 
  private:
-  /// All addresses with the same first bits; IPv4 is mapped into IPv6.
+  /// All addresses with the same first `bits` bits; IPv4 is mapped into IPv6.
   struct Network {
     std::array<std::uint8_t, 16> bytes{};
     unsigned bits = 0;

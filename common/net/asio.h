@@ -1,5 +1,5 @@
-// The socket types of this project.  Only this file and asio_local.h include Asio; `asio` is
-// Boost's.
+// The socket types of this project.  Only this file and asio_local.h include Asio; the namespace
+// `asio` is Boost's.
 //
 // All sockets use io_context's own executor type: the type-erased default costs 2 us per request.
 // Boost 1.74 needs <utility> before its own headers under C++20.

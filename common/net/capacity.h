@@ -9,7 +9,7 @@ namespace chorus::net {
 
 struct Capacity {
   std::size_t all = 0;
-  std::size_t of_address = 0;       ///< For one address, so that no host can take all places.
+  std::size_t of_address = 0;       ///< Limit for one address, so that no host can take all places.
   std::string_view all_key;         ///< The key that sets `all`: "outputs.vrpn.max_clients".
   std::string_view of_address_key;  ///< The key that sets `of_address`.
 };

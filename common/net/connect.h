@@ -13,11 +13,12 @@ namespace chorus::net {
 struct Connecting {
   std::string host;  ///< A name or a numeric address.
   std::uint16_t port = 80;
-  /// False when the caller has given up; then nothing more is called.
+  /// False when the caller has given up; then `done` is never called.
   std::function<bool()> wanted;
 };
 
-/// Called once unless given up; `doing` is the step that failed ("find the host", "connect").
+/// Called once, unless the caller has given up; `doing` is the step that failed ("find the host",
+/// "connect").
 using Connected = std::function<void(error_code failed, std::string_view doing)>;
 
 /// Resolves the host and tries its addresses in turn, without a time-out of its own.  The resolver

@@ -8,12 +8,13 @@
 
 namespace chorus::net {
 
-/// Calls `work` after every interval until stopped; an exception from `work` does not end it.
+/// Calls `work` after every interval until stopped; an exception from `work` does not end the
+/// series.
 class Every {
  public:
   Every(asio::io_context& io, std::chrono::milliseconds interval, std::function<void()> work);
 
-  /// Starts it unless it is running already, so run_events may call this repeatedly.
+  /// Starts the calls unless they are running already, so run_events() may call this repeatedly.
   void ensure();
   void stop();
 

@@ -6,7 +6,8 @@
 namespace chorus::net {
 namespace {
 
-constexpr std::chrono::milliseconds kPause{100};  // Until the next try, if out of descriptors.
+// Until the next try when there are no descriptors.
+constexpr std::chrono::milliseconds kPause{100};
 
 std::string text_of(const ListenAt& where) {
   return where.address + ":" + std::to_string(where.port);
@@ -93,7 +94,8 @@ void AcceptLoop::on_accepted(error_code failed, Socket socket) {
     trouble_.hit(failed.message());
     return pause();
   }
-  accept();  // First, because a connection that cannot be welcomed must not stop the others.
+  // Accepting goes on first, because a connection that cannot be welcomed must not stop the others.
+  accept();
   welcome_(std::move(socket));
 }
 

@@ -12,25 +12,25 @@
 namespace chorus::net {
 
 struct ListenAt {
-  std::string address;  ///< A numeric address.
+  std::string address;  ///< Must be numeric.
   std::uint16_t port = 0;
   std::string_view port_key;  ///< The key to change when the port is taken: "http.port".
 };
 
-/// InvalidArgument when the address is not numeric.
+/// The address of `where`; InvalidArgument when it is not numeric.
 [[nodiscard]] Result<asio::ip::address> numeric_address(const ListenAt& where);
 
-/// An Io error with address and port, and with the key to change when that would help.  `transport`
-/// is TCP or UDP.
+/// An Io error with address and port and, when changing the port would help, with its key.
+/// `transport` is TCP or UDP.
 [[nodiscard]] tl::unexpected<Error> cannot_listen(const ListenAt& where, std::string_view transport,
                                                   error_code failed);
 
 /// Opens, binds and listens; first closes what the acceptor had open.
 [[nodiscard]] Result<void> listen_on(Acceptor& acceptor, const ListenAt& where);
 
-/// Accepts connections until it is stopped.  When the system has no descriptors left, it reports
-/// that and tries again after a pause; an exception from `welcome` costs only that connection. Runs
-/// on the io_context's thread.
+/// Accepts connections until it is stopped.  When the system has no descriptors left, it logs that
+/// and tries again after a pause; an exception from `welcome` costs only that connection.  Runs on
+/// the io_context's thread.
 class AcceptLoop {
  public:
   using Welcome = std::function<void(Socket)>;
@@ -41,7 +41,7 @@ class AcceptLoop {
   [[nodiscard]] Result<void> listen(const ListenAt& where) { return listen_on(acceptor_, where); }
   [[nodiscard]] std::uint16_t port() const;
 
-  /// Starts it unless it is running already, so run_events may call this repeatedly.
+  /// Starts accepting unless that is running already, so run_events() may call this repeatedly.
   void ensure();
   void stop();
 

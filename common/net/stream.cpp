@@ -24,15 +24,15 @@ struct Stream::Secret : std::enable_shared_from_this<Secret> {
   void pump();
   void pumped(error_code failed);
   bool say_rest();
-  /// Passes what arrives to the seal, then calls `then`.
+  /// Passes bytes that arrive to the seal, then calls `then`.
   template <class Then>
   void hear(Then then);
 
   Socket socket;
   tls::Seal seal;
   std::array<char, kReadBytes> incoming{};
-  std::string outgoing;  ///< Is being sent, unless empty.
-  Done written;          ///< Called when everything from the seal has been sent.
+  std::string outgoing;  ///< The bytes being sent; empty when nothing is being sent.
+  Done written;          ///< Called when all output of the seal has been sent.
   std::size_t written_size = 0;
 };
 
@@ -85,7 +85,7 @@ void Stream::Secret::read(asio::mutable_buffer room, Done done) {
   });
 }
 
-/// Sends what the seal has to send, in order.
+/// Sends the seal's output, in order.
 void Stream::Secret::pump() {
   if (!outgoing.empty()) return;
   outgoing = seal.take_output();
@@ -103,7 +103,7 @@ void Stream::Secret::pumped(error_code failed) {
   if (const Done done = std::exchange(written, nullptr)) done(failed, size);
 }
 
-/// Sends as much of it as possible without waiting.
+/// Sends as much of the seal's output as possible without waiting; false if some is left.
 bool Stream::Secret::say_rest() {
   const std::string rest = seal.take_output();
   error_code failed;
@@ -134,7 +134,7 @@ void Stream::seal_as_server(const tls::Identity& identity, Sealed done) {
 }
 
 void Stream::read_sealed(asio::mutable_buffer room, Done done) {
-  // Never calls `done` before it returns.
+  // Posted, so that `done` is never called before this returns.
   asio::post(get_executor(), [secret = secret_, room, done = std::move(done)]() mutable {
     secret->read(room, std::move(done));
   });
@@ -176,7 +176,7 @@ error_code Stream::end_saying() {
 void Stream::close() {
   error_code ignored;
   socket().close(ignored);
-  // Operations that this cancels still refer to its socket; they end before it does.
+  // The operations cancelled here still refer to the seal; it lives until they have ended.
   if (secret_) asio::post(get_executor(), [old = std::move(secret_)] {});
 }
 

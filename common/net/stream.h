@@ -1,8 +1,9 @@
-// A TCP connection, optionally with TLS: HTTP, its event streams and WebSockets run over it.
+// A TCP connection with or without TLS; HTTP, its event streams and WebSockets run over it.
 //
-// One type for both, so that nothing above is compiled twice.  Without TLS it passes every call to
-// its socket.  Meets Asio's AsyncReadStream and AsyncWriteStream for one thread: at most one read
-// and one write at a time, handlers kept by the owner of the stream, default allocators.
+// One type serves both, so that nothing above it is compiled twice.  Without TLS it passes every
+// call to its socket.  It satisfies Asio's AsyncReadStream and AsyncWriteStream with these
+// restrictions: one thread, at most one read and one write at a time, handlers kept by the stream's
+// owner, default allocators.
 #pragma once
 
 #include <cstddef>
@@ -24,26 +25,26 @@ class Stream {
   using executor_type = Executor;
   using Done = std::function<void(error_code, std::size_t)>;
 
-  /// The outcome of sealing: of setting up TLS.
+  /// The outcome of sealing, i.e. of setting up TLS.
   struct Sealing {
-    std::optional<Error> failure = {};  ///< With advice; its context is the host.
-    bool plain = false;                 ///< The client speaks no TLS: the stream stays unsealed.
+    std::optional<Error> failure = {};  ///< With advice; the context is the host.
+    bool plain = false;  ///< The client does not speak TLS, so the stream stays unsealed.
   };
   using Sealed = std::function<void(Sealing)>;  ///< Called once, never before the call returns.
 
   explicit Stream(const Executor& executor) : socket_(executor) {}
   explicit Stream(Socket socket) : socket_(std::move(socket)) {}
-  Stream(Stream&&) = default;  ///< Not while an operation is under way.
+  Stream(Stream&&) = default;  ///< Not allowed while an operation is under way.
   Stream& operator=(Stream&&) = delete;
   ~Stream() = default;
 
-  /// For a connected socket.  Neither function has a time-out: close() ends it.
+  /// Seal a connected socket.  These functions have no time-out: to give up, call close().
   void seal_as_client(const tls::Trust& trust, const std::string& host, Sealed done);
   void seal_as_server(const tls::Identity& identity, Sealed done);
   [[nodiscard]] bool sealed() const { return secret_ != nullptr; }
 
   [[nodiscard]] executor_type get_executor() { return socket().get_executor(); }
-  /// Once it is sealed, send and receive only by read and write.
+  /// Once the stream is sealed, send and receive only through the stream's reads and writes.
   [[nodiscard]] Socket& socket();
 
   template <class Buffers, class Handler>
@@ -76,9 +77,10 @@ class Stream {
     write_sealed(said, erased(std::forward<Handler>(handler)));
   }
 
-  /// Sends all of it at once or returns false; in that case close() it.  Not during another write.
+  /// Sends all of `said` at once or returns false: then close the stream.  Do not call it during
+  /// another write.
   [[nodiscard]] bool say_now(std::string_view said);
-  /// Says that nothing more will be sent; incoming bytes can still be read.
+  /// Tells the other side that nothing more will be sent; incoming bytes can still be read.
   error_code end_saying();
   /// Cancels what is under way; afterwards the stream is unsealed and may be connected again.
   void close();
@@ -87,7 +89,7 @@ class Stream {
   struct Secret;
   static constexpr std::size_t kMostAtOnce = 64 * 1024;
 
-  /// Handlers of composed operations are move-only.
+  /// Makes a copyable Done of a handler; handlers of composed operations are move-only.
   template <class Handler>
   static Done erased(Handler&& handler) {
     auto kept = std::make_shared<std::decay_t<Handler>>(std::forward<Handler>(handler));
@@ -96,8 +98,8 @@ class Stream {
   void read_sealed(asio::mutable_buffer room, Done done);
   void write_sealed(std::string_view said, Done done);
 
-  Socket socket_;                   ///< Closed once it is sealed.
-  std::shared_ptr<Secret> secret_;  ///< Shared with operations under way.
+  Socket socket_;  ///< Empty while the stream is sealed: `secret_` owns the socket then.
+  std::shared_ptr<Secret> secret_;  ///< Set while sealed; shared with operations under way.
 };
 
 }  // namespace chorus::net

@@ -1,4 +1,4 @@
-// Limits a rate: `burst` at once, `per_second` in the long run.  Pure.
+// Limits a rate: `burst` at once, `per_second` in the long run.  The caller supplies the time.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ struct Allowance {
   double burst = 0.0;
 };
 
-/// It is full at first.
+/// The bucket is full at first.
 class TokenBucket {
  public:
   explicit TokenBucket(Allowance allowance) : allowance_(allowance), tokens_(allowance.burst) {}
@@ -21,14 +21,14 @@ class TokenBucket {
   [[nodiscard]] bool has(double wanted, SteadyTime now) const { return wanted <= tokens_at(now); }
   [[nodiscard]] bool full(SteadyTime now) const { return has(allowance_.burst, now); }
 
-  /// Takes all of them or none.
+  /// Takes all wanted tokens, or none and returns false.
   [[nodiscard]] bool take(double wanted, SteadyTime now) {
     if (!has(wanted, now)) return false;
     tokens_ = tokens_at(now) - wanted;
     counted_ = now;
     return true;
   }
-  /// Takes tokens even when there are none: a debt of at most one burst.
+  /// Takes tokens even when there are too few: then a debt remains, of at most one burst.
   void charge(double owed) { tokens_ = std::max(tokens_ - owed, -allowance_.burst); }
 
  private:

@@ -7,7 +7,8 @@
 namespace chorus::rdf {
 namespace {
 
-/// RDF 1.1 N-Triples, production 9: escapes what must be escaped; other UTF-8 stays unchanged.
+/// Appends a string literal (RDF 1.1 N-Triples, production 9): escapes what must be escaped; other
+/// UTF-8 stays unchanged.
 void append_string(std::string& out, std::string_view text) {
   out += '"';
   for (const char c : text) {
@@ -56,7 +57,7 @@ Result<std::string> turtle_to_ntriples(std::string_view turtle, const std::strin
   options.base = base;
   options.limits.bytes = max_bytes;
   std::string out;
-  out.reserve(turtle.size() * 5);  // names in full make it about five times longer
+  out.reserve(turtle.size() * 5);  // Full names make it about five times longer.
   const auto ok = read_triples(turtle, options, [&out](const TripleView& triple) {
     append_term(out, triple.subject);
     append_term(out, triple.predicate);

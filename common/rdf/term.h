@@ -14,8 +14,8 @@ inline constexpr std::string_view kXsd = "http://www.w3.org/2001/XMLSchema#";
 
 enum class TermKind { Iri, Blank, Literal };
 
-/// An IRI (as written: relative unless the reader was given a base), a blank node label or a
-/// literal. A literal without datatype is an xsd:string, or a language-tagged string.
+/// An IRI, a blank node label or a literal.  An IRI is as written: relative unless the reader was
+/// given a base.  A literal without datatype is an xsd:string or a language-tagged string.
 struct Term {
   TermKind kind = TermKind::Iri;
   std::string value;
@@ -43,7 +43,7 @@ enum class Syntax { Turtle, NTriples };
   return {TermKind::Literal, std::move(text), std::move(datatype)};
 }
 
-/// `rdf("type")`, `xsd("dateTime")`: names in the two namespaces every document uses.
+/// `rdf("type")`, `xsd("dateTime")`: IRIs in the two namespaces that every document uses.
 [[nodiscard]] inline std::string rdf(std::string_view name) {
   return std::string(kRdf).append(name);
 }

@@ -1,9 +1,9 @@
 // Checks Turtle or N-Triples bytes before a parser sees them: size, nesting, and bytes that no
 // document may contain.
 //
-// Serd 0.30 reads nested brackets by recursion; 20 000 of them overflow its stack.  So this counts
-// the depth first, in one pass that knows strings, IRIs and comments, and refuses any of these
-// whose end the two readers could see at different places.
+// Serd 0.30 reads nested brackets by recursion; 20 000 of them overflow its stack.  So this guard
+// counts the depth first, in one pass that recognises strings, IRIs and comments.  It refuses those
+// whose end Serd could see at another place than the guard.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +15,10 @@ namespace chorus::rdf {
 
 struct Limits {
   std::size_t bytes = 2'000'000;  ///< Far above any frame (64 bodies are about 350 kB).
-  int nesting = 32;               ///< Unclosed '[' and '(' at any place.
+  int nesting = 32;               ///< Limit of '[' and '(' that are open at the same time.
 };
 
-/// Success, or the reason for refusing the document, with the line ("line 12").
+/// Success, or why the document is refused, with the line ("line 12").
 [[nodiscard]] Result<void> check_bytes(std::string_view text, const Limits& limits = {});
 
 }  // namespace chorus::rdf

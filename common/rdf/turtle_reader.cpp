@@ -33,7 +33,8 @@ Env make_env(const std::string& base) {
   return Env(serd_env_new(&node));
 }
 
-/// Turns Serd's events into triples.  Expanded names live in one buffer for each place in a triple.
+/// Turns Serd's events into triples.  The expanded names of subject, predicate and object have one
+/// buffer each.
 class Events {
  public:
   Events(const ReadOptions& options, const TripleSink& sink)
@@ -49,13 +50,13 @@ class Events {
     return serd_env_set_prefix(static_cast<Events*>(self)->env_.get(), name, uri);
   }
 
-  // Serd prescribes the parameter list.
+  // Serd defines the parameter list.
   static SerdStatus on_triple(void* self, SerdStatementFlags, const SerdNode*, const SerdNode* s,
                               const SerdNode* p, const SerdNode* o, const SerdNode* datatype,
                               const SerdNode* language) {
     auto& events = *static_cast<Events*>(self);
     if (events.stopped_ || events.failed())
-      return SERD_ERR_UNKNOWN;  // Serd still closes open lists before it stops
+      return SERD_ERR_UNKNOWN;  // Serd closes open lists before it stops, and reports that here.
     TripleView triple;
     if (!events.expand(s, 0, triple.subject) || !events.expand(p, 1, triple.predicate) ||
         !events.expand(o, 2, triple.object)) {
@@ -71,10 +72,10 @@ class Events {
     }
     if (events.sink_(triple)) return SERD_SUCCESS;
     events.stopped_ = true;
-    return SERD_ERR_UNKNOWN;  // SERD_FAILURE would not stop it
+    return SERD_ERR_UNKNOWN;  // SERD_FAILURE would not stop Serd.
   }
 
-  /// Keeps only the first error, because the others follow from it.
+  /// Keeps only the first error, because later ones follow from it.
   static SerdStatus on_error(void* self, const SerdError* error) {
     auto& events = *static_cast<Events*>(self);
     if (events.message_.empty()) {
@@ -154,12 +155,12 @@ Reader make_reader(const ReadOptions& options, Events& events) {
   Reader reader(serd_reader_new(options.syntax == Syntax::Turtle ? SERD_TURTLE : SERD_NTRIPLES,
                                 &events, nullptr, Events::on_base, Events::on_prefix,
                                 Events::on_triple, nullptr));
-  serd_reader_set_strict(reader.get(), true);  // lax mode would go on after an error
+  serd_reader_set_strict(reader.get(), true);  // Lax mode would continue after an error.
   serd_reader_set_error_sink(reader.get(), Events::on_error, &events);
   return reader;
 }
 
-/// Supplies the text byte by byte and counts its lines.
+/// Supplies the document byte by byte and counts its lines.
 struct CountedText {
   std::string_view text;
   std::size_t at = 0;
@@ -176,8 +177,8 @@ struct CountedText {
   static int failed(void*) { return 0; }
 };
 
-/// Serd does not say on which line an undeclared prefix stood, so this reads again and counts the
-/// lines.
+/// Serd does not say on which line an undeclared prefix stands, so this reads the document again
+/// and counts lines.
 unsigned line_of_failure(std::string_view text, const ReadOptions& options) {
   const TripleSink ignore = [](const TripleView&) { return true; };
   Events events(options, ignore);
@@ -193,7 +194,7 @@ unsigned line_of_failure(std::string_view text, const ReadOptions& options) {
 Result<void> read_triples(std::string_view text, const ReadOptions& options,
                           const TripleSink& sink) {
   if (auto ok = check_bytes(text, options.limits); !ok) return ok;
-  // Serd 0.30 reads past the end of an empty string, but not of one that ends with a line feed.
+  // Serd 0.30 reads past the end of an empty string; a final line feed prevents that.
   const std::string terminated = std::string(text) + '\n';
   Events events(options, sink);
   const Reader reader = make_reader(options, events);

@@ -1,5 +1,5 @@
-// Turtle and N-Triples as a stream of triples.  RAII around Serd: strict, guarded, and without
-// Serd's types in the interface.
+// Reads Turtle and N-Triples as a stream of triples.  Wraps Serd: strict, guarded (turtle_guard.h),
+// and without Serd's types in the interface.
 #pragma once
 
 #include <functional>
@@ -33,10 +33,10 @@ struct ReadOptions {
   Limits limits = {};
 };
 
-/// Receives one triple; false stops the reading early, which is not an error.
+/// Receives one triple; returning false ends the reading early, which is not an error.
 using TripleSink = std::function<bool(const TripleView&)>;
 
-/// Passes on each triple in document order, up to an error, if any; the error names the line.
+/// Passes on each triple in document order, until the end or an error; the error names the line.
 [[nodiscard]] Result<void> read_triples(std::string_view text, const ReadOptions& options,
                                         const TripleSink& sink);
 

@@ -97,7 +97,7 @@ class Writing {
     for (const Term& subject : order_) {
       if (!inlined(subject)) describe(subject, 0, 0);
     }
-    for (const Term& subject : order_) {  // rings of blank nodes that nothing else refers to
+    for (const Term& subject : order_) {  // Rings of blank nodes to which nothing else refers.
       if (!written_.contains(subject)) describe(subject, 0, 0);
     }
     serd_writer_finish(writer_.get());
@@ -152,8 +152,7 @@ class Writing {
         break;
     }
     SerdNode literal = serd_node_from_string(SERD_LITERAL, bytes_of(text));
-    literal.flags =
-        0;  // no long strings, because Serd's reader misreads a quote before an escape in them
+    literal.flags = 0;  // No long strings: Serd's reader misreads a quote before an escape in them.
     return literal;
   }
 

@@ -1,4 +1,5 @@
-// Writes graphs as Turtle or N-Triples, through Serd.  For rare documents; frames use a template.
+// Writes graphs as Turtle or N-Triples through Serd.  Meant for rare documents; frames are written
+// from a template.
 //
 #pragma once
 
@@ -13,17 +14,19 @@
 
 namespace chorus::rdf {
 
-using Prefix = std::pair<std::string, std::string>;  ///< Name without the colon, and namespace IRI.
+/// The name without the colon, and the namespace's IRI.
+using Prefix = std::pair<std::string, std::string>;
 
 struct WriteOptions {
   Syntax syntax = Syntax::Turtle;
   std::vector<Prefix> prefixes = {};  ///< Turtle only.
-  std::string base = {};              ///< N-Triples only: absolute IRI to resolve relative ones.
+  /// N-Triples only: the absolute IRI against which relative ones are resolved.
+  std::string base = {};
 };
 
-/// Groups triples by subject in order of first appearance; Turtle has a blank node that is used
-/// once in place, as "[ ]".  Refuses what no syntax can express: a literal as a subject, broken
-/// UTF-8, an IRI with a space.
+/// Groups triples by subject, in order of first appearance; in Turtle, a blank node that is used
+/// once is written in place, as "[ ]".  Refuses what no syntax can express: a literal as a subject,
+/// broken UTF-8, an IRI with a space.
 [[nodiscard]] Result<std::string> write_graph(const Graph& graph, const WriteOptions& options);
 
 /// Turns Turtle into N-Triples, one triple at a time; resolves relative IRIs against `base`.

@@ -1,4 +1,4 @@
-// Makes text from elsewhere safe to write: replaces whatever is not UTF-8.
+// Makes strings from outside safe to write: replaces everything that is not UTF-8.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace chorus::rdf {
 
 [[nodiscard]] bool is_utf8(std::string_view text);
 
-/// Replaces every byte that belongs to no well-formed character by U+FFFD.
+/// Replaces every byte that is not part of a well-formed character by U+FFFD.
 [[nodiscard]] std::string clean_utf8(std::string_view text);
 
 }  // namespace chorus::rdf

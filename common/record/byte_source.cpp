@@ -11,7 +11,8 @@
 namespace chorus::record {
 namespace {
 
-constexpr std::size_t kAhead = 4096;  // for record heads and message indexes, not for their content
+// Enough for record heads and message indexes; their content is skipped.
+constexpr std::size_t kAhead = 4096;
 
 class FileBytes final : public ByteSource {
  public:

@@ -1,4 +1,4 @@
-// Internal to the room: reads the bytes of a recording piece by piece.
+// Internal to common/record: reads the bytes of a recording piece by piece.
 #pragma once
 
 #include <cstdint>
@@ -17,16 +17,16 @@ class ByteSource {
   virtual ~ByteSource() = default;
 
   [[nodiscard]] virtual std::uint64_t size() const = 0;
-  /// Exactly `count` bytes from `offset` on; fewer only at the end, or when the disk fails.
+  /// Returns `count` bytes from `offset` on; fewer only at the end, or when the disk fails.
   [[nodiscard]] virtual std::string read(std::uint64_t offset, std::size_t count) const = 0;
 };
 
-/// The errors NotFound and Io name the file.
+/// Opens a file; the errors NotFound and Io name it.
 [[nodiscard]] Result<std::unique_ptr<ByteSource>> open_bytes(const std::filesystem::path& path);
 /// `bytes` must outlive the source.
 [[nodiscard]] std::unique_ptr<ByteSource> bytes_in_memory(std::string_view bytes);
 
-/// Reads forward in small steps, without a system call for each of them.
+/// Reads forward in small steps without a system call for each step.
 class ByteWalk {
  public:
   ByteWalk(const ByteSource& source, std::uint64_t offset) : source_(source), at_(offset) {}

@@ -19,7 +19,7 @@ struct FileHead {
   std::string recording;
   std::string part;
   FrameRecording description;
-  std::set<SensorId> cell;  ///< Its raw streams, if it is of a cell.
+  std::set<SensorId> cell;  ///< The sensors of its raw streams, if the file is of a cell.
 };
 
 FileHead head_of(const RecordingStream& stream) {
@@ -108,7 +108,8 @@ class Stays {
     bool cell;
   };
 
-  /// For a file with one stream: the sensor in its metadata, else the one in its frames.
+  /// The sensor of a file with one stream: the one in its metadata or, if there is none, the one in
+  /// its frames.
   static Result<SensorId> sensor_of(RecordingStream& stream, const FileHead& head,
                                     const fs::path& file) {
     if (!head.description.sensor.str().empty()) return head.description.sensor;

@@ -1,4 +1,5 @@
-// Which sensors recordings hold, when, and in which files; found without reading them completely.
+// Finds which sensors recordings contain, when, and in which files, without reading the recordings
+// completely.
 #pragma once
 
 #include <filesystem>
@@ -14,35 +15,38 @@ namespace chorus::record {
 
 /// Files that follow one another as one recording.
 struct CellLine {
-  std::string recording;  ///< The run that they belong to; empty for a separate file.
+  std::string recording;  ///< The id of the recording run; empty for a separate file.
   std::vector<std::filesystem::path> files;  ///< In the order in which they were written.
-  std::set<SensorId> sensors;                ///< Those that the files name.
-  bool cell = false;                         ///< It has several sensors, with their clocks.
-  std::vector<std::string> damage;  ///< Damage that shows without unpacking, "FILE: what and why".
+  std::set<SensorId> sensors;                ///< The sensors that the files name.
+  bool cell = false;                         ///< True if it has several sensors, with their clocks.
+  /// Damage that shows without unpacking, as "FILE: what and why".
+  std::vector<std::string> damage;
 };
 
-/// Groups files into lines, in the order in which they begin.  Conflict when two files are the same
-/// part.
+/// Groups files into lines, ordered by when the lines begin.  Conflict when two files are the same
+/// part of a recording.
 [[nodiscard]] Result<std::vector<CellLine>> cell_lines(
     const std::vector<std::filesystem::path>& files);
 
-/// The newest registration, as JSON; none when none was recorded.
+/// The newest registration as JSON; none when none was recorded.
 [[nodiscard]] Result<std::optional<std::string>> last_registration(
     const std::vector<CellLine>& lines);
 
-/// One sensor's time in a recording.
+/// The time during which a recording contains one sensor.
 struct SensorStay {
-  FrameRecording about;  ///< Without its frames.
+  FrameRecording about;  ///< The sensor and its description, without frames.
   std::vector<std::filesystem::path> files;
   Timestamp first;  ///< First capture time, by the recorder's clock.
   Timestamp last;
-  /// The number of frames that the files state, with those left out; none if they state none.
+  /// The number of frames that the files state, including frames that reading would leave out; none
+  /// if the files state no numbers.
   std::optional<std::uint64_t> frames;
-  bool cell = false;  ///< Recorded together with other sensors, even if those are missing here.
+  /// True if recorded together with other sensors, even if these are missing here.
+  bool cell = false;
 };
 
-/// One for each sensor with frames, ordered by id; unpacks only the first and last chunks.
-/// Conflict when two lines hold frames of one sensor.
+/// One entry for each sensor with frames, ordered by id; unpacks only the first and last chunks.
+/// Conflict when two lines contain frames of the same sensor.
 [[nodiscard]] Result<std::vector<SensorStay>> sensor_stays(const std::vector<CellLine>& lines);
 
 }  // namespace chorus::record

@@ -1,5 +1,5 @@
-// Reads a recording of a cell: every sensor's raw frames by the recorder's clock, the places of the
-// sensors, and the fused frames (cell_writer.h).
+// Reads a recording of a cell (cell_writer.h): every sensor's raw frames with times by the
+// recorder's clock, the sensors' places, and the fused frames.
 #pragma once
 
 #include <filesystem>
@@ -16,11 +16,11 @@ namespace chorus::record {
 
 struct CellRecording {
   /// Ordered by id.  The recorded clock models have been applied to the capture times, so the
-  /// streams fit together; a recording of one sensor has one entry.
+  /// streams are in one clock.  A recording of one sensor has one entry.
   std::vector<FrameRecording> sensors;
   /// The files of each sensor.
   std::map<SensorId, std::vector<std::filesystem::path>> files;
-  std::set<SensorId> cell;  ///< All raw streams of a cell, including those not read.
+  std::set<SensorId> cell;  ///< The sensors of all raw streams of a cell, including those not read.
   /// Every registration of the recording as JSON, oldest first.
   std::vector<std::string> registrations;
   std::vector<resource::FrameResource> fused;  ///< Only on request.
@@ -31,22 +31,22 @@ struct CellQuery {
   ReadLimits limits = {};
   SensorId only = {};  ///< Of a cell's raw streams, read only this one; empty: all.
   bool fused = false;  ///< Also read the fused frames.
-  /// Strict: a frame that repeats a time or goes back in time is Malformed.  Otherwise such frames
-  /// are left out and noted, as a fusion server does.
+  /// True: a frame that repeats a time or goes back in time is Malformed.  False: such frames are
+  /// left out and noted, as a fusion server does.
   bool strict = false;
   bool raw = true;  ///< False: read only the fused frames of a cell.
 };
 
-/// `path`: one file, or a folder, all of whose files are read in the order they were written.
+/// Reads one file, or all files of a folder in the order in which they were written.
 [[nodiscard]] Result<CellRecording> read_cell(const std::filesystem::path& path,
                                               const CellQuery& query = {});
-/// Several files as one, in any order: those of one recording are read in order of time; files of
-/// different recordings must be of different sensors, and if fused frames are read, only one
-/// recording may hold some (Conflict).
+/// Reads several files, given in any order, as one recording.  Files of one recording are read in
+/// order of time.  Files of different recordings must be of different sensors; if fused frames are
+/// read, only one recording may contain some (otherwise Conflict).
 [[nodiscard]] Result<CellRecording> read_cell(const std::vector<std::filesystem::path>& files,
                                               const CellQuery& query = {});
 
-/// The same from a file that has already been read; `name` is for messages.
+/// The same for a recording that has already been read; `name` is used in messages.
 [[nodiscard]] Result<CellRecording> cell_of(const Recording& recording,
                                             const std::filesystem::path& name,
                                             const CellQuery& query = {});

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Recognises fused frames by their space, which our own documents state at the beginning.
+/// Recognises fused frames by their space, which our documents state at the beginning.
 bool says_world_space(std::string_view json) {
   constexpr std::size_t kHead = 512;
   constexpr std::string_view kWorld = "\"WorldSpace\"";
@@ -93,7 +93,7 @@ void Sorting::begin_file(const fs::path& file, const std::vector<Channel>& chann
 
 /// False when this file belongs to another recording, or repeats a part.
 bool Sorting::begins_or_follows(Line& line) const {
-  if (line.newest == files_) return true;  // has this very file already
+  if (line.newest == files_) return true;  // This very file has been added before.
   if (line.files.empty()) line.recording = source_.recording;
   const bool follows = !line.recording.empty() && line.recording == source_.recording &&
                        (source_.part.empty() || !line.parts.contains(source_.part));
@@ -104,7 +104,7 @@ bool Sorting::begins_or_follows(Line& line) const {
   return true;
 }
 
-/// The stream that this file begins or, as the next file of its recording, continues.
+/// The sensor's stream, which this file begins or, as the next file of its recording, continues.
 Result<Sorting::Stream*> Sorting::stream_of(const SensorId& sensor) {
   const auto [found, fresh] = streams_.try_emplace(sensor);
   Stream& stream = found->second;
@@ -139,7 +139,7 @@ Sorting::Item Sorting::kept(Stream& stream, SensorFrame frame) const {
     ++stream.kept;
     return SessionItem(std::move(frame));
   }
-  if (!query_.strict || stream.shift) {  // a corrected clock may step back
+  if (!query_.strict || stream.shift) {  // A corrected clock may step back.
     ++stream.left_out;
     stream.newest_out = std::max(stream.newest_out.value_or(frame.captured), frame.captured);
     return std::nullopt;
@@ -181,7 +181,7 @@ Sorting::Item Sorting::take_frame(const MessageView& message, const Topic& topic
   return kept(**stream, resource::to_sensor_frame(*frame, sensor, message.log_time));
 }
 
-/// Takes a message that applies to the frames after it.
+/// Takes a message that states something about the frames after it.
 Result<void> Sorting::take_state(const MessageView& message, const Topic& topic) {
   const auto stream = stream_of(topic.sensor ? *topic.sensor : source_.description.sensor);
   if (!stream) return pass(stream);
@@ -223,7 +223,8 @@ Result<void> Sorting::end_file(const std::vector<Channel>& channels,
   return {};
 }
 
-/// Refuses a continuation that has no usable frame.
+/// Refuses a further file of a recording if no frame in it was kept and all of them are older than
+/// the frames before it.
 Result<void> Sorting::check_order(const Stream& stream) const {
   const bool unused = stream.line.newest == files_ && stream.line.files.size() > 1 &&
                       stream.kept == stream.kept_before && stream.newest_out;

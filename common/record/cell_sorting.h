@@ -1,5 +1,5 @@
-// Internal to the room: turns the messages of a recording into frames, sorted by stream and in
-// order.
+// Internal to common/record: turns the messages of a recording into frames, separated by stream and
+// checked for order.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@
 
 namespace chorus::record {
 
-/// "/frame": the fused frames of a cell, or the frames of a single sensor.
+/// The topic of the fused frames of a cell, or of the frames of a single sensor.
 inline constexpr std::string_view kFusedTopic = "/frame";
 inline constexpr std::string_view kSensorsPrefix = "/sensors/";
 
@@ -26,13 +26,15 @@ struct Topic {
 };
 [[nodiscard]] std::optional<Topic> topic_of(std::string_view text);
 
-/// The time that a clock model adds to capture times.
+/// The time that a clock model, as JSON, adds to capture times.
 [[nodiscard]] Result<Duration> read_shift(std::string_view text);
 
-/// How exact it says that is, as a standard deviation [s]; kUnknownClock when it does not say.
+/// How exact a clock model, as JSON, says that this time is: a standard deviation [s];
+/// kUnknownClock when it does not say.
 [[nodiscard]] double read_clock_sigma(std::string_view text);
 
-/// False, with `t` unchanged, when the sum is beyond the times that we can represent.
+/// Adds `by` to `t`; false, with `t` unchanged, when the sum is beyond the times that we can
+/// represent.
 [[nodiscard]] bool moved(Timestamp& t, const std::optional<Duration>& by);
 
 class Sorting {
@@ -44,10 +46,10 @@ class Sorting {
   void begin_file(const std::filesystem::path& file, const std::vector<Channel>& channels,
                   const Metadata& metadata);
   [[nodiscard]] Result<std::optional<SessionItem>> take(const MessageView& message);
-  /// `notes`: what reading the file left out.
+  /// `notes`: what reading the file has left out.
   [[nodiscard]] Result<void> end_file(const std::vector<Channel>& channels,
                                       const std::vector<std::string>& notes);
-  /// Everything except the items.
+  /// Everything in the recording except the items that take() has returned.
   [[nodiscard]] CellRecording finish();
 
  private:
@@ -56,29 +58,30 @@ class Sorting {
   /// The file being read.
   struct Source {
     std::filesystem::path file;
-    std::string recording;       ///< The run that it belongs to, if a run may have several files.
+    std::string recording;       ///< The id of the run, if its recording may have several files.
     std::string part;            ///< Which part of the run it is.
-    FrameRecording description;  ///< What its metadata says about one sensor.
+    FrameRecording description;  ///< What the file's metadata say about one sensor.
     bool single = false;         ///< The metadata names one sensor, whose frames are on /frame.
   };
-  /// Files that may follow one another: the parts of one recording, each once.
+  /// Files that follow one another: the parts of one recording, each part once.
   struct Line {
     std::string recording;
     std::set<std::string> parts;
     std::vector<std::filesystem::path> files;
-    std::size_t newest = 0;  ///< Number of its last file.
+    std::size_t newest = 0;  ///< The number of the last of `files`, as counted by files_.
   };
   struct Stream {
     FrameRecording recording;  ///< Without frames.
     Line line;
     std::optional<FloorPlane> floor;
-    std::optional<Duration> shift;  ///< None: the times are already in our clock.
+    /// Time to add to capture times; none if they are by our clock already.
+    std::optional<Duration> shift;
     double clock_sigma = kUnknownClock;
     std::size_t kept = 0;
-    std::optional<Timestamp> newest;  ///< Of the frames that were kept.
+    std::optional<Timestamp> newest;  ///< Capture time of the newest frame kept.
     std::size_t left_out = 0;
-    std::size_t kept_before = 0;          ///< Number of frames when this file began.
-    std::optional<Timestamp> newest_out;  ///< Of the frames left out in this file.
+    std::size_t kept_before = 0;          ///< The value of `kept` when the current file began.
+    std::optional<Timestamp> newest_out;  ///< Newest of the frames left out of the current file.
   };
 
   void note_cell(const std::vector<Channel>& channels);
@@ -93,7 +96,7 @@ class Sorting {
 
   const CellQuery& query_;
   Source source_;
-  std::size_t files_ = 0;   ///< Number of files so far, with this one.
+  std::size_t files_ = 0;   ///< Number of files begun so far.
   std::size_t frames_ = 0;  ///< Number of frames so far, on all topics.
   std::map<SensorId, Stream> streams_;
   Line fused_;

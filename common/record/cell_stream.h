@@ -12,22 +12,24 @@
 
 namespace chorus::record {
 
-/// A sensor's frame by the recorder's clock, a fused frame, or a registration as JSON.
+/// A sensor's frame with times by the recorder's clock, or a fused frame, or a registration as
+/// JSON.
 using SessionItem = std::variant<SensorFrame, resource::FrameResource, std::string>;
 
 /// Needs memory for only a few chunks, however long the recording is.
 class CellStream {
  public:
-  /// `files` as for read_cell(); each is opened when it is needed.
+  /// `files`: as for read_cell(); each file is opened only when it is needed.
   explicit CellStream(std::vector<std::filesystem::path> files, CellQuery query = {});
   CellStream(CellStream&&) noexcept;
   CellStream& operator=(CellStream&&) noexcept;
   ~CellStream();
 
-  /// The next item in log order; none at the end.  Returns the errors of read_cell() as they occur.
+  /// The next item in log order; none at the end.  Returns the same errors as read_cell(), when it
+  /// meets them.
   [[nodiscard]] Result<std::optional<SessionItem>> next();
 
-  /// To be called after the end: everything in the recording except the items.
+  /// Call this after the end: returns everything in the recording except the items.
   [[nodiscard]] CellRecording finish();
 
  private:
@@ -35,7 +37,7 @@ class CellStream {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The part of a recording that such a query has to read.
+/// Limits that make a reader read only what the query needs.
 [[nodiscard]] ReadLimits limits_of(const CellQuery& query);
 
 }  // namespace chorus::record

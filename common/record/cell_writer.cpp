@@ -29,7 +29,7 @@ std::string_view schema_text(std::string_view name) {
   return {};
 }
 
-/// Ignores estimate and uncertainty, because they change all the time.
+/// Compares clock models without estimate and uncertainty, which change all the time.
 bool same(const ClockModel& a, const ClockModel& b) {
   return a.applied == b.applied && a.uncertainty.has_value() == b.uncertainty.has_value();
 }
@@ -71,7 +71,8 @@ Result<void> CellWriter::put(const std::string& topic, std::string_view schema,
                                          std::move(text)});
 }
 
-/// Writes whatever the frame itself does not say, before the frame.
+/// Writes the floor and the clock, if they have changed, before the frame, which does not contain
+/// them.
 Result<void> CellWriter::write_state(const RawFrame& raw, const std::string& prefix,
                                      const Stamps& stamps) {
   Stream& stream = streams_[raw.sensor];

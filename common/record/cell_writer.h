@@ -1,5 +1,5 @@
-// One recording of a whole cell: what the sensors sent, what was fused from it, and everything that
-// is needed to fuse it again.
+// Writes a recording of a whole cell: what the sensors sent, what was fused from that, and
+// everything that is needed to fuse it again.
 //
 //   /sensors/{id}/frame        chorus.Frame       as the sensor sent it: its own space and clock
 //   /sensors/{id}/floor-plane  chorus.FloorPlane  when it changes
@@ -26,11 +26,11 @@
 
 namespace chorus::record {
 
-/// How to turn a sensor's capture times into ours.
+/// How a sensor's capture times are turned into our clock's.
 struct ClockModel {
-  Duration applied{0};  ///< Is added to its capture times.
+  Duration applied{0};  ///< Added to the sensor's capture times.
   Duration ours_minus_theirs{0};
-  std::optional<Duration> uncertainty;  ///< None: its clock is unknown.
+  std::optional<Duration> uncertainty;  ///< None: the sensor's clock offset is unknown.
 };
 
 struct RawFrame {
@@ -44,7 +44,7 @@ struct RawFrame {
 struct FusedFrame {
   Timestamp instant;
   Timestamp published;
-  std::function<resource::FrameResource()> frame;  ///< Called once, by the writer.
+  std::function<resource::FrameResource()> frame;  ///< The writer calls it once.
 };
 
 struct PlacesChanged {
@@ -54,8 +54,8 @@ struct PlacesChanged {
 };
 
 struct CellHead {
-  std::map<std::string, std::string> metadata;  ///< The metadata record "chorus".
-  bool single_sensor = false;                   ///< Raw frames go to /frame.
+  std::map<std::string, std::string> metadata;  ///< The content of the metadata record "chorus".
+  bool single_sensor = false;                   ///< True: raw frames go to the topic /frame.
 };
 
 class CellWriter {
@@ -66,7 +66,7 @@ class CellWriter {
   [[nodiscard]] Result<void> write(const RawFrame& raw);
   [[nodiscard]] Result<void> write(const FusedFrame& fused);
   [[nodiscard]] Result<void> write(const PlacesChanged& places);
-  /// Passes the open chunk to the operating system.
+  /// Closes the open chunk and passes it to the operating system.
   [[nodiscard]] Result<void> flush() { return writer_.flush(); }
   /// Waits until the disk has stored what was flushed.
   [[nodiscard]] Result<void> sync() { return writer_.sync(); }

@@ -1,4 +1,4 @@
-// The message chorus.FloorPlane, written and read.
+// Writes and reads the message chorus.FloorPlane.
 #pragma once
 
 #include <string>

@@ -181,7 +181,7 @@ Result<FrameRecording> read_frame_recording(const std::filesystem::path& path,
   auto& sensors = cell->sensors;
   const bool any = which.str().empty() || cell->cell.empty();
   for (FrameRecording& one : sensors) {
-    // A recording of one sensor may be played under any name.
+    // A recording of one sensor may be read under any sensor name.
     if (one.sensor == which || (any && sensors.size() == 1)) return std::move(one);
   }
   std::string there;

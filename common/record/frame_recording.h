@@ -20,23 +20,23 @@ struct FrameRecording {
   std::string device;  ///< "Kinect v2 (LabanotationSuite csv)", "MediaPipe Pose", ...
   std::optional<Intrinsics> intrinsics;
   std::optional<FloorPlane> floor;
-  /// Origin, licence, conversions applied; "damage.1": lost parts.
+  /// Origin, licence, conversions applied; "damage.1", ...: parts that were lost.
   std::map<std::string, std::string> notes;
   std::vector<SensorFrame> frames;
 };
 
-/// Replaces `path` only after the whole file has been written.  A frame without a floor plane keeps
-/// the one before it (the first: the recording's).
+/// Writes a recording; replaces `path` only after the whole file has been written.  A frame without
+/// a floor plane gets the one before it (the first frame gets `recording.floor`).
 [[nodiscard]] Result<void> write_frame_recording(const std::filesystem::path& path,
                                                  const FrameRecording& recording);
 
-/// The only sensor of a recording (a file, or a folder of files); `which` selects one of several.
-/// Refuses frames that go back in time or repeat a capture time; the error says where.
+/// Reads one sensor of a recording (a file, or a folder of files): its only sensor or, of several,
+/// `which`. Refuses frames that go back in time or repeat a capture time; the error says where.
 [[nodiscard]] Result<FrameRecording> read_frame_recording(const std::filesystem::path& path,
                                                           const ReadLimits& limits = {},
                                                           const SensorId& which = {});
 
-/// The metadata record "chorus" of such a recording, and the way back.
+/// The content of such a recording's metadata record "chorus".
 [[nodiscard]] std::map<std::string, std::string> metadata_of(const FrameRecording& recording);
 void read_metadata(const std::map<std::string, std::string>& values, FrameRecording& out);
 

@@ -10,10 +10,10 @@ namespace {
 
 constexpr std::uint32_t kPolynomial = 0xEDB88320u;  // CRC-32, bits reversed
 
-constexpr std::size_t kSlices = 8;  // bytes per step; four times faster than single bytes
+constexpr std::size_t kSlices = 8;  // Bytes per step; this is four times faster than single bytes.
 using CrcTable = std::array<std::uint32_t, 256>;
 
-/// Row n: the effect of a byte on the CRC when n more bytes follow it.
+/// Table n is the effect of a byte on the CRC when n more bytes follow it.
 constexpr std::array<CrcTable, kSlices> crc_tables() {
   std::array<CrcTable, kSlices> tables{};
   for (std::uint32_t i = 0; i < tables[0].size(); ++i) {

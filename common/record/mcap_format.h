@@ -28,10 +28,10 @@ enum class Op : std::uint8_t {
   DataEnd = 0x0F,
 };
 
-/// CRC-32 (ISO 3309, as in zip); to continue a sum, pass it as `so_far`.
+/// CRC-32 (ISO 3309, as in zip); to continue, pass the CRC of the preceding bytes as `so_far`.
 [[nodiscard]] std::uint32_t crc32(std::string_view bytes, std::uint32_t so_far = 0);
 
-/// Appends the fields of one record in order.
+/// Appends the fields of a record one after the other.
 class ByteWriter {
  public:
   ByteWriter& u8(std::uint8_t v) { return fixed(v, 1); }
@@ -49,11 +49,11 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// A record: opcode, length, content.
+/// One record: opcode, length, content.
 [[nodiscard]] std::string record(Op op, std::string_view content);
 
-/// Takes fields off a byte range.  Beyond the end it returns zeros and empty texts, and ok()
-/// becomes false: so a whole record can be read first and checked once.
+/// Takes fields off a byte range.  Beyond the end it returns zeros and empty strings, and ok()
+/// becomes false; so the caller can read a whole record first and check once.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : rest_(bytes) {}

@@ -19,12 +19,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How long a message may wait in an open chunk if none follows, and how often space, index and
-/// duration are checked.
+/// How long a message may wait in an open chunk if no other follows, and the interval of the checks
+/// of space, index and duration.
 constexpr auto kRest = std::chrono::seconds(1);
-/// Events are taken in batches: waking up for each one would cost more than encoding it.
+/// Events are taken in batches, because waking up for each one would cost more than encoding it.
 constexpr auto kBatch = std::chrono::milliseconds(100);
-constexpr std::size_t kEarly = 4;  // wakes up early when the queue is 1/4 full
+constexpr std::size_t kEarly = 4;  // The thread wakes up early when the queue is 1/4 full.
 
 Result<void> enough_space(const fs::path& folder, std::uintmax_t wanted) {
   std::error_code error;
@@ -45,7 +45,8 @@ std::string file_name(const RecorderOptions& options, std::size_t part, Timestam
   return options.name + "-" + number + "-" + utc_name(now) + ".mcap";
 }
 
-/// "20261121T073000Z-1f0c93ab": differs even for two runs that begin in the same second.
+/// An id such as "20261121T073000Z-1f0c93ab"; it differs even for two runs that begin in the same
+/// second.
 std::string run_id(Timestamp now) {
   constexpr std::string_view kDigits = "0123456789abcdef";
   std::random_device random;
@@ -124,7 +125,8 @@ Result<void> Recorder::Impl::begin() {
   }
   auto ok = enough_space(place, options.limits.min_free_bytes);
   if (ok) ok = next_file();
-  if (!ok && rotates()) fs::remove(options.folder, error);  // removes it only if it is empty
+  // Removes the folder only if it is empty.
+  if (!ok && rotates()) fs::remove(options.folder, error);
   return ok;
 }
 
@@ -167,7 +169,8 @@ void Recorder::Impl::store_index() {
     const std::scoped_lock lock(mutex);
     now = report;
   }
-  if (now.state != RecordingState::Failed) now.reason.clear();  // drops an earlier index problem
+  // Drops an earlier problem with the index.
+  if (now.state != RecordingState::Failed) now.reason.clear();
   const auto stored = write_index(options.folder, now);
   // The recording is worth more than its index, so it goes on.
   if (!stored && !index_lost) {
@@ -208,7 +211,7 @@ Result<void> Recorder::Impl::write(const RecordedEvent& event) {
   return {};
 }
 
-/// Once a second: limits what is only in memory, makes the disk store it, and checks free space.
+/// Once a second: makes the disk store what is only in memory, and checks the free space.
 Result<void> Recorder::Impl::rest() {
   const auto now = std::chrono::steady_clock::now();
   if (now - rested < kRest) return {};
@@ -227,7 +230,7 @@ void Recorder::Impl::run() {
     for (bool last = false; how && !last;) {
       {
         const std::scoped_lock lock(mutex);
-        last = stopping;  // the items queued now are the last to be written
+        last = stopping;  // The events that are queued now are the last to be written.
       }
       for (const RecordedEvent& event : take()) {
         if (how) how = write(event);
@@ -243,7 +246,7 @@ void Recorder::Impl::run() {
   finish(how);
 }
 
-/// Tells a service that the recording ended; with a single file, the caller asks for the report.
+/// Logs that the recording has ended; for a single file, the caller asks for the report.
 void Recorder::Impl::tell_end() const {
   if (!rotates()) return;
   if (report.state == RecordingState::Failed)
@@ -293,7 +296,8 @@ bool Recorder::offer(RecordedEvent event) {
   {
     const std::scoped_lock lock(impl_->mutex);
     if (impl_->stopping) return false;
-    // A registration rarely changes, and the frames after it are meaningless without it.
+    // A registration is taken even then: it rarely changes, and the frames after it are meaningless
+    // without it.
     if (impl_->queue.size() >= most && !std::holds_alternative<PlacesChanged>(event)) {
       ++impl_->report.dropped;
       return false;

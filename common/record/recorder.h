@@ -1,8 +1,8 @@
 // Records events in the background: a bounded queue, a separate thread, files that rotate.
 //
-// offer() never waits for the disk, the encoder or the compressor.  Drop policy "drop newest":
-// events that arrive while the queue is full are counted but not recorded.  A disk failure ends the
-// recording, never the service; what was written stays readable.
+// offer() never waits for the disk, the encoder or the compressor: events that arrive while the
+// queue is full are counted but not recorded.  A disk failure ends the recording, but never the
+// service; what was written before stays readable.
 #pragma once
 
 #include <chrono>
@@ -19,11 +19,14 @@
 namespace chorus::record {
 
 struct RecorderLimits {
-  std::uintmax_t max_file_bytes = 1ull << 30;  ///< The next file begins at this size,
-  /// or at this unpacked size, because some programs read a whole file into memory,
+  /// A new file begins when the current one has this size.
+  std::uintmax_t max_file_bytes = 1ull << 30;
+  /// A new file also begins when the current one has this unpacked size, because some programs read
+  /// a whole file into memory.
   std::uintmax_t max_unpacked_bytes = 2ull << 30;
-  Duration max_file_duration = std::chrono::minutes(10);  ///< or after this time.
-  /// The recording ends before the free space falls below this.
+  /// A new file also begins after this time.
+  Duration max_file_duration = std::chrono::minutes(10);
+  /// The recording ends when the free space would fall below this.
   std::uintmax_t min_free_bytes = 200ull << 20;
   std::size_t max_queue = 2048;  ///< A few seconds of ten sensors.
 
@@ -32,11 +35,12 @@ struct RecorderLimits {
 
 struct RecorderOptions {
   std::string name;
-  /// Identifies this run in all of its files, so that no two runs are mixed up.  Empty: generated.
+  /// Identifies this run in all of its files, so that files of different runs are told apart.
+  /// Empty: generated.
   std::string id = {};
-  /// A new folder for the files and their index.json ...
+  /// A new folder for the files and their index.json.  Give either this or `file`.
   std::filesystem::path folder = {};
-  /// ... or a single file, which is not rotated and has no index.
+  /// A single file, which is not rotated and has no index.
   std::filesystem::path file = {};
   CellHead head = {};
   RecorderLimits limits = {};
@@ -48,11 +52,12 @@ using RecordedEvent = std::variant<RawFrame, FusedFrame, PlacesChanged>;
 
 class Recorder {
  public:
-  /// Opens the first file; Io, Conflict (it exists) and Unavailable (too little space) name it.
+  /// Opens the first file.  Io, Conflict (the file exists) and Unavailable (too little space) name
+  /// the file.
   [[nodiscard]] static Result<std::unique_ptr<Recorder>> start(RecorderOptions options);
-  ~Recorder();  ///< Writes what is queued, closes the file, joins.
+  ~Recorder();  ///< Writes what is queued, closes the file, joins the thread.
 
-  /// May be called from any thread; false: the event was dropped.
+  /// May be called from any thread; false if the event was dropped.
   bool offer(RecordedEvent event);
 
   /// Accepts no more events; queued ones are still written.  Does not wait.

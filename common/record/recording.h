@@ -1,9 +1,8 @@
-// Recordings: MCAP files (chunked, zstd, indexed) with JSON messages.  Append-only, and readable
-// after a crash.
+// Recordings: MCAP files (chunked, zstd, indexed) with JSON messages.  They are only appended to,
+// and readable after a crash.
 //
-// MCAP version 0, https://mcap.dev/spec, written by hand (docs/decisions/0003-mcap-by-hand.md).
-// Bytes in, bytes out: a recording knows topics and times, but no skeletons;
-// frame_recording.h adds frames.
+// MCAP version 0, https://mcap.dev/spec, implemented here (docs/decisions/0003-mcap-by-hand.md).
+// This file handles topics, times and bytes; frame_recording.h adds frames.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +22,7 @@ namespace chorus::record {
 struct Channel {
   std::string topic;        ///< "/frame", "/floor-plane", "/registration"
   std::string schema_name;  ///< "chorus.Frame"
-  std::string schema_json;  ///< JSON Schema text; may be empty.
+  std::string schema_json;  ///< A JSON Schema; may be empty.
   std::map<std::string, std::string> metadata = {};
 
   bool operator==(const Channel&) const = default;
@@ -33,13 +32,12 @@ struct Message {
   std::string topic;
   std::uint32_t sequence = 0;
   Timestamp log_time;      ///< When it was recorded.
-  Timestamp publish_time;  ///< Capture time.
+  Timestamp publish_time;  ///< When the data was captured or made.
   std::string data;
 };
 
 struct WriterOptions {
-  std::size_t chunk_bytes = 1u << 20;  ///< A chunk is closed at this size, or after
-  /// this span of log time; a crash can lose no more than that.
+  std::size_t chunk_bytes = 1u << 20;  ///< A chunk is closed when it reaches this size.
   Duration chunk_duration = std::chrono::seconds(1);
   std::string library = "chorus";
 };
@@ -54,18 +52,20 @@ class RecordingWriter {
   ~RecordingWriter();  ///< Calls close(); call it yourself to see errors.
 
   [[nodiscard]] Result<std::uint16_t> add_channel(const Channel& channel);
-  /// `message.topic` is ignored, because the channel has the topic.  After an IO error every call
-  /// returns the same error.
+  /// `message.topic` is ignored, because the channel states the topic.  After an IO error every
+  /// call returns the same error.
   [[nodiscard]] Result<void> write(std::uint16_t channel, const Message& message);
-  /// A named set of strings about the whole recording ("chorus": sensor id, device, intrinsics).
+  /// Writes a named set of strings about the whole recording ("chorus": sensor id, device,
+  /// intrinsics).
   [[nodiscard]] Result<void> write_metadata(const std::string& name,
                                             const std::map<std::string, std::string>& values);
-  /// Closes the open chunk and passes it to the operating system; for writers that may fall silent.
+  /// Closes the open chunk and passes it to the operating system; for writers that may pause for
+  /// long.
   [[nodiscard]] Result<void> flush();
-  /// Waits until the disk has stored what was flushed, so that it survives a power cut, not only a
-  /// crash.
+  /// Waits until the disk has stored what was flushed.  Flushed data survive a crash of the
+  /// program; synced data also a power cut.
   [[nodiscard]] Result<void> sync();
-  /// Bytes in the file, without the open chunk.
+  /// Bytes in the file, without the chunk that is open.
   [[nodiscard]] std::uint64_t bytes() const;
   /// Unpacked size of the closed chunks.
   [[nodiscard]] std::uint64_t unpacked_bytes() const;
@@ -80,21 +80,23 @@ class RecordingWriter {
 
 inline constexpr std::size_t kMaxNotes = 20;
 
-/// A whole recording in memory.  A file cut off by a crash is read up to its last complete chunk; a
-/// damaged chunk is left out as a whole and named in the notes; records of unknown kinds are
+/// A whole recording in memory.  A file cut off by a crash is read up to its last complete chunk.
+/// A damaged chunk is left out completely and named in the notes.  Records of unknown kinds are
 /// skipped.
 struct Recording {
   std::vector<Channel> channels;
   std::map<std::string, std::map<std::string, std::string>> metadata;
-  std::vector<Message> messages;   ///< In log-time order; equal times in file order.
-  bool truncated = false;          ///< No footer, or the tail was unreadable.
-  std::vector<std::string> notes;  ///< What was left out and why, for people; at most kMaxNotes.
+  std::vector<Message> messages;  ///< In log-time order; equal times in file order.
+  bool truncated = false;         ///< No footer, or the tail was unreadable.
+  /// Human-readable: what was left out and why; at most kMaxNotes.
+  std::vector<std::string> notes;
 };
 
 struct ReadLimits {
   std::uintmax_t max_file_bytes = 4ull << 30;
-  std::size_t max_chunk_bytes = 64u << 20;  ///< Uncompressed; zip bombs are refused.
-  /// Limit for the memory of all that is read; a larger file is refused.
+  /// Limit of a chunk's unpacked size, against zip bombs.
+  std::size_t max_chunk_bytes = 64u << 20;
+  /// Limit for the memory of everything that is read; a larger recording is refused.
   std::uintmax_t max_total_bytes = 4ull << 30;
   /// Only messages of these topics are read; empty: all.
   std::function<bool(std::string_view topic)> wanted = {};
@@ -102,7 +104,7 @@ struct ReadLimits {
 
 [[nodiscard]] Result<Recording> read_recording(const std::filesystem::path& path,
                                                const ReadLimits& limits = {});
-/// The same from bytes, for tests and fuzzing.
+/// The same for bytes in memory, for tests and fuzzing.
 [[nodiscard]] Result<Recording> read_recording_bytes(std::string_view bytes,
                                                      const ReadLimits& limits = {});
 

@@ -26,7 +26,8 @@ std::string taken(std::istream& in, std::size_t count) {
   return bytes;
 }
 
-/// The log time at which the first chunk, or the first message outside a chunk, begins.
+/// The first log time of the first chunk or of the first message outside chunks, whichever comes
+/// first.
 std::optional<std::uint64_t> first_log_time(const fs::path& file) {
   constexpr std::size_t kBeforeTimeOfMessage = 2 + 4;  // channel and sequence
   constexpr std::size_t kTime = 8;

@@ -8,11 +8,11 @@
 
 namespace chorus::record {
 
-/// The file itself, or the .mcap files of a folder, ordered by name.
+/// The file itself, or the .mcap files in a folder, ordered by name.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> recording_files(
     const std::filesystem::path& path);
 
-/// Orders files by the log time of their first message; those without messages come first.
+/// Orders files by the log time of their first message; files without messages come first.
 [[nodiscard]] std::vector<std::filesystem::path> in_log_order(
     std::vector<std::filesystem::path> files);
 

@@ -41,7 +41,8 @@ RecordingState state_named(std::string_view name) {
   return found != kStateNames.end() && ended ? state : RecordingState::Interrupted;
 }
 
-/// Adds the files on disk, because the index was written before the last of them grew.
+/// Adds the files in the index, with their sizes on disk, because the last file grew after the
+/// index was written.
 void add_files(const fs::path& folder, const nlohmann::json& json, RecordingReport& report) {
   const auto files = json.find("files");
   if (files == json.end() || !files->is_array()) return;

@@ -1,5 +1,5 @@
-// What a recording consists of: kept in memory while it is being written, and next to its files as
-// index.json.
+// The list of what a recording consists of: in memory while the recording is being written, and as
+// index.json next to its files.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +18,13 @@ enum class RecordingState {
   Recording,
   Stopping,  ///< Asked to stop; the last chunk is being written.
   Finished,
-  Failed,       ///< Ended because of `reason`.  The files are readable.
-  Interrupted,  ///< Its process died.  The files are readable up to their last chunk.
+  Failed,       ///< Ended because of `reason`; the files are readable.
+  Interrupted,  ///< The process died; the files are readable up to their last chunk.
 };
 [[nodiscard]] std::string_view name_of(RecordingState state) noexcept;
 
 struct RecordedFile {
-  std::string name;  ///< Within the recording's folder.
+  std::string name;  ///< The file's name within the recording's folder.
   Timestamp started;
   std::uint64_t bytes = 0;
 };
@@ -50,10 +50,11 @@ inline constexpr std::string_view kIndexFile = "index.json";
 /// "20261121T073000Z": UTC to the second; valid as a recording name.
 [[nodiscard]] std::string utc_name(Timestamp t);
 
-/// Replaces index.json atomically.
+/// Writes index.json, replacing it atomically.
 [[nodiscard]] Result<void> write_index(const std::filesystem::path& folder,
                                        const RecordingReport& report);
-/// A recording that the index calls running is Interrupted.  Sizes are taken from the files.
+/// Reads index.json.  A recording that it calls running is Interrupted.  Sizes are taken from the
+/// files.
 [[nodiscard]] Result<RecordingReport> read_index(const std::filesystem::path& folder);
 
 }  // namespace chorus::record

@@ -9,7 +9,7 @@ namespace {
 using mcap::ByteReader;
 using mcap::Op;
 
-constexpr std::uint64_t kMaxRun = 1U << 20;  // largest run of messages outside of chunks
+constexpr std::uint64_t kMaxRun = 1U << 20;  // Largest run of messages outside chunks [bytes].
 
 class Scan {
  public:
@@ -25,7 +25,7 @@ class Scan {
       if (out_.definitions.bytes > limits_.max_total_bytes)
         return tl::unexpected<Error>(over_total(limits_));
     }
-    // What was cut off after the last chunk may have been a part of that chunk's index.
+    // What was cut off after the last chunk may have included a part of that chunk's index.
     if (out_.truncated && indexing_) out_.pieces.back().counts.reset();
     if (out_.truncated)
       add_note(out_.notes, "the end is missing; read up to the last complete chunk");
@@ -78,7 +78,7 @@ class Scan {
       case Op::Metadata:
         return define(head);
       default:
-        return;  // unknown or irrelevant: skipped, as the format requires
+        return;  // Unknown or irrelevant kinds are skipped, as the format requires.
     }
   }
 
@@ -142,8 +142,8 @@ class Scan {
     return {};
   }
 
-  /// Summary records, a footer and the magic follow the data section.  Only their presence is
-  /// checked.
+  /// Summary records, a footer and the magic should follow the data section; checks only that they
+  /// are there.
   void check_end() {
     for (auto head = peek_head(); head; head = peek_head()) {
       walk_.skip(mcap::kRecordHead + head->length);
@@ -157,7 +157,7 @@ class Scan {
   ByteWalk walk_;
   Outline out_;
   std::size_t chunks_ = 0;
-  bool indexing_ = false;  ///< Only message indexes since the last chunk.
+  bool indexing_ = false;  ///< True while only message indexes have followed the last chunk.
 };
 
 }  // namespace

@@ -23,7 +23,7 @@ Result<Recording> collect(RecordingStream stream, const ReadLimits& limits) {
     if (bytes > limits.max_total_bytes) return tl::unexpected<Error>(over_total(limits));
     out.messages.push_back((*message)->copy());
   }
-  // Chunks may state a wrong first time.
+  // Needed because a chunk may state a wrong first time.
   std::ranges::stable_sort(out.messages, {}, &Message::log_time);
   out.channels = stream.channels();
   out.metadata = stream.metadata();

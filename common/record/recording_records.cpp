@@ -10,7 +10,8 @@ namespace {
 
 using mcap::ByteReader;
 
-/// JSON of people packs to a tenth, of empty rooms to a fiftieth; a thousandth must be an attack.
+/// JSON of bodies packs to a tenth of its size, that of empty rooms to a fiftieth; a thousandth
+/// must be an attack.
 constexpr std::uint64_t kTightest = 1000;
 constexpr std::uint64_t kSmallAnyway = 1U << 16;
 
@@ -29,7 +30,7 @@ std::uintmax_t size_of(const Channel& channel) {
   return sum;
 }
 
-/// Writers repeat their definitions in each chunk; only new ones are stored.
+/// Stores a definition if it is new; writers repeat their definitions in each chunk.
 template <class Definition>
 void define(std::map<std::uint16_t, Definition>& known, std::uint16_t id, Definition definition,
             Definitions& into) {
@@ -108,7 +109,7 @@ std::string read_channel(std::string_view content, const ReadLimits& limits, Def
   const std::uint16_t schema = fields.u16();
   Channel channel;
   channel.topic = fields.text();
-  (void)fields.text();  // the encoding, which readers of the topic know
+  (void)fields.text();  // Skips the encoding; the topic's reader knows it.
   channel.metadata = fields.strings();
   if (!fields.ok()) return "a channel record is cut short";
   if (limits.wanted && !limits.wanted(channel.topic)) into.skipped.insert(id);
@@ -145,7 +146,7 @@ std::string read_message(std::string_view content, const Definitions& known,
 
 Result<std::string> unpack_chunk(std::string_view content, const ReadLimits& limits) {
   ByteReader fields(content);
-  (void)fields.u64();  // first and last log time, which the messages state themselves
+  (void)fields.u64();  // Skips the first and last log time; the messages state theirs themselves.
   (void)fields.u64();
   ChunkHead head;
   head.size = fields.u64();

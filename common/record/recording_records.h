@@ -1,6 +1,6 @@
-// Internal to the room: reads single records of a recording and trusts none of them.
+// Internal to common/record: reads single records of a recording, and checks every field.
 //
-// The readers return "", or what is wrong with the record.
+// The functions read_...() return "" or what is wrong with the record.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +26,9 @@ struct Schema {
 struct Definitions {
   std::map<std::uint16_t, Schema> schemas;
   std::map<std::uint16_t, Channel> channels;
-  std::set<std::uint16_t> skipped;  ///< Channels that were not asked for.
-  /// Memory of all definitions, because a small file can repeat one long schema in 65535 channels.
+  std::set<std::uint16_t> skipped;  ///< Channels that ReadLimits::wanted does not want.
+  /// Memory of all definitions.  It is limited, because a small file can repeat one long schema for
+  /// 65535 channels.
   std::uintmax_t bytes = 0;
 };
 
@@ -36,7 +37,7 @@ struct RawRecord {
   std::string_view content;
 };
 
-/// A message inside the bytes of its chunk.
+/// A message whose data points into the bytes of its chunk.
 struct RawMessage {
   std::uint16_t channel = 0;
   std::uint32_t sequence = 0;
@@ -45,18 +46,18 @@ struct RawMessage {
   std::string_view data;
 };
 
-/// The next record; none when the bytes end before it does.
+/// Takes the next record; none when the bytes end within it.
 [[nodiscard]] std::optional<RawRecord> take_record(mcap::ByteReader& bytes);
 
 [[nodiscard]] std::string read_schema(std::string_view content, Definitions& into);
 [[nodiscard]] std::string read_channel(std::string_view content, const ReadLimits& limits,
                                        Definitions& into);
-/// `out` stays empty for a channel that was not asked for.
+/// `out` stays empty for a channel in `known.skipped`.
 [[nodiscard]] std::string read_message(std::string_view content, const Definitions& known,
                                        std::optional<RawMessage>& out);
 
-/// The records in a chunk.  Refuses chunks that claim to be larger than the limits, or that are
-/// packed more tightly than any real recording.
+/// The unpacked records of a chunk.  Refuses a chunk that claims to be larger than the limits, or
+/// that is packed more tightly than any real recording.
 [[nodiscard]] Result<std::string> unpack_chunk(std::string_view content, const ReadLimits& limits);
 
 }  // namespace chorus::record

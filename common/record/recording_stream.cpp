@@ -17,12 +17,13 @@ struct Loaded {
   std::string bytes;
   std::vector<RawMessage> messages;
   std::size_t next = 0;
-  std::size_t order = 0;  ///< At equal times the earlier piece comes first.
+  /// Among messages with equal times, those of the piece with the lower number come first.
+  std::size_t order = 0;
 
   [[nodiscard]] Timestamp due() const { return messages[next].log_time; }
 };
 
-/// The pieces in memory; on top the one whose message is due first.
+/// The pieces in memory; on top is the one whose message is due first.
 class Active {
  public:
   [[nodiscard]] bool empty() const { return heap_.empty(); }
@@ -54,7 +55,7 @@ struct RecordingStream::Impl {
 
   static Result<std::unique_ptr<Impl>> make(std::unique_ptr<ByteSource> source,
                                             const ReadLimits& limits);
-  /// Null when nothing in the piece is wanted or usable.
+  /// Loads a piece; null when nothing in it is wanted or usable.
   std::unique_ptr<Loaded> load(std::size_t piece);
   std::string read_records(Loaded& into, bool chunk);
   std::string read_one(const RawRecord& record, Loaded& into);
@@ -68,11 +69,11 @@ struct RecordingStream::Impl {
   std::unique_ptr<ByteSource> source;
   ReadLimits limits;
   Outline outline;
-  std::vector<std::size_t> order;  ///< Pieces by first log time.
+  std::vector<std::size_t> order;  ///< The pieces' indices, by first log time.
   std::size_t next_piece = 0;      ///< Index into `order`.
   Active active;
   std::uintmax_t active_bytes = 0;
-  std::unique_ptr<Loaded> current;  ///< Holds the message returned last.
+  std::unique_ptr<Loaded> current;  ///< Contains the message that was returned last.
 };
 
 Result<std::unique_ptr<RecordingStream::Impl>> RecordingStream::Impl::make(
@@ -88,7 +89,7 @@ Result<std::unique_ptr<RecordingStream::Impl>> RecordingStream::Impl::make(
   return impl;
 }
 
-/// "" or what is wrong; a chunk is used as a whole or not at all.
+/// Returns "" or what is wrong.  A chunk is used completely or not at all.
 std::string RecordingStream::Impl::read_records(Loaded& into, bool chunk) {
   mcap::ByteReader records(into.bytes);
   while (!records.rest().empty()) {
@@ -113,12 +114,12 @@ std::string RecordingStream::Impl::read_one(const RawRecord& record, Loaded& int
       return wrong;
     }
     default:
-      // Unknown kinds are skipped, because later versions may add some; zero is never a kind.
+      // Unknown kinds are skipped, because later versions may add some; zero will never be a kind.
       return record.op == Op{} ? "it holds zeros where a record should be" : std::string{};
   }
 }
 
-/// True when all messages of the piece are on known channels that are not wanted.
+/// True when all messages of the piece are on channels that are known and not wanted.
 bool RecordingStream::Impl::unwanted(const Piece& piece) const {
   return piece.counts && std::ranges::all_of(*piece.counts, [this](const auto& entry) {
            return outline.definitions.skipped.contains(entry.first);

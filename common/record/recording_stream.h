@@ -1,8 +1,9 @@
-// Reads a recording message by message, with memory for one or two chunks, however long it is.
+// Reads a recording message by message; needs memory for only one or two chunks, however long the
+// recording is.
 //
 // Messages come in log-time order: a chunk is unpacked when its first message is due, and freed
-// after its last.  A file cut off by a crash is read up to its last complete chunk; a damaged chunk
-// is left out as a whole and named in the notes.
+// after its last one.  A file cut off by a crash is read up to its last complete chunk; a damaged
+// chunk is left out completely and named in the notes.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,7 @@
 
 namespace chorus::record {
 
-/// A message in the buffer where it was unpacked: valid until the next call.
+/// A message in the buffer in which it was unpacked; valid until the next call.
 struct MessageView {
   std::string_view topic;
   std::uint32_t sequence = 0;
@@ -44,25 +45,25 @@ class RecordingStream {
   RecordingStream& operator=(RecordingStream&&) noexcept;
   ~RecordingStream();
 
-  /// The next wanted message; none at the end.  TooLarge when its chunks cannot be put in order
-  /// within the limit.
+  /// The next wanted message; none at the end.  TooLarge when the memory limit does not allow
+  /// putting the messages in order.
   [[nodiscard]] Result<std::optional<MessageView>> next();
-  /// Starts again from the beginning, or from the first chunk that may hold messages at or after
+  /// Continues from the beginning, or from the first chunk that may contain messages at or after
   /// `from`.
   void rewind(std::optional<Timestamp> from = {});
 
-  /// The first and the last message of a topic; chunks without it are not unpacked.
+  /// The first (last) message of a topic; chunks without the topic are not unpacked.
   [[nodiscard]] std::optional<Message> first_of(std::string_view topic);
   [[nodiscard]] std::optional<Message> last_of(std::string_view topic);
-  /// Number of messages of a topic; none unless every chunk states its own.
+  /// Number of messages of a topic; none unless every chunk states its numbers.
   [[nodiscard]] std::optional<std::uint64_t> count(std::string_view topic) const;
 
-  /// The channels known so far: definitions inside chunks are found when those are unpacked.
+  /// The channels known so far; definitions inside a chunk become known when it is unpacked.
   [[nodiscard]] std::vector<Channel> channels() const;
   [[nodiscard]] const std::map<std::string, std::map<std::string, std::string>>& metadata() const;
-  /// True without a footer, or when the tail was unreadable.
+  /// True if there is no footer, or the end of the file was unreadable.
   [[nodiscard]] bool truncated() const;
-  /// What has been left out so far and why, for people; at most kMaxNotes.
+  /// Human-readable: what has been left out so far and why; at most kMaxNotes.
   [[nodiscard]] const std::vector<std::string>& notes() const;
 
  private:

@@ -1,6 +1,6 @@
 // Writes MCAP.  Schemas and channels go directly into the data section, so that they survive a
-// damaged chunk; messages go into zstd chunks, each passed to the operating system as soon as it is
-// closed.
+// damaged chunk.  Messages go into zstd chunks, each of which is passed to the operating system as
+// soon as it is closed.
 #include <fcntl.h>
 #include <unistd.h>
 #include <zstd.h>
@@ -22,16 +22,17 @@ namespace {
 using mcap::ByteWriter;
 using mcap::Op;
 
-constexpr int kCompressionLevel = 3;                 // zstd's default; packs a frame's JSON to 1/10
-constexpr std::size_t kMaxMessageBytes = 32u << 20;  // our own reader's chunk limit is twice this
-constexpr std::size_t kMaxTextBytes = 16u << 20;     // schema, metadata
+constexpr int kCompressionLevel = 3;  // zstd's default; packs a frame's JSON to a tenth.
+constexpr std::size_t kMaxMessageBytes = 32u << 20;  // Half of our reader's limit for a chunk.
+constexpr std::size_t kMaxTextBytes = 16u << 20;     // The limit for a schema, and for metadata.
 
 struct IndexEntry {
   std::uint64_t log_time;
   std::uint64_t offset;
 };
 
-/// First and last log time of a chunk or of the file; zero when empty, as the format requires.
+/// First and last log time of a chunk or of the file; both zero if it is empty, as the format
+/// requires.
 struct Span {
   std::uint64_t first = 0;
   std::uint64_t last = 0;
@@ -69,7 +70,7 @@ struct RecordingWriter::Impl {
   std::uint64_t offset = 0;      ///< Bytes written so far.
   std::uint64_t unpacked = 0;    ///< Bytes in chunks, before packing.
   std::uint64_t synced = 0;      ///< Bytes that the disk has stored for certain.
-  std::uint32_t crc = 0;         ///< Over all bytes written.
+  std::uint32_t crc = 0;         ///< CRC of all bytes written.
 
   std::map<std::pair<std::string, std::string>, std::uint16_t> schema_ids;
   std::vector<std::string> schema_records;
@@ -139,7 +140,8 @@ Result<std::uint16_t> RecordingWriter::Impl::schema_id(const Channel& channel) {
   return id;
 }
 
-/// Returns the chunk's message indexes, and puts into `offsets` where each will be in the file.
+/// Returns the message indexes of the chunk, and writes into `offsets` where each will be in the
+/// file.
 std::string RecordingWriter::Impl::message_indexes(std::uint64_t start, ByteWriter& offsets) const {
   std::string bytes;
   for (const auto& [channel, entries] : chunk.index) {
@@ -207,7 +209,7 @@ Result<void> RecordingWriter::Impl::write_summary() {
     fields.u8(static_cast<std::uint8_t>(op)).u64(summary_start + before);
     offsets += mcap::record(Op::SummaryOffset, fields.u64(summary.size() - before).bytes());
   }
-  // The summary's CRC also covers the footer, up to the CRC field.
+  // The CRC of the summary also covers the footer, up to the CRC field.
   ByteWriter footer;
   footer.u8(static_cast<std::uint8_t>(Op::Footer)).u64(8 + 8 + 4);
   footer.u64(summary_start).u64(summary_start + summary.size());

@@ -1,4 +1,4 @@
-// Field names are those of the published schemas (docs.foxglove.dev, message schemas).
+// The names of fields are those of the published schemas (docs.foxglove.dev, message schemas).
 #include "common/record/skeleton_scene.h"
 
 #include <array>
@@ -77,7 +77,7 @@ constexpr std::string_view kTransformsSchema = R"({
   }
 })";
 
-/// The colour tells bodies apart: id modulo the number of colours.
+/// A body's colour is its id modulo the number of colours.
 constexpr std::array<std::string_view, 6> kColours{
     R"({"r":0.2,"g":0.6,"b":1.0,"a":1.0})", R"({"r":1.0,"g":0.5,"b":0.1,"a":1.0})",
     R"({"r":0.3,"g":0.8,"b":0.3,"a":1.0})", R"({"r":0.9,"g":0.2,"b":0.3,"a":1.0})",
@@ -127,7 +127,8 @@ bool drawable(const resource::JointResource& joint) {
          joint.position.cwiseAbs().maxCoeff() <= kMaxCoordinate;
 }
 
-/// The points of all drawable joints, and for each bone between two of them their indices.
+/// Writes the points of all drawable joints, and for each bone the indices of its two points if
+/// both are drawable.
 void put_lines(std::string& out, const resource::BodyResource& body) {
   std::array<int, kJointCount> number_of{};
   std::string points;
@@ -145,7 +146,7 @@ void put_lines(std::string& out, const resource::BodyResource& body) {
     if (from < 0 || to < 0) continue;
     indices += (indices.empty() ? "" : ",") + std::to_string(from) + "," + std::to_string(to);
   }
-  if (indices.empty()) {  // by the schema, no indices means all points in order
+  if (indices.empty()) {  // In the schema, no indices would mean all points in order.
     out += "\"lines\":[]";
     return;
   }

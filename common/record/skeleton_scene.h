@@ -1,7 +1,9 @@
-// Skeletons as lines between joints, in messages that recording viewers can draw without plug-ins.
+// Skeletons as lines between joints, in messages that viewers of recordings can draw without
+// plug-ins.
 //
-// JSON of the published Foxglove schemas foxglove.SceneUpdate and foxglove.FrameTransforms. Viewers
-// have +z up, so their root frame `map` is our world (+y up), turned by one transform.
+// The messages are JSON of the published Foxglove schemas foxglove.SceneUpdate and
+// foxglove.FrameTransforms.  These viewers have +z up, so their root frame `map` is our world (+y
+// up) turned by one transform.
 #pragma once
 
 #include <string>
@@ -19,7 +21,7 @@ inline constexpr std::string_view kTransformsSchemaName = "foxglove.FrameTransfo
 [[nodiscard]] std::string_view scene_schema();
 [[nodiscard]] std::string_view transforms_schema();
 
-/// Frame of the fused bodies; each sensor's bodies are in the frame named by its id.
+/// The frame of the fused bodies; each sensor's bodies are in the frame named by the sensor's id.
 inline constexpr std::string_view kWorldFrame = "world";
 
 /// Where a frame stands in the world [m].
@@ -32,8 +34,8 @@ struct NamedPlace {
   }
 };
 
-/// One entity per body; it disappears by itself when the body is no longer seen.  Bones with a
-/// joint that is not tracked are left out.
+/// One entity per body, with a life time, so that it disappears when the body is no longer seen.  A
+/// bone is left out if one of its joints is not tracked.
 [[nodiscard]] std::string scene_update(const resource::FrameResource& frame,
                                        std::string_view frame_id);
 

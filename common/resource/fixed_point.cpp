@@ -12,7 +12,7 @@
 namespace chorus::resource {
 namespace {
 
-constexpr double kMaxWritable = 1e15;  // larger doubles have no decimals
+constexpr double kMaxWritable = 1e15;  // Larger doubles have no decimals.
 constexpr std::array<std::int64_t, 9> kPowersOfTen{
     1, 10, 100, 1'000, 10'000, 100'000, 1'000'000, 10'000'000, 100'000'000};
 

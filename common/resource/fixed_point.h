@@ -1,5 +1,5 @@
-// Numbers with a fixed number of decimals: exact in xsd:decimal and JSON, and ten times faster than
-// printf.
+// Writes numbers with a fixed number of decimals: exact in xsd:decimal and JSON, and ten times
+// faster than printf.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace chorus::resource {
 
-/// Coordinates beyond this are absurd, and the fast formatter does not handle them.
+/// Larger numbers are not plausible coordinates, and the fast formatter does not handle them.
 inline constexpr double kMaxFixed = 1e6;
 
 /// Length of write_fixed's longest output: sign, 7 digits, point, 8 decimals.
@@ -18,10 +18,10 @@ inline constexpr int kMaxFixedLength = 17;
 /// kMaxFixed.
 char* write_fixed(char* at, double value, int decimals) noexcept;
 
-/// Any number with fixed decimals; nullopt when it is not finite or is beyond 1e15.
+/// Writes any number with fixed decimals; nullopt when it is not finite or is beyond 1e15.
 [[nodiscard]] std::optional<std::string> fixed(double value, int decimals);
 
-/// Reads the whole text as a finite number: "-1.25", "1.5e-3".
+/// The finite number that the whole string spells: "-1.25", "1.5e-3".
 [[nodiscard]] std::optional<double> read_decimal(std::string_view text) noexcept;
 
 }  // namespace chorus::resource

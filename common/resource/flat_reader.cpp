@@ -27,7 +27,7 @@ Result<Properties> from_json(std::string_view bytes, std::string_view type) {
   return properties;
 }
 
-/// The subject that has this type; nullopt when none or several have it.
+/// The only subject of this type; nullopt when none or several have it.
 std::optional<rdf::Term> subject_of(const rdf::Graph& graph, std::string_view type) {
   std::optional<rdf::Term> subject;
   for (const rdf::Triple& triple : graph) {

@@ -1,4 +1,4 @@
-// Reads small documents about one thing (/floor-plane, /clock): its simple properties as text.
+// Reads small documents about one thing (/floor-plane, /clock): its simple properties as strings.
 #pragma once
 
 #include <map>
@@ -10,13 +10,13 @@
 
 namespace chorus::resource {
 
-/// The properties of the one subject of class `type` ("FloorPlane"), by name without prefix.  Reads
-/// only literals and our own individuals; refuses a repeated property.
+/// The properties of the only subject of class `type` ("FloorPlane"), by name without prefix.
+/// Reads only literals and individuals of our namespace; refuses a repeated property.
 using Properties = std::map<std::string, std::string, std::less<>>;
 [[nodiscard]] Result<Properties> read_properties(std::string_view bytes, Format format,
                                                  std::string_view type);
 
-/// The finite number with this key.
+/// The value of this key as a finite number.
 [[nodiscard]] Result<double> number_of(const Properties& properties, std::string_view key);
 
 }  // namespace chorus::resource

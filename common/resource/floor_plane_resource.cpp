@@ -9,7 +9,7 @@
 namespace chorus::resource {
 
 Node floor_plane_node(const FloorPlane& floor, SpaceKind space) {
-  constexpr int kDigits = 6;  // decimals: an angle of 1e-6 is 0.001 mm at 1 m
+  constexpr int kDigits = 6;  // Number of decimals: an angle of 1e-6 rad is 0.001 mm at 1 m.
   return {"",
           {"FloorPlane"},
           {{"normalX", Decimal{floor.normal.x(), kDigits}},

@@ -1,4 +1,4 @@
-// `/floor-plane`: unit normal n and offset d [m] with n.x + d = 0, in the service's own space.
+// `/floor-plane`: unit normal n and offset d [m] with n.x + d = 0, in the space of the service.
 #pragma once
 
 #include <string_view>
@@ -10,7 +10,8 @@ namespace chorus::resource {
 
 [[nodiscard]] Node floor_plane_node(const FloorPlane& floor, SpaceKind space);
 
-/// Normalises the normal; refuses a zero one, missing numbers, and offsets beyond kMaxCoordinate.
+/// Reads and normalises a floor plane; refuses a zero normal, missing numbers, and offsets beyond
+/// kMaxCoordinate.
 [[nodiscard]] Result<FloorPlane> read_floor_plane(std::string_view bytes, Format format);
 
 }  // namespace chorus::resource

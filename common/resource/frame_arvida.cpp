@@ -1,7 +1,8 @@
 // Profile "arvida": the full ARVIDA pattern, one spatial relationship per joint (proto/README.md).
 //
-// The source is the tracker's space, the target the joint, the translation the joint's position in
-// the source.  The direction is documented nowhere, so this follows a published client.
+// In a relationship, the source is the tracker's space, the target is the joint, and the
+// translation is the joint's position in the source.  No document states this direction; we follow
+// a published client.
 #include <algorithm>
 #include <array>
 
@@ -22,7 +23,7 @@ constexpr std::string_view kPrefixes =
     "@prefix xsd: <http://www.w3.org/2001/XMLSchema#> .\n";
 
 constexpr std::string_view kDouble = "\"^^xsd:double";
-constexpr std::size_t kJointText = 2048;  // bytes of the longest joint, without its names
+constexpr std::size_t kJointText = 2048;  // Bytes of the longest joint, without its names.
 
 class ArvidaFrame {
  public:
@@ -117,7 +118,7 @@ class ArvidaFrame {
         " ;\n  spatial:timestamp [ a tracking:UnixTimestamp ; vom:quantityValue [ a "
         "vom:QuantityValue ; "
         "vom:numericalValue \"");
-    pen_.put_integer(std::max<std::int64_t>(0, to_unix_ns(captured)));  // unsignedLong has no sign
+    pen_.put_integer(std::max<std::int64_t>(0, to_unix_ns(captured)));  // unsignedLong has no sign.
     pen_.put("\"^^xsd:unsignedLong ; vom:unit vom:NanoSecond ] ]");
   }
 

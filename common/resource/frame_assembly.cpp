@@ -13,7 +13,7 @@
 namespace chorus::resource {
 namespace {
 
-/// The two forms of one time may differ by rounding, but by no more.
+/// A document states each time in two forms, which may differ by rounding, but not by more.
 constexpr Duration kTimeTolerance = std::chrono::milliseconds(1);
 
 tl::unexpected<Error> refuse(const SubjectFacts& subject, std::string_view property,
@@ -40,7 +40,8 @@ std::optional<double> number(const SubjectFacts& subject, Number which) {
   return subject.numbers[static_cast<std::size_t>(which)];
 }
 
-/// True: all `count` numbers from `first` on are given; false: none is.  Refuses anything else.
+/// True if all `count` numbers from `first` on are given, false if none is; anything else is
+/// refused.
 Result<bool> has_all(const SubjectFacts& joint, Number first, std::size_t count) {
   std::size_t given = 0;
   std::size_t missing = 0;

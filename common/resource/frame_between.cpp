@@ -20,7 +20,8 @@ JointResource joint_between(const JointResource& a, const JointResource& b, doub
 FrameResource between(const FrameResource& a, const FrameResource& b, Timestamp instant) {
   const double span = seconds(b.captured - a.captured);
   const double s = span > 0.0 ? std::clamp(seconds(instant - a.captured) / span, 0.0, 1.0) : 0.0;
-  // Contributor bits are indices into `sensors`; they match only while the lists are equal.
+  // Contributor bits are indices into `sensors`, so they mean the same only while the lists are
+  // equal.
   if (s == 0.0 || a.sensors != b.sensors) return a;
   FrameResource out = a;
   out.captured = instant;

@@ -12,8 +12,8 @@
 namespace chorus::resource {
 namespace {
 
-/// A frame never changes, but a restarted service may reuse its number; so caches may keep it for
-/// about as long as a service does, but not for ever.
+/// A frame never changes, but a restarted service may reuse its number.  So caches may keep a frame
+/// for about as long as a service does, but not for ever.
 constexpr std::string_view kImmutable = "public, max-age=60, immutable";
 constexpr std::string_view kArvida = "arvida";
 
@@ -42,7 +42,7 @@ http::DocumentOptions kept_options(const FrameResource& frame, const std::string
   http::DocumentOptions options = latest_options(frame, run);
   options.cache_control = kImmutable;
   options.content_location.clear();
-  options.captured.reset();  // the age of an old frame says nothing
+  options.captured.reset();  // The age of an old frame is of no use.
   return options;
 }
 

@@ -1,4 +1,4 @@
-// Frames and bodies as HTTP documents: each format is rendered when the first client asks for it.
+// Frames and bodies as HTTP documents; each format is rendered when the first client asks for it.
 #pragma once
 
 #include <memory>
@@ -11,15 +11,14 @@ namespace chorus::resource {
 
 using FramePtr = std::shared_ptr<const FrameResource>;
 
-/// `/frame` (place "frame"), one of `/frames/{seq}` (place "frames/42") or a relayed frame. Turtle,
-/// JSON-LD, JSON and N-Triples; profile "arvida" in Turtle and N-Triples.
+/// The document of `/frame` (place "frame"), of one of `/frames/{seq}` (place "frames/42") or of a
+/// relayed frame, in Turtle, JSON-LD, JSON and N-Triples; profile "arvida" in Turtle and N-Triples.
 [[nodiscard]] http::DocumentPtr frame_document(FramePtr frame, const Place& place,
                                                http::DocumentOptions options);
 
-/// The options of these documents: version = sequence (and `run`, so that the ETags of a restarted
-/// service differ).
-/// `/frame` is revalidated, with its immutable twin in Content-Location; `/frames/{seq}` is cached
-/// for a minute.
+/// The options of these documents.  The version is the sequence, with `run`, so that the ETags of a
+/// restarted service differ.  latest_options(): `/frame` is revalidated; its Content-Location is
+/// its immutable twin. kept_options(): `/frames/{seq}` may be cached for a minute.
 [[nodiscard]] http::DocumentOptions latest_options(const FrameResource& frame,
                                                    const std::string& run = {});
 [[nodiscard]] http::DocumentOptions kept_options(const FrameResource& frame,

@@ -1,6 +1,7 @@
-// Internal to the room: what a frame document says about each subject, before it is checked.
+// Internal to common/resource: what a frame document says about each subject, before it is checked.
 //
-// The Turtle and JSON readers fill these; only assemble() decides what is a valid frame.
+// The Turtle and JSON readers fill these facts; only assemble() decides whether they are a valid
+// frame.
 #pragma once
 
 #include <array>
@@ -15,7 +16,7 @@
 
 namespace chorus::resource {
 
-/// The decimals of a joint, in this order, then those of a body; the names are in kNumberNames.
+/// The numbers of a joint, then those of a body; kNumberNames has their names in the same order.
 enum class Number : std::uint8_t {
   X,
   Y,
@@ -41,12 +42,12 @@ inline constexpr std::array<std::string_view, 19> kNumberNames{
     "x",    "y",   "z",   "qx",  "qy",  "qz",  "qw",  "variance",        "rayX",      "rayY",
     "rayZ", "cxx", "cxy", "cxz", "cyy", "cyz", "czz", "sidesConfidence", "carriedFor"};
 
-/// How far the length of a quaternion may be from 1; all zero means "not given".
+/// How far the length of a quaternion may be from 1; all zero is allowed too and means "not given".
 inline constexpr double kUnitTolerance = 0.1;
 
-/// Everything that may be said about a subject, whatever kind it turns out to be.
+/// Everything that may be said about a subject, whatever its kind.
 struct SubjectFacts {
-  std::string name;  ///< Its IRI as in the document, for messages.
+  std::string name;  ///< The subject's IRI as in the document, for messages.
   bool is_frame = false;
   std::optional<std::uint64_t> sequence;
   std::optional<std::uint64_t> body_id;
@@ -66,7 +67,7 @@ struct SubjectFacts {
 
 using Facts = std::vector<SubjectFacts>;
 
-/// Sets a property that a subject may have only once; the same value may be repeated.
+/// Sets a property that a subject may have only once; false for a second, different value.
 template <class T>
 [[nodiscard]] bool set_once(std::optional<T>& property, T value) {
   if (property && *property != value) return false;
@@ -77,17 +78,17 @@ template <class T>
 [[nodiscard]] std::optional<SpaceKind> space_named(std::string_view name);
 [[nodiscard]] std::optional<JointState> state_named(std::string_view name);
 
-/// "skeletons/7#Head ch:x": the place of a mistake in the document.
+/// Where a mistake is in the document: "skeletons/7#Head ch:x".
 [[nodiscard]] std::string place_of(const SubjectFacts& subject, std::string_view property);
 
 [[nodiscard]] Result<FrameResource> assemble(const Facts& facts);
 
-/// Reads the Turtle of our own template without a parser; nullopt at the first byte that differs
-/// from our output.
+/// Reads Turtle written by our own template, without a parser; nullopt at the first byte that
+/// differs from what the template writes.
 [[nodiscard]] std::optional<FrameResource> read_template(std::string_view turtle);
 
-/// The same for our own JSON (not JSON-LD); whatever it accepts, read_json_frame() would read as
-/// the same frame.
+/// Reads JSON (not JSON-LD) written by our own template in the same way.  What it accepts,
+/// read_json_frame() reads as the same frame.
 [[nodiscard]] std::optional<FrameResource> read_json_template(std::string_view json);
 
 [[nodiscard]] Result<FrameResource> read_rdf_frame(std::string_view text, Format format);

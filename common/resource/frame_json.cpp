@@ -1,4 +1,5 @@
-// Writes the frame in JSON and JSON-LD from a template.  Linked: @context, decimals as strings.
+// Writes the frame in JSON and JSON-LD from a template.  `linked` means JSON-LD: with @context, and
+// decimals as strings.
 #include <algorithm>
 
 #include "common/body/bones.h"
@@ -8,8 +9,8 @@
 namespace chorus::resource {
 namespace {
 
-/// Readers that keep numbers as doubles would change larger integers; so these are written as
-/// strings.
+/// Larger integers are written as strings, because readers that keep numbers as doubles would
+/// change them.
 constexpr std::uint64_t kExactInteger = std::uint64_t{1} << 53;
 
 class JsonFrame {
@@ -72,7 +73,8 @@ class JsonFrame {
   }
 
  private:
-  /// `living`: the document is about the living body and states its type.
+  /// `living`: the document is about the body itself, not about one instant of it, and states the
+  /// body's type.
   void put_body_head(const BodyResource& body, bool living) {
     pen_.put("\"@id\":\"");
     put_body_name(body);
@@ -141,7 +143,8 @@ class JsonFrame {
     pen_.put("]");
   }
 
-  /// In linked JSON the names of bodies and joints contain their frame, so documents can be merged.
+  /// In JSON-LD the IRIs of bodies and joints contain their frame's, so that documents can be
+  /// merged.
   void put_frame_name() {
     pen_.put(names_);
     if (!linked_) return pen_.put("frame");

@@ -1,4 +1,5 @@
-// Reads a frame from JSON or JSON-LD, only in our context's shape (proto/README.md, section 3).
+// Reads a frame from JSON or JSON-LD, but only in the shape that our context implies
+// (proto/README.md, section 3).
 #include <nlohmann/json.hpp>
 
 #include "common/base/json.h"
@@ -17,7 +18,7 @@ class Reading {
   Result<Facts> run(const Json& root) {
     if (!root.is_object()) return fail(ErrorCode::Malformed, {}, "a frame is a JSON object");
     const std::size_t frame = add_subject(root, "frame");
-    // Hand-written JSON may omit the type, because a frame was asked for.
+    // Hand-written JSON may omit the type, because only a frame can be meant.
     if (root.contains("@type") && root.at("@type") != "Frame")
       complain(frame, "@type", "is not \"Frame\"");
     facts_[frame].is_frame = true;
@@ -64,7 +65,7 @@ class Reading {
     for (const Json& object : *bodies) {
       if (!object.is_object())
         return complain(frame, "bodies", "holds something that is no object");
-      if (facts_[frame].bodies.size() > kMaxBodies) return;  // assemble() reports the limit
+      if (facts_[frame].bodies.size() > kMaxBodies) return;  // assemble() reports the limit.
       const std::size_t body = add_subject(object, "a body");
       facts_[frame].bodies.push_back(body);
       read_common(body, object);
@@ -94,7 +95,7 @@ class Reading {
     }
   }
 
-  /// Reads a JSON number or its text as a string, which JSON-LD and large integers use.
+  /// Reads a JSON number, or a string that spells it, as JSON-LD and large integers need.
   template <class T>
   void integer(std::size_t at, const Json& object, std::string_view key, std::optional<T>& out) {
     const auto found = object.find(key);
@@ -137,7 +138,7 @@ class Reading {
 
   void list(std::size_t at, const Json& object, std::string_view key,
             std::vector<std::string>& out) {
-    constexpr std::size_t kMoreThanEnough = 65;  // one above the limit; assemble() reports it
+    constexpr std::size_t kMoreThanEnough = 65;  // One above the limit; assemble() reports it.
     const auto found = object.find(key);
     if (found == object.end()) return;
     if (!found->is_array()) return complain(at, key, "is no array");

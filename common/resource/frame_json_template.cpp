@@ -1,5 +1,5 @@
-// Reads the JSON that frame_json.cpp writes, by following its template, as frame_fast_reader.cpp
-// does for Turtle: at anything unexpected the result is nullopt, and the parser decides.
+// Reads the JSON that frame_json.cpp writes by following its template, as frame_fast_reader.cpp
+// does for Turtle: at anything unexpected the result is nullopt, and the parser reads the document.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -79,7 +79,7 @@ class JsonTemplate : TemplateText {
     return text("}}");
   }
 
-  /// Ids beyond the exact integers of a double are in quotes.
+  /// Reads an id; ids that a double cannot represent exactly are in quotes.
   bool id_number(std::uint64_t& id) {
     const bool quoted = text("\"");
     return integer(id) && (!quoted || text("\""));
@@ -118,7 +118,8 @@ class JsonTemplate : TemplateText {
            text(",\"rayZ\":") && decimal(p.z()) && std::abs(p.norm() - 1.0) <= kRayTolerance;
   }
 
-  /// Starts after the name of the first term; stops after the opening quote of the next name.
+  /// Starts after the name of the covariance's first term; stops after the opening quote of the
+  /// next name.
   bool covariance(Covariance& out) {
     std::array<double, Covariance::kTerms> upper{};
     for (std::size_t i = 0; i < upper.size(); ++i) {

@@ -11,7 +11,7 @@ namespace {
 
 /// A quaternion whose length differs from 1 by more than this is normalised before it is written.
 constexpr double kWrittenTolerance = 0.05;
-constexpr double kMinNorm = 1e-6;  // a shorter quaternion is "not given"
+constexpr double kMinNorm = 1e-6;  // A shorter quaternion counts as "not given".
 constexpr double kMaxVariance = 1e4;
 
 bool plausible(const JointResource& joint) {
@@ -21,7 +21,7 @@ bool plausible(const JointResource& joint) {
   return p.cwiseAbs().maxCoeff() <= kMaxCoordinate;
 }
 
-/// True when the terms, rounded for the wire, still form a covariance.
+/// True when readers accept this covariance.  plausible() tolerates the rounding on the wire.
 bool writable(const Covariance& covariance) {
   return covariance.known() && covariance.plausible() &&
          covariance.matrix().cwiseAbs().maxCoeff() <= kMaxVariance;
@@ -91,7 +91,7 @@ std::string_view name_of(SpaceKind space) {
 }
 
 std::string to_ntriples(const std::string& turtle, const Place& place) {
-  // Our own text has no errors, and its size does not matter.
+  // Our own Turtle has no errors, and its size need not be limited.
   return rdf::turtle_to_ntriples(turtle, place.root + place.path, turtle.size()).value_or("");
 }
 

@@ -1,4 +1,4 @@
-// Internal to the room: code that the frame writers share.
+// Internal to common/resource: code that the frame writers share.
 #pragma once
 
 #include <array>
@@ -13,7 +13,8 @@
 
 namespace chorus::resource {
 
-/// Decimals on the wire (proto/README.md): 0.1 mm, quaternions, (0.1 mm)^2.
+/// Decimals on the wire (proto/README.md).  Of positions [m]: 0.1 mm; of variances [m^2]: (0.1
+/// mm)^2.
 inline constexpr int kPositionDecimals = 4;
 inline constexpr int kQuaternionDecimals = 5;
 inline constexpr int kVarianceDecimals = 8;
@@ -26,14 +27,14 @@ inline constexpr double kLongestCarry = 3600.0;  ///< [s]
 inline constexpr std::array<std::string_view, Covariance::kTerms> kCovarianceNames{
     "cxx", "cxy", "cxz", "cyy", "cyz", "czz"};
 
-/// A joint ready for writing: finite and plausible, otherwise not tracked.
+/// A joint ready for writing: finite and plausible, or else not tracked.
 struct WritableJoint {
   JointState state = JointState::NotTracked;
   bool has_orientation = false;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   std::optional<double> variance;
-  bool ray = false;  ///< `position` is a direction.
+  bool ray = false;  ///< True if `position` is a direction.
   Covariance covariance;
 };
 [[nodiscard]] WritableJoint writable(const JointResource& joint);
@@ -41,16 +42,16 @@ struct WritableJoint {
 /// Clamps to [0, 1]; NaN counts as no confidence.
 [[nodiscard]] double writable_confidence(double value);
 
-/// Within [0, kLongestCarry]; what is no number is no time.
+/// Clamps to [0, kLongestCarry]; NaN becomes 0.
 [[nodiscard]] double writable_time(double value);
 
-/// The text in quotes, with the escapes that Turtle and JSON share; broken UTF-8 is replaced.
+/// `text` in quotes, with the escapes that Turtle and JSON share; broken UTF-8 is replaced.
 [[nodiscard]] std::string quoted(std::string_view text);
 
 /// The names of all sensors, in quotes.
 [[nodiscard]] std::vector<std::string> quoted_names(const FrameResource& frame);
 
-/// Appends without checks, because need() has already reserved the room.
+/// Appends to a string without checks: callers reserve the room with need() first.
 class Pen {
  public:
   explicit Pen(std::size_t expected) : text_(expected, '\0'), at_(text_.data()) {}
@@ -62,14 +63,14 @@ class Pen {
     at_ = text_.data() + used;
   }
   void put(std::string_view text) {
-    if (text.empty()) return;  // memcpy takes no null pointer, not even for 0 bytes
+    if (text.empty()) return;  // memcpy must not get a null pointer, not even for 0 bytes.
     std::memcpy(at_, text.data(), text.size());
     at_ += text.size();
   }
   void put_decimal(double value, int decimals) { at_ = write_fixed(at_, value, decimals); }
   template <class Integer>
   void put_integer(Integer value) {
-    constexpr int kLongest = 20;  // digits and sign of 64 bits
+    constexpr int kLongest = 20;  // The digits and the sign of 64 bits.
     at_ = std::to_chars(at_, at_ + kLongest, value).ptr;
   }
   [[nodiscard]] std::string take() {
@@ -82,7 +83,7 @@ class Pen {
   char* at_;
 };
 
-/// The dateTime text of an instant; keeps the last one, because most bodies share the frame's time.
+/// Formats instants as dateTime; keeps the last result, because most bodies have the frame's time.
 class TimeText {
  public:
   [[nodiscard]] std::string_view of(Timestamp t) {

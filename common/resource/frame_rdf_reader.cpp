@@ -1,4 +1,4 @@
-// Reads a frame from Turtle or N-Triples in any spelling, through the parser.
+// Reads a frame from Turtle or N-Triples in any spelling, with the parser.
 #include <algorithm>
 #include <functional>
 #include <unordered_map>
@@ -15,7 +15,7 @@ namespace {
 using rdf::TermKind;
 using rdf::TermView;
 
-/// Most subjects that a document may have; 64 bodies of 25 joints are 1 665.
+/// Most subjects that a document may have; 64 bodies of 25 joints and the frame are 1 665.
 constexpr std::size_t kMaxSubjects = 4096;
 
 enum class Property : std::uint8_t {
@@ -41,7 +41,7 @@ struct Row {
   Number number = Number::X;
 };
 
-/// The properties of a frame, sorted by name.
+/// The properties in a frame document, sorted by name.
 constexpr std::array kRows{
     Row{"body", Property::BodyIs},
     Row{"bodyId", Property::BodyId},
@@ -78,7 +78,7 @@ constexpr std::array kRows{
 };
 static_assert(std::ranges::is_sorted(kRows, {}, &Row::name));
 
-/// Compares views, so that reading builds no text.
+/// Compares without building a string.
 bool is_xsd(std::string_view datatype, std::string_view name) {
   return datatype.size() == rdf::kXsd.size() + name.size() && datatype.starts_with(rdf::kXsd) &&
          datatype.ends_with(name);
@@ -100,7 +100,7 @@ std::string_view individual(const TermView& term) {
   return term.value.substr(kChorus.size());
 }
 
-/// Adds a value to a list that holds each value only once.
+/// Adds a value to a list unless it contains that value already.
 template <class T>
 void add(std::vector<T>& list, T value) {
   if (std::ranges::find(list, value) == list.end()) list.push_back(std::move(value));
@@ -109,7 +109,7 @@ void add(std::vector<T>& list, T value) {
 class Collector {
  public:
   Collector() {
-    constexpr std::size_t kUsual = 256;  // subjects of a frame with a few bodies
+    constexpr std::size_t kUsual = 256;  // Subjects of a frame with a few bodies.
     facts_.reserve(kUsual);
     iris_.reserve(kUsual);
   }
@@ -131,7 +131,7 @@ class Collector {
     const std::string_view name = verb.substr(kChorus.size());
     const auto* const row = std::ranges::lower_bound(kRows, name, {}, &Row::name);
     if (row == kRows.end() || row->name != name)
-      return true;  // additions are ignored (proto/README.md)
+      return true;  // Unknown properties are ignored (proto/README.md).
     std::string_view why = store(at, *row, triple.object);
     if (why.empty()) return true;
     error_ = Error{ErrorCode::Malformed, place_of(facts_[at], name), std::string(why)};
@@ -142,7 +142,7 @@ class Collector {
   [[nodiscard]] const Facts& facts() const { return facts_; }
 
  private:
-  /// Empty, or what is wrong with the object.
+  /// Stores the object; returns "" or what is wrong with it.
   std::string_view store(std::size_t at, const Row& row, const TermView& object) {
     switch (row.property) {
       case Property::BodyIs:
@@ -183,7 +183,7 @@ class Collector {
     if (object.kind == TermKind::Literal) return "is a literal, not a resource";
     const std::size_t to = find_or_add(object);
     std::vector<std::size_t>& links = facts_[at].*list;
-    // Limited already here, so that a long list costs nothing; assemble() reports the limit.
+    // Limited here already, so that a long list costs nothing; assemble() reports the limit.
     if (links.size() <= std::max(kMaxBodies, kJointCount)) add(links, to);
     return {};
   }
@@ -226,13 +226,14 @@ class Collector {
 
   std::string_view list_text(std::size_t at, bool sensors, const TermView& object) {
     std::vector<std::string>& list = sensors ? facts_[at].sensors : facts_[at].contributors;
-    constexpr std::size_t kMoreThanEnough = 65;  // one above the limit; assemble() reports it
+    constexpr std::size_t kMoreThanEnough = 65;  // One above the limit; assemble() reports it.
     if (object.kind != TermKind::Literal || !object.datatype.empty()) return "is no string";
     if (list.size() < kMoreThanEnough) add(list, std::string(object.value));
     return {};
   }
 
-  /// Most triples of one subject follow one another.
+  /// The index of the subject.  Tries the last one first, because most triples of a subject follow
+  /// one another.
   std::size_t subject_of(const TermView& subject) {
     if (last_ < facts_.size() && facts_[last_].name == subject.value && last_kind_ == subject.kind)
       return last_;

@@ -66,8 +66,8 @@ class TurtleFrame {
     begun_ = true;
   }
 
-  /// A living body or joint is written without a position: two documents about it would contradict
-  /// each other.
+  /// Begins a document about the living body or joint.  It states no position: two such documents
+  /// of different instants would contradict each other.
   void begin_living(const BodyResource& body) {
     pen_.need(kJointBytes + names_.size());
     pen_.put(kPrefixes);
@@ -143,7 +143,7 @@ class TurtleFrame {
     pen_.put_integer(body.id);
   }
 
-  /// Names a body at this instant; `ch:of` points to the living body.
+  /// Writes the IRI of a body at this instant; its `ch:of` points to the living body.
   void put_body_name(const BodyResource& body) {
     put_frame_name();
     pen_.put("#");

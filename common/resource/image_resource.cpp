@@ -7,7 +7,7 @@ namespace chorus::resource {
 Node image_node(const CameraImage& image, std::string iri) {
   constexpr int kPixelDigits = 3;
   constexpr int kDistortionDigits = 6;
-  constexpr double kMetresPerDepthUnit = 0.001;  // 16-bit PNG in millimetres (camera_image.h)
+  constexpr double kMetresPerDepthUnit = 0.001;  // The PNG has 16-bit millimetres (camera_image.h).
   const Intrinsics& camera = image.intrinsics;
   std::vector<Decimal> distortion;
   for (const double k : camera.distortion) distortion.push_back({k, kDistortionDigits});

@@ -8,8 +8,8 @@
 
 namespace chorus::resource {
 
-/// The description of the image at `iri` ("images/depth").  Pixels; distortion in OpenCV's order;
-/// for a depth image also the size of its unit.
+/// Describes the image at `iri` ("images/depth"): intrinsics in pixels, distortion in OpenCV's
+/// order; for a depth image also the size of its unit.
 [[nodiscard]] Node image_node(const CameraImage& image, std::string iri);
 
 }  // namespace chorus::resource

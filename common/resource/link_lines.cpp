@@ -24,7 +24,7 @@ std::string lines_of(Kind kind) {
   return kind == Kind::Container ? type_line("BasicContainer") + source : source;
 }
 
-/// The lines of a kind, without and with the context of plain JSON; written once.
+/// The lines for one kind, without and with a link to the context of plain JSON; written once.
 struct KindLines {
   std::string plain;
   std::string with_context;

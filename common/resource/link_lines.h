@@ -1,4 +1,4 @@
-// What linked data adds to HTTP answers: Link header lines, and a pointer to the self-description.
+// What linked data adds to HTTP answers: Link header lines, and a link to the self-description.
 #pragma once
 
 #include <string_view>
@@ -11,9 +11,9 @@ namespace chorus::resource {
 
 /// What kind of resource a document is (LDP 1.0, 4.2.1.4 and 5.2.1.4).
 enum class Kind {
-  Source,     ///< It is an RDF document.
-  Container,  ///< It is an RDF document that lists other resources.
-  Other,      ///< An image, a page, a file.
+  Source,     ///< An RDF document.
+  Container,  ///< An RDF document that lists other resources.
+  Other,      ///< Not RDF: an image, a page, a file.
 };
 
 /// Gives every variant its Link header lines: its kind, the place of its shapes and, for plain JSON
@@ -27,11 +27,11 @@ enum class Kind {
 /// The Link header lines for a kind.
 [[nodiscard]] std::string_view link_lines(Kind kind);
 
-/// The header field with a service's clock (proto/README.md).
+/// The header field that states a service's clock (proto/README.md).
 inline constexpr std::string_view kClockField = "Chorus-Clock";
 
-/// The header lines of every answer of a Chorus service: Chorus-Clock, its type, and the service's
-/// description.
+/// What every answer of a Chorus service has in addition: the field Chorus-Clock, and Link lines to
+/// its type and to the service's description.
 [[nodiscard]] http::AnswerPolicy answer_policy();
 
 }  // namespace chorus::resource

@@ -17,8 +17,8 @@ namespace {
 using rdf::Graph;
 using rdf::Term;
 
-/// Makes a writable IRI of text from a config file or a peer: escapes the characters that an IRI
-/// cannot contain.
+/// Makes a valid IRI of a string from a configuration file or a peer: escapes the characters that
+/// an IRI cannot contain.
 std::string safe_iri(std::string_view text) {
   constexpr std::string_view kNever = "<>\"{}|^`\\";
   constexpr std::string_view kHex = "0123456789ABCDEF";
@@ -34,7 +34,7 @@ std::string safe_iri(std::string_view text) {
   return safe;
 }
 
-/// xsd:string allows no zero byte; all other UTF-8 may be written.
+/// Makes a valid xsd:string: replaces what is not UTF-8 and removes zero bytes.
 std::string safe_text(std::string_view text) {
   std::string safe = rdf::clean_utf8(text);
   std::erase(safe, '\0');
@@ -72,7 +72,7 @@ class Building {
     for (const Item& item : items) add_value(subject, use, item);
   }
   void add_value(const Term& subject, const TermUse& use, const Node& node) {
-    // First the link, then what it points to, which is the order people read in.
+    // The link comes before the node that it points to, which is the order in which people read.
     const std::size_t at = graph_.size();
     const Term object = add(node);
     graph_.insert(graph_.begin() + static_cast<std::ptrdiff_t>(at),
@@ -129,7 +129,7 @@ class Building {
   int blanks_ = 0;
 };
 
-/// The prefixes that occur in the graph's names.
+/// The prefixes that the names in the graph need.
 std::vector<rdf::Prefix> prefixes_for(const Graph& graph) {
   std::vector<rdf::Prefix> used;
   for (const rdf::Prefix& prefix : all_prefixes()) {

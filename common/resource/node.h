@@ -1,13 +1,13 @@
 // Small documents as a tree that can be written in every format: /, /clock, /registration,
 // /sensors/ ...
 //
-// Keys are the terms of proto/context.jsonld ("captured", "verdict"); the context maps each one to
-// its IRI and datatype.  A key that it lacks is written in our own namespace; undeclared_terms()
-// finds such keys, and every builder has a test that there are none.  Frames do not use this; their
-// template is in frame_resource.h.
+// Keys are the terms of proto/context.jsonld ("captured", "verdict"); the context maps each term to
+// its IRI and datatype.  A key that the context lacks is written in our own namespace;
+// undeclared_terms() finds such keys, and a test of every builder requires that there are none.
+// Frames do not use this; frame_resource.h writes them from templates.
 //
-// In JSON, keys that end in "Nanoseconds" hold strings.  A term with an index ("sensors", keyed by
-// "sensorId") becomes an object whose keys are the nodes' index property.
+// In JSON, the values of keys that end in "Nanoseconds" are strings.  A term with an index (such as
+// "sensors", by "sensorId") becomes an object: the index property of each node is its key.
 #pragma once
 
 #include <cstdint>
@@ -39,12 +39,14 @@ struct Decimal {
   int digits = 4;
 };
 
-/// A string for a term of type @vocab ("verdict": "Good") names one of our individuals.
+/// The value of a property.  A string for a term of type @vocab ("verdict": "Good") names one of
+/// our individuals.
 using Value =
     std::variant<bool, std::int64_t, Decimal, std::string, Timestamp, Ref, Node, std::vector<Node>,
                  std::vector<Ref>, std::vector<std::string>, std::vector<Decimal>>;
 
-/// One subject: id "" is the document itself, "_" a blank node, else a relative or absolute IRI.
+/// One subject: id "" is the document itself, "_" a blank node, anything else a relative or
+/// absolute IRI.
 struct Node {
   std::string id;
   /// Terms ("Registration") or prefixed names ("ldp:BasicContainer").
@@ -52,7 +54,7 @@ struct Node {
   std::vector<std::pair<std::string, Value>> properties;
 };
 
-/// The document for its `place`.  Text that is not UTF-8 is made UTF-8.
+/// The document at its `place`.  In strings, what is not UTF-8 is replaced.
 [[nodiscard]] std::string write(const Node& node, Format format, const Place& place = {});
 
 /// The document in all four formats, each rendered on demand.
@@ -62,7 +64,7 @@ struct Node {
 /// The triples of the tree; relative IRIs stay relative.
 [[nodiscard]] rdf::Graph graph_of(const Node& node);
 
-/// Keys at any depth that proto/context.jsonld does not declare.
+/// All keys, at any depth, that proto/context.jsonld does not declare.
 [[nodiscard]] std::vector<std::string> undeclared_terms(const Node& node);
 
 }  // namespace chorus::resource

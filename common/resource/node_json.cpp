@@ -12,14 +12,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON readers turn integers into doubles, which would change larger ones.
+/// Many JSON readers turn integers into doubles, which would change larger ones.
 constexpr std::int64_t kExactInteger = std::int64_t{1} << 53;
 constexpr int kIndent = 2;
 
 Json object_of(const Node& node, bool linked, std::string_view without = {});
 
-/// A value whose datatype the context does not define: plain JSON has only the value, JSON-LD adds
-/// the type.
+/// A value whose datatype the context does not declare: plain JSON contains only the value, JSON-LD
+/// also the type.
 Json typed(std::string text, std::string_view datatype, const TermUse& use, bool linked) {
   const std::string type = rdf::xsd(datatype);
   if (!linked || use.type == type) return text;
@@ -69,7 +69,7 @@ struct ToJson {
     return all;
   }
 
-  /// {"s1": {...}, "s2": {...}}: the index property becomes the key.
+  /// The nodes as {"s1": {...}, "s2": {...}}: the value of the index property becomes the key.
   [[nodiscard]] Json indexed(const std::vector<Node>& nodes) const {
     Json all = Json::object();
     for (const Node& node : nodes) {

@@ -1,4 +1,4 @@
-// Internal to the room: writes a Node as JSON text.
+// Internal to common/resource: writes a Node as JSON.
 #pragma once
 
 #include <string>

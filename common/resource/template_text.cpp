@@ -9,8 +9,8 @@ namespace chorus::resource {
 namespace {
 
 constexpr std::size_t kIsoLength = 30;   // 2026-11-21T07:30:00.250000000Z
-constexpr std::size_t kMaxFolder = 160;  // longest folder in a document's names
-constexpr int kMaxDigits = 15;           // a double holds these exactly
+constexpr std::size_t kMaxFolder = 160;  // The longest folder in a document's IRIs.
+constexpr int kMaxDigits = 15;           // A double represents these exactly.
 constexpr std::array kPowersOfTen{1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                   1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
 

@@ -1,7 +1,7 @@
-// Internal to the room: steps over text that is expected byte for byte.
+// Internal to common/resource: steps over text that is expected byte for byte.
 //
-// The template readers share it.  Each step returns false at anything unexpected; the parser then
-// reads the document from the start.
+// The template readers share these steps.  Each step returns false at anything unexpected; then a
+// parser has to read the document from the start.
 #pragma once
 
 #include <array>
@@ -46,7 +46,7 @@ class TemplateText {
     return true;
   }
 
-  /// A body's slot: below kMaxBodies, and different from the slots of `others`.
+  /// A body's slot: below kMaxBodies, and different from the slots of the bodies in `others`.
   bool slot(const std::vector<BodyResource>& others, std::optional<std::size_t>& out);
 
   /// A decimal in [0, 1].
@@ -55,22 +55,22 @@ class TemplateText {
   /// A decimal in [0, kLongestCarry].
   bool carried_for(std::optional<double>& out);
 
-  /// A decimal such as "-1.2345", at most kMaxCoordinate in size: the nearest double.
+  /// A decimal such as "-1.2345", at most kMaxCoordinate in size; `out` gets the nearest double.
   bool decimal(double& out);
 
   /// A name of [A-Za-z0-9_-] in quotes, such as an id.
   bool name(std::string_view& out);
 
-  /// What comes before `close` in the name of a document's frame: "", "../", "sensors/s1/".
+  /// What stands before `close` in the IRI of a document's frame: "", "../", "sensors/s1/".
   bool folder(std::string_view close, std::string_view& out);
 
-  /// An instant as ISO 8601, `between`, and the same instant in nanoseconds.
+  /// An instant as ISO 8601, then `between`, then the same instant in nanoseconds.
   bool times(std::string_view between, Timestamp& out);
 
   /// Distinct names in quotes, separated by `comma`, at most kMaxSensors.
   bool names(std::string_view comma, std::vector<std::string>& out);
 
-  /// Bits for those of `names` that follow in quotes, separated by `comma`.
+  /// Sets a bit for each of `names` that follows in quotes, separated by `comma`.
   bool subset(const std::vector<std::string>& names, std::string_view comma, std::uint64_t& bits);
 
  private:
@@ -78,7 +78,7 @@ class TemplateText {
 
   const char* at_;
   const char* const end_;
-  std::string_view iso_;  ///< The last time read; most repeat it.
+  std::string_view iso_;  ///< The last time read; most times repeat it.
   Timestamp iso_time_;
 };
 

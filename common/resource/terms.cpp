@@ -12,9 +12,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// proto/context.jsonld in the shape that a test of its own guarantees: prefixes are strings, terms
-/// are objects with
-/// "@id", and a term with "@context" is a type that scopes further terms.
+/// proto/context.jsonld, in the shape that a test guarantees: prefixes are strings, terms are
+/// objects with "@id", and a term with "@context" is a type that scopes further terms.
 class Context {
  public:
   Context() {

@@ -1,7 +1,7 @@
 // The terms of our documents and their IRIs, as in proto/context.jsonld.
 //
-// There is one table, the context; it is compiled in and read once.  To add a term, add one line
-// there and one paragraph in proto/vocab/chorus.ttl (a test compares the two).
+// There is only one table, the context file; it is built in and parsed once.  To add a term, add
+// one line to the file and one paragraph to proto/vocab/chorus.ttl (a test compares the two).
 #pragma once
 
 #include <string>
@@ -16,17 +16,18 @@ inline constexpr std::string_view kChorus = "https://w3id.org/chorus-tracking/ns
 
 enum class Container { None, Set, List, Index };
 
-/// What one key means.
+/// What a key means.
 struct TermUse {
   std::string iri;
-  std::string type = {};  ///< "@id", "@vocab", a datatype IRI, or empty: the type of the value.
+  std::string type = {};  ///< "@id", "@vocab", a datatype IRI, or empty: the value itself decides.
   Container container = Container::None;
-  std::string index = {};  ///< For Container::Index: IRI of the property that becomes the key.
-  /// False: not in the context; the key is then a name in our namespace.
+  /// For Container::Index: IRI of the property whose value becomes the key.
+  std::string index = {};
+  /// False if the context lacks the key, which then is a name in our namespace.
   bool declared = true;
 };
 
-/// The meaning of `key` in a node of these types (a type may give a key its own meaning).
+/// The meaning of `key` in a node of these types; a type may give a key a meaning of its own.
 [[nodiscard]] TermUse term(std::string_view key, const std::vector<std::string>& types = {});
 
 /// The IRI of a class or individual: "Frame", "ldp:BasicContainer" or an absolute IRI.

@@ -24,7 +24,7 @@ struct Intrinsics {
 struct CameraImage {
   Timestamp captured;
   Intrinsics intrinsics;
-  /// "image/jpeg" (colour) or "image/png" (depth: 16 bit, millimetres, 0 = none)
+  /// "image/jpeg" (colour) or "image/png" (depth: 16 bit, millimetres, 0: not measured).
   std::string media_type;
   std::string bytes;
 };

@@ -1,5 +1,4 @@
-// The interface of devices: whatever yields SensorFrames.  A simulator, a recording and hardware
-// look alike.
+// The interface of devices, which yield captures.  Simulators, recordings and hardware all have it.
 #pragma once
 
 #include <functional>
@@ -14,23 +13,24 @@
 
 namespace chorus {
 
-/// A resource that the service offers because of its device.
+/// A resource that the service offers only because of its device.
 struct DeviceResource {
   std::string path;  ///< "push"
-  std::string what;  ///< For people, half a sentence.
+  std::string what;  ///< Human-readable, half a sentence.
 };
 
 /// What the service says about its device at `/`.
 struct DeviceDescription {
   std::string kind;   ///< "simulated", "replay", "bridge", ...
-  std::string label;  ///< For people: "simulated Kinect v2", "replay of cam01.mcap".
+  std::string label;  ///< Human-readable: "simulated Kinect v2", "replay of cam01.mcap".
   std::optional<Intrinsics> depth_camera = Intrinsics{};  ///< None: not known.
   double nominal_rate_hz = 30.0;
   std::vector<DeviceResource> resources = {};
 };
 
-/// One capture.  Images are functions, because they are encoded only on demand; each is called at
-/// most once, from another thread.  Empty when the device has none or privacy settings forbid them.
+/// One capture.  Images are functions, because they are encoded only on demand; each function is
+/// called at most once, from another thread.  It is empty when the device has no such image or the
+/// settings for privacy forbid it.
 struct Capture {
   SensorFrame frame;
   std::function<Result<CameraImage>()> color;
@@ -44,11 +44,12 @@ class FrameSource {
   virtual ~FrameSource() = default;
   [[nodiscard]] virtual DeviceDescription describe() const = 0;
 
-  /// Delivers captures in time order on the calling thread, until stopped or at its end.  An error
-  /// is final; a stop or the end of a recording is success.
+  /// Delivers captures in time order, on the calling thread, until stopped or at the device's end.
+  /// An error is final; a stop or the end of a recording is success.
   [[nodiscard]] virtual Result<void> run(std::stop_token stop, const Sink& sink) = 0;
 
-  /// Why it delivers nothing at the moment, for people; empty when unknown.  From any thread.
+  /// Human-readable: why the device delivers nothing at the moment; empty when unknown.  May be
+  /// called from any thread.
   [[nodiscard]] virtual std::string trouble() const { return {}; }
 };
 

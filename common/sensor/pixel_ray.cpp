@@ -18,7 +18,7 @@ Eigen::Vector2d distorted(const Eigen::Vector2d& x, const Intrinsics& camera) {
 std::optional<Eigen::Vector3d> ray_of(const Eigen::Vector2d& pixel, const Intrinsics& camera) {
   constexpr int kMaxSteps = 50;
   constexpr double kConverged = 1e-10;
-  constexpr double kGood = 1e-6;  // a thousandth of a pixel
+  constexpr double kGood = 1e-6;  // A thousandth of a pixel.
   const Eigen::Vector2d seen((pixel.x() - camera.cx) / camera.fx,
                              (pixel.y() - camera.cy) / camera.fy);
   Eigen::Vector2d x = seen;

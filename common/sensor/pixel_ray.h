@@ -11,7 +11,8 @@
 namespace chorus {
 
 /// The unit vector through a pixel (u to the right, v down) in the camera's axes: x right, y down,
-/// z ahead.  Undoes the distortion; none where that has no solution, far outside the image.
+/// z ahead.  Undoes the distortion; none for pixels far outside the image, where that has no
+/// solution.
 [[nodiscard]] std::optional<Eigen::Vector3d> ray_of(const Eigen::Vector2d& pixel,
                                                     const Intrinsics& camera);
 

@@ -13,18 +13,19 @@
 
 namespace chorus {
 
-/// In sensor space: unit normal n (up) and offset d [m] with n.x + d = 0; d is the sensor's height
-/// above the floor.
+/// The floor in sensor space: unit normal n (up) and offset d [m] with n.x + d = 0; d is the
+/// sensor's height above the floor.
 using FloorPlane = Plane;
 
 struct SensorFrame {
   SensorId sensor;
-  std::uint64_t sequence = 0;  ///< Counts the sensor's frames; gaps are lost frames.
+  std::uint64_t sequence = 0;  ///< Counts the sensor's frames; a gap means lost frames.
   Timestamp captured;          ///< When light hit the sensor, by the sensor host's clock.
-  Timestamp received;          ///< When this process got it, by its own clock.
+  Timestamp received;          ///< When this process got the frame, by its own clock.
   std::vector<BodyFrame> bodies;
   std::optional<FloorPlane> floor;
-  /// How far the capture time may be off the other sensors' clocks, as a standard deviation [s].
+  /// How far the capture time may be wrong relative to other sensors' clocks, as a standard
+  /// deviation [s].
   double clock_sigma = 0.0;
 };
 

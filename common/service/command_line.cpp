@@ -18,7 +18,7 @@ std::string footer(const About& about) {
          "port in use.";
 }
 
-/// Puts a text in quotes, so that `--id 7` stays a text.
+/// Puts a value in quotes, so that the 7 of `--id 7` stays a string.
 std::string quoted(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

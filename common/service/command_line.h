@@ -1,11 +1,10 @@
-// The command line of a service: all have the same options, wording and exit codes.
+// Reads the command line of a service: all services have the same options, wording and exit codes.
 //
 //   --config FILE   --set PATH=VALUE   --port N   --log-level L   --log-format F   --check
 //   --version   --help   and the service's own shortcuts
 //
 // Every option that sets something assigns to a configuration key, so the file and the command line
-// can set the same things.  The command line overrides the file, and --set overrides the other
-// options.
+// can set the same things.  The command line overrides the file; --set overrides the other options.
 #pragma once
 
 #include <optional>
@@ -25,11 +24,11 @@ struct Shortcut {
   std::string option;  ///< "--id"
   std::string key;     ///< "id"
   std::string help;
-  bool quoted = true;        ///< The value is a text, even if it looks like a number.
-  std::string implied = {};  ///< An assignment to make first: device.kind="replay".
+  bool quoted = true;        ///< The value is a string, even if it looks like a number.
+  std::string implied = {};  ///< An assignment to make first, such as device.kind="replay".
 };
 
-/// How a program describes itself.
+/// How a program describes itself in --help and the manual.
 struct About {
   std::string name;  ///< "chorus-sensor"
   std::string description;
@@ -39,10 +38,11 @@ struct About {
 };
 
 struct CommandLine {
-  /// If set, exit without running (help, or a mistake that has already been explained).
+  /// If set, the program must exit with this code (after --help, or a mistake that has been
+  /// reported).
   std::optional<int> exit;
   ConfigSource source;
-  bool check_only = false;  ///< Check the configuration and exit.
+  bool check_only = false;  ///< True: only check the configuration, then exit.
 };
 
 [[nodiscard]] CommandLine read_command_line(const About& about, int argc, const char* const* argv);

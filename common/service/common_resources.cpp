@@ -27,10 +27,10 @@ using http::Variant;
 using resource::Kind;
 using resource::linked;
 
-/// The ETag of a text that changes only with a new build.
+/// An ETag for content that changes only with a new build.
 std::string version_of(std::string_view text) { return std::to_string(fnv1a(text)); }
 
-/// The same text for each of these media types.
+/// One document with the same content for each of these media types.
 DocumentPtr fixed_document(std::vector<std::string> media_types, std::string_view text) {
   DocumentOptions options;
   options.version = version_of(text);
@@ -74,7 +74,7 @@ Result<DocumentPtr> health_document(const Health& health, Timestamp now) {
                                                 std::move(options));
 }
 
-/// Metrics of the process, as opposed to the service.
+/// Metrics of the process, as opposed to those of the service.
 std::string process_metrics() {
   MetricsText text;
   text.gauge({"chorus_build", "1, with the version of the program."}, 1,

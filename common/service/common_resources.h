@@ -14,13 +14,13 @@ namespace chorus::service {
 /// Health for a load balancer: 200 when ready, 503 with the reason when not.
 struct Health {
   bool ready = true;
-  std::string reason;  ///< If not ready: why; if ready: a warning for people.
+  std::string reason;  ///< If not ready: why.  If ready: a human-readable warning, or empty.
 };
 
 struct CommonResources {
   std::shared_ptr<const Clock> clock;  ///< Null: the host's clock.
   std::function<Health()> health;      ///< Empty: always ready.
-  /// Complete Prometheus text (metrics.h); empty: no /metrics.
+  /// Returns the complete Prometheus text (metrics.h); empty: there is no /metrics.
   std::function<std::string()> metrics;
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder itself, or its nearest parent folder that exists.
+/// The folder itself, or the nearest of its parents that exists.
 fs::path nearest_existing(fs::path folder) {
   std::error_code ignored;
   while (!fs::exists(folder, ignored) && folder.has_relative_path()) folder = folder.parent_path();

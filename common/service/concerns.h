@@ -1,5 +1,5 @@
-// What would not work if a service started on this host now; --check reports it and, unless it ends
-// the service, so does the start.
+// What would not work if a service started on this host now.  --check reports all of it; the start
+// reports what does not end the service anyway.
 #pragma once
 
 #include <optional>
@@ -13,15 +13,15 @@
 
 namespace chorus::service {
 
-/// Sentences for people, each with advice.
+/// Human-readable sentences, each with advice.
 using Concerns = std::vector<std::string>;
 
-/// Whether this user could create files in the folder, or could create the folder if it does not
-/// exist yet. Changes nothing.
+/// Success if this user can create files in the folder or, if it does not exist yet, can create the
+/// folder.  Changes nothing.
 [[nodiscard]] Result<void> usable_folder(const std::string& folder);
 
-/// Whether one could listen there now: Io when the port is taken or the address is not one of this
-/// host.
+/// Success if a server could listen at this address now; Io when the port is taken or the address
+/// is not one of this host's.
 [[nodiscard]] Result<void> free_to_listen(const http::ServerConfig& config);
 
 [[nodiscard]] std::optional<std::string> clock_concern(const NtpStatus& clock);
@@ -30,7 +30,8 @@ using Concerns = std::vector<std::string>;
 [[nodiscard]] Concerns common_concerns(const http::ServerConfig& http,
                                        const RecordingConfig& recording);
 
-/// At the start: logs concerns about the clock and the folder for recordings; neither is fatal.
+/// Logs, at the start, concerns about the clock and the folder for recordings; neither ends the
+/// service.
 void log_concerns(const RecordingConfig& recording);
 
 }  // namespace chorus::service

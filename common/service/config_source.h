@@ -1,4 +1,5 @@
-// Where a program's configuration comes from: a file, overridden by the command line.
+// Where a program's configuration comes from: a file, then assignments from the command line that
+// override it.
 #pragma once
 
 #include <string>
@@ -9,11 +10,11 @@
 namespace chorus::service {
 
 struct ConfigSource {
-  std::string path;                      ///< Empty: all defaults.
+  std::string path;                      ///< Empty: every key has its default.
   std::vector<std::string> assignments;  ///< "path=value", in order.
 };
 
-/// Reads the file again; the code that reads the keys checks its content.
+/// Reads the file anew; the code that reads the keys checks them.
 [[nodiscard]] Result<ConfigReader> read_config(const ConfigSource& source);
 
 }  // namespace chorus::service

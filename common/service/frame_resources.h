@@ -1,5 +1,5 @@
-// The frames of a service, in the same form for all services:
-// /frame, /frames/{seq}, /frame?at=TIME, /skeletons/, /skeletons/{id}
+// The resources for the frames of a service, the same for all services: /frame, /frames/{seq},
+// /frame?at=TIME, /skeletons/, /skeletons/{id}
 #pragma once
 
 #include <memory>
@@ -13,14 +13,15 @@
 
 namespace chorus::service {
 
-/// Renders on the server's thread, and only what is asked for.  Thread-safe.
+/// Thread-safe.  Documents are rendered on the server's thread, and only those that clients ask
+/// for.
 class FrameResources {
  public:
   FrameResources(Serving serving, const FrameHistory& history);
 
   /// Sequences must increase within one run of the service.
   void publish(const FramePtr& frame);
-  /// Replaces the frame of an instant already published by a better one: only ?at= shows it.
+  /// Adds a better frame for an instant that has been published already: only /frame?at= shows it.
   void amend(FramePtr frame) { ring_.amend(std::move(frame)); }
 
   /// The router keeps using this object, so the object must outlive it.

@@ -1,4 +1,4 @@
-// The recent frames, for /frames/{seq} and /frame?at=TIME.
+// Keeps the recent frames, for /frames/{seq} and /frame?at=TIME.
 #pragma once
 
 #include <cstdint>
@@ -23,25 +23,26 @@ struct FrameHistory {
   bool operator==(const FrameHistory&) const = default;
 };
 
-/// Thread-safe.  Frames are pushed in order of sequence and capture time; an older capture time
-/// (after the clock was set back) empties the ring first.
+/// Thread-safe.  Frames must be pushed in order of sequence and capture time.  A capture time
+/// before the newest one (after the clock was set back) empties the ring first.
 class FrameRing {
  public:
   explicit FrameRing(const FrameHistory& history) : history_(history) {}
 
   void push(FramePtr frame);
 
-  /// A better frame for an instant that is kept here: ?at= shows it from now on, but /frames/{seq}
-  /// never changes.
+  /// Adds a better frame for an instant that is kept here: /frame?at= shows it from now on, but
+  /// /frames/{seq} stays as it was.
   void amend(FramePtr frame);
-  /// How often amend() has replaced a frame.
+  /// How many frames amend() has replaced.
   [[nodiscard]] std::uint64_t amendments() const;
 
-  /// The frame with the number in a path.  Gone when it is older than all frames kept; NotFound
-  /// when no frame has it: not yet, never (it was lost or left out), or it is not a number.
+  /// The frame with this number, which comes from a path.  Gone when the number is before all
+  /// frames kept; NotFound when it is not a number, not published yet, or of a frame that was lost
+  /// or left out.
   [[nodiscard]] Result<FramePtr> find(std::string_view sequence) const;
 
-  /// The frame for an instant (xsd:dateTime or nanoseconds since the epoch as integer),
+  /// The frame at an instant (an xsd:dateTime, or nanoseconds since the epoch as an integer),
   /// interpolated between its neighbours.
   [[nodiscard]] Result<FramePtr> at(const std::string& time) const;
 
@@ -52,7 +53,7 @@ class FrameRing {
   mutable std::mutex mutex_;
   struct Kept {
     FramePtr first;   ///< As published.
-    FramePtr better;  ///< The same frame, or the one it was amended to.
+    FramePtr better;  ///< The same frame, or the one that has replaced it.
   };
   std::deque<Kept> frames_;
   std::uint64_t amendments_ = 0;

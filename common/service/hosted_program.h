@@ -1,8 +1,8 @@
-// From settings to a running service: the part of Program that is the same for all services.
+// The part of Program that is the same for all services: leads from settings to a running service.
 //
-// Settings have two parts, each compared by value (defaulted ==): a reload applies the part `live`;
-// the part `at_start` needs a restart.  A reload passes on the whole live part and names the
-// changed keys of the other part.  No key is listed by hand, so none can be forgotten.
+// Settings have two parts, each compared by value (defaulted ==).  A reload applies the whole part
+// `live`. The part `at_start` needs a restart; a reload logs which of its keys have changed.  No
+// key is listed by hand, so none can be forgotten.
 #pragma once
 
 #include <memory>
@@ -14,10 +14,10 @@
 
 namespace chorus::service {
 
-/// `Settings` has a member `live`, with a LogConfig `log`, and a member `at_start`.
-/// `Host`: static Result<std::unique_ptr<Host>> make(const Settings&), which binds nothing yet;
-///         Result<void> start(); void take(const live part&); void stop();
-///         and, if it has any to offer, bool alive(); Concerns concerns().
+/// `Settings` has a member `live`, which has a LogConfig `log`, and a member `at_start`.
+/// `Host` has: static Result<std::unique_ptr<Host>> make(const Settings&), which binds no port;
+///   Result<void> start(); void take(const live part&); void stop();
+///   and optionally: bool alive(); Concerns concerns().
 template <class Settings, class Host>
 class HostedProgram final : public Program {
  public:
@@ -67,7 +67,8 @@ class HostedProgram final : public Program {
     return !(wanted.at_start == settings_.at_start);
   }
 
-  /// A key that cannot change on its own counts as one that needs a restart.
+  /// The changed keys that need a restart.  A key that is not valid when changed alone counts as
+  /// one.
   [[nodiscard]] std::string waiting(const std::string& wanted) const {
     return waiting_keys(started_as_, wanted, [this](const std::string& text) {
       const auto probe = ConfigReader::parse(text, "reload").and_then(read_);

@@ -11,13 +11,14 @@
 
 namespace chorus::service {
 
-/// An absent key keeps the value in `out`, because each service has its own default port.
+/// Reads the section; an absent key keeps the value in `out`, because each service has its own
+/// default port.
 void read_http(ConfigReader config, http::ServerConfig& out);
 
-/// "https://0.0.0.0:8081/": the address of a service.
+/// The address of a service: "https://0.0.0.0:8081/".
 [[nodiscard]] std::string root_of(const http::ServerConfig& http, bool secure, std::uint16_t port);
 
-/// The certificate and key named by the child "tls"; none when it names none.
+/// Reads the certificate and key that the child "tls" names; none when it names none.
 void read_identity(ConfigReader config, std::optional<tls::Identity>& out);
 
 }  // namespace chorus::service

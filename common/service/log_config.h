@@ -1,4 +1,4 @@
-// The section "log" of every service's configuration.
+// The configuration section "log", the same for every service.
 #pragma once
 
 #include "common/base/config_reader.h"
@@ -13,7 +13,7 @@ struct LogConfig {
   bool operator==(const LogConfig&) const = default;
 };
 
-/// The reader's finish() reports mistakes.
+/// Reads the section; the reader's finish() reports mistakes.
 void read_log(ConfigReader config, LogConfig& out);
 
 /// Applies the config to the log from now on.

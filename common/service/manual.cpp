@@ -14,7 +14,7 @@ namespace {
 using Options = std::vector<const CLI::Option*>;
 using Commands = std::vector<const CLI::App*>;
 
-/// Escapes text for roff: no line becomes a request, no minus sign a hyphen.
+/// Escapes text for roff, so that no line becomes a request and no minus sign a hyphen.
 std::string roff(std::string_view text) {
   std::string out;
   bool begins = true;
@@ -32,7 +32,7 @@ std::string roff(std::string_view text) {
   return out;
 }
 
-/// A list of choices may continue on the next line after each comma.
+/// Allows a line break after each comma of a list of choices.
 std::string breakable(const std::string& list) {
   std::string out;
   for (const char c : list) {
@@ -70,7 +70,7 @@ std::string options_of(const CLI::App& app) {
   return out;
 }
 
-/// Keeps the lines, because examples lose their meaning when they are filled.
+/// Text whose line breaks are kept; examples would be unreadable if roff filled them.
 std::string as_it_is(std::string_view text) {
   return text.empty() ? "" : ".PP\n.nf\n" + roff(text) + "\n.fi\n";
 }

@@ -1,4 +1,4 @@
-// The manual page and the shell completion of a program, made from the options that --help shows.
+// Makes the manual page and the shell completion of a program from the options that --help shows.
 //
 //   PROGRAM --print manual       roff, for man
 //   PROGRAM --print completion   for bash
@@ -14,8 +14,8 @@ class App;
 
 namespace chorus::service {
 
-/// `section`: 1 for users' commands, 8 for services.  `files`: lines "NAME meaning" of the section
-/// FILES; empty: no such section.
+/// `section`: 1 for users' commands, 8 for services.  `files`: the lines "NAME meaning" of the
+/// section FILES; if empty, that section is left out.
 struct Manual {
   int section = 1;
   std::string_view files = {};
@@ -23,10 +23,11 @@ struct Manual {
 
 [[nodiscard]] std::string manual_page(const CLI::App& app, const Manual& manual);
 
-/// Completes commands and their options; everything else is completed as a file.
+/// Completes commands and their options; every other word is completed as a file name.
 [[nodiscard]] std::string bash_completion(const CLI::App& app);
 
-/// The output for `--print manual` or `--print completion`; none when neither was given.
+/// What the program prints for `--print manual` or `--print completion`; none when neither was
+/// given.
 [[nodiscard]] std::optional<std::string> printed(const CLI::App& app, const Manual& manual,
                                                  int argc, const char* const* argv);
 

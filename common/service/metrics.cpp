@@ -33,7 +33,7 @@ std::string escaped(std::string_view text, bool quotes) {
   return out;
 }
 
-/// For assertions, so a release build does not call it.
+/// Used only in assertions; a release build does not call it.
 [[maybe_unused]] bool is_name(std::string_view name) {
   const auto fits = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||

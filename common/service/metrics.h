@@ -1,6 +1,6 @@
 // What a service measures about itself, written for Prometheus (text format 0.0.4).
 //
-// Counters end in _total, names contain their unit; no label is ever for a body or a client.
+// Counters end in _total; names contain their unit; no label names a body or a client.
 #pragma once
 
 #include <string>
@@ -15,8 +15,8 @@ namespace chorus::service {
 
 using Labels = std::vector<std::pair<std::string, std::string>>;
 
-/// Collects samples and writes them as one text; each metric's help appears once, before its first
-/// sample.
+/// Collects samples and writes them in Prometheus' text format; the help of each metric appears
+/// once, before its first sample.
 class MetricsText {
  public:
   struct Metric {
@@ -29,7 +29,7 @@ class MetricsText {
   void histogram(const Metric& metric, const Histogram::Snapshot& values,
                  const Labels& labels = {});
 
-  /// Groups the samples of each metric, whatever the order of the calls was.
+  /// All samples, grouped by metric whatever the order of the calls was.
   [[nodiscard]] std::string text() const;
 
  private:
@@ -43,7 +43,7 @@ class MetricsText {
   std::vector<Family> families_;
 };
 
-/// chorus_http_*: the counters of every server.
+/// Adds chorus_http_*: the counters of every server.
 void add_server(MetricsText& text, const http::ServerCounters& counters);
 
 }  // namespace chorus::service

@@ -41,7 +41,7 @@ timespec timespec_of(std::chrono::microseconds time) {
   return {time.count() / kPerSecond, time.count() % kPerSecond * 1000};
 }
 
-/// Waits for the next signal; meanwhile tells the supervisor, as often as required, that the
+/// Waits for the next signal; meanwhile tells the supervisor, as often as it requires, that the
 /// program is alive.
 int next_signal(const sigset_t& signals, const Supervisor& supervisor, Program& program) {
   if (!supervisor.pulse()) {
@@ -60,7 +60,7 @@ int next_signal(const sigset_t& signals, const Supervisor& supervisor, Program& 
   }
 }
 
-/// Runs from the start to the signal that ends the program.
+/// Runs the started service until a signal ends it.
 void run(Program& program, const ConfigSource& source, const sigset_t& signals) {
   const Supervisor supervisor(own_environment());
   supervisor.tell("READY=1");
@@ -72,7 +72,7 @@ void run(Program& program, const ConfigSource& source, const sigset_t& signals) 
 }
 
 int serve(const About& about, Program& program, const CommandLine& command) {
-  const sigset_t signals = block_signals();  // before any thread starts
+  const sigset_t signals = block_signals();  // Must happen before any thread starts.
   const auto log = read_config(command.source).and_then([&](const ConfigReader& config) {
     return program.prepare(config);
   });

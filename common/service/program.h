@@ -1,8 +1,8 @@
-// The frame around every service: from its command line to its exit code.
+// The frame around every service: leads from its command line to its exit code.
 //
-// The main thread takes signals one by one (sigwait), so that no handler interrupts other code:
-// SIGTERM and SIGINT stop, SIGHUP reads the configuration again.  If that configuration is wrong,
-// nothing changes.
+// The main thread waits for signals (sigwait), so that no handler interrupts other code: SIGTERM
+// and SIGINT stop the service, SIGHUP makes it read the configuration again.  If that configuration
+// is wrong, nothing changes.
 #pragma once
 
 #include <string>
@@ -14,25 +14,25 @@
 
 namespace chorus::service {
 
-/// One service as this frame sees it.  Every call comes from the main thread.
+/// One service, as this frame uses it.  All calls come from the main thread.
 class Program {
  public:
   virtual ~Program() = default;
 
   /// Reads the whole configuration, calls ConfigReader::finish(), and creates everything that needs
-  /// no port.  Called once, first.
+  /// no port.  Called once, before the other functions.
   [[nodiscard]] virtual Result<LogConfig> prepare(ConfigReader config) = 0;
-  /// Called after prepare: what would not work if it started now, each with advice.  Binds nothing
-  /// and changes nothing.
+  /// Called after prepare(): what would not work if the service started now, each with advice.
+  /// Binds nothing and changes nothing.
   [[nodiscard]] virtual std::vector<std::string> concerns() { return {}; }
   /// Binds the ports and starts to run; returns at once.
   [[nodiscard]] virtual Result<void> start() = 0;
-  /// Applies what can change while running and warns of what cannot.  On an Error everything stays
-  /// as before.
+  /// Applies what can change while the service runs, and logs a warning about what cannot.  On an
+  /// Error nothing changes.
   [[nodiscard]] virtual Result<LogConfig> reload(ConfigReader config) = 0;
   virtual void stop() = 0;
-  /// While running: false when a thread that everything depends on has hung for a while.  The
-  /// watchdog of systemd then restarts the program.
+  /// Called while running: false when a thread on which everything depends has hung for a while.
+  /// Then the watchdog of systemd restarts the program.
   [[nodiscard]] virtual bool alive() { return true; }
 };
 

@@ -16,8 +16,8 @@ struct RecordingRequest {
   bool raw = true;
   bool fused = true;
 };
-/// An empty body asks for everything.  Unknown keys, wrong types and invalid recording names are
-/// InvalidArgument.
+/// Parses the body.  An empty body asks for everything.  Unknown keys, wrong types and invalid
+/// recording names are InvalidArgument.
 [[nodiscard]] Result<RecordingRequest> parse_recording_request(std::string_view body,
                                                                bool has_fused);
 

@@ -48,7 +48,7 @@ std::string version_of(const RecordingReport& report) {
          std::to_string(report.bytes());
 }
 
-/// Why a recording did not start, without revealing this host's paths.
+/// The error for a recording that did not start; it does not reveal this host's paths.
 tl::unexpected<Error> refused(const Error& error, const std::string& name) {
   const std::string where = std::string(kWhere) + "/" + name;
   if (error.code == ErrorCode::Conflict)
@@ -60,7 +60,7 @@ tl::unexpected<Error> refused(const Error& error, const std::string& name) {
   return fail(error.code, where, error.message);
 }
 
-/// The part of the list that a request asks for.
+/// The part of the list that one request asks for.
 struct Page {
   std::string after;  ///< Names up to and including this one are left out.
   std::size_t limit = 100;

@@ -1,7 +1,7 @@
-// /recordings/: what this service is recording and has recorded; all services have it.
+// /recordings/: what this service is recording and has recorded.  All services have it.
 //
-// Makes one recording at a time.  POST /recordings/ starts one, DELETE /recordings/{name} ends it;
-// no request ever deletes a file (docs/decisions/0011-recordings.md).
+// There is one recording at a time.  POST /recordings/ starts it, DELETE /recordings/{name} ends
+// it; no request ever deletes a file (docs/decisions/0011-recordings.md).
 #pragma once
 
 #include <functional>
@@ -28,15 +28,15 @@ struct RecordingConfig {
   bool operator==(const RecordingConfig&) const = default;
 };
 
-/// The section "recording" of a service's configuration.
+/// Reads the configuration section "recording", the same for every service.
 void read_recording(ConfigReader config, RecordingConfig& out);
 
-/// `id` is the IRI of the node in the document ("" in /recordings/{name}).
+/// `id` is the node's IRI in the document ("" in /recordings/{name}).
 [[nodiscard]] resource::Node recording_node(const record::RecordingReport& report, std::string id);
 
 struct RecordingsOptions {
   RecordingConfig config;
-  record::CellHead head;   ///< For every file.
+  record::CellHead head;   ///< Written into every file.
   bool has_fused = false;  ///< True for a fusion server.
   Serving serving;
   std::shared_ptr<const Clock> clock = std::make_shared<SystemClock>();
@@ -49,7 +49,7 @@ class Recordings {
   ~Recordings();  ///< Ends the running recording and waits for its file.
 
   enum class Stream { Raw, Fused, Any };
-  /// The recorder to offer this stream's items to; null while the stream is not being recorded.
+  /// The recorder that gets this stream's items; null while the stream is not being recorded.
   [[nodiscard]] std::shared_ptr<record::Recorder> recorder(Stream stream) const;
 
   [[nodiscard]] Result<record::RecordingReport> start(const RecordingRequest& request);
@@ -57,10 +57,10 @@ class Recordings {
   /// NotFound when none has this name.
   [[nodiscard]] Result<record::RecordingReport> stop(std::string_view name);
 
-  /// chorus_recording_*, Prometheus text.
+  /// The metrics chorus_recording_* in Prometheus' text format.
   [[nodiscard]] std::string metrics_text() const;
 
-  /// This object must outlive the router.
+  /// The router keeps using this object, which must outlive the router.
   void add_routes(http::Router& router);
 
  private:
@@ -71,8 +71,8 @@ class Recordings {
   };
 
   [[nodiscard]] record::RecorderOptions options_for(const RecordingRequest& request) const;
-  void settle();  ///< Notes that a recording has ended.  Called with the mutex held.
-  /// Those whose names come after `after`, ordered by name, at most `most`.
+  void settle();  ///< Takes note of a recording that has ended.  Call it with the mutex held.
+  /// At most `most` recordings, ordered by name, whose names come after `after`.
   [[nodiscard]] std::map<std::string, record::RecordingReport> some(const std::string& after,
                                                                     std::size_t most) const;
   [[nodiscard]] Result<record::RecordingReport> find(std::string_view name) const;
@@ -84,7 +84,7 @@ class Recordings {
   [[nodiscard]] Result<http::ActionResult> post(const http::Request& request);
 
   const RecordingsOptions options_;
-  std::mutex starting_;       ///< One start at a time; never held by threads that offer frames.
+  std::mutex starting_;  ///< Lets one start run at a time; threads that offer frames never take it.
   mutable std::mutex mutex_;  ///< Guards the members below; never held during disk access.
   Running running_;
   std::map<std::string, record::RecordingReport> ended_;

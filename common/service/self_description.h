@@ -1,5 +1,5 @@
-// `/`: what a service is, with links to all of its resources, for people and for machines, from one
-// table per service.
+// `/`: what a service is, with links to all of its resources, readable for humans and machines.
+// Made from one table per service.
 #pragma once
 
 #include <string>
@@ -15,16 +15,16 @@ namespace chorus::service {
 /// One resource of a service.
 struct Listed {
   std::string path;
-  std::string key;   ///< The property that links to it; empty: it is only listed.
-  std::string what;  ///< For people, half a sentence.
+  std::string key;   ///< The property that links to the resource; empty: it is only listed.
+  std::string what;  ///< Human-readable, half a sentence.
 };
 
 struct Self {
   std::string title;
   std::string description;  ///< One sentence.
-  std::string type;         ///< "Sensor"; in addition to the types of every service.
+  std::string type;  ///< A class such as "Sensor", in addition to the classes of every service.
   std::vector<std::pair<std::string, resource::Value>> facts;  ///< Specific to this service.
-  /// Its resources in addition to /clock, /healthz and the others that every service has.
+  /// The service's resources besides those that every service has (/clock, /healthz, ...).
   std::vector<Listed> resources;
 };
 
@@ -32,10 +32,10 @@ struct Self {
 /// / -> skeletons/ -> skeletons/1 -> #Head.
 [[nodiscard]] resource::Node self_node(const Self& self);
 
-/// A page for browsers; every text is escaped.
+/// A page for browsers; every string in it is escaped.
 [[nodiscard]] std::string self_page(const Self& self);
 
-/// `version` changes whenever `self` changes within one run.
+/// The document for `/`.  `version` must change whenever `self` changes within one run.
 [[nodiscard]] http::DocumentPtr self_document(const Self& self, const Serving& serving,
                                               const std::string& version);
 

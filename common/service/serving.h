@@ -9,13 +9,12 @@
 namespace chorus::service {
 
 struct Serving {
-  /// Part of every ETag, so that a validator from an earlier run never matches a document of this
-  /// run.
+  /// Part of every ETag, so that an ETag from an earlier run never matches a document of this run.
   std::string run;
   std::string root = "http://localhost/";  ///< Absolute IRI of `/`, for N-Triples.
 
-  /// A document's place: its path, "sensors/s1/frame", and what comes before the names in it,
-  /// "sensors/s1/".
+  /// A document's place.  `path`: "sensors/s1/frame"; `names`: what comes before the names in the
+  /// document, "sensors/s1/".
   [[nodiscard]] resource::Place place(std::string path, std::string names = {}) const {
     return {std::move(path), std::move(names), root};
   }

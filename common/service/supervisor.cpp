@@ -12,7 +12,7 @@
 namespace chorus::service {
 namespace {
 
-/// Ignores a watchdog that is meant for another process, such as a wrapper.
+/// False for a watchdog that is meant for another process, such as a wrapper.
 bool is_ours(const std::string& pid) { return pid.empty() || pid == std::to_string(::getpid()); }
 
 }  // namespace

@@ -1,6 +1,6 @@
-// Tells systemd the state of the service (the sd_notify protocol, without its library): one
-// datagram per message to the socket that $NOTIFY_SOCKET names.  Without that variable nothing is
-// sent, and nothing waits.
+// Tells systemd the state of the service (the sd_notify protocol, without systemd's library): sends
+// one datagram per message to the socket that $NOTIFY_SOCKET names.  Without that variable it does
+// nothing.
 #pragma once
 
 #include <chrono>
@@ -20,7 +20,8 @@ class Supervisor {
   /// Sends "READY=1", "STOPPING=1", "WATCHDOG=1" or "STATUS=..."; false when it was not sent.
   bool tell(std::string_view message) const;
 
-  /// How often "WATCHDOG=1" is due: half of the unit's WatchdogSec; none without it.
+  /// How often "WATCHDOG=1" is due: half of the unit's WatchdogSec; none if the unit has no
+  /// watchdog.
   [[nodiscard]] std::optional<std::chrono::microseconds> pulse() const { return pulse_; }
 
  private:

@@ -15,14 +15,14 @@ json parsed(std::string_view text) {
   return json::parse(text, nullptr, kExceptions);
 }
 
-/// The value at the key; null when there is none.
+/// The value of the key; null when the object has no such key.
 const json* value_at(const json& object, const std::string& key) {
   const auto found = object.find(key);
   return found == object.end() ? nullptr : &*found;
 }
 
-/// Appends the paths that differ; if one value is an object and the other is missing, the missing
-/// one counts as an empty object.
+/// Appends the paths at which a and b differ.  If one value is an object and the other is missing,
+/// the missing one counts as an empty object.
 void add_changes(const json& a, const json& b, Path& at, std::vector<Path>& out) {
   static const json kNothing = json::object();
   json names = a;
@@ -42,7 +42,7 @@ void add_changes(const json& a, const json& b, Path& at, std::vector<Path>& out)
   }
 }
 
-/// `base` with the value of `wanted` at the path, where it may be missing.
+/// `base`, changed at `path` to what `wanted` has there; removed there if `wanted` has nothing.
 json with_one_change(json base, const Path& path, const json& wanted) {
   json* to = &base;
   const json* from = &wanted;

@@ -1,4 +1,5 @@
-// A small program for every host runs the whole one instead where that one's package is installed.
+// A small program, which runs on every host, runs the whole program instead where the whole
+// program's package is installed.
 #pragma once
 
 #include <string>

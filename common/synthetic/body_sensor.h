@@ -1,8 +1,8 @@
-// The interface of every simulated body-tracking sensor: its frames in order, and the clock that
-// stamps them.
+// The interface of every simulated body-tracking sensor: it yields frames in order, with times by a
+// host clock.
 //
 // Deterministic: the same scene, choice and start give the same frames.  sensor_choice.h makes a
-// sensor by the name of its profile.
+// sensor from the name of its profile.
 #pragma once
 
 #include <optional>
@@ -17,11 +17,11 @@ class BodySensor {
  public:
   virtual ~BodySensor() = default;
 
-  /// The next frame by exposure; none when it was dropped.  `captured` is by the host's clock,
-  /// `received` is true time.
+  /// The next frame in order of exposure; none when the frame was dropped.  `captured` is by the
+  /// host's clock, `received` is true time.
   [[nodiscard]] virtual std::optional<SensorFrame> next() = 0;
 
-  /// True time of exposure of the frame that next() will return.
+  /// True time at which the frame that next() will return is exposed.
   [[nodiscard]] virtual Timestamp next_exposure() const = 0;
 
   [[nodiscard]] virtual const HostClock& clock() const noexcept = 0;
@@ -32,7 +32,7 @@ class BodySensor {
   BodySensor& operator=(const BodySensor&) = default;
 };
 
-/// All frames from the next one to `end` (true time).
+/// All frames from the next one up to `end` (true time).
 [[nodiscard]] std::vector<SensorFrame> record(BodySensor& sensor, Timestamp end);
 
 }  // namespace chorus::synthetic

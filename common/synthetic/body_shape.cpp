@@ -10,14 +10,14 @@ namespace chorus::synthetic {
 namespace {
 
 constexpr double kHeadRadius = 0.11;   // [m]
-constexpr double kOtherRadius = 0.04;  // for bones that the table does not name [m]
+constexpr double kOtherRadius = 0.04;  // [m]; for bones that the table does not name.
 
 struct Radius {
-  JointId child;  ///< The joint where the bone ends.
+  JointId child;  ///< The joint at which the bone ends.
   double radius;  ///< [m]
 };
 
-// Plausible figures for a clothed adult, without a measured source.
+// Plausible figures for a clothed adult; there is no measured source.
 constexpr std::array kRadii{
     Radius{JointId::SpineMid, 0.15},     Radius{JointId::SpineShoulder, 0.15},
     Radius{JointId::Neck, 0.06},         Radius{JointId::Head, 0.06},
@@ -65,7 +65,7 @@ std::optional<double> hit(const Capsule& capsule, const Eigen::Vector3d& ray) {
   const Eigen::Vector3d axis = capsule.to - capsule.from;
   const double length = axis.norm();
   if (length < 1e-9) return hit_ball(capsule.from, capsule.radius, ray);
-  // The infinite cylinder about the axis: |(t ray - from) x axis|^2 = radius^2 |axis|^2.
+  // With the infinite cylinder about the axis: |(t ray - from) x axis|^2 = radius^2 |axis|^2.
   const Eigen::Vector3d unit = axis / length;
   const Eigen::Vector3d ray_across = ray - ray.dot(unit) * unit;
   const Eigen::Vector3d from_across = capsule.from - capsule.from.dot(unit) * unit;

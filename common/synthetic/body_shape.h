@@ -1,4 +1,4 @@
-// A body as capsules around its bones; depth and colour images show these.
+// A body as capsules around its bones, for depth and colour images.
 #pragma once
 
 #include <optional>
@@ -14,11 +14,11 @@ struct Capsule {
   double radius = 0.0;                             ///< [m]
 };
 
-/// One capsule for each bone whose two ends are seen, and a ball for the head.
+/// One capsule for each bone whose two joints are seen, and a ball for the head.
 [[nodiscard]] std::vector<Capsule> capsules_of(const Skeleton<SensorSpace>& body);
 
-/// Distance along the unit ray from the origin to the capsule's surface; none when the ray misses
-/// or the surface is behind the origin.
+/// Distance from the origin along the unit ray to the capsule's surface; none when the ray misses
+/// the capsule or the surface is behind the origin.
 [[nodiscard]] std::optional<double> hit(const Capsule& capsule, const Eigen::Vector3d& ray);
 
 }  // namespace chorus::synthetic

@@ -1,5 +1,5 @@
 // Random numbers as a pure function of a key: the same key gives the same numbers on every machine,
-// in any order of calls.  (std:: distributions differ between libraries.)
+// whatever is drawn in between for other keys.  (The std:: distributions differ between libraries.)
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,8 @@ namespace chorus::synthetic {
 
 class Draw {
  public:
-  /// Parts of the key, in order: a seed, the purpose of the draw, which sensor, which frame, ...
+  /// The parts of the key, in order: a seed, the purpose of the draw, which sensor, which frame,
+  /// ...
   explicit Draw(std::initializer_list<std::uint64_t> key) {
     for (const std::uint64_t part : key) state_ = mix(state_ ^ mix(part + kGolden));
   }
@@ -28,7 +29,7 @@ class Draw {
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
   double uniform(double least, double most) { return least + (most - least) * uniform(); }
 
-  /// Standard normal (Box-Muller; uses one value of the pair).
+  /// Standard normal (Box-Muller; uses only one value of each pair).
   double gauss() {
     const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
     return radius * std::cos(2.0 * std::numbers::pi * uniform());

@@ -14,13 +14,14 @@ namespace {
 
 using motion::AmcFrame;
 
-constexpr std::size_t kRootTranslation = 3;  // channels 0-2 are tx ty tz, 3-5 the root's angles
-constexpr std::size_t kMinCycle = 100;       // frames at 120 Hz: 0.83 s
-constexpr std::size_t kMaxCycle = 150;       // 1.25 s
-constexpr std::size_t kBlend = 24;           // frames cross-faded at the seam: 0.2 s
-constexpr double kToeHeight = 0.03;          // height of a standing foot joint over the floor [m]
+// Channels 0-2 are tx ty tz, 3-5 the angles of the root.
+constexpr std::size_t kRootTranslation = 3;
+constexpr std::size_t kMinCycle = 100;  // [frames] at 120 Hz: 0.83 s
+constexpr std::size_t kMaxCycle = 150;  // [frames]: 1.25 s
+constexpr std::size_t kBlend = 24;      // [frames] cross-faded at the seam: 0.2 s
+constexpr double kToeHeight = 0.03;     // height of a standing foot joint over the floor [m]
 
-/// How badly frame b fits after frame a, measured in angles.
+/// How badly frame b fits after frame a: the sum of the squared differences of their angles.
 double mismatch(const AmcFrame& a, const AmcFrame& b) {
   double sum = 0;
   for (std::size_t c = kRootTranslation; c < a.size(); ++c) sum += (a[c] - b[c]) * (a[c] - b[c]);
@@ -32,7 +33,7 @@ struct Cut {
   std::size_t length = 0;
 };
 
-/// The cycle whose ends, and the frames before them, fit together best.
+/// The cycle whose ends, with the frames before them, fit together best.
 Cut best_cut(const std::vector<AmcFrame>& take) {
   Cut best;
   double least = std::numeric_limits<double>::infinity();
@@ -51,14 +52,16 @@ Cut best_cut(const std::vector<AmcFrame>& take) {
   return best;
 }
 
-/// Turns the legs of a mean walking pose into standing ones: the knees as straight as they get in
-/// the walk; thighs back and feet down by half of that, so that the feet stay flat under the hips.
+/// Turns the legs of a mean walking pose into standing ones: the knees become as straight as they
+/// get in the walk; the thighs turn back and the feet down by half of that, so that the feet stay
+/// flat under the hips.
 void straighten_legs(const motion::AsfSkeleton& skeleton, const std::vector<AmcFrame>& cycle,
                      AmcFrame& standing) {
   for (const auto& [thigh, shank, foot] :
        {std::array{"lfemur", "ltibia", "lfoot"}, std::array{"rfemur", "rtibia", "rfoot"}}) {
     const auto channel = [&](const char* bone) {
-      return skeleton.bones[bone_named(skeleton, bone)].first_channel;  // rx is its first channel
+      // rx is the bone's first channel.
+      return skeleton.bones[bone_named(skeleton, bone)].first_channel;
     };
     const std::size_t knee = channel(shank);
     double straightest = standing[knee];
@@ -98,8 +101,8 @@ void Gait::close_loop(const std::vector<AmcFrame>& take, std::size_t start, std:
   period_ = static_cast<double>(length) / motion::kCmuRateHz;
   stride_ = std::hypot(way.x(), way.z());
   heading_ = std::atan2(way.x(), way.z());
-  // The frame as seen from a point that moves with the mean velocity (which also removes the slope
-  // of the recorded floor).
+  // The frame relative to a point that moves with the mean velocity; this also removes the slope of
+  // the recorded floor.
   const auto relative = [&](std::size_t index) {
     AmcFrame frame = take[index];
     const double share =

@@ -1,7 +1,8 @@
 // One gait cycle of real walking, cut from a CMU take and closed to a seamless loop.
 //
-// The loop consists of joint angles, so bone lengths stay exact.  Its root has only the motion that
-// is left after removing the mean forward motion (sway, bob, surge); a Path says where the person
+// The loop consists of joint angles, so bone lengths stay exact.  Its root keeps only the motion
+// that is left after the mean forward motion has been removed (sway, bob, surge); a Path says where
+// the person goes.
 // goes.
 #pragma once
 
@@ -14,15 +15,16 @@ namespace chorus::synthetic {
 
 class Gait {
  public:
-  /// Cuts the cycle that closes best out of a take of straight walking.
+  /// Cuts out of a take of straight walking the cycle whose ends fit together best.
   Gait(const motion::AsfSkeleton& skeleton, const std::vector<motion::AmcFrame>& take);
 
-  /// The built-in takes, cut once; `take` counts modulo their number.
+  /// The cycle of one of the built-in takes, which are cut once; `take` is taken modulo their
+  /// number.
   [[nodiscard]] static const Gait& built_in(std::size_t take);
 
-  /// The body at `phase` (1: one whole cycle; any real number) with strides of `amplitude` (1: as
-  /// recorded, 0: standing).  The origin is on the floor under the mean root; it walks towards +z,
-  /// and the floor is y = 0.
+  /// The body at `phase` (any real number; a cycle has length 1) with strides of `amplitude` (1: as
+  /// recorded, 0: standing).  The origin is on the floor, which is y = 0, under the mean root; the
+  /// body walks towards +z.
   [[nodiscard]] Skeleton<WorldSpace> pose(double phase, double amplitude) const;
 
   [[nodiscard]] double stride() const noexcept { return stride_; }  ///< Distance per cycle [m].
@@ -39,7 +41,7 @@ class Gait {
   motion::AmcFrame standing_;
   double stride_ = 0.0;
   double period_ = 0.0;
-  double heading_ = 0.0;  ///< Heading of the recorded walk; it is removed.
+  double heading_ = 0.0;  ///< Direction of the recorded walk, which is removed.
 };
 
 }  // namespace chorus::synthetic

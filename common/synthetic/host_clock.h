@@ -1,4 +1,4 @@
-// The clock of a sensor host against true time.  Seconds.
+// The clock of a sensor host as a function of true time.
 #pragma once
 
 #include "common/time/timestamp.h"

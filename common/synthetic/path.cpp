@@ -12,31 +12,31 @@
 namespace chorus::synthetic {
 namespace {
 
-// Plausible figures that we estimated without a measured source; nothing depends on their exact
-// values.
-constexpr double kAcceleration = 1.2;   // mean, when starting and stopping [m/s^2]
-constexpr double kTurnRate = deg(110);  // mean, turning on the spot [rad/s]
-constexpr double kTurnSettling = 0.3;   // extra time of every turn [s]
-constexpr double kTurnStep = 0.35;      // stride amplitude while turning on the spot
-constexpr double kPauseShare = 0.35;    // probability of a pause at a random way-point
+// Plausible estimates without a measured source; nothing depends on their exact values.
+constexpr double kAcceleration = 1.2;   // Mean, when starting and stopping [m/s^2].
+constexpr double kTurnRate = deg(110);  // Mean, when turning on the spot [rad/s].
+constexpr double kTurnSettling = 0.3;   // Extra time of every turn [s].
+constexpr double kTurnStep = 0.35;      // Amplitude of the strides when turning on the spot.
+constexpr double kPauseShare = 0.35;    // Probability of a pause at a way-point of a random walk.
 constexpr double kMinPause = 0.5;       // [s]
 constexpr double kMaxPause = 3.0;       // [s]
-constexpr double kRandomLoop = 240.0;   // shortest loop of a random walk [s]
+constexpr double kRandomLoop = 240.0;   // Least length of the loop of a random walk [s].
 constexpr double kStandLoop = 60.0;     // [s]
-constexpr double kLinePause = 0.4;      // before turning at the ends [s]
-constexpr double kMinLegShare = 0.5;    // fraction of the reach; shorter legs are redrawn
+constexpr double kLinePause = 0.4;      // At each end, before turning [s].
+// Least length of a leg, as a share of the reach; shorter legs are drawn again.
+constexpr double kMinLegShare = 0.5;
 constexpr double kMinAmplitude = 0.3;
 constexpr double kMaxAmplitude = 1.4;
 constexpr int kRedraws = 20;
-constexpr double kTurnPause = 1.5;    // between full turns [s]
-constexpr int kStations = 3;          // of a workplace, side by side
+constexpr double kTurnPause = 1.5;    // Between full turns [s].
+constexpr int kStations = 3;          // A workplace has this many stations, side by side.
 constexpr double kStationStep = 0.4;  // from one station to the next [m]
 constexpr int kReachesPerStation = 4;
-constexpr double kReachTime = 0.7;                           // of a hand, each way [s]
-constexpr double kMinHold = 0.3;                             // [s]
-constexpr double kMaxHold = 1.2;                             // [s]
-constexpr double kAsideSpeed = 0.35;                         // mean, stepping aside [m/s]
-constexpr double kReachForward = 0.42;                       // of targets, in front of the body [m]
+constexpr double kReachTime = 0.7;      // A hand needs this time each way [s].
+constexpr double kMinHold = 0.3;        // [s]
+constexpr double kMaxHold = 1.2;        // [s]
+constexpr double kAsideSpeed = 0.35;    // Mean, when stepping aside [m/s].
+constexpr double kReachForward = 0.42;  // Targets are this far in front of the body [m].
 constexpr std::array kReachHeights{0.85, 1.10, 1.35, 1.60};  // [m]
 
 constexpr std::uint64_t kDrawWander = 101;
@@ -54,7 +54,7 @@ double heading_towards(const Eigen::Vector2d& way) { return std::atan2(way.x(), 
 Path::Path(const PathScript& script) : script_(script) {
   script_.speed = std::clamp(script_.speed, 0.1, 2.0);
   const double recorded = script_.stride / script_.period;
-  // Slower people take shorter strides, and fewer of them.
+  // Slower people take shorter strides, and fewer per second.
   amplitude_ = std::clamp(std::sqrt(script_.speed / recorded), kMinAmplitude, kMaxAmplitude);
   cadence_ = script_.speed / (amplitude_ * script_.stride);
   place_ = script_.centre;
@@ -83,7 +83,7 @@ void Path::pause(double duration) {
 
 void Path::turn_to(double heading) {
   turn_by(wrap_angle(heading - heading_));
-  heading_ = wrap_angle(heading);  // exactly, without the rounding of the sum
+  heading_ = wrap_angle(heading);  // Set again, because the sum was rounded.
 }
 
 void Path::turn_by(double turn) {
@@ -168,7 +168,7 @@ void Path::circle() {
   leg.turn = 2 * std::numbers::pi;
   leg.speed = script_.speed;
   leg.duration = lap / script_.speed;
-  // A whole number of gait cycles per lap closes the loop.
+  // The loop closes only with a whole number of gait cycles per lap.
   const double cycles = std::max(1.0, std::round(cadence_ * leg.duration));
   cadence_ = cycles / leg.duration;
   amplitude_ =
@@ -184,8 +184,8 @@ void Path::turn_in_place() {
   }
 }
 
-/// The hands reach in turn for points at different heights; then a step aside leads to the next
-/// station, and from the last one back to the first.
+/// At each station the hands reach in turn for points at different heights.  Then a step aside
+/// leads to the next station, and from the last one back to the first.
 void Path::assemble() {
   Draw draw{script_.seed, kDrawReach};
   const Eigen::Vector2d to_left(std::cos(heading_), -std::sin(heading_));
@@ -197,7 +197,7 @@ void Path::assemble() {
   for (int i = 0; i < kStations; ++i) {
     for (int k = 0; k < kReachesPerStation; ++k) {
       const bool left = k % 2 == 0;
-      const double aside = draw.uniform(-0.05, 0.35);  // from across the middle to far outside [m]
+      const double aside = draw.uniform(-0.05, 0.35);  // From across the middle to far outside [m].
       const double height = kReachHeights[static_cast<std::size_t>(i + k) % kReachHeights.size()];
       reach_for(left, {left ? aside : -aside, height, kReachForward},
                 draw.uniform(kMinHold, kMaxHold));

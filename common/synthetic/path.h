@@ -1,8 +1,8 @@
 // Where a person walks: a scripted, closed loop of legs, turns and pauses, as a pure function of
 // time.
 //
-// The loop repeats for ever, so the person has a place at every UTC instant, and every process with
-// the same script agrees on it.
+// The loop repeats for ever, so the person has a place at every UTC instant, and all processes with
+// the same script agree on it.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ namespace chorus::synthetic {
 
 enum class PathKind { Random, Circle, Line, Stand, Turn, Assembly };
 
-/// The names of the kinds in the configuration, in the order of the enumeration.
+/// The configuration's names of the kinds, in the order of PathKind.
 inline constexpr std::array<std::string_view, 6> kPathNames{"random", "circle", "line",
                                                             "stand",  "turn",   "assembly"};
 
@@ -27,16 +27,16 @@ struct PathScript {
   PathKind kind = PathKind::Random;
   std::uint64_t seed = 1;
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< World x, z [m]
-  double reach = 1.2;   ///< Radius of the area or of the circle, or half the line's length [m]
-  double speed = 0.9;   ///< Cruising [m/s]
-  double stride = 1.3;  ///< Distance per gait cycle at amplitude 1 [m]
-  double period = 1.1;  ///< Duration of a gait cycle as recorded [s]
+  double reach = 1.2;   ///< Radius of the area or the circle, or half the length of the line [m].
+  double speed = 0.9;   ///< Cruising speed [m/s]
+  double stride = 1.3;  ///< Distance per gait cycle at amplitude 1 [m].
+  double period = 1.1;  ///< Duration of a gait cycle, as recorded [s].
 };
 
 struct PathPoint {
   Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< World x, z [m]
   double heading = 0.0;    ///< Direction of walking, as yaw about +y; 0: +z [rad]
-  double phase = 0.0;      ///< Phase of the gait, in cycles.
+  double phase = 0.0;      ///< Phase of the gait [cycles].
   double amplitude = 0.0;  ///< Amplitude of the strides, 0: standing, 1: as recorded.
   Reach reach{};           ///< In the person's walk frame (see reach.h).
 };
@@ -56,10 +56,10 @@ class Path {
     double duration = 0.0;  ///< [s]
     Eigen::Vector2d from = Eigen::Vector2d::Zero();
     Eigen::Vector2d to = Eigen::Vector2d::Zero();
-    double heading = 0.0;  ///< At the start.
+    double heading = 0.0;  ///< At the start of the leg.
     double turn = 0.0;     ///< Total turn [rad].
     double speed = 0.0;    ///< Cruising speed of this leg [m/s].
-    double ramp = 0.0;     ///< Time to reach that speed, and to stop; for a hand, each way [s].
+    double ramp = 0.0;  ///< Time to reach that speed, and to stop; for a hand, time each way [s].
     synthetic::Reach reach{};
   };
 
@@ -78,10 +78,11 @@ class Path {
   [[nodiscard]] PathPoint along(const Leg& leg, double time) const;
 
   PathScript script_;
-  double amplitude_ = 1.0;                           ///< Of the strides, at cruising speed.
-  double cadence_ = 1.0;                             ///< Cycles per second.
-  double loop_ = 0.0;                                ///< [s]
-  Eigen::Vector2d place_ = Eigen::Vector2d::Zero();  ///< While building: end of the last leg.
+  double amplitude_ = 1.0;  ///< Of the strides at cruising speed.
+  double cadence_ = 1.0;    ///< Gait cycles per second.
+  double loop_ = 0.0;       ///< [s]
+  /// Where the last leg ends, while the path is built.
+  Eigen::Vector2d place_ = Eigen::Vector2d::Zero();
   double heading_ = 0.0;
   std::vector<Leg> legs_;
 };

@@ -19,14 +19,14 @@ using Body = Skeleton<WorldSpace>;
 using Frames = std::vector<Body>;
 
 constexpr double kToeHeight = 0.03;  // height of a standing foot joint over the floor [m]
-// The quantile of the frames' lowest feet that is on the floor; lower feet are noise.
+// The quantile of the frames' lowest feet that is put on the floor; lower feet are noise.
 constexpr double kStandingShare = 0.05;
-// Limits of the distance from knee to hip, from an eight-year-old to a giant; tight enough that
-// inches read as centimetres do not pass [m].
+// Limits of the distance from knee to hip [m]: a child of eight, a giant.  The interval is so
+// narrow that inches taken for centimetres are refused.
 constexpr double kMinThigh = 0.25;
 constexpr double kMaxThigh = 0.65;
 constexpr double kMaxRate = 1000.0;  // [Hz]
-constexpr double kFastest = 30.0;    // of any joint, even a thrower's hand [m/s]
+constexpr double kFastest = 30.0;    // No joint is faster, not even a thrower's hand [m/s].
 
 constexpr std::array kRequired{JointId::HipLeft,       JointId::HipRight,   JointId::KneeLeft,
                                JointId::KneeRight,     JointId::AnkleLeft,  JointId::AnkleRight,
@@ -38,8 +38,8 @@ struct Share {
   double weight;
 };
 
-/// Where a missing joint is put: a weighted sum of two others (the weights sum to one and may lie
-/// outside [0, 1] to extend a bone), and `ahead` metres to the body's front.
+/// Where a missing joint is put: at a weighted sum of two others, moved `ahead` metres to the
+/// body's front.  The weights sum to one; a weight outside [0, 1] extends a bone.
 struct Guess {
   JointId joint;
   Share first;
@@ -47,7 +47,7 @@ struct Guess {
   double ahead = 0.0;
 };
 
-// Usual proportions; a row may use the joints of the rows above it.
+// Usual proportions.  A row may use the joints of the rows above it.
 constexpr std::array kGuesses{
     Guess{JointId::SpineBase, {JointId::HipLeft, 0.5}, {JointId::HipRight, 0.5}},
     Guess{JointId::SpineShoulder, {JointId::ShoulderLeft, 0.5}, {JointId::ShoulderRight, 0.5}},
@@ -75,8 +75,8 @@ std::optional<JointId> missing_joint(const Frames& frames) {
   return std::nullopt;
 }
 
-/// Moves a joint straight from where it was last seen to where it is next seen; constant before the
-/// first and after the last sight of it.
+/// Fills gaps: moves a joint straight from where it was last seen to where it is next seen.  Before
+/// it was first seen and after it was last seen, it stays in place.
 void fill_gaps(Frames& frames, JointId joint) {
   std::optional<std::size_t> last;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -112,7 +112,8 @@ void guess_absent(Body& body) {
   }
 }
 
-/// Keeps orientations from the file, which know the twist; the others follow from the bones.
+/// Sets the orientations that the file does not give from the bones; those in the file stay,
+/// because they include the twist.
 void orient(Body& body) {
   Body by_bones = body;
   motion::orient_segments(by_bones);
@@ -196,8 +197,8 @@ Result<void> can_be_played(const motion::Motion& role) {
                   role.rate_hz, kMaxRate));
 }
 
-/// Some programs (Xsens MVN) put a T-pose before the motion; from there nobody could reach the
-/// second frame in time.
+/// True if the first frame is a separate T-pose, as Xsens MVN puts before the motion: nobody could
+/// get from there to the second frame in one step.
 bool starts_with_pose(const motion::Motion& role) {
   if (role.frames.size() < 3) return false;
   for (std::size_t i = 0; i < kJointCount; ++i) {
@@ -219,7 +220,7 @@ void drop_pose(std::vector<motion::Motion>& roles) {
 }  // namespace
 
 Result<Performance> staged(std::vector<motion::Motion> captured) {
-  // Things and half-tracked bystanders get no role, as long as somebody else has one.
+  // Things and half-tracked bystanders get no role if there is somebody with all joints.
   if (captured.size() > 1) {
     const auto lacks = [](const motion::Motion& role) {
       return missing_joint(role.frames).has_value();

@@ -34,7 +34,7 @@ Result<std::string> text_of(const std::filesystem::path& path) {
   return std::string(std::istreambuf_iterator<char>(file), {});
 }
 
-/// When a conversion refuses its input, the file is at fault.
+/// One motion as a result; when its conversion fails, the error names the file.
 Captured single(Result<motion::Motion> motion, const std::string& origin) {
   if (!motion) return fail(motion.error().code, origin, to_string(motion.error()));
   std::vector<motion::Motion> one;
@@ -48,7 +48,7 @@ Captured from_bvh(const MotionFile& file, const std::string& text) {
   return single(motion::motion_from_bvh(*bvh), file.path.string());
 }
 
-/// "02_01.amc" -> "02_01.asf" if that exists, else "02.asf".
+/// The skeleton's file: "02_01.amc" -> "02_01.asf" if that exists, else "02.asf".
 std::filesystem::path skeleton_of(const std::filesystem::path& amc) {
   std::filesystem::path own = amc;
   own.replace_extension(".asf");

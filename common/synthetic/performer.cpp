@@ -12,8 +12,8 @@
 namespace chorus::synthetic {
 namespace {
 
-constexpr double kTurnRound = 0.3;  // at each end, for slowing down or speeding up [s]
-// People are up to this much taller or shorter than the script says, as a fraction.
+constexpr double kTurnRound = 0.3;  // Time for slowing down, and for speeding up, at each end [s].
+// The fraction by which people are at most taller or shorter than the script says.
 constexpr double kBuildSpread = 0.08;
 constexpr std::uint64_t kDrawBuild = 211;
 constexpr std::uint64_t kDrawStart = 212;
@@ -23,12 +23,12 @@ double length_of(const motion::Motion& motion) {
                                : static_cast<double>(motion.frames.size() - 1) / motion.rate_hz;
 }
 
-/// Turns the time since the turn at one end into a place, rounding the turn with a parabola.
+/// Turns the time since the reversal at one end into a place; a parabola smooths the reversal.
 double rounded(double time, double round) {
   return time < round ? 0.5 * (time * time / round + round) : time;
 }
 
-/// Place in the motion [s], played back and forth; `time` is in [0, 2 length).
+/// Place in the motion [s] when it is played back and forth; `time` is in [0, 2 length).
 double played(double time, double length) {
   if (!(length > 0.0)) return 0.0;
   const double round = std::min(kTurnRound, 0.5 * length);
@@ -36,7 +36,8 @@ double played(double time, double length) {
   return there <= 0.5 * length ? rounded(there, round) : length - rounded(length - there, round);
 }
 
-/// Catmull-Rom: passes through every frame; the velocity is the mean of the neighbouring steps.
+/// A Catmull-Rom spline from p[1] to p[2]: at a frame, the velocity is the mean of the steps before
+/// and after it.
 Eigen::Vector3d spline(const std::array<Eigen::Vector3d, 4>& p, double s) {
   const Eigen::Vector3d leaving = 0.5 * (p[2] - p[0]);
   const Eigen::Vector3d arriving = 0.5 * (p[3] - p[1]);

@@ -1,12 +1,12 @@
 // A person who plays captured motion for ever: the truth that simulated sensors observe.
 //
-// The motion is played forwards, then backwards, and so on (a take of walking does not end where it
-// began, and a cross-fade would slide the feet and bend the bones).  Around both ends time slows
-// down and reverses, so that neither place nor velocity jumps.  Between frames positions follow a
-// Catmull-Rom spline.
+// The motion is played forwards, then backwards, and so on: a take of walking does not end where it
+// began, and a cross-fade would slide the feet and bend the bones.  Around both ends, time slows
+// down and reverses, so that neither places nor velocities jump.  Between frames, positions follow
+// a Catmull-Rom spline.
 //
-// A pure function of the motion, the script and the time since an epoch: every process with the
-// same three sees the same person at the same instant.
+// A pure function of the motion, the script and the time since an epoch: all processes that have
+// the same three see the same person at the same instant.
 #pragma once
 
 #include <memory>
@@ -18,9 +18,10 @@
 namespace chorus::synthetic {
 
 struct PerformerScript {
-  std::size_t role = 0;                              ///< Index into Performance::roles.
-  Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< Centre of the performance; world x, z [m]
-  double turn = 0.0;                                 ///< Yaw about that centre [rad]
+  std::size_t role = 0;  ///< Index into Performance::roles.
+  /// World x, z of the performance's centre [m].
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  double turn = 0.0;        ///< Yaw about that centre [rad]
   double body_scale = 1.0;  ///< Also scales paths, so that feet do not slide.
   Duration start{0};        ///< Place in the loop at the epoch.
 };
@@ -32,7 +33,7 @@ class Performer {
 
   /// All 25 joints, tracked, in world space.
   [[nodiscard]] Skeleton<WorldSpace> at(Duration since_epoch) const;
-  /// Duration of playing forwards and back.
+  /// Time for playing the motion forwards and back.
   [[nodiscard]] Duration loop() const noexcept { return loop_; }
 
  private:
@@ -43,8 +44,8 @@ class Performer {
 
 /// `count` people who play the motion at the script's centre.  People from one file stay together
 /// as captured.  If there are more people than the file has, further groups play it too: evenly
-/// spaced on a circle with the script's reach, each turned, with another build, and elsewhere in
-/// the loop.  Uses only the script's seed, centre, reach and body_scale.
+/// spaced on a circle with the script's reach, and each group is turned, has another build and is
+/// elsewhere in the loop.  Uses only the script's seed, centre, reach and body_scale.
 [[nodiscard]] std::vector<Person> make_performers(std::shared_ptr<const Performance> performance,
                                                   const WalkerScript& script, std::size_t count);
 

@@ -1,5 +1,5 @@
-// Uses libjpeg and zlib instead of an image library: a sensor host without a camera then needs
-// nothing that reads all sorts of picture formats.
+// Uses libjpeg and zlib instead of an image library, so that a sensor host without a camera needs
+// no code that reads picture formats.
 #include "common/synthetic/picture.h"
 
 #include <zlib.h>
@@ -15,7 +15,7 @@ namespace chorus::synthetic {
 namespace {
 
 constexpr int kJpegQuality = 85;
-constexpr int kPngEffort = 1;  // The lowest of nine: each picture is viewed once.
+constexpr int kPngEffort = 1;  // The lowest of nine: each picture is viewed only once.
 
 /// libjpeg calls this instead of returning an error.
 struct JpegErrors {
@@ -53,7 +53,7 @@ bool compress_jpeg(const std::uint8_t* pixels, PictureSize size, JpegBuffer& out
   jpeg_start_compress(&codec, TRUE);
   while (codec.next_scanline < codec.image_height) {
     const std::size_t row = std::size_t{codec.next_scanline} * codec.image_width * 3;
-    JSAMPROW line = const_cast<JSAMPROW>(pixels + row);  // It is only read.
+    JSAMPROW line = const_cast<JSAMPROW>(pixels + row);  // libjpeg only reads it.
     jpeg_write_scanlines(&codec, &line, 1);
   }
   jpeg_finish_compress(&codec);
@@ -74,7 +74,7 @@ void append_number(std::string& out, std::uint32_t number) {
   for (int shift = 24; shift >= 0; shift -= 8) out += static_cast<char>(number >> shift & 0xFF);
 }
 
-/// PNG specification 5.3: length, type, content, and a checksum of the latter two.
+/// A chunk is length, type, content, and a checksum of type and content (PNG specification 5.3).
 void append_chunk(std::string& out, const char* type, const std::string& content) {
   append_number(out, static_cast<std::uint32_t>(content.size()));
   const std::string checked = type + content;
@@ -124,7 +124,8 @@ Result<std::string> png_of(std::span<const std::uint16_t> pixels, PictureSize si
   std::string header;
   append_number(header, static_cast<std::uint32_t>(size.width));
   append_number(header, static_cast<std::uint32_t>(size.height));
-  header += std::string("\x10\x00\x00\x00\x00", 5);  // 16 bit, grey, the usual methods
+  // 16 bit, grey, and the only methods that PNG defines.
+  header += std::string("\x10\x00\x00\x00\x00", 5);
   std::string out = "\x89PNG\r\n\x1a\n";
   append_chunk(out, "IHDR", header);
   append_chunk(out, "IDAT", packed);

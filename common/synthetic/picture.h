@@ -1,4 +1,4 @@
-// Writes pixels as the bytes of a picture file.
+// Encodes pixels as JPEG or PNG.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 namespace chorus::synthetic {
 
 struct PictureSize {
-  int width = 0;  ///< In pixels; both are above zero.
+  int width = 0;  ///< [px]; both are above zero.
   int height = 0;
 };
 
@@ -18,7 +18,8 @@ struct PictureSize {
 /// InvalidArgument unless `pixels` has three bytes per pixel.
 [[nodiscard]] Result<std::string> jpeg_of(std::span<const std::uint8_t> pixels, PictureSize size);
 
-/// A lossless PNG with one channel of 16 bits; errors as above, but one value per pixel.
+/// A lossless PNG with one channel of 16 bits; the same errors, but `pixels` needs one value per
+/// pixel.
 [[nodiscard]] Result<std::string> png_of(std::span<const std::uint16_t> pixels, PictureSize size);
 
 }  // namespace chorus::synthetic

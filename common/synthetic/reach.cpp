@@ -7,8 +7,9 @@
 namespace chorus::synthetic {
 namespace {
 
-constexpr double kStraightest = 0.98;  // of an arm's length; nobody locks the elbow
-constexpr double kClosest = 0.35;      // least distance of hand and shoulder, likewise
+// Largest distance of wrist and shoulder, as a share of the arm's length: nobody locks the elbow.
+constexpr double kStraightest = 0.98;
+constexpr double kClosest = 0.35;  // Least distance of wrist and shoulder, as such a share.
 
 struct Arm {
   JointId shoulder, elbow, wrist;
@@ -28,7 +29,7 @@ void turn(Joint& joint, const Eigen::Quaterniond& rotation) {
   if (joint.orientation.squaredNorm() > 0) joint.orientation = rotation * joint.orientation;
 }
 
-/// The elbow's place between shoulder and wrist, on the side of `hint`.
+/// Where the elbow is between shoulder and wrist, on the side of `hint`.
 Eigen::Vector3d elbow_at(const Eigen::Vector3d& shoulder, const Eigen::Vector3d& wrist,
                          const std::array<double, 2>& bones, const Eigen::Vector3d& hint) {
   const Eigen::Vector3d way = wrist - shoulder;

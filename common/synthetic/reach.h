@@ -1,7 +1,7 @@
 // Makes a hanging or swinging arm reach for a point: two bones, whose lengths are kept.
 //
-// Walk frame of one person: origin on the floor under the body, +z to the front, +y up, +x to the
-// left; metres for a person as tall as the recorded subject.
+// All points are in the walk frame of one person: origin on the floor under the body, +z to the
+// front, +y up, +x to the left; metres for a person as tall as the recorded subject.
 #pragma once
 
 #include "common/body/skeleton.h"
@@ -9,12 +9,12 @@
 namespace chorus::synthetic {
 
 struct Reach {
-  bool left = false;                                 ///< True for the left hand.
-  double amount = 0.0;                               ///< 0: arm unchanged, 1: wrist at target.
+  bool left = false;    ///< True for the left hand.
+  double amount = 0.0;  ///< 0: the arm is unchanged, 1: the wrist is at the target.
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< Target of the wrist [m]
 };
 
-/// Moves elbow, wrist and hand; towards a target that is too far away the arm is stretched.
+/// Moves elbow, wrist and hand; if the target is too far away, the arm is stretched towards it.
 void apply(const Reach& reach, Skeleton<WorldSpace>& body);
 
 }  // namespace chorus::synthetic

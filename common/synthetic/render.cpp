@@ -19,16 +19,17 @@ constexpr std::uint16_t kNobody = 0;
 constexpr std::uint16_t kThing = 65535;
 constexpr int kMaxPixels = 4'000'000;
 
-/// What each pixel sees: distance along its ray, and whose body (0: floor or nothing; kThing).
+/// What each pixel sees: the distance along its ray, and whose body (kNobody: floor or nothing;
+/// kThing).
 struct RangeImage {
   int width = 0;
   int height = 0;
-  std::vector<float> range;  ///< [m], infinity: nothing
+  std::vector<float> range;  ///< [m]; infinity: nothing
   std::vector<std::uint16_t> person;
   std::vector<Eigen::Vector3f> rays;  ///< Unit vectors.
 };
 
-/// Sensor x points to the sensor's left, but image columns run to its right.
+/// The ray of a pixel.  Sensor x points to the sensor's left, but image columns run to its right.
 Eigen::Vector3d ray_of(const Intrinsics& camera, int column, int row) {
   return Eigen::Vector3d(-(column - camera.cx) / camera.fx, -(row - camera.cy) / camera.fy, 1)
       .normalized();
@@ -38,8 +39,8 @@ struct Box {
   int left, right, top, bottom;  ///< In pixels; right and bottom are exclusive.
 };
 
-/// The pixels that may see the capsule: those of the squares around its two end balls; all pixels
-/// when it is too near.
+/// The pixels that may see the capsule: those of the squares around its two end balls, or all
+/// pixels when the capsule is too near.
 Box box_of(const Capsule& capsule, const Intrinsics& camera) {
   Box box{camera.width, 0, camera.height, 0};
   for (const Eigen::Vector3d& end : {capsule.from, capsule.to}) {
@@ -92,7 +93,7 @@ void see_box(RangeImage& image, const Eigen::Isometry3d& box_from_sensor,
   }
 }
 
-/// The ray of every pixel, which sees nothing yet.
+/// An image with the ray of every pixel, none of which sees anything yet.
 RangeImage open_eyes(const Intrinsics& camera) {
   const auto pixels =
       static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
@@ -131,7 +132,7 @@ Result<RangeImage> look(const Scene& scene, std::size_t sensor, Timestamp instan
   return image;
 }
 
-/// Red, green, blue of a person, a thing, the chequered floor or the wall.
+/// The colour (red, green, blue) of a person, a thing, the chequered floor or the wall.
 std::array<std::uint8_t, 3> shade(const RangeImage& image, std::size_t i,
                                   const Eigen::Isometry3d& world_from_sensor) {
   const double range = static_cast<double>(image.range[i]);

@@ -1,8 +1,7 @@
-// Images of a scene as one sensor sees it: capsule bodies and things on a floor.  Rendered on
-// demand.
+// Images of a scene as one sensor sees it: bodies of capsules, and things, on a floor.
 //
-// Not mirrored: sensor x points to the sensor's left, so column = cx - fx x / z and row = cy - fy y
-// / z.
+// Images are not mirrored: sensor x points to the sensor's left, so column = cx - fx x / z and row
+// = cy - fy y / z.
 #pragma once
 
 #include "common/base/result.h"
@@ -13,16 +12,16 @@ namespace chorus::synthetic {
 
 struct CameraModel {
   Intrinsics intrinsics;       ///< Pinhole; distortion is not rendered.
-  double most_depth = 4.5;     ///< Depth beyond this becomes 0, as in the sensor [m]
+  double most_depth = 4.5;     ///< A larger depth becomes 0, as in the sensor [m].
   double depth_noise = 0.003;  ///< Standard deviation of depth [m]
   std::uint64_t seed = 1;
 };
 
-/// 16-bit PNG, millimetres along +z, 0 where nothing was measured.
+/// A 16-bit PNG of the depth along +z [mm], 0 where nothing was measured.
 [[nodiscard]] Result<CameraImage> render_depth(const Scene& scene, std::size_t sensor,
                                                Timestamp instant, const CameraModel& camera);
 
-/// 8-bit JPEG.
+/// An 8-bit JPEG.
 [[nodiscard]] Result<CameraImage> render_color(const Scene& scene, std::size_t sensor,
                                                Timestamp instant, const CameraModel& camera);
 

@@ -9,7 +9,7 @@ namespace chorus::synthetic {
 namespace {
 
 constexpr std::uint64_t kDrawBuild = 201;
-// People are up to this much taller or shorter than the script says, as a fraction.
+// The fraction by which people are at most taller or shorter than the script says.
 constexpr double kBuildSpread = 0.08;
 
 }  // namespace

@@ -1,7 +1,7 @@
 // People and sensors in one room: the complete truth of a simulation.
 //
-// World space: y up, y = 0 the floor.  Sensor space: +z into the scene, +y up, +x to the sensor's
-// left.
+// World space: y up, y = 0 is the floor.  Sensor space: +z into the scene, +y up, +x to the
+// sensor's left.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +16,11 @@
 
 namespace chorus::synthetic {
 
-/// The true pose of a person at this time after the scene's epoch.
+/// The true pose of a person at a time after the scene's epoch.
 using Person = std::function<Skeleton<WorldSpace>(Duration since_epoch)>;
 
 struct Scene {
-  Timestamp epoch;  ///< The zero point of people's time.
+  Timestamp epoch;  ///< The instant that people's times count from.
   std::vector<Person> people;
   std::vector<Eigen::Isometry3d> world_from_sensor;
   std::vector<Occluder> occluders = {};
@@ -31,18 +31,19 @@ struct Ring {
   std::size_t count = 6;
   double radius = 3.0;     ///< [m]
   double height = 1.6;     ///< [m]
-  double pitch = deg(13);  ///< Downwards is positive [rad]
+  double pitch = deg(13);  ///< Looking down is positive [rad].
 };
 
-/// A sensor at `eye` that looks along `yaw` (about +y, 0: along +z) and down by `pitch`.
+/// world_from_sensor of a sensor at `eye` that looks along `yaw` (about +y, 0: along +z) and down
+/// by `pitch`.
 [[nodiscard]] Eigen::Isometry3d stand_sensor(const Eigen::Vector3d& eye, double yaw, double pitch);
 
-/// Place number `index` of the ring, counted about +y from world +z.
+/// world_from_sensor of place number `index` of the ring, counted about +y from world +z.
 [[nodiscard]] Eigen::Isometry3d ring_place(const Ring& ring, std::size_t index);
 
 [[nodiscard]] std::vector<Eigen::Isometry3d> ring_places(const Ring& ring);
 
-/// Makes `count` people with different seeds, paths and builds from one script.
+/// Makes `count` people from one script, with different seeds, paths and builds.
 [[nodiscard]] std::vector<Person> make_people(const WalkerScript& script, std::size_t count);
 
 /// The true pose of a person.

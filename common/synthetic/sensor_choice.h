@@ -1,8 +1,8 @@
-// Makes a simulated sensor by the name of its profile: "A", "B" and "D" draw their errors
+// Makes a simulated sensor from the name of its profile.  "A", "B" and "D" draw their errors
 // (kinect/); in "C" errors emerge from depth images and a body fitter (depth/); "gauss" has only
 // white noise (sensor_model.h).
 //
-// Parameters are the nominal ones, or one draw from their intervals; each source of error can also
+// The parameters are the nominal ones, or drawn from their intervals; each source of error can also
 // be scaled or switched off.
 #pragma once
 
@@ -33,12 +33,13 @@ struct SensorChoice {
   SensorId id;
   std::size_t place = 0;              ///< Index into Scene::world_from_sensor.
   std::string profile = "A";          ///< "A", "B", "C", "D" or "gauss"
-  std::optional<std::uint64_t> draw;  ///< Seed that draws the parameters; none: nominal.
+  std::optional<std::uint64_t> draw;  ///< Seed for drawing the parameters; none: nominal ones.
   std::vector<Stress> stress = {};
-  std::uint64_t seed = 1;       ///< The same for all sensors of a room, so that they share errors.
-  std::uint64_t bias_seed = 1;  ///< For biases of SDK and people: the same in every run.
-  bool own_clock = true;        ///< Stamps frames by the host's erring clock; false: by true time.
-  /// The parameters of "gauss", which has no intervals to draw from, no sources to scale, and an
+  std::uint64_t seed = 1;  ///< The same for all sensors of a room, because they share errors.
+  /// For biases of the SDK and of people, which are the same in every run.
+  std::uint64_t bias_seed = 1;
+  bool own_clock = true;  ///< True: stamps frames by the host's erring clock; false: by true time.
+  /// The parameters of "gauss".  It has no intervals to draw from, no sources to scale, and an
   /// exact clock.
   SensorModel gauss = {};
 };
@@ -57,8 +58,8 @@ struct SensorChoice {
                                                       const SensorChoice& choice, Timestamp start,
                                                       Timestamp end);
 
-/// First 12 hex digits of the SHA-256 of what defines the profile, printed with every result; empty
-/// for "gauss", which is not frozen, and for an unknown profile.
+/// First 12 hex digits of the SHA-256 of what defines the profile; printed with every result.
+/// Empty for "gauss", which is not frozen, and for an unknown profile.
 [[nodiscard]] std::string frozen_hash(std::string_view profile);
 
 }  // namespace chorus::synthetic

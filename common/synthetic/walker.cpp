@@ -9,7 +9,7 @@
 namespace chorus::synthetic {
 namespace {
 
-constexpr double kSwayRate = 0.25;    // rate of breathing and balancing, roughly [Hz]
+constexpr double kSwayRate = 0.25;    // Approximate rate of breathing and balancing [Hz].
 constexpr double kSwayReach = 0.004;  // [m]
 
 PathScript path_of(const WalkerScript& script, const Gait& gait, double body_scale) {
@@ -34,7 +34,7 @@ Walker::Walker(const WalkerScript& script)
 Skeleton<WorldSpace> Walker::at(Duration since_epoch) const {
   const PathPoint point = path_.at(since_epoch);
   const double loop = seconds(path_.loop());
-  // A whole number of sways per loop closes the loop.
+  // The loop closes only with a whole number of sways.
   const double sways = std::max(1.0, std::round(kSwayRate * loop));
   const double angle = 2 * std::numbers::pi * sways * seconds(since_epoch % path_.loop()) / loop;
   const double sway = kSwayReach * std::sin(angle);
@@ -45,7 +45,7 @@ Skeleton<WorldSpace> Walker::at(Duration since_epoch) const {
   apply(point.reach, body);
   for (Joint& joint : body.joints) {
     Eigen::Vector3d in_walk = body_scale_ * joint.position;
-    in_walk.x() += sway * in_walk.y();  // an upright body sways about its feet
+    in_walk.x() += sway * in_walk.y();  // An upright body sways about its feet.
     joint.position = origin + world_from_walk * in_walk;
     if (is_unit(joint.orientation)) joint.orientation = world_from_walk * joint.orientation;
   }

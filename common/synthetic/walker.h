@@ -1,7 +1,7 @@
-// A person made from real CMU walking: the truth that simulated sensors observe.
+// A person made from CMU recordings of real walking: the truth that simulated sensors observe.
 //
-// A pure function of the script and the time since an epoch: every process with the script sees the
-// same person at the same instant.
+// A pure function of the script and the time since an epoch: all processes with the same script see
+// the same person at the same instant.
 #pragma once
 
 #include "common/body/skeleton.h"
@@ -16,7 +16,7 @@ struct WalkerScript {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< World x, z [m]
   double reach = 1.2;                                ///< Reach of the path, see PathScript [m]
   double speed = 0.9;                                ///< [m/s]
-  double body_scale = 1.0;                           ///< 1: the recorded subject, about 1.7 m tall
+  double body_scale = 1.0;                           ///< 1: the recorded subject, about 1.7 m tall.
 };
 
 class Walker {
@@ -26,7 +26,7 @@ class Walker {
   /// All 25 joints, tracked, in world space.
   [[nodiscard]] Skeleton<WorldSpace> at(Duration since_epoch) const;
   [[nodiscard]] const Path& path() const& noexcept { return path_; }
-  const Path& path() && = delete;  // it would not outlive the walker
+  const Path& path() && = delete;  // The reference would dangle: the walker is a temporary.
 
  private:
   double body_scale_;

@@ -9,13 +9,14 @@
 namespace chorus::align {
 namespace {
 
-/// Added to the longest delay seen so far: a frame this late is still expected.
+/// Added to the longest delay seen so far, because a frame may be a little later than all before.
 constexpr Duration kGrace = std::chrono::milliseconds(15);
-constexpr int kPeriods = 2;  // of a slow sensor: brackets this wide are still interpolated
+constexpr int kPeriods = 2;  // A gap of this many of a sensor's periods is still interpolated.
 
-constexpr double kSlack = 0.1;  // [m] that a body's core jumps by noise alone
+constexpr double kSlack = 0.1;  // By how much a body's core may jump through noise alone [m].
 
-/// The frames around an instant; `before` and `after` are the same frame when it was captured then.
+/// The frames around an instant; if one was captured at the instant itself, `before` and `after`
+/// are that frame.
 struct Bracket {
   Basis basis = Basis::Lost;
   const SensorFrame* before = nullptr;
@@ -25,7 +26,7 @@ struct Bracket {
 Bracket bracket(Timestamp instant, Timestamp now, const History& history,
                 const AlignConfig& config) {
   const auto& frames = history.frames();
-  const bool over = frames.empty() || frames.back().captured < instant;  // the commonest case
+  const bool over = frames.empty() || frames.back().captured < instant;  // The most frequent case.
   const auto next =
       over ? frames.end()
            : std::lower_bound(frames.begin(), frames.end(), instant,
@@ -38,7 +39,8 @@ Bracket bracket(Timestamp instant, Timestamp now, const History& history,
   if (next != frames.begin()) found.before = &*std::prev(next);
   if (next != frames.end()) found.after = &*next;
   if (!found.after) {
-    // Give up a silent sensor early: no later frame could close a bracket this wide.
+    // Gives up a silent sensor early: a gap as wide as this would not be interpolated by any later
+    // frame.
     const bool hopeless = found.before && instant - found.before->captured > widest;
     const Duration wait =
         std::min(config.patience, longest_wait(history).value_or(config.patience));
@@ -56,7 +58,7 @@ const BodyFrame* body_of(const SensorFrame& frame, BodyId id) {
   return nullptr;
 }
 
-/// The same person cannot have been there and here.  Bodies of rays tell nothing.
+/// True if one person cannot have moved so far between the two frames.  Ray bodies tell nothing.
 bool is_somebody_else(const BodyFrame& before, const BodyFrame& after, double reach) {
   Eigen::Vector3d way = Eigen::Vector3d::Zero();
   double count = 0.0;

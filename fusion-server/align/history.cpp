@@ -8,12 +8,12 @@ namespace chorus::align {
 namespace {
 
 constexpr std::size_t kHabit = 30;     ///< Newest frames that make up a habit: one second.
-constexpr std::size_t kMinHabit = 10;  ///< With fewer there is no habit,
-constexpr std::size_t kMinSlow = 4;    ///< unless the sensor is slow: then this many.
+constexpr std::size_t kMinHabit = 10;  ///< With fewer there is no habit, except for a slow sensor.
+constexpr std::size_t kMinSlow = 4;    ///< A slow sensor needs only this many.
 constexpr Duration kSlow = std::chrono::seconds(1);
 
-/// Bodies of one frame with the same id cannot be told apart later: the first is kept, the others
-/// are removed.
+/// Keeps only the first of several bodies with the same id, because they cannot be told apart
+/// later.
 void keep_first_of_each_id(std::vector<BodyFrame>& bodies) {
   for (std::size_t i = 1; i < bodies.size();) {
     const auto seen_before = [&](const BodyFrame& b) { return b.id == bodies[i].id; };
@@ -33,7 +33,7 @@ Duration tenths_of(std::vector<Duration>& values, std::size_t tenths) {
   return *place;
 }
 
-/// How many of the newest frames a habit is computed from; zero: there are too few.
+/// The number of newest frames from which a habit is computed; zero if there are too few.
 std::size_t recent(const std::deque<SensorFrame>& frames) {
   if (frames.size() >= kMinHabit) return std::min(frames.size(), kHabit);
   const bool slow =
@@ -46,7 +46,7 @@ std::optional<Habit> habit_of(const std::deque<SensorFrame>& frames) {
   if (count == 0) return std::nullopt;
   std::vector<Duration> waits;
   std::vector<Duration> delays;
-  Timestamp first_received = Timestamp::max();  // earliest, of this frame and later ones
+  Timestamp first_received = Timestamp::max();  // The earliest of this frame and later ones.
   for (std::size_t i = 1; i <= count; ++i) {
     const SensorFrame& frame = frames[frames.size() - i];
     if (frame.received == Timestamp{}) return std::nullopt;

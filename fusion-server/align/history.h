@@ -1,6 +1,6 @@
 // One sensor's recent frames, in capture order, without duplicates (Otto 5.2.4).
 //
-// A late frame (fetched after a stream left it out) is inserted at its place.
+// A late frame (fetched after a stream had left it out) is inserted at its place.
 #pragma once
 
 #include <cstddef>
@@ -14,31 +14,33 @@ namespace chorus::align {
 
 enum class PushVerdict {
   Added,
-  Duplicate,  ///< A frame of this capture time is already there (polled faster than captured).
-  Late,       ///< Earlier in the sensor's sequence than the newest; inserted at its place.
-  Backwards,  ///< Later in the sequence, but captured before the newest one; refused.
-  Future,     ///< Captured implausibly far after it was received; refused.
-  Restarted,  ///< A long step back: the sensor's clock was set or the device restarted; history
-              ///< cleared.
+  Duplicate,  ///< There is a frame of this capture time already (polled faster than captured).
+  Late,       ///< Its sequence is before that of the newest frame; inserted at its place.
+  Backwards,  ///< Its sequence is later, but it was captured before the newest frame; refused.
+  Future,     ///< Captured implausibly long after it was received; refused.
+  /// Captured much earlier: the sensor's clock was set or the device restarted; the history was
+  /// cleared.
+  Restarted,
 };
 
 struct HistoryLimits {
   std::size_t max_frames = 256;
   Duration max_age = std::chrono::seconds(5);
-  /// A frame is refused if captured - received exceeds this; one without `received` is accepted.
+  /// A frame is refused if captured - received exceeds this; a frame without `received` is
+  /// accepted.
   Duration max_future = std::chrono::seconds(2);
-  /// A step back longer than this is a restart.
+  /// A capture time farther back than this means a restart.
   Duration restart_step = std::chrono::milliseconds(1500);
 };
 
 /// How a sensor's recent frames have arrived.
 struct Habit {
-  /// Time from an instant until a frame captured at it or later arrived, for instants just after a
-  /// capture, which wait longest.  Frames that arrived after later ones do not count.
+  /// The longest time that an instant just after a capture, which waits longest, had to wait until
+  /// a frame captured at or after it arrived.  Frames that arrived after later ones do not count.
   Duration longest_wait{0};
-  Duration usual_wait{0};   ///< Median of the same.
-  Duration least_delay{0};  ///< From capture to receipt, the shortest.
-  Duration late_delay{0};   ///< From capture to receipt, 90th percentile.
+  Duration usual_wait{0};   ///< The median time that such instants had to wait.
+  Duration least_delay{0};  ///< The shortest time from capture to receipt.
+  Duration late_delay{0};   ///< The time from capture to receipt, 90th percentile.
 
   [[nodiscard]] Duration spread() const { return late_delay - least_delay; }
 };
@@ -47,16 +49,16 @@ class History {
  public:
   explicit History(HistoryLimits limits = {}) : limits_(limits) {}
 
-  /// When two bodies of a frame have the same id, the first is kept.
+  /// Adds a frame.  If two bodies of the frame have the same id, the first one is kept.
   PushVerdict push(SensorFrame frame);
 
   [[nodiscard]] const std::deque<SensorFrame>& frames() const noexcept { return frames_; }
   [[nodiscard]] std::optional<Timestamp> newest() const;
-  /// Nothing until enough frames with a time of receipt have come.  Late frames do not count.
+  /// None until enough frames with a time of receipt have come.  Late frames do not count.
   [[nodiscard]] const std::optional<Habit>& habit() const noexcept { return habit_; }
-  /// Median time from capture to capture of the recent frames; nothing until there are enough.
+  /// Median time from one capture to the next, of the recent frames; none until there are enough.
   [[nodiscard]] const std::optional<Duration>& period() const noexcept { return period_; }
-  /// The sensor sees directions only: the newest frame with bodies has none but ray bodies.
+  /// True if the sensor sees directions only: its newest frame with bodies has ray bodies only.
   [[nodiscard]] bool rays_only() const noexcept { return rays_only_; }
 
  private:

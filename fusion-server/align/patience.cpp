@@ -5,21 +5,22 @@
 namespace chorus::align {
 namespace {
 
-constexpr int kWorse = 2;  // a spread this many times the median sensor's is unsteady
-/// How many cameras are needed for a body: one camera without depth makes none.
+constexpr int kWorse = 2;  // A spread of more than this many times the median sensor's is unsteady.
+/// How many cameras without depth make a body: one alone makes none.
 constexpr std::size_t kCameras = 2;
 
-/// Sensors differ, and so do the frames of one.
+/// Factor for differences between sensors, and between the frames of one.
 constexpr int kSlack = 2;
 
-/// How slow a sensor is by its nature: the usual step between its captures and the least delay.  A
-/// busy computer, which delays all of them, does not change it.
+/// How slow a sensor is by its nature: its period plus its least delay.  A busy computer, which
+/// delays all frames, does not change this.
 Duration slowness(const History& history) {
   return history.period().value_or(Duration{0}) + history.habit()->least_delay;
 }
 
-/// The sensor that is waited for however slow others are: the median, of two the quicker one.  If
-/// none has depth, at least the second, because one camera alone makes no body.
+/// Index, in order of slowness, of the sensor that is always waited for: the median; of two, the
+/// quicker one.  If no sensor has depth, at least the second, because one camera alone makes no
+/// body.
 std::size_t middle(std::size_t count, bool rays) {
   const std::size_t least = rays ? std::min(count, kCameras) - 1 : 0;
   return std::max((count - 1) / 2, least);
@@ -62,7 +63,7 @@ AlignConfig Patience::of(const History& history) const {
   own.patience = patience_;
   const auto& habit = history.habit();
   if (!habit || all_needed_) return own;
-  // A slow sensor's pictures queue; its delay naturally varies by about half a period.
+  // A slow sensor's pictures queue, so its delay naturally varies by about half a period.
   const Duration steady = std::max(steady_, history.period().value_or(Duration{0}) / 2);
   if (habit->spread() > steady) own.patience = std::min(own.patience, common_);
   return own;

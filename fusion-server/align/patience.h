@@ -11,24 +11,24 @@ namespace chorus::align {
 
 class Patience {
  public:
-  /// From the habits of all sensors that take part.
+  /// `histories`: of all sensors that take part.
   Patience(const std::map<SensorId, const History*>& histories, const AlignConfig& config);
 
-  /// `config` with the patience for this sensor: the full patience, or what the others usually need
-  /// if this one is unsteady compared with them (on a busy machine the delays of all vary, and none
-  /// is to blame).
+  /// `config` with the patience for this sensor: the full patience or, if this sensor is unsteady
+  /// compared with the others, what the others usually need.  (On a busy machine the delays of all
+  /// sensors vary, and none is unsteady.)
   [[nodiscard]] AlignConfig of(const History& history) const;
 
-  /// How much longer than `config.patience` an instant may wait, because most of the sensors are
+  /// How much longer than `config.patience` an instant may wait because most of the sensors are
   /// slow.
   [[nodiscard]] Duration extension() const { return patience_ - config_.patience; }
 
  private:
   AlignConfig config_;
-  Duration patience_;        ///< For steady sensors.
+  Duration patience_;        ///< The patience for steady sensors.
   Duration common_;          ///< The median of what the sensors usually need.
   Duration steady_;          ///< A sensor with a wider spread is unsteady.
-  bool all_needed_ = false;  ///< Without all of them there is no body.
+  bool all_needed_ = false;  ///< True if a body needs all of them.
 };
 
 }  // namespace chorus::align

@@ -6,10 +6,11 @@
 namespace chorus::associate {
 namespace {
 
-constexpr double kTooNear = 0.8;         // [m] nobody is tracked nearer than this
-constexpr double kGirth = 0.4;           // [m] a person this close to a line of sight blocks it
-constexpr std::size_t kMostMissing = 2;  // per sensor that sees it; with more it is not admitted
-constexpr double kOtherSide = 0.5;  // cosine of the least angle between sensors on different sides
+constexpr double kTooNear = 0.8;  // [m]; nobody is tracked nearer than this.
+constexpr double kGirth = 0.4;    // [m]; a person this close to a line of sight blocks it.
+// Per sensor that sees the track; with more it is not admitted.
+constexpr std::size_t kMostMissing = 2;
+constexpr double kOtherSide = 0.5;  // Cosine of the least angle between sensors on different sides.
 
 using Plan = Eigen::Vector2d;
 
@@ -48,7 +49,7 @@ void Admission::judge(Track& track) const {
   track.admitted = track.alone >= config_.alone;
 }
 
-/// Whether the observer would certainly see a person standing at `place`.
+/// True if the observer would certainly see a person standing at `place`.
 bool Admission::looks_at(const Observer& observer, const Eigen::Vector3d& place) const {
   const Eigen::Vector3d seen = observer.world_from_sensor.inverse() * place;
   const double distance = seen.norm();
@@ -56,7 +57,7 @@ bool Admission::looks_at(const Observer& observer, const Eigen::Vector3d& place)
          seen.z() >= distance * std::cos(config_.look_angle);
 }
 
-/// Whether a person seen by the observer blocks its line of sight to `place`.
+/// True if a person seen by the observer blocks its line of sight to `place`.
 bool Admission::hidden_from(const Observer& observer, const Eigen::Vector3d& place) const {
   const Plan eye = on_floor(observer.world_from_sensor.translation());
   const Plan way = on_floor(place) - eye;
@@ -87,7 +88,8 @@ bool Admission::seen_through(const Track& track, const Eigen::Vector3d& place) c
   return false;
 }
 
-/// The observer looks at the track's expected place, but sees no body that could belong to it.
+/// True if the observer looks at the place where the track is expected, but sees no body that could
+/// belong to it.
 bool Admission::misses(const Observer& observer, const Track& track,
                        const Eigen::Vector3d& place) const {
   if (!looks_at(observer, place)) return false;
@@ -99,7 +101,7 @@ bool Admission::misses(const Observer& observer, const Track& track,
   return !sees_somebody && !hidden_from(observer, place);
 }
 
-/// Several other sensors see a body in this sensor's view that this sensor does not see.
+/// True if several other sensors see a person in this sensor's view whom this sensor does not see.
 bool Admission::misplaces(const SensorId& sensor) const {
   const auto own = std::ranges::find(observers_, sensor, &Observer::sensor);
   if (own == observers_.end()) return false;
@@ -116,7 +118,7 @@ const std::vector<Assigned>& Admission::bodies_of(const SensorId& sensor) const 
   return bodies == bodies_.end() ? kNone : bodies->second;
 }
 
-/// How many new bodies only this sensor sees.
+/// Number of new bodies that only this sensor sees.
 std::int64_t Admission::alone_in(const SensorId& sensor) const {
   return std::ranges::count_if(bodies_of(sensor), [&](const Assigned& body) {
     return !body.settled && tracks_.at(body.track).size() == 1;

@@ -1,8 +1,8 @@
-// Whether a new track may be published: a body that only one sensor sees, at a place where other
-// sensors look and see nobody, has to wait.
+// Decides whether a new track may be published.  A body that only one sensor sees, at a place where
+// other sensors look and see nobody, has to wait.
 //
-// Such bodies come from furniture, mirrors, and sensors that stand elsewhere than registered.  A
-// sensor looks at a cone about its optical axis; a person in front of a place hides it.
+// Such bodies come from furniture, mirrors, and sensors that are not where they were registered.  A
+// sensor looks into a cone about its optical axis; a person in front of a place hides the place.
 #pragma once
 
 #include <map>
@@ -12,12 +12,12 @@
 
 namespace chorus::associate {
 
-/// A body at the instant and the track it was assigned to.
+/// A body at the instant, and the track to which it was assigned.
 struct Assigned {
   SensorId sensor;
   Eigen::Vector3d core = Eigen::Vector3d::Zero();  ///< World [m].
   PersonId track;
-  bool settled = false;  ///< The track is already published.
+  bool settled = false;  ///< True if the track is published already.
 };
 
 class Admission {
@@ -26,15 +26,16 @@ class Admission {
   Admission(const std::vector<Observer>& observers, const std::vector<Assigned>& bodies,
             Duration elapsed, const AssociationConfig& config);
 
-  /// Sets `admitted` when a second sensor sees the track, and not twice as many miss it; or when it
-  /// is confirmed and no sensor that looks there has missed it; or when one sensor alone has seen
-  /// it for config.alone.  That time runs n times slower while its sensor has n such bodies, and
-  /// stops while its sensor misses a person whom others see in its view (the body is then taken for
-  /// that person, misplaced), and while others see through it.
+  /// Sets `admitted` in three cases: a second sensor sees the track, and not more than twice as
+  /// many sensors miss it; or the track is confirmed, and no sensor that looks there has missed it;
+  /// or one sensor alone has seen it for config.alone.  That time runs n times slower while the
+  /// sensor has n such bodies.  It stops while the sensor misses a person whom others see in its
+  /// view (then the body is taken for that person, misplaced), and while others see through the
+  /// body.
   void judge(Track& track) const;
 
-  /// Sensors on different sides look at `place` and see nobody there who could be that track:
-  /// nothing can occlude it from all of them.
+  /// True if sensors on different sides look at `place` and see nobody there who could be that
+  /// track. Then the person is not there: nothing can hide a place from all sides.
   [[nodiscard]] bool seen_through(const Track& track, const Eigen::Vector3d& place) const;
 
  private:

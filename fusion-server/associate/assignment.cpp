@@ -7,11 +7,11 @@
 namespace chorus::associate {
 namespace {
 
-constexpr std::size_t kFree = 0;  // rows and columns are counted from one; 0: unassigned
+constexpr std::size_t kFree = 0;  // Rows and columns are counted from one; 0: unassigned.
 
 /// Shortest augmenting paths with potentials.  The shorter side becomes the rows, so that every row
-/// gets a column; a forbidden pair costs as much as leaving both unpaired, or else more than all
-/// allowed pairs together.
+/// gets a column.  A forbidden pair costs as much as leaving both unpaired or, if that is infinite,
+/// more than all allowed pairs together.
 class Hungarian {
  public:
   explicit Hungarian(const CostTable& table)
@@ -28,7 +28,7 @@ class Hungarian {
     for (std::size_t row = 1; row <= rows_; ++row) add(row);
   }
 
-  /// Calls `take(row, column)` for each pair, with indices into the table.
+  /// Calls `take(row, column)` for each pair, with the table's indices.
   template <class Take>
   void visit(const Take& take) const {
     for (std::size_t column = 1; column <= columns_; ++column) {
@@ -58,7 +58,8 @@ class Hungarian {
     }
   }
 
-  /// Visits `column`, updates the distances of the others, returns the nearest unvisited one.
+  /// Visits `column`, updates the distances of the others, and returns the nearest unvisited
+  /// column.
   std::size_t step(std::size_t column) {
     visited_[column] = true;
     const std::size_t row = row_of_[column];

@@ -8,14 +8,14 @@
 
 namespace chorus::associate {
 
-/// Row-major costs; a pair costing more than `gate` (or NaN) is never made.
+/// Costs, row by row; a pair that costs more than `gate` (or NaN) is never made.
 struct CostTable {
   std::size_t rows = 0;
   std::size_t columns = 0;
   std::vector<double> cost;
   double gate = 0.0;
-  /// Cost of a row or column of the shorter side that is left unpaired; infinite: as many allowed
-  /// pairs as possible are made.
+  /// Cost of leaving a row or column of the shorter side unpaired; infinite: as many allowed pairs
+  /// as possible are made.
   double unpaired = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] double at(std::size_t row, std::size_t column) const {
@@ -23,7 +23,7 @@ struct CostTable {
   }
 };
 
-/// The column of each row, or none.
+/// The column assigned to each row; none if the row is unpaired.
 [[nodiscard]] std::vector<std::optional<std::size_t>> assign(const CostTable& table);
 
 }  // namespace chorus::associate

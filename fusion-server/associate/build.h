@@ -1,7 +1,7 @@
 // A person's build: lengths between joints, by which the person is recognised.
 //
-// Logarithms of lengths, so that a larger body differs by the same amount in all of them.  Left and
-// right are averaged, so exchanged sides change nothing.
+// The build is stored as logarithms of lengths, so a larger body differs by the same amount in each
+// of them.  Left and right are averaged, so exchanging them changes nothing.
 #pragma once
 
 #include <array>
@@ -14,22 +14,23 @@
 
 namespace chorus::associate {
 
-/// Trunk, neck and head, shoulders, upper arm, forearm, thigh, shank.
+/// The lengths: trunk, neck and head, shoulders, upper arm, forearm, thigh, shank.
 inline constexpr std::size_t kSpans = 7;
 
 /// The lengths at one instant.
 struct Spans {
-  std::array<std::optional<double>, kSpans> length{};  ///< [ln m]; none: its ends were not tracked.
-  double views = 0.0;                                  ///< Number of views averaged.
+  /// [ln m]; none if the ends were not tracked.
+  std::array<std::optional<double>, kSpans> length{};
+  double views = 0.0;  ///< Number of views averaged.
 };
 
-/// Mean over the views that track both ends.  Ray views have no lengths; where there are only
-/// those, the points in `met`, where their rays meet, are used.
+/// The mean over the views that track both ends of a length.  Ray views have no lengths; where
+/// there are no others, the points `met`, at which their rays meet, are used.
 [[nodiscard]] Spans spans_of(std::span<const PlacedView> views, const Located& met);
 
 struct Build {
   std::array<double, kSpans> mean{};   ///< [ln m]
-  std::array<double, kSpans> sight{};  ///< How long each was observed [s], at most a minute.
+  std::array<double, kSpans> sight{};  ///< How long each length was observed [s]; at most a minute.
   double views = 0.0;                  ///< Average number of views.
 
   /// Adds the lengths of one instant that lasts for `elapsed` [s].
@@ -37,11 +38,11 @@ struct Build {
   void add(const Build& other);
 };
 
-/// How long the person was observed [s]: the median over the lengths.
+/// How long the person's build was observed [s]: the median over the lengths.
 [[nodiscard]] double sight_of(const Build& build);
 
-/// Log likelihood ratio of these lengths: both are one person, against they are any two people; 0
-/// when they have no length in common.
+/// Log likelihood ratio of two builds: they are of one person, against they are of any two people;
+/// 0 when they have no length in common.
 [[nodiscard]] double likeness(const Build& one, const Build& other);
 
 }  // namespace chorus::associate

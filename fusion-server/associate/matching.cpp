@@ -13,13 +13,14 @@
 namespace chorus::associate {
 namespace {
 
-constexpr int kRounds = 3;          // after each, sensors use each other's matches
-constexpr double kOwnWeight = 1.0;  // of a track's expected place, against one sensor's view of it
-constexpr double kSizeReach = 0.5;  // [m] cost of a body that is larger by a factor of e
-constexpr double kKnown = 1.0;      // [s] of sight; from then on a build is informative
-constexpr double kDoubtful = 0.3;   // fraction of the gate added to the cost of unpublished tracks
+constexpr int kRounds = 3;  // After each round, sensors use each other's matches.
+// The weight of the place where a track is expected; one sensor's view of the person has weight 1.
+constexpr double kOwnWeight = 1.0;
+constexpr double kSizeReach = 0.5;  // [m]; cost of a body that is larger by a factor of e.
+constexpr double kKnown = 1.0;      // [s] of sight, from which on a build is informative.
+constexpr double kDoubtful = 0.3;   // Cost added for unpublished tracks, as a share of the gate.
 
-/// A view that is being matched.
+/// A view while it is being matched.
 struct Loose {
   PlacedView view;
   Spans spans;
@@ -28,7 +29,7 @@ struct Loose {
 
 using BySensor = std::map<SensorId, std::vector<Loose>>;
 
-/// Log ratio of the body's size to the track's known size.
+/// Log ratio of the body's size to the known size of the track's person.
 double size_difference(const Spans& spans, const Build& build) {
   double sum = 0.0;
   double count = 0.0;
@@ -40,7 +41,7 @@ double size_difference(const Spans& spans, const Build& build) {
   return count > 0 ? sum / count : 0.0;
 }
 
-/// Places of the tracks, as predicted and as seen by the other sensors.
+/// Where the tracks are: as expected and as the other sensors see them.
 class Places {
  public:
   explicit Places(const std::vector<Candidate>& candidates) {
@@ -62,7 +63,7 @@ class Places {
   std::vector<Sum> sums_;
 };
 
-/// Distance of a body from a track, in units of its gate; NaN when it cannot be told.
+/// Distance of a body from a track, in units of the track's gate; NaN when it cannot be computed.
 double cost_of(const Loose& loose, const Candidate& candidate, const Eigen::Vector3d& place) {
   const PlacedView& body = loose.view;
   if (!body.rays) {
@@ -79,7 +80,7 @@ double cost_of(const Loose& loose, const Candidate& candidate, const Eigen::Vect
   return off ? *off / candidate.gate : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Assigns one sensor's bodies to the tracks; returns whether anything changed.
+/// Assigns one sensor's bodies to the tracks; true if anything changed.
 bool assign_sensor(std::vector<Loose>& bodies, const std::vector<Candidate>& candidates,
                    const Places& places) {
   CostTable table{bodies.size(), candidates.size(), {}, 1.0, 1.0};
@@ -124,7 +125,8 @@ void assign_all(BySensor& sensors, const std::vector<Candidate>& candidates) {
   }
 }
 
-/// Complete linkage: distance to the farthest member; none when the sensor already has a member.
+/// Complete linkage: distance of the view to the farthest member; none when its sensor has a member
+/// already.
 std::optional<double> linkage(const std::vector<PlacedView>& cluster, const PlacedView& view) {
   if (has_sensor(cluster, view.view.sensor)) return std::nullopt;
   double farthest = 0.0;

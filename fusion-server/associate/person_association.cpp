@@ -13,11 +13,14 @@
 namespace chorus::associate {
 namespace {
 
-constexpr std::size_t kMaxTracks = 256;                      // Four times what a frame holds.
-constexpr Duration kCoastUnknown = std::chrono::seconds(1);  // of tracks that were never published
-constexpr Duration kGone = std::chrono::milliseconds(200);   // seen through for this long: has left
+constexpr std::size_t kMaxTracks = 256;  // Four times what a frame may contain.
+// How long a track that was never published is looked for.
+constexpr Duration kCoastUnknown = std::chrono::seconds(1);
+// A person through whose place sensors have seen for this long has left.
+constexpr Duration kGone = std::chrono::milliseconds(200);
 
-/// Ordered by sensor and body, so that the result does not depend on the order of arrival.
+/// The views with their cores, ordered by sensor and body, so that the result does not depend on
+/// the order of arrival.
 std::vector<PlacedView> placed_views(std::vector<SensorView> views) {
   std::vector<PlacedView> sights;
   for (SensorView& view : views) {
@@ -55,8 +58,8 @@ std::vector<Candidate> expected(Tracks& tracks, Timestamp instant,
   return candidates;
 }
 
-/// Ignores a new body near a person of whom its sensor already has a body: it is a second detection
-/// of them, as long as no other sensor has two there.
+/// Removes a new body near a person of whom its sensor has a body already: it is a second detection
+/// of that person, unless another sensor has two there as well.
 void drop_rivals(std::vector<std::vector<PlacedView>>& newcomers,
                  const std::vector<Candidate>& candidates, double limit) {
   std::erase_if(newcomers, [&](const std::vector<PlacedView>& members) {
@@ -72,20 +75,20 @@ bool share_a_sensor(const Candidate& a, const Candidate& b) {
                      [&](const PlacedView& s) { return has_sensor(b.sights, s.view.sensor); });
 }
 
-/// Both are seen at the same spot at this instant, but by different sensors.
+/// True if both are seen at one spot at this instant, but by different sensors.
 bool on_one_spot(const Candidate& a, const Candidate& b, double limit) {
   return !a.sights.empty() && !b.sights.empty() && !share_a_sensor(a, b) &&
          horizontal_distance(a.track.core, b.track.core) <= limit;
 }
 
-/// Published tracks first; within each group the older first (ids only grow).
+/// Orders published tracks first; within each group the older first (ids only grow).
 void seniors_first(std::vector<Candidate>& candidates, const AssociationConfig& config) {
   std::stable_partition(candidates.begin(), candidates.end(), [&](const Candidate& candidate) {
     return is_settled(candidate.track, config);
   });
 }
 
-/// Of two tracks on the same spot the first in this order keeps the person.
+/// Merges tracks on one spot; the first in seniors_first() keeps the person.
 void merge_doubles(std::vector<Candidate>& candidates, const AssociationConfig& config) {
   seniors_first(candidates, config);
   for (std::size_t i = 1; i < candidates.size(); ++i) {
@@ -105,7 +108,7 @@ void merge_doubles(std::vector<Candidate>& candidates, const AssociationConfig& 
   }
 }
 
-/// Removes people who are not where several sensors look: they have left.
+/// Removes people who are not where several sensors look, because they have left.
 void leave(std::vector<Candidate>& candidates, const Admission& admission, Duration elapsed,
            Tracks& tracks) {
   std::erase_if(candidates, [&](Candidate& candidate) {
@@ -132,7 +135,8 @@ void admit(std::vector<Candidate>& candidates, const std::vector<Observer>& obse
   leave(candidates, admission, elapsed, tracks);
 }
 
-/// Keeps as many as a frame holds; false bodies must not displace people whom several sensors see.
+/// Keeps as many people as a frame may contain; false bodies must not displace people whom several
+/// sensors see.
 void keep_the_best(std::vector<Person>& people) {
   if (people.size() <= kMaxBodies) return;
   std::stable_partition(people.begin(), people.end(),
@@ -142,7 +146,7 @@ void keep_the_best(std::vector<Person>& people) {
             [](const Person& a, const Person& b) { return a.id < b.id; });
 }
 
-/// A person with their views; one whom nobody sees is placed where they are expected.
+/// A person with all views; one whom nobody sees is placed where they are expected.
 Person person_of(Candidate& candidate) {
   Person person{candidate.track.id, {}};
   if (candidate.sights.empty()) person.carried = candidate.predicted;
@@ -155,14 +159,14 @@ std::vector<Person> published(std::vector<Candidate>& candidates, Timestamp inst
   std::vector<Person> people;
   for (Candidate& candidate : candidates) {
     const Track& track = candidate.track;
-    const bool placed = instant - track.seen <= config.carry;  // a single ray body gives no place
+    const bool placed = instant - track.seen <= config.carry;  // A single ray body gives no place.
     if (placed && track.named && is_settled(track, config)) people.push_back(person_of(candidate));
   }
   keep_the_best(people);
   return people;
 }
 
-/// Moves the ray bodies out of `views` and returns them.
+/// Moves the ray bodies out of `views`, and returns them.
 std::vector<PlacedView> taken_rays(std::vector<PlacedView>& views) {
   const auto rays = std::stable_partition(views.begin(), views.end(),
                                           [](const PlacedView& view) { return !view.rays; });
@@ -172,7 +176,7 @@ std::vector<PlacedView> taken_rays(std::vector<PlacedView>& views) {
   return taken;
 }
 
-/// Makes a candidate of each group of views, with the places of its joints.
+/// Makes a candidate of each group of views, with the places of the joints.
 std::vector<Candidate> found(std::vector<std::vector<PlacedView>> people, std::uint64_t& next_id,
                              const AssociationConfig& config) {
   std::vector<Candidate> candidates;
@@ -189,7 +193,7 @@ std::vector<Candidate> found(std::vector<std::vector<PlacedView>> people, std::u
   return candidates;
 }
 
-/// Founds people from the views that fit no track.
+/// Makes new people of the views that fit no track.
 std::vector<Candidate> newcomers(std::vector<PlacedView> views,
                                  const std::vector<Candidate>& candidates, std::uint64_t& next_id,
                                  const AssociationConfig& config) {

@@ -1,13 +1,13 @@
-// Which bodies of which sensors are the same person, now and over time.
+// Decides which bodies of which sensors are the same person, now and over time.
 //
-// At each instant, the expected places of tracks are matched with the bodies of all sensors jointly
+// At each instant, the bodies of all sensors are matched jointly with where tracks are expected
 // (matching.h); the remaining bodies are clustered across sensors into new people.  Two tracks on
-// one spot that never share a sensor are one person; the older one stays.  A person whom only one
+// one spot that never share a sensor are one person; the older track stays.  A person whom only one
 // sensor sees where others look is not published at once (admission.h).  People who are not seen
-// are looked for where they should be; those who left are remembered and recognised by their build
-// (recognition.h).  Ray bodies of cameras without depth are matched by how far their rays pass from
-// the joints of a track (ray_matching.h); one alone starts no track and keeps none alive.  Ids are
-// never reused.
+// are looked for where they are expected.  Those who left are remembered, and recognised by their
+// build (recognition.h).  Ray bodies of cameras without depth are matched by how far their rays
+// pass from the joints of a track (ray_matching.h); a single ray body starts no track and keeps
+// none alive.  Ids are never reused.
 #pragma once
 
 #include <vector>
@@ -19,23 +19,24 @@
 namespace chorus::associate {
 
 struct Grouping {
-  /// Confirmed, admitted and named people, ordered by id, seen or predicted; at most as many as a
-  /// frame holds, preferring those whom several sensors see.
+  /// The confirmed, admitted and named people, seen or expected, ordered by id.  At most as many as
+  /// a frame holds; then those whom several sensors see are preferred.
   std::vector<Person> people;
   Tracks tracks;
 };
 
-/// A registered sensor that has delivered for an instant, whether it saw anybody or not.
+/// A registered sensor that has delivered a frame for the instant, even if it saw nobody.
 struct Observer {
   SensorId sensor;
   Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
 };
 
-/// Each view holds a world skeleton of one body; two views of one sensor are never one person.
+/// All bodies at one instant: each view contains the world skeleton of one body.  Two views of the
+/// same sensor are never one person.
 struct Scene {
   Timestamp instant;
   std::vector<SensorView> views;
-  std::vector<Observer> observers = {};  ///< If empty, nobody has to wait.
+  std::vector<Observer> observers = {};  ///< If empty, no body has to wait for admission.
 };
 
 [[nodiscard]] Grouping group(Scene scene, const Tracks& tracks, const AssociationConfig& config);

@@ -5,12 +5,13 @@
 
 namespace chorus::associate {
 
-/// Bodies without any given joint have no core and are left out.
+/// One body.  Bodies without any given joint have no core and are left out.
 struct PlacedView {
   SensorView view;
-  /// Mean of the core joints, world [m]; of a ray body that of the track it was assigned to.
+  /// Mean of the core joints, world [m]; for a ray body, the core of the track to which it was
+  /// assigned.
   Eigen::Vector3d core = Eigen::Vector3d::Zero();
-  bool rays = false;  ///< A ray body: all its joints are rays, so it has no place of its own.
+  bool rays = false;  ///< True for a ray body: it has no place by itself.
 };
 
 }  // namespace chorus::associate

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kManyJoints = 10;
 
-/// FNV-1a over the bytes of all given positions and rays.
+/// FNV-1a of the coordinates of all points and rays.
 std::uint64_t hash_of(const Skeleton<SensorSpace>& body) {
   std::uint64_t hash = 14695981039346656037ULL;
   for (const Joint& joint : body.joints) {

@@ -1,4 +1,4 @@
-// Refuses bodies that cannot be a person's before they are used, and gives the reason.
+// Refuses bodies that cannot be a person's before anything uses them, and gives the reason.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,23 @@ namespace chorus::associate {
 struct BodyLimits {
   double max_range = 12.0;  ///< From the sensor to the middle of the body [m].
   double max_reach = 2.0;   ///< From the middle of the body to any of its joints [m].
-  double min_reach = 0.15;  ///< The farthest of ten or more joints is at least this far [m].
-  /// A real sensor never measures the same coordinates to the last digit for this long.
+  /// The farthest joint is at least this far from the middle, if there are ten or more [m].
+  double min_reach = 0.15;
+  /// How long a body may keep exactly the same coordinates; a real sensor never measures these
+  /// twice.
   Duration max_frozen = std::chrono::seconds(2);
 
   bool operator==(const BodyLimits&) const = default;
 };
 
-/// Why this cannot be a person's body, as text for people; empty: it can.
+/// Human-readable: why this cannot be a person's body; empty if it can.
 [[nodiscard]] std::string_view implausible(const Skeleton<SensorSpace>& body,
                                            const BodyLimits& limits);
 
-/// Watches one sensor's bodies for identical coordinates under new time stamps.
+/// Finds bodies of one sensor that have identical coordinates under new time stamps.
 class FrozenBodies {
  public:
-  /// Removes from the frame the bodies that have been frozen for too long; returns how many.
+  /// Removes bodies that have been frozen for too long; returns their number.
   std::size_t remove_from(SensorFrame& frame, const BodyLimits& limits);
 
  private:
@@ -34,7 +36,7 @@ class FrozenBodies {
     std::uint64_t coordinates = 0;  ///< A hash of the coordinates.
     Timestamp since;                ///< Capture of the first frame that had them.
   };
-  std::map<BodyId, Still> bodies_;  ///< Of the last frame.
+  std::map<BodyId, Still> bodies_;  ///< The bodies of the last frame.
 };
 
 }  // namespace chorus::associate

@@ -11,9 +11,9 @@
 namespace chorus::associate {
 namespace {
 
-constexpr std::size_t kEnough = 3;      // joints needed to decide
-constexpr std::size_t kMaxNew = 64;     // views considered at one instant; the others wait
-constexpr std::size_t kMaxPairs = 256;  // hypotheses considered, best first
+constexpr std::size_t kEnough = 3;      // Number of joints needed to decide.
+constexpr std::size_t kMaxNew = 64;     // Views considered at one instant; the others have to wait.
+constexpr std::size_t kMaxPairs = 256;  // Hypotheses considered, best first.
 
 Ray ray_of(const SensorView& view, JointId joint) {
   return {view.eye, view.skeleton[joint].position};
@@ -24,7 +24,7 @@ std::optional<double> median_of(std::vector<double> values) {
   return median(std::move(values));
 }
 
-/// Median distance between the two rays of each joint that both views show as a ray [m].
+/// Median distance [m] between the two rays of each joint that both views show as a ray.
 std::optional<double> apart(const SensorView& a, const SensorView& b) {
   std::vector<double> distances;
   for (std::size_t i = 0; i < kJointCount; ++i) {
@@ -35,7 +35,7 @@ std::optional<double> apart(const SensorView& a, const SensorView& b) {
   return median_of(std::move(distances));
 }
 
-/// Neither farther from a camera nor larger than a person can be.
+/// True if the body is not farther from a camera and not larger than a person can be.
 bool is_plausible(const Located& body, std::span<const PlacedView> views,
                   const BodyLimits& limits) {
   const auto core = middle_of(body);
@@ -50,7 +50,7 @@ bool is_plausible(const Located& body, std::span<const PlacedView> views,
   return reach >= limits.min_reach && reach <= limits.max_reach;
 }
 
-/// Two views that may show the same person, and all other views that agree.
+/// Two views that may show the same person, and all other views that agree with them.
 struct Hypothesis {
   std::vector<std::size_t> views;  ///< One per sensor.
   double misfit = 0.0;             ///< Mean over the views [m].

@@ -8,14 +8,18 @@ namespace chorus::associate {
 namespace {
 
 constexpr std::size_t kMostMissing = 64;
-constexpr double kGlance = 1.5;       // [s] of sight in all views, until builds exclude people
-constexpr double kManyViews = 4.0;    // with this many views that much less is needed
-constexpr double kImpossible = -4.0;  // log odds at which they are excluded
-constexpr double kContinuity = 1.5;   // prior log odds that one found where expected is the lost
-constexpr double kUnlikely = -0.5;    // log odds at which a person lost and found loses the id
-constexpr Duration kNoBones = std::chrono::seconds(2);  // nobody's build is waited for longer
+// [s] of sight, summed over the views, from which on builds can exclude people.
+constexpr double kGlance = 1.5;
+// With n times as many views as this, an n-th of the time is enough to recognise somebody.
+constexpr double kManyViews = 4.0;
+constexpr double kImpossible = -4.0;  // Log odds at which a person is excluded.
+// Prior log odds that a person found at the expected place is the lost one.
+constexpr double kContinuity = 1.5;
+constexpr double kUnlikely = -0.5;  // Log odds at which a person lost and found loses the id.
+constexpr Duration kNoBones = std::chrono::seconds(2);  // Nobody's build is waited for longer.
 
-/// Not those whose id somebody has just been given back: they are about to be erased.
+/// True if the track's person is missing.  A candidate without an id has just given it back, and is
+/// about to be erased.
 bool has_left(const Candidate& candidate) {
   return candidate.track.id != PersonId{} && candidate.sights.empty() &&
          (candidate.track.named || candidate.track.before);
@@ -25,7 +29,7 @@ Missing missing_of(const Track& track) {
   return {track.id, track.before ? track.lost : track.seen, track.before.value_or(track.build)};
 }
 
-/// The missing people whom a track found at that time may be.
+/// The missing people that a track found at that time may be.
 std::vector<Missing> missing_before(Timestamp found, const std::vector<Candidate>& candidates,
                                     const Tracks& tracks) {
   std::vector<Missing> all = tracks.missing;
@@ -36,14 +40,14 @@ std::vector<Missing> missing_before(Timestamp found, const std::vector<Candidate
   return all;
 }
 
-/// Whether the build was seen long enough to decide whether two people are the same.
+/// True if the build was seen long enough to decide whether two people are the same.
 bool is_looked_at(const Build& build, const AssociationConfig& config) {
   return sight_of(build) * std::max(1.0, build.views / kManyViews) >= seconds(config.recognise);
 }
 
 bool is_glance(const Build& build) { return sight_of(build) * build.views >= kGlance; }
 
-/// The likeliest person; `odds`: their log odds.
+/// The person that a build most likely belongs to; `odds` are log odds.
 struct Likeliest {
   std::optional<PersonId> id;
   double odds = 0.0;
@@ -58,7 +62,7 @@ Likeliest likeliest_of(const Build& build, const std::vector<Missing>& missing) 
   return best;
 }
 
-/// The track takes over a missing person's id.
+/// Gives a missing person's id to the track.
 void become(Track& track, PersonId id, std::vector<Candidate>& candidates, Tracks& tracks) {
   for (Missing& each : tracks.missing) {
     if (each.id == id) track.build.add(each.build);
@@ -67,12 +71,13 @@ void become(Track& track, PersonId id, std::vector<Candidate>& candidates, Track
   for (Candidate& each : candidates) {
     if (each.track.id != id || !has_left(each)) continue;
     track.build.add(missing_of(each.track).build);
-    each.track.id = PersonId{};  // this one is removed
+    each.track.id = PersonId{};  // This candidate is removed later.
   }
   track.id = id;
 }
 
-/// Whether it is known now who a newcomer is; if so, the track has that person's id.
+/// Gives a newcomer the id of the missing person that they are, if they are one.  True once that is
+/// settled: they were recognised, are new, or it takes too long.
 bool name(Candidate& candidate, std::vector<Candidate>& candidates, Tracks& tracks,
           const AssociationConfig& config) {
   Track& track = candidate.track;
@@ -88,7 +93,7 @@ bool name(Candidate& candidate, std::vector<Candidate>& candidates, Tracks& trac
   return looked_at || new_to_all || track.seen - track.found > kNoBones + config.recognise;
 }
 
-/// Compares the build of a person lost and found with that of the lost one.
+/// Compares the build of a person lost and found with that of the lost person.
 void question(Track& track, Tracks& tracks, const AssociationConfig& config) {
   const double odds = kContinuity + likeness(*track.before, track.build);
   const bool looked_at = is_looked_at(track.build, config);

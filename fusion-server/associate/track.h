@@ -1,4 +1,4 @@
-// What association remembers of people between two instants.
+// What association remembers about people from one instant to the next.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace chorus::associate {
 
-/// A sensor's body at an instant, from which motion is computed.
+/// A sensor's body at an instant, kept to compute motion from.
 struct Footprint {
   SensorId sensor;
   BodyId body;
@@ -21,23 +21,28 @@ struct Footprint {
 struct Track {
   PersonId id;
   Timestamp found;                                     ///< First instant with a view.
-  Timestamp seen;                                      ///< Last instant with a view of it.
+  Timestamp seen;                                      ///< Last instant with a view.
   int hits = 0;                                        ///< Number of instants with a view.
   Eigen::Vector3d core = Eigen::Vector3d::Zero();      ///< Mean of the core joints, world [m].
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
-  std::vector<Footprint> footprints = {};              ///< At the instant when it was last seen.
-  int shadowed = 0;  ///< Consecutive instants on an older track's spot without a common sensor.
-  Located joints;    ///< Where its joints were then; known while cameras show rays.
-  bool admitted = false;  ///< It may be published; once admitted, always.
-  bool doubted = false;   ///< Another sensor looked at its place and saw nobody.
-  Duration alone{0};      ///< How long only one sensor has seen it since then.
-  Duration through{0};    ///< How long sensors have seen through its expected place.
-  Build build = {};       ///< Measured since it was found, or found again.
-  /// Set if it was lost and found: the build of the lost person, and when it was lost.  Whether the
-  /// two are the same person is not known yet.
+  /// The bodies that sensors showed when the person was last seen.
+  std::vector<Footprint> footprints = {};
+  /// Number of consecutive instants at an older track's spot without a common sensor.
+  int shadowed = 0;
+  Located joints;         ///< Where the joints were when last seen; known while cameras show rays.
+  bool admitted = false;  ///< True if the track may be published; it stays true.
+  /// True if another sensor has looked at the person's place and seen nobody.
+  bool doubted = false;
+  Duration alone{0};  ///< How long only one sensor has seen the person since `doubted` became true.
+  /// How long sensors have seen through the place where the person is expected.
+  Duration through{0};
+  Build build = {};  ///< Observed since the person was found, or found again.
+  /// Set if the person was lost and found: the build of the lost one; `lost` is when they were
+  /// lost.  It is not decided yet whether the two are the same person.
   std::optional<Build> before = {};
   Timestamp lost = {};
-  /// The id is final as far as is known: the person is no missing one, or a recognised one.
+  /// True if the id is final as far as known: the person is not missing anywhere, or was
+  /// recognised.
   bool named = false;
 };
 
@@ -50,16 +55,16 @@ struct Missing {
 
 struct Tracks {
   std::uint64_t next_id = 1;
-  Timestamp instant;  ///< The last instant that was grouped.
+  Timestamp instant;  ///< The last instant that group() has processed.
   std::vector<Track> people;
-  std::vector<Missing> missing = {};  ///< In the order of leaving.
+  std::vector<Missing> missing = {};  ///< In the order in which they left.
 };
 
 /// A track while its instant is being processed.
 struct Candidate {
   Track track;
-  Eigen::Vector3d predicted = Eigen::Vector3d::Zero();  ///< Where its core should be [m].
-  double gate = 0.0;  ///< How far from there it is looked for [m].
+  Eigen::Vector3d predicted = Eigen::Vector3d::Zero();  ///< Where the core is expected [m].
+  double gate = 0.0;  ///< How far from there the person is looked for [m].
   std::vector<PlacedView> sights = {};
 };
 

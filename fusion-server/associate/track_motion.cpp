@@ -10,12 +10,13 @@
 namespace chorus::associate {
 namespace {
 
-constexpr double kVelocityBlend = 0.2;  // exponential smoothing factor; ~0.15 s at 30 Hz
-constexpr double kFastest = 4.0;        // [m/s] a sprint; limits the harm of one wrong view
-constexpr double kKnown = 0.5;          // [s] of sight, from which builds can be compared
-constexpr double kLongest = 0.1;        // [s] the longest time that one instant counts for
+constexpr double kVelocityBlend = 0.2;  // Exponential smoothing factor; about 0.15 s at 30 Hz.
+constexpr double kFastest = 4.0;        // [m/s], a sprint; limits the effect of one wrong view.
+constexpr double kKnown = 0.5;          // [s] of sight, from which on builds can be compared.
+constexpr double kLongest = 0.1;        // [s]; the longest time for which one instant counts.
 
-/// Mean of the views that have a place, else where the rays meet; nothing for a single ray body.
+/// Mean of the views that have a place or, if there are none, the point where the rays meet; none
+/// for a single ray body.
 std::optional<Eigen::Vector3d> centre_of(const Candidate& candidate) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double count = 0.0;
@@ -45,7 +46,8 @@ std::vector<Footprint> footprints_of(const std::vector<PlacedView>& sights) {
   return prints;
 }
 
-/// Mean displacement of the joints that the same bodies have in both; nothing: there are none.
+/// Mean displacement of the joints that the same bodies have in both; none if there are no such
+/// joints.
 std::optional<Eigen::Vector3d> way_between(const std::vector<Footprint>& before,
                                            const std::vector<Footprint>& now) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -74,12 +76,13 @@ void turn_velocity(Track& track, const Eigen::Vector3d& seen) {
 void update_velocity(Track& track, std::vector<Footprint> prints, const Eigen::Vector3d& centre,
                      double elapsed) {
   auto way = way_between(track.footprints, prints);
-  if (prints.empty() && track.footprints.empty()) way = centre - track.core;  // rays
+  // Both instants have rays only.
+  if (prints.empty() && track.footprints.empty()) way = centre - track.core;
   if (track.hits > 0 && elapsed > 0 && way) turn_velocity(track, *way / elapsed);
   track.footprints = std::move(prints);
 }
 
-/// A person found after a gap must be checked against the lost one.
+/// Notes that a person found after a gap has to be compared with the lost one.
 void question(Track& track, Timestamp instant, const AssociationConfig& config) {
   if (track.hits == 0 || instant - track.seen <= config.question) return;
   if (!track.before && sight_of(track.build) >= kKnown) {

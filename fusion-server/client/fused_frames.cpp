@@ -58,7 +58,7 @@ Result<void> add_frame(FusedSamples& samples, const resource::FrameResource& fra
   return {};
 }
 
-/// Reads file by file, so that only the samples of a long recording are kept in memory.
+/// Reads a recording file by file, so that only its samples are kept in memory.
 Result<FusedFrames> read_recording_files(const std::string& source) {
   const auto files = find_recordings({source});
   if (!files) return pass(files);
@@ -68,7 +68,7 @@ Result<FusedFrames> read_recording_files(const std::string& source) {
   record::CellStream stream(*files, query);
   FusedFrames out;
   std::size_t frames = 0;
-  std::string raw;  // a sensor whose raw frames were found
+  std::string raw;  // A sensor of which raw frames were found.
   for (auto item = stream.next(); true; item = stream.next()) {
     if (!item) return pass(item);
     if (!*item) break;
@@ -87,7 +87,7 @@ Result<FusedFrames> read_recording_files(const std::string& source) {
   return out;
 }
 
-/// The lines of any stream, none longer than kMaxLineBytes.
+/// The lines of any stream; none is longer than kMaxLineBytes.
 class Lines {
  public:
   explicit Lines(std::istream& in) : in_(in) {}
@@ -140,7 +140,7 @@ Result<FusedFrames> read_file(const std::string& source) {
   return of_lines(file, source);
 }
 
-/// Receives a server's frames for some time, each one once, by conditional long polling.
+/// Receives a server's frames for some time, each frame once, by conditional long polling.
 class Listening {
  public:
   Listening(const http::Url& server, std::string source, tls::Trust trust)
@@ -179,7 +179,7 @@ class Listening {
     count_.take(frame->sequence);
   }
 
-  /// Gives up at once on a server that cannot be reached or refuses from the start.
+  /// Gives up at once if the server cannot be reached, or refuses from the start.
   void failed(const Error& error, int status) {
     count_.fail(error);
     if (count_.frames > 0 || status == http::status::kUnavailable) return;

@@ -1,4 +1,4 @@
-// Fused frames from any source: our recordings, NDJSON of `chorus fuse`, a running server.
+// Reads fused frames from any source: our recordings, NDJSON of `chorus fuse`, or a running server.
 #pragma once
 
 #include <chrono>
@@ -16,21 +16,22 @@ using FusedSamples = std::vector<exporters::FusedSample>;
 
 struct FusedFrames {
   FusedSamples samples;
-  std::vector<std::string> notes;  ///< What is missing, as text: damage, gaps, failures.
+  /// Human-readable: what is missing because of damage, gaps or failures.
+  std::vector<std::string> notes;
 };
 
-/// The kind of source follows from `source`: http://... is a fusion server (or anything with a
-/// /frame in world space), read for `listen`; "-" is NDJSON on standard input; a file that starts
-/// like MCAP, or a folder of .mcap files, is a recording; any other file is NDJSON. Frames in a
-/// sensor's own space are refused: they must be fused first.  If a server fails later on, the
-/// frames received before are kept.
+/// Reads all fused frames of `source`.  http://... is a fusion server, or anything else with a
+/// /frame in world space, which is read for `listen`; "-" is NDJSON on standard input; a file that
+/// begins like MCAP, or a folder of .mcap files, is a recording; any other file is NDJSON.  Frames
+/// in sensor space are refused: they must be fused first.  If a server fails later on, the frames
+/// received before are kept.
 [[nodiscard]] Result<FusedFrames> read_fused_frames(const std::string& source,
                                                     std::chrono::milliseconds listen);
 
-/// A frame as NDJSON: its /frame document on one line, with the line end.
+/// A frame as a line of NDJSON: its /frame document on one line, including the line end.
 [[nodiscard]] std::string frame_line(const resource::FrameResource& frame);
 
-/// Reads lines as frame_line() writes them; skips blank ones.  `origin` names the text in errors.
+/// Reads lines as written by frame_line(); skips blank lines.  `origin` names the source in errors.
 [[nodiscard]] Result<FusedSamples> read_fused_lines(std::istream& lines, const std::string& origin);
 
 }  // namespace chorus::client

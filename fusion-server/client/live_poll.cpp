@@ -8,10 +8,10 @@
 namespace chorus::client {
 namespace {
 
-constexpr std::chrono::seconds kAnswerWithin{8};  // the `wait` asked for below, plus network delay
+constexpr std::chrono::seconds kAnswerWithin{8};  // The `wait` below, plus the network's delay.
 constexpr const char* kWait = "wait=5";
 constexpr std::chrono::milliseconds kAfterFailure{250};
-// A resource that cannot wait answers 304 at once, or has no ETag to wait with.
+// For a resource that cannot wait, and so answers 304 at once, or has no ETag to wait with.
 constexpr std::chrono::milliseconds kAfterNothing{10};
 
 }  // namespace

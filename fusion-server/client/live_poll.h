@@ -1,4 +1,4 @@
-// Long-polls one resource of a running service: each version once, until stopped.
+// Polls one resource of a running service by long polling: gets each version once, until stopped.
 #pragma once
 
 #include <chrono>
@@ -15,10 +15,10 @@ namespace chorus::client {
 struct StreamCount {
   std::uint64_t frames = 0;
   std::uint64_t missed = 0;      ///< Gaps in the sequence.
-  std::uint64_t failed = 0;      ///< Requests that were refused or got no answer.
-  std::uint64_t unreadable = 0;  ///< Answers that are no frame.
+  std::uint64_t failed = 0;      ///< Requests that were refused or not answered.
+  std::uint64_t unreadable = 0;  ///< Answers that are not a frame.
   std::uint64_t last = 0;
-  std::string error;  ///< Text of the last error.
+  std::string error;  ///< The last error, human-readable.
 
   void take(std::uint64_t sequence);
   void fail(const Error& why);
@@ -32,12 +32,14 @@ class LivePoll {
     std::string accept = "text/turtle";
     /// Asks again at this interval; zero: uses long polling instead.
     std::chrono::milliseconds every{0};
-    tls::Trust trust = {};  ///< Whom an https:// server must be certified by.
+    tls::Trust trust = {};  ///< The authorities accepted for an https:// server.
   };
-  /// Both are called on the thread of `io`.
+  /// Both functions are called on the thread of `io`.
   struct Takers {
-    std::function<void(const http::ClientResponse&)> answer;  ///< With status 200.
-    /// Status 0: no answer at all.  In any case the request is repeated a moment later.
+    /// Called for each answer with status 200.
+    std::function<void(const http::ClientResponse&)> answer;
+    /// Called for a failure; status 0: there was no answer.  The request is then repeated after a
+    /// moment.
     std::function<void(const Error&, int status)> failure;
   };
 

@@ -30,7 +30,7 @@ Timestamp received(const http::ClientResponse& answer) { return from_unix_ns(ans
 
 Duration from_milliseconds(double ms) { return from_seconds(ms / 1e3); }
 
-/// The clock model that /sensors/ reports, to the microsecond.
+/// The clock model that /sensors/ reports, exact to the microsecond.
 record::ClockModel clock_of(const nlohmann::json& sensor) {
   record::ClockModel clock;
   const double offset = number_at(sensor, "clockOffsetMilliseconds");
@@ -79,7 +79,7 @@ Result<std::unique_ptr<LiveRecording>> LiveRecording::start(asio::io_context& io
   recording.name = "recording";
   recording.file = options.file;
   recording.head = head_of(*self, tracker);
-  recording.limits.min_free_bytes = 0;  // the file is the user's own
+  recording.limits.min_free_bytes = 0;  // The file belongs to the user, who may fill the disk.
   auto recorder = record::Recorder::start(std::move(recording));
   if (!recorder) return pass(recorder);
   std::unique_ptr<LiveRecording> live(new LiveRecording(io, std::move(options), std::move(*trust)));
@@ -110,7 +110,7 @@ void LiveRecording::poll_state(LivePoll::Options what, Take take) {
                          take(answer);
                        },
                        [this, path](const Error& error, int) {
-                         // It is no error if a service lacks a resource, for example a floor.
+                         // It is not an error that a service lacks a resource, such as a floor.
                          if (error.code != ErrorCode::NotFound) troubles_[path] = to_string(error);
                        }});
 }

@@ -1,5 +1,4 @@
-// Records a running service from outside, over HTTP: a sensor, or a fusion server with its
-// sensors.
+// Records a running service over HTTP: a sensor, or a fusion server with its sensors.
 #pragma once
 
 #include <deque>
@@ -22,22 +21,22 @@ struct LiveRecordingOptions {
   bool fused = true;
 };
 
-/// Runs on the thread of one io_context; only the file is written on the recorder's thread.
+/// Runs on the io_context's thread; only the file is written on the recorder's thread.
 class LiveRecording {
  public:
-  /// Asks the service for its description and begins.  Errors: it does not answer, it is no Chorus
-  /// service, or the file cannot be created.
+  /// Asks the service for its description and begins.  Errors: the service does not answer, is not
+  /// a Chorus service, or the file cannot be created.
   [[nodiscard]] static Result<std::unique_ptr<LiveRecording>> start(asio::io_context& io,
                                                                     LiveRecordingOptions options);
-  /// Ends polling and waits until the file is written.
+  /// Ends polling and waits until everything is written.
   [[nodiscard]] record::RecordingReport stop();
 
-  /// Counts by topic: "/frame", "/sensors/s1/frame"; all topics that the service announced are
-  /// listed from the beginning.
+  /// The counts of each topic, such as "/frame" or "/sensors/s1/frame"; contains from the beginning
+  /// all topics that the service has announced.
   [[nodiscard]] const std::map<std::string, StreamCount>& counts() const { return counts_; }
-  /// Errors in reading the other states (clocks, registration), by path.
+  /// The last errors in reading other states (clocks, registration), by path.
   [[nodiscard]] const std::map<std::string, std::string>& troubles() const { return troubles_; }
-  /// Time since anything answered last.
+  /// Time since the last answer to any request.
   [[nodiscard]] std::chrono::steady_clock::duration silence() const;
 
  private:

@@ -1,4 +1,4 @@
-// Finds the recordings that a command line names: a folder stands for its .mcap files.
+// Finds the recordings that a command line names; a folder stands for its .mcap files.
 #pragma once
 
 #include <filesystem>
@@ -11,16 +11,18 @@
 
 namespace chorus::client {
 
-/// Files in a folder are sorted by name; a given file is taken as it is.  None found: an error.
+/// The files, those of a folder sorted by name; a file is taken as it is.  An error if none is
+/// found.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> find_recordings(
     const std::vector<std::filesystem::path>& inputs);
 
-/// Reads the recordings whole.  Refuses an empty list, and two recordings of the same sensor unless
-/// they are parts of one recording.  Reports damaged or omitted parts on `notes` unless it is null.
+/// Reads the recordings completely.  Refuses an empty list, and two recordings of the same sensor
+/// unless they are parts of one recording.  Writes damaged or omitted parts to `notes`, unless it
+/// is null.
 [[nodiscard]] Result<record::CellRecording> read_recordings(
     const std::vector<std::filesystem::path>& files, std::ostream* notes);
 
-/// What was left out while reading, one line each: first damage, then notes per sensor.
+/// One line for each thing that reading left out: damage first, then notes per sensor.
 [[nodiscard]] std::vector<std::string> notes_of(const record::CellRecording& cell);
 
 }  // namespace chorus::client

@@ -14,18 +14,19 @@
 
 namespace chorus::client {
 
-/// The error that a problem document states, or else the bare status; `where`: the request.
+/// The error that a problem document states; if there is none, the bare status.  `where`: the
+/// request.
 [[nodiscard]] Error refusal_of(const http::ClientResponse& answer, const std::string& where);
 
-/// The header of every request: the bearer token in CHORUS_TOKEN, if one is set.
+/// The Authorization header with the bearer token in CHORUS_TOKEN; empty if that is not set.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> authorization();
 
-/// The authorities that must have certified an https:// server: the file in CHORUS_CA; else that of
-/// the workshop, if this host has one that the user may read (/etc/chorus/tls/ca.crt); else those
-/// of the operating system.
+/// The authorities that are accepted for an https:// server: those in the file that CHORUS_CA
+/// names; otherwise the workshop's, if this host has its certificate and the user may read it
+/// (/etc/chorus/tls/ca.crt); otherwise those of the operating system.
 [[nodiscard]] Result<tls::Trust> authorities();
 
-/// http::fetch with these authorities.
+/// http::fetch() with authorities().
 [[nodiscard]] Result<http::ClientResponse> fetch_trusted(const http::Url& url,
                                                          const http::ClientRequest& request,
                                                          const http::ClientLimits& limits = {});
@@ -45,7 +46,7 @@ class ServiceClient {
   /// read here, once.
   [[nodiscard]] static Result<ServiceClient> of(std::string_view url);
 
-  /// An empty answer is null.
+  /// The answer to a GET; null if it is empty.
   [[nodiscard]] Result<nlohmann::json> get(std::string_view path) const;
   [[nodiscard]] Result<nlohmann::json> post(std::string_view path,
                                             const nlohmann::json& body) const;
@@ -61,11 +62,12 @@ class ServiceClient {
   tls::Trust trust_;
 };
 
-/// Reads a member that may be absent or of another type; then the fallback is returned.
+/// The member's string; `fallback` if the member is absent or has another type.
 [[nodiscard]] std::string text_at(const nlohmann::json& object, const char* key,
                                   std::string fallback = "-");
-[[nodiscard]] double number_at(const nlohmann::json& object, const char* key);  ///< NaN if none.
-/// An object's member if that is an object or array; otherwise an empty one.
+/// NaN if there is no such number.
+[[nodiscard]] double number_at(const nlohmann::json& object, const char* key);
+/// The member if it is an object or array; otherwise an empty one.
 [[nodiscard]] const nlohmann::json& part_at(const nlohmann::json& object, const char* key);
 
 }  // namespace chorus::client

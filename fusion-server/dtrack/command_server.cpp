@@ -23,7 +23,7 @@ using net::error_code;
 using net::tcp;
 
 constexpr std::size_t kMaxWaiting = 4096;  ///< Bytes of answers that a client has not read.
-constexpr std::size_t kMaxRefused = 64;    ///< Commands.
+constexpr std::size_t kMaxRefused = 64;    ///< In commands.
 constexpr std::chrono::milliseconds kSweep{250};
 
 struct Connection {
@@ -36,7 +36,7 @@ struct Connection {
   CommandReader reader;
   Conversation conversation;
   std::array<char, 1024> incoming{};
-  std::string waiting;  ///< Answers not yet handed to the operating system.
+  std::string waiting;  ///< Answers that have not been handed to the operating system.
   std::string writing;  ///< Answers being written.
   SteadyTime deadline;
 };
@@ -47,10 +47,10 @@ using ConnectionPtr = std::shared_ptr<Connection>;
 struct CommandServer::Impl {
   explicit Impl(CommandServerOptions settings) : options(std::move(settings)) {}
 
-  /// Starts the asynchronous operations that must always be pending.
+  /// Starts the asynchronous operations that must always be pending, if they are not.
   void ensure();
   void welcome(net::Socket socket);
-  /// Why another connection from this host is refused; empty: it is accepted.
+  /// Why a further connection from this host is refused; empty if it is accepted.
   [[nodiscard]] std::string objection(const std::string& host) const;
   void read(const ConnectionPtr& connection);
   void obey(const ConnectionPtr& connection);
@@ -97,7 +97,7 @@ std::string CommandServer::Impl::objection(const std::string& host) const {
 void CommandServer::Impl::welcome(net::Socket socket) {
   error_code error;
   const tcp::endpoint peer = socket.remote_endpoint(error);
-  if (error) return;  // it has left; releasing the socket closes it
+  if (error) return;  // The client has left; destroying the socket closes it.
   if (const std::string why =
           options.allow.objection(peer.address(), "outputs.dtrack.command.allow");
       !why.empty())
@@ -178,7 +178,7 @@ void CommandServer::Impl::close(const ConnectionPtr& connection) {
   tell_controller();
 }
 
-/// Closes connections that have exceeded a time limit.
+/// Closes the connections that have exceeded a time limit.
 void CommandServer::Impl::sweep() {
   const SteadyTime now = std::chrono::steady_clock::now();
   const std::list<ConnectionPtr> all = connections;

@@ -1,9 +1,9 @@
-// The TCP server of DTrack's command channel: on its own thread, for a few connections, trusting no
-// client.
+// The TCP server of DTrack's command channel: runs on its own thread, serves a few connections,
+// trusts no client.
 //
-// Refused, logged and counted: connections beyond a limit, commands over 200 bytes, and clients
-// that do not read their answers (at most 4 kB are kept), send no known command within ten seconds,
-// are silent for longer than `idle`, or send 64 unknown commands.
+// It refuses, logs and counts connections beyond a limit, commands over 200 bytes, and clients that
+// do not read their answers (at most 4 kB are kept), send no known command within ten seconds, are
+// silent for longer than `idle`, or send 64 unknown commands.
 #pragma once
 
 #include <cstdint>
@@ -20,20 +20,22 @@ namespace chorus::dtrack {
 
 struct CommandServerOptions {
   std::string address = "127.0.0.1";  ///< Numeric.
-  int port = 50105;                   ///< 0: any.
+  int port = 50105;                   ///< 0: any free port.
   net::AllowList allow = {};          ///< Hosts that are served.
   int max_connections = 8;
-  int max_connections_per_address = 4;             ///< Prevents that one host takes all places.
-  Duration idle = std::chrono::hours(1);           ///< Clients send nothing while they receive.
-  Duration first_word = std::chrono::seconds(10);  ///< Limit until the first known command.
+  int max_connections_per_address = 4;  ///< So that one host cannot take all places.
+  /// Long, because clients send nothing while they receive frames.
+  Duration idle = std::chrono::hours(1);
+  Duration first_word = std::chrono::seconds(10);  ///< Time limit for the first known command.
 
   bool operator==(const CommandServerOptions&) const = default;
 };
 
 /// The connection that is in control, once it has started tracking.
 struct Controller {
-  std::string host;          ///< Numeric.
-  std::uint64_t serial = 0;  ///< Number of the connection: a new connection is a new controller.
+  std::string host;  ///< Numeric.
+  /// Number of the connection, because a new connection is a new controller.
+  std::uint64_t serial = 0;
 
   bool operator==(const Controller&) const = default;
 };
@@ -45,9 +47,9 @@ class CommandServer {
   ~CommandServer();  ///< Closes all connections and joins the thread.
 
   [[nodiscard]] std::uint16_t port() const;
-  /// Any thread.
+  /// May be called from any thread.
   [[nodiscard]] std::optional<Controller> controller() const;
-  /// Any thread; only refused and clients.
+  /// The counters refused and clients.  May be called from any thread.
   [[nodiscard]] SinkCounters counters() const;
 
  private:

@@ -9,8 +9,8 @@ constexpr std::string_view kOk = "dtrack2 ok";
 
 struct Command {
   std::string_view text;
-  bool whole;    ///< True: the text must match exactly; false: it must begin with this.
-  bool control;  ///< Only allowed for the connection in control.
+  bool whole;    ///< True: the command must equal the text; false: it must begin with it.
+  bool control;  ///< True: only the connection in control may send it.
   std::string_view (*obey)(const Conversation& conversation, Device& device);
 };
 
@@ -66,7 +66,7 @@ std::string_view obey(std::string_view command, Conversation& conversation, Devi
 }  // namespace
 
 bool CommandReader::feed(std::string_view bytes) {
-  // One read may bring many commands; only the last may be incomplete.
+  // One read may bring many commands; only the last one may be incomplete.
   bytes_ += bytes;
   std::size_t begin = 0;
   while (true) {

@@ -1,6 +1,6 @@
-// DTrack's command channel (TCP 50105) without the network: bytes go in, answers come out.
+// DTrack's command channel (TCP 50105) without the network: takes bytes, gives answers.
 //
-// A command and an answer are one ASCII text each, ended by NUL, of at most 200 bytes.  Known:
+// A command, and an answer, is one ASCII string of at most 200 bytes that ends with NUL.  Known:
 //   dtrack2 get system access          -> dtrack2 set system access full | none
 //   dtrack2 tracking start | stop      -> dtrack2 ok
 //   dtrack2 get status active          -> dtrack2 set status active mea | none
@@ -9,7 +9,7 @@
 //   dtrack2 set ...                    -> dtrack2 ok              (and nothing changes)
 //   anything else                      -> dtrack2 err 1 "..."
 // Only the connection in control may start, stop and set; others get err 2.  No command can
-// redirect data: the targets are configured.
+// redirect the data: the targets are configured.
 #pragma once
 
 #include <cstddef>
@@ -23,9 +23,9 @@ inline constexpr std::size_t kMaxCommandBytes = 200;  ///< Without the NUL.
 /// Splits a stream into commands.
 class CommandReader {
  public:
-  /// Takes bytes; false: a command is too long, and this stream cannot be read any further.
+  /// Takes bytes; false if a command is too long: then the stream cannot be read any further.
   [[nodiscard]] bool feed(std::string_view bytes);
-  /// The next whole command into `command`, without its NUL; false: none yet.
+  /// Puts the next whole command into `command`, without its NUL; false if there is none yet.
   [[nodiscard]] bool next(std::string& command);
 
  private:
@@ -43,7 +43,7 @@ struct Conversation {
   std::size_t refused = 0;   ///< All other commands.
 };
 
-/// The answer, with its NUL.
+/// The answer, including its NUL.
 [[nodiscard]] std::string answer(std::string_view command, Conversation& conversation,
                                  Device& device);
 

@@ -15,7 +15,7 @@ namespace chorus::dtrack {
 namespace {
 
 constexpr std::string_view kEnd = "\r\n";
-constexpr std::string_view kSeen = " 1.000]";  ///< Quality.
+constexpr std::string_view kSeen = " 1.000]";  ///< The quality.
 constexpr int kPlaceDigits = 3;
 constexpr int kAngleDigits = 4;
 constexpr int kMatrixDigits = 6;
@@ -28,7 +28,7 @@ struct HumanJoint {
   outlet::HumanBone bone;
 };
 
-/// A.R.T.'s joint numbers; 2 (spine_02) is a vertebra for which we have no bone.
+/// A.R.T.'s numbers of the joints; number 2 (spine_02) is a vertebra for which we have no bone.
 constexpr std::array<HumanJoint, 20> kHumanJoints{{
     {0, Hips},           {1, Spine},          {3, Chest},          {4, UpperChest},
     {5, Neck},           {6, Head},           {7, LeftShoulder},   {8, LeftUpperArm},
@@ -43,9 +43,9 @@ void add(std::string& out, std::uint64_t value) {
   out.append(digits.data(), end);
 }
 
-/// Appends in fixed point; coordinates are bounded (kMaxCoordinate), hence the digits too.
+/// Appends a number in fixed point; coordinates are bounded (kMaxCoordinate), so it has few digits.
 void add(std::string& out, double value, int digits) {
-  if (std::abs(value) < 0.5 * std::pow(10.0, -digits)) value = 0.0;  // avoids "-0.000"
+  if (std::abs(value) < 0.5 * std::pow(10.0, -digits)) value = 0.0;  // Avoids "-0.000".
   std::array<char, 64> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
                                  std::chars_format::fixed, digits);
@@ -59,7 +59,7 @@ void add_all(std::string& out, const Eigen::Vector3d& values, int digits) {
   }
 }
 
-/// [sx sy sz eta theta phi][b0 .. b8]
+/// Appends [sx sy sz eta theta phi][b0 .. b8].
 void add_pose(std::string& out, const outlet::Axes& axes, const Eigen::Vector3d& x_in_world,
               const Eigen::Quaterniond& world_from_body) {
   const Eigen::Matrix3d r = axes.rotation(world_from_body);
@@ -113,7 +113,7 @@ std::size_t add_bodies(std::string& out, const outlet::Axes& axes,
   return count;
 }
 
-/// " [slot joints][joint 1.000][..][..] ..." or nothing when the body's rig is unknown.
+/// The text " [slot joints][joint 1.000][..][..] ..."; "" when the body's rig is unknown.
 std::string human_model(const outlet::Axes& axes, const outlet::TrackerBody& body) {
   const outlet::Humanoid rig = outlet::humanoid_of(body);
   std::string joints;

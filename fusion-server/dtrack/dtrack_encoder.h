@@ -20,14 +20,14 @@
 
 namespace chorus::dtrack {
 
-/// Clients read datagrams of up to 32768 bytes; this many bodies always fit.
+/// Clients read datagrams of up to 32768 bytes; so many bodies always fit.
 inline constexpr std::size_t kMaxDtrackBodies = 150;
 inline constexpr std::size_t kMaxBytes = 32768;
 
 enum class Room { Normal, Powerwall };
 
 struct Content {
-  Duration latency{0};       ///< From the instant until now.
+  Duration latency{0};       ///< Time from the instant until now.
   bool human_model = false;  ///< Adds the 6dj line; human models that do not fit are left out.
   Room room = Room::Normal;
 };

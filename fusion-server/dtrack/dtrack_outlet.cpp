@@ -9,9 +9,10 @@
 namespace chorus::dtrack {
 namespace {
 
-/// What a client sends to open its firewall (with or without a NUL).
+/// What a client sends to open its firewall, with or without a NUL.
 constexpr std::string_view kFirewallOpener = "fw4dtsdkc";
-constexpr int kMaxArrivals = 64;  ///< Read per frame; the rest waits and may be dropped.
+/// Most datagrams read per frame; the rest waits and may be lost.
+constexpr int kMaxArrivals = 64;
 
 class DtrackOutlet final : public outlet::Outlet {
  public:
@@ -41,7 +42,8 @@ class DtrackOutlet final : public outlet::Outlet {
   }
 
  private:
-  /// Finds the client that gets data besides the targets: the controller, at the port it opened.
+  /// Finds the client that gets data in addition to the targets: the controller, at the port that
+  /// it opened.
   void listen() {
     const auto controller = commands_ ? commands_->controller() : std::nullopt;
     if (controller != controller_) client_.reset();

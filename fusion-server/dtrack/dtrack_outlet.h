@@ -1,4 +1,4 @@
-// Sends DTrack's ASCII format over UDP, and answers on the command channel if that is enabled.
+// Sends DTrack's ASCII format over UDP and, if enabled, answers on the command channel.
 #pragma once
 
 #include <memory>
@@ -16,13 +16,14 @@ namespace chorus::dtrack {
 
 struct Settings {
   std::vector<std::string> targets{"127.0.0.1:5000"};
-  int source_port = 50107;  ///< Our own; clients behind firewalls write to it.  0: any.
+  /// The port that we send from, to which clients behind firewalls write.  0: any.
+  int source_port = 50107;
   outlet::Multicast multicast;
   Room room = Room::Normal;
   bool human_model = false;
   bool commands = false;
   CommandServerOptions command;
-  /// Sends also to the host in control, to the port from which it wrote to our source port.
+  /// Also sends to the host in control, to the port from which that host wrote to our source port.
   bool send_to_client = false;
 
   bool operator==(const Settings&) const = default;

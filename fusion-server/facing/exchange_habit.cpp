@@ -7,8 +7,8 @@
 namespace chorus::facing {
 namespace {
 
-constexpr std::size_t kFrontAngles = 3;   // up to 45 deg
-constexpr std::size_t kFacingAngles = 5;  // up to 75 deg
+constexpr std::size_t kFrontAngles = 3;   // Up to 45 deg.
+constexpr std::size_t kFacingAngles = 5;  // Up to 75 deg.
 
 Rates believed(std::size_t angle, const HabitPrior& prior) {
   if (angle < kFrontAngles) return {prior.front_out, prior.front_back};
@@ -23,12 +23,14 @@ double Rates::after(double exchanged_before, double elapsed) const {
   return exchanged() + (exchanged_before - exchanged()) * held;
 }
 
-/// Gamma-Poisson estimate: events per time; the prior counts as time already observed.
+/// Gamma-Poisson estimate of a rate, events per time; the prior counts as events in time observed
+/// before.
 double ExchangeHabit::Count::rate(double prior_rate, double prior_time) const {
   return (prior_rate * prior_time + events) / (prior_time + time);
 }
 
-/// One rate for all angles beyond 75 deg together; it is the prior of each of them.
+/// One rate for all angles beyond 75 deg together; it is the prior of the rate at each of these
+/// angles.
 double ExchangeHabit::rear_rate(const Counts& counts, const HabitPrior& prior) {
   Count rear;
   for (std::size_t i = kFacingAngles; i < kAngles; ++i) {

@@ -1,9 +1,10 @@
-// How readily a sensor's tracker exchanges left and right while a person turns, and how readily it
-// exchanges them back: learned in use, per sensor (docs/papers/sides.md, Exchange).
+// Learns for each sensor, in use, how readily its tracker exchanges left and right while a person
+// turns, and how readily it exchanges them back (docs/papers/sides.md, Exchange).
 //
-// Labels are a Markov chain in continuous time with two rates for each angle between the person's
-// front and the sensor: into the wrong order, and back.  There are two rates, not one curve,
-// because trackers have hysteresis: one may exchange near 130 deg and exchange back near 55 deg.
+// The labels are a Markov chain in continuous time, with two rates for each angle between the
+// person's front and the sensor: a rate of becoming wrong and a rate of becoming right again.  Two
+// rates, not one curve, because trackers have hysteresis: a tracker may exchange sides near 130 deg
+// and exchange them back near 55 deg.
 #pragma once
 
 #include <array>
@@ -11,23 +12,24 @@
 
 namespace chorus::facing {
 
-/// The prior for an unknown sensor: it rarely exchanges the sides of a person facing it, and beyond
-/// 75 deg it exchanges and exchanges back with equal rates at every angle.  The rates are low, so
-/// labels that merely stay as they are say almost nothing.
+/// The prior for an unknown sensor.  It rarely exchanges the sides of a person who faces it; beyond
+/// 75 deg it exchanges them and exchanges them back with equal rates at every angle.  The rates are
+/// low, so labels that merely stay as they are prove almost nothing.
 struct HabitPrior {
-  double front_out = 0.002;   ///< [1/s] up to 45 deg.
-  double front_back = 0.1;    ///< [1/s]
-  double side_out = 0.005;    ///< [1/s] from 45 to 75 deg.
-  double side_back = 0.05;    ///< [1/s]
-  double rear = 0.05;         ///< [1/s] beyond 75 deg, both ways.
-  double facing_time = 60.0;  ///< `front_out` and `side_out` count as this much observed time [s].
-  double rear_time = 1.0;     ///< All other rates count as this much [s].
-  double most_time = 300.0;   ///< At most this much observed time is remembered per angle [s].
+  double front_out = 0.002;  ///< [1/s] up to 45 deg.
+  double front_back = 0.1;   ///< [1/s]
+  double side_out = 0.005;   ///< [1/s] from 45 to 75 deg.
+  double side_back = 0.05;   ///< [1/s]
+  double rear = 0.05;        ///< Both rates beyond 75 deg [1/s].
+  /// The prior of `front_out` and `side_out` counts as this much observed time [s].
+  double facing_time = 60.0;
+  double rear_time = 1.0;    ///< The prior of all other rates counts as this much [s].
+  double most_time = 300.0;  ///< Limit of the observed time that is remembered per angle [s].
 
   bool operator==(const HabitPrior&) const = default;
 };
 
-/// [1/s]
+/// Rates of change [1/s]: `out` from correct to exchanged labels, `back` the reverse.
 struct Rates {
   double out = 0.0;
   double back = 0.0;
@@ -38,16 +40,17 @@ struct Rates {
   [[nodiscard]] double after(double exchanged_before, double elapsed) const;
 };
 
-/// Probabilities of what happened in one view between two instants.
+/// What happened to the labels of one view between two instants, as probabilities.
 struct Passage {
-  double facing = 0.0;   ///< |phi| [rad], in [0, pi].
+  /// |phi|, the angle between the person's front and the sensor [rad], in [0, pi].
+  double facing = 0.0;
   double elapsed = 0.0;  ///< [s]
   double out = 0.0;      ///< Expected number of changes from correct to exchanged.
   double back = 0.0;
-  double exchanged = 0.0;  ///< Mean probability of being exchanged in that time.
+  double exchanged = 0.0;  ///< Mean probability in that time that the labels were exchanged.
 };
 
-/// What has been observed of one sensor.
+/// What has been observed about one sensor.
 class ExchangeHabit {
  public:
   [[nodiscard]] Rates at(double facing, const HabitPrior& prior) const;

@@ -1,7 +1,7 @@
 // How a body stands relative to the sensor that sees it (Otto 5.2.2; inputs of Eqs. (1)-(3)).
 //
-// common/body/facing.h computes the angles; this stage replaces unknown ones by NaN, for which
-// every quality heuristic gives weight zero.
+// common/body/facing.h computes the angles.  Here an unknown angle becomes NaN, for which every
+// quality heuristic gives weight zero.
 #pragma once
 
 #include <limits>
@@ -15,7 +15,7 @@ struct Standing {
   double distance = std::numeric_limits<double>::quiet_NaN();  ///< Sensor to neck; d of Eq. (1).
   double facing = std::numeric_limits<double>::quiet_NaN();    ///< phi of Eq. (2).
   double bearing = std::numeric_limits<double>::quiet_NaN();   ///< alpha of Eq. (3), of the neck.
-  /// The same of the farthest joint of the centre axis.
+  /// The bearing of the joint on the centre axis that is farthest off the optical axis.
   double axis_bearing = std::numeric_limits<double>::quiet_NaN();
 };
 

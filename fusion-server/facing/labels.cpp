@@ -7,16 +7,16 @@
 namespace chorus::facing {
 namespace {
 
-constexpr double kSpanSigma = 0.2;  // [m] of all pairs of a view together, including slow errors
-constexpr double kMaxAgree = 4.0;   // limit on the log odds of one instant, because errors persist
+constexpr double kSpanSigma = 0.2;  // [m]; of all pairs of a view together, including slow errors.
+constexpr double kMaxAgree = 4.0;   // Limit on the log odds of one instant, because errors persist.
 
-/// A two-state chain after one more observation.
+/// The state of a two-state chain after one more observation.
 struct Chain {
   double likelihood = 0.0;  ///< Of the observation.
   double exchanged = 0.0;   ///< Probability afterwards.
 };
 
-/// `odds`: log odds of the observation for "exchanged".
+/// Advances the chain and adds an observation; `odds`: its log odds for "exchanged".
 Chain observe(const std::optional<double>& before, double odds, double elapsed,
               const Rates& rates) {
   const double was = before.value_or(rates.exchanged());
@@ -26,8 +26,9 @@ Chain observe(const std::optional<double>& before, double odds, double elapsed,
   return {for_it + against, for_it / (for_it + against)};
 }
 
-/// A probability that moves from one state to the other counts as that fraction of a change: over
-/// the frames until a change is certain, the fractions add up to one.
+/// What happened to the labels.  A probability that moves from one state to the other counts as
+/// that fraction of a change: over the frames until the change is certain, the fractions add up to
+/// one.
 Passage passage(const Labels& now, double before, double after) {
   const double moved = after - before;
   return {now.facing, now.elapsed, std::max(0.0, moved), std::max(0.0, -moved), after};

@@ -8,10 +8,10 @@
 namespace chorus::facing {
 namespace {
 
-constexpr double kGuessed = 0.3;     // weight of a pair with an inferred joint
-constexpr double kMinLength = 0.05;  // [m] shorter spans have no direction
+constexpr double kGuessed = 0.3;     // Weight of a pair with an inferred joint.
+constexpr double kMinLength = 0.05;  // [m]; shorter spans have no direction.
 constexpr std::size_t kTrunkPairs = 2;
-constexpr int kRounds = 3;  // agreement converges in one or two
+constexpr int kRounds = 3;  // One or two rounds are enough for agreement.
 
 struct Joined {
   Spans spans;          ///< Mean of the views, each with the sign that makes it agree.

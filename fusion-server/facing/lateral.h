@@ -1,4 +1,5 @@
-// Vectors left - right of a body's joint pairs; they change sign when a tracker exchanges sides.
+// The vectors left - right of a body's joint pairs; they change sign when a tracker exchanges
+// sides.
 #pragma once
 
 #include <array>
@@ -8,12 +9,12 @@
 
 namespace chorus::facing {
 
-/// Pairs whose direction shows where left is, trunk first.
+/// The left joints of the pairs whose direction shows where left is, trunk first.
 inline constexpr std::array<JointId, 6> kSidePairs{JointId::ShoulderLeft, JointId::HipLeft,
                                                    JointId::ElbowLeft,    JointId::KneeLeft,
                                                    JointId::WristLeft,    JointId::AnkleLeft};
 
-/// The vector left - right of each pair, world [m]; shortened if one of its joints is inferred,
+/// The vector left - right of each pair, world [m]; shortened if a joint of the pair is inferred,
 /// zero if one is not seen.
 using Spans = std::array<Eigen::Vector3d, kSidePairs.size()>;
 
@@ -21,21 +22,23 @@ using Spans = std::array<Eigen::Vector3d, kSidePairs.size()>;
 
 [[nodiscard]] Spans spans_of(const Skeleton<WorldSpace>& body);
 
-/// Total length of all spans [m].
+/// Root of the sum of the squared lengths of all spans [m].
 [[nodiscard]] double size_of(const Spans& spans);
 
-/// Sum of the dot products of corresponding spans [m^2]; negative: one body has sides exchanged.
+/// Sum of the dot products of corresponding spans [m^2]; negative: one of the two has sides
+/// exchanged.
 [[nodiscard]] double agreement(const Spans& a, const Spans& b);
 
-/// Unit horizontal vector in the direction that a body with these spans faces; zero when unknown.
+/// Horizontal unit vector in the direction in which a body with these spans faces; zero when
+/// unknown.
 [[nodiscard]] Eigen::Vector3d forward_of(const Spans& spans);
 
 /// Otto's phi: the angle from the direction of the sensor to the direction in which the body faces,
-/// in (-pi, pi]; nothing when unknown.
+/// in (-pi, pi]; none when unknown.
 [[nodiscard]] std::optional<double> facing_of(const SensorView& view,
                                               const Eigen::Vector3d& forward);
 
-/// The spans that the views agree on when there are no earlier ones: each view is tried as the
+/// The spans on which the views agree when there are no earlier ones: each view is tried as the
 /// start, and the one with which the others agree best wins.
 [[nodiscard]] Spans agreed_spans(const std::vector<Spans>& views);
 

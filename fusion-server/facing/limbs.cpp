@@ -11,9 +11,9 @@ namespace {
 
 using enum JointId;
 
-constexpr std::size_t kEnough = 2;  // other views needed to decide which of two is wrong
+constexpr std::size_t kEnough = 2;  // Other views that are needed to decide which of two is wrong.
 
-/// The left joints that are exchanged together with each pair of kSidePairs.
+/// For each pair of kSidePairs, the left joints that are exchanged together with it.
 const std::array<std::vector<JointId>, kSidePairs.size()> kHangsOn{{
     {ShoulderLeft},
     {HipLeft},
@@ -36,7 +36,7 @@ Places places_of(const SensorView& view, JointId left) {
   return {view.skeleton[left].position, view.skeleton[mirror(left)].position};
 }
 
-/// The mean of the other views that show the pair, and how many they are.
+/// The mean of the other views that show the pair, and the number of these views.
 std::pair<Places, std::size_t> others(const Person& person, std::size_t self, JointId left) {
   Places mean;
   std::size_t count = 0;
@@ -78,7 +78,7 @@ void count_as_guessed(Skeleton<WorldSpace>& body, std::size_t pair) {
   }
 }
 
-/// Whether the pair is clearly opposite to the recently agreed direction.
+/// True if the pair is clearly opposite to the recently agreed direction.
 bool contradicts(const Places& seen, const Eigen::Vector3d& held, const LimbLimits& limits) {
   const Eigen::Vector3d span = seen.left - seen.right;
   return span.norm() > limits.apart && held.norm() > limits.apart &&

@@ -8,10 +8,10 @@
 namespace chorus::facing {
 namespace {
 
-constexpr double kMinWeight = 1e-12;  // so that no hypothesis is excluded for good
-constexpr double kMaxNews = 30.0;     // log odds of one instant; beyond this it is certain anyway
+constexpr double kMinWeight = 1e-12;  // Keeps every hypothesis possible.
+constexpr double kMaxNews = 30.0;     // Log odds of one instant; more would change nothing.
 
-/// Likelihood of evidence with these log odds, divided by its mean over both signs.
+/// Likelihood of evidence with these log odds, relative to its mean over both signs.
 double likelihood(double log_odds) { return 2.0 / (1.0 + std::exp(-log_odds)); }
 
 double changed(double elapsed, const Spell& spell) {
@@ -24,7 +24,8 @@ PersonFilter::PersonFilter(const PersonPrior& prior)
     : weight_{0.5 * (1.0 - prior.backwards.share), 0.5 * (1.0 - prior.backwards.share),
               0.5 * prior.backwards.share, 0.5 * prior.backwards.share} {}
 
-/// A clear bit becomes set with probability `set`, and a set bit clear with probability `cleared`.
+/// A cleared bit becomes set with probability `set`, and a set bit cleared with probability
+/// `cleared`.
 void PersonFilter::mix(std::size_t bit, double set, double cleared) {
   for (std::size_t state = 0; state < weight_.size(); ++state) {
     if ((state & bit) != 0) continue;

@@ -1,9 +1,9 @@
 // Hidden Markov model of one person's sides (docs/papers/sides.md): two bits for the person and one
 // for each view.
 //
-//   sign       the held sides are the true ones, or the opposite
-//   backwards  the person walks backwards
-//   exchanged  one per view: this sensor has left and right exchanged (labels.h)
+//   sign       whether the held sides are the true ones or the opposite
+//   backwards  whether the person walks backwards
+//   exchanged  one per view: whether this sensor has exchanged left and right (labels.h)
 //
 // Given the sign, each view depends only on its own past, so the forward filter is exact with four
 // weights for the person and two probabilities per view.
@@ -19,23 +19,23 @@ namespace chorus::facing {
 
 /// A bit that switches on and off at random.
 struct Spell {
-  double share = 0.1;   ///< Fraction of time for which it is on.
+  double share = 0.1;   ///< Share of the time in which it is on.
   double length = 1.0;  ///< Time constant [s].
 
   bool operator==(const Spell&) const = default;
 };
 
-/// Evidence of one instant for the held sides, in log odds.
+/// Evidence of one instant that the held sides are right, in log odds.
 struct Evidence {
-  double news = 0.0;     ///< From labels and posture: only what earlier instants did not show.
-  double walking = 0.0;  ///< For walking forwards.
-  double share = 1.0;    ///< Fraction of `walking` that is new, [0, 1].
+  double news = 0.0;     ///< From labels and posture; only what earlier instants did not show.
+  double walking = 0.0;  ///< That the person walks forwards.
+  double share = 1.0;    ///< Share of `walking` that is new, in [0, 1].
 };
 
 struct PersonPrior {
   Spell backwards{0.15, 3.0};
-  double slip = 0.0001;  ///< Rate at which the held sides become wrong unnoticed [1/s].
-  double lost = 0.5;     ///< The same while no view shows left and right [1/s].
+  double slip = 0.0001;  ///< Rate at which the held sides become wrong without being noticed [1/s].
+  double lost = 0.5;     ///< The same rate while no view shows left and right [1/s].
 
   bool operator==(const PersonPrior&) const = default;
 };
@@ -47,7 +47,7 @@ class PersonFilter {
   /// Advances the time; `blind`: no view shows left and right.
   void predict(double elapsed, bool blind, const PersonPrior& prior);
   void update(const Evidence& evidence);
-  /// Exchanges the hypotheses, because from now on the opposite sides are held.
+  /// Swaps the hypotheses, because from now on the opposite sides are held.
   void turn_round();
 
   /// Probability that the held sides are right.

@@ -10,7 +10,7 @@
 namespace chorus::facing {
 namespace {
 
-constexpr double kGuessed = 0.3;  // weight of an offset that depends on an inferred joint
+constexpr double kGuessed = 0.3;  // Weight of an offset that depends on an inferred joint.
 
 /// Weighted mean of offsets in world space [m].
 struct Offset {
@@ -26,7 +26,8 @@ struct Offset {
   }
 };
 
-/// Mean position; zero when one of the joints has none.
+/// How far these joints together may be trusted: 0 if one is not seen, less than 1 if one is
+/// inferred.
 template <class... Ids>
 double weight_of(const Skeleton<WorldSpace>& body, Ids... ids) {
   const bool seen = (body[ids].seen() && ...);
@@ -63,7 +64,8 @@ void add_bends(Offset& offset, const Skeleton<WorldSpace>& body, const std::arra
   }
 }
 
-/// Uses both wrists relative to the centre of the shoulders: one alone would show the trunk's turn.
+/// Uses both wrists relative to the centre of the shoulders, because one alone would show how the
+/// trunk is turned.
 void add_wrists(Offset& offset, const Skeleton<WorldSpace>& body) {
   using enum JointId;
   const auto middle = [&](JointId left) {
@@ -79,7 +81,7 @@ void add_lean(Offset& offset, const Skeleton<WorldSpace>& body) {
              weight_of(body, SpineShoulder, SpineBase));
 }
 
-/// Horizontal unit vector from the person to the sensor; zero when the person has no neck.
+/// Horizontal unit vector from the person to the sensor; zero when the neck is not seen.
 Eigen::Vector3d towards_sensor(const SensorView& view) {
   const Joint& neck = view.skeleton[JointId::Neck];
   if (!neck.seen()) return Eigen::Vector3d::Zero();
@@ -96,8 +98,8 @@ double tracked_share_of_arms(const Skeleton<WorldSpace>& body) {
   return static_cast<double>(tracked) / static_cast<double>(kArmJoints.size());
 }
 
-/// How much larger a fraction of the arm joints is seen by sensors on the side of `forward` than by
-/// the other sensors.
+/// How much larger a share of the arm joints the sensors on the side of `forward` track than the
+/// other sensors.
 double seen_from(const std::vector<SensorView>& views, const Eigen::Vector3d& forward) {
   double mean = 0.0;
   for (const SensorView& view : views) mean += tracked_share_of_arms(view.skeleton);

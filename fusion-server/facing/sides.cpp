@@ -11,20 +11,20 @@
 namespace chorus::facing {
 namespace {
 
-constexpr double kMinLength = 0.05;  // [m] shorter spans have no direction
-constexpr double kClear = 2.0;       // log odds from which one view alone counts as certain
-constexpr double kBlind = 1.0;       // log odds of all views together below which they show nothing
-constexpr double kFrameTime = 0.033;  // [s] the labels of one frame are one observation
+constexpr double kMinLength = 0.05;  // [m]; shorter spans have no direction.
+constexpr double kClear = 2.0;       // Log odds from which on one view alone counts as certain.
+constexpr double kBlind = 1.0;  // Log odds of all views together; with less, they show nothing.
+constexpr double kFrameTime = 0.033;  // [s]; the labels of one frame are one observation.
 
-/// One instant of one person while it passes through the model.
+/// What the model computes for one person at one instant.
 struct Instant {
   Timestamp at;
   double elapsed = 0.0;  ///< Time since the person was last seen [s].
   bool first = true;
   std::vector<Spans> views;
-  std::vector<double> agree;     ///< Log odds per view, see agreement_log_odds().
-  std::vector<bool> exchanged;   ///< Per view: it opposes the held sides.
-  std::vector<LabelStep> steps;  ///< Per view; `exchanged` is 0.5 if unknown.
+  std::vector<double> agree;     ///< Log odds of each view, see agreement_log_odds().
+  std::vector<bool> exchanged;   ///< For each view, whether it opposes the held sides.
+  std::vector<LabelStep> steps;  ///< For each view; its `exchanged` is 0.5 if unknown.
 };
 
 std::vector<Spans> all_spans(const Person& person) {
@@ -33,7 +33,7 @@ std::vector<Spans> all_spans(const Person& person) {
   return views;
 }
 
-/// The memory of a person, unless it is too old.
+/// What is remembered about a person; none if it is too old.
 std::optional<Sides> recall(const SidesMemory& memory, PersonId person, Timestamp instant,
                             const SidesConfig& config) {
   const auto known = memory.people.find(person);
@@ -43,15 +43,15 @@ std::optional<Sides> recall(const SidesMemory& memory, PersonId person, Timestam
   return known->second;
 }
 
-/// A pair whose direction is unknown at present keeps its previous one.
+/// A pair whose direction is unknown at present keeps its last one.
 void keep_lost(Spans& spans, const Spans& before) {
   for (std::size_t i = 0; i < spans.size(); ++i) {
     if (spans[i].norm() < kMinLength) spans[i] = before[i];
   }
 }
 
-/// Whether the view opposes the held sides.  A view that clearly shows left and right is trusted;
-/// an unclear one keeps its previous answer.
+/// True if the view opposes the held sides.  A view that clearly shows left and right is trusted;
+/// for an unclear one the last answer is kept.
 bool opposes(const SensorView& view, double agree, const Sides& sides) {
   if (std::abs(agree) > kClear) return agree < 0;
   const auto before = sides.views.find(view.sensor);
@@ -65,8 +65,8 @@ void look_at_views(Instant& now, const Person& person, const Sides& sides) {
   }
 }
 
-/// The weighted mean of the views, each reversed if it opposes the held sides.  A view whose spans
-/// have become much shorter counts less.
+/// The weighted mean of the views; a view that opposes the held sides is reversed, and one whose
+/// spans have become much shorter counts less.
 Spans joined(const Instant& now) {
   Spans spans = no_spans();
   double weights = 0.0;
@@ -82,10 +82,12 @@ Spans joined(const Instant& now) {
   return spans;
 }
 
-/// While a tracker changes its labels, it draws the sides together, and spans may point anywhere.
-/// No real body becomes narrower, so spans much shorter than the held ones show no direction.
+/// How far a view's spans can be trusted, in [0, 1].  While a tracker changes its labels, it draws
+/// the sides together, and the spans may point anywhere.  A real body does not become narrower, so
+/// spans much shorter than the held ones show no direction.
 double trust_in(const Spans& now, const Spans& before) {
-  constexpr double kNone = 0.5;  // fraction of the held length
+  // Spans this short, relative to the held ones, are not trusted at all.
+  constexpr double kNone = 0.5;
   constexpr double kFull = 0.8;
   const double part = size_of(now) / std::max(size_of(before), kMinLength);
   return std::clamp((part - kNone) / (kFull - kNone), 0.0, 1.0);
@@ -114,7 +116,7 @@ LabelStep step_of_view(const SensorView& view, double agree, double facing, cons
                      config.habit);
 }
 
-/// A view counts from the instant when it first clearly shows left and right.
+/// True if the view counts: from the instant when it first clearly shows left and right.
 bool counts(const SensorView& view, double agree, const Sides& sides) {
   return std::abs(agree) > kClear || sides.views.contains(view.sensor);
 }
@@ -138,7 +140,8 @@ bool nobody_tells(const Instant& now) {
   return sum < kBlind;
 }
 
-/// A view's first evidence counts in full, later evidence only as far as it is new.
+/// The evidence of an instant.  A view's first evidence counts in full, later evidence only as far
+/// as it is new.
 Evidence evidence_of(const Instant& now, const Person& person, Sides& sides, const Spans& spans,
                      const SidesConfig& config) {
   const Eigen::Vector3d forward = forward_of(spans);
@@ -168,7 +171,7 @@ bool must_turn(const PersonFilter& filter, bool first, const SidesConfig& config
   return std::log((1.0 - right) / right) > (first ? 0.0 : config.change_odds);
 }
 
-/// Learns habits: only while the sides are certain, and from views whose labels could change.
+/// Learns habits, but only while the sides are certain, and from views whose labels could change.
 void learn(const Instant& now, const Person& person, const Sides& sides, SidesMemory& memory,
            const SidesConfig& config) {
   if (sides.filter.right() < config.learn_from) return;

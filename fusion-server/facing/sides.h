@@ -1,11 +1,11 @@
-// Which side of a person is the left one, agreed among all sensors and over time (Otto 5.2.2).
+// Decides which side of a person is the left one, from all sensors and over time (Otto 5.2.2).
 //
-// A body tracker assumes that everybody faces it: seen from behind, the skeleton is in place but
-// left and right are exchanged.  So the vectors left - right of two views either agree or oppose
-// each other, which resolves the views relative to one another.  One common sign remains open.  A
-// hidden Markov model estimates it from posture, walking and the learned habits of each sensor,
-// without assuming an angle at which trackers exchange sides (docs/papers/sides.md).  Causal: no
-// instant depends on later ones.
+// A body tracker assumes that everybody faces it: for a person seen from behind, the skeleton is in
+// place, but left and right are exchanged.  So the vectors left - right of two views either agree
+// or oppose each other, which resolves the views relative to one another.  One common sign remains
+// open. A hidden Markov model estimates it from posture, walking and the learned habits of each
+// sensor, without assuming an angle at which trackers exchange sides (docs/papers/sides.md).
+// Causal: the result for an instant does not depend on later ones.
 #pragma once
 
 #include <map>
@@ -19,44 +19,45 @@
 namespace chorus::facing {
 
 struct SidesConfig {
-  bool resolve = true;  ///< false: left and right stay as the sensors give them.
+  bool resolve = true;  ///< False: left and right stay as the sensors give them.
   PostureCues posture = {};
   WalkingCue walking = {};
   PersonPrior person = {};
   HabitPrior habit = {};
   LimbLimits limbs = {};
-  double change_odds = 1.0;  ///< Held sides change if the log odds against them exceed this.
+  double change_odds = 1.0;  ///< The held sides change if the log odds against them exceed this.
   double smoothing = 0.1;    ///< Time constant with which the held spans follow the views [s].
   double learn_from = 0.95;  ///< Habits are learned while the sides are at least this probable.
-  Duration forget = std::chrono::seconds(1);  ///< A person unseen for this long starts anew.
+  /// A person who was unseen for this long starts anew.
+  Duration forget = std::chrono::seconds(1);
 
   bool operator==(const SidesConfig&) const = default;
 };
 
-/// What is remembered of one view of a person.
+/// What is remembered about one view of a person.
 struct SeenLabels {
   Timestamp seen;
   Exchanged exchanged;
 };
 
-/// What is remembered of one person.
+/// What is remembered about one person.
 struct Sides {
   Timestamp seen;
-  Spans spans{};  ///< The spans on which views agreed recently.
+  Spans spans{};  ///< The spans on which the views agreed recently.
   PersonFilter filter;
   Walk walk;
-  double posture = 0.0;  ///< Log odds of the posture at the last instant.
+  double posture = 0.0;  ///< Log odds of the posture at the previous instant.
   std::map<SensorId, SeenLabels> views;
 };
 
 struct SidesMemory {
   std::map<PersonId, Sides> people;
-  std::map<SensorId, ExchangeHabit> habits;  ///< Learned from all people that a sensor saw.
+  std::map<SensorId, ExchangeHabit> habits;  ///< Learned from all people whom the sensor saw.
 };
 
 /// Exchanges left and right in the views that have them wrong, sets every view's `facing` to that
-/// of the agreed body, sets the person's confidence of sides, and updates `memory`.  An exchanged
-/// view loses its orientations, because they describe a body that faces the sensor.
+/// of the agreed body, sets the person's sides_confidence, and updates `memory`.  An exchanged view
+/// loses its orientations, because they describe a body that faces the sensor.
 void resolve_sides(Person& person, Timestamp instant, SidesMemory& memory,
                    const SidesConfig& config);
 

@@ -9,11 +9,13 @@
 namespace chorus::facing {
 namespace {
 
-constexpr double kNearest = 0.3;   // [m] horizontal; a person is not nearer to a camera
-constexpr double kWide = 0.35;     // [m] sum of all spans; a person seen from the front has 0.8
-constexpr double kSteepest = 0.1;  // cosine of ray and normal; flatter rays meet the plane far away
+constexpr double kNearest = 0.3;  // [m], horizontal; a person is not nearer to a camera.
+// [m], of size_of() all spans; a person seen from the front has 0.8.
+constexpr double kWide = 0.35;
+// Cosine of ray and normal; a flatter ray meets the plane too far away.
+constexpr double kSteepest = 0.1;
 
-/// Moves the joint to where its ray meets the plane; without an intersection it is left out.
+/// Moves the joint to where its ray meets the plane; if the ray is too flat, the joint is left out.
 void put_on_plane(Joint& joint, const Eigen::Vector3d& eye, const Eigen::Vector3d& normal,
                   double range) {
   if (!joint.bears()) return;
@@ -23,7 +25,7 @@ void put_on_plane(Joint& joint, const Eigen::Vector3d& eye, const Eigen::Vector3
   joint.position = eye + range / cosine * joint.position;
 }
 
-/// Whether most of the complete pairs lie on the rays of the opposite joints.
+/// True if most of the complete pairs lie on the rays of the opposite joints.
 bool is_exchanged(const SensorView& view, const Skeleton<WorldSpace>& rays) {
   int exchanged = 0;
   for (const auto& [left, right] : kMirrorPairs) {

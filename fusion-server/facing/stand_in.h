@@ -1,10 +1,10 @@
 // Replaces ray bodies by flat figures while left and right are determined.
 //
 // Left and right are determined from positions (sides.h).  A camera without depth still shows how a
-// body looks from where it stands, so its joints are put on the vertical plane through the person
-// that faces the camera: their spans are right except for the part along the line of sight.  Seen
-// from the side a figure is too narrow to decide anything; then the sides are taken as the camera
-// gives them.
+// body looks from the camera's place.  So its joints are put on the vertical plane through the
+// person that faces the camera: then their spans are right except for the part along the line of
+// sight. Seen from the side, such a figure is too narrow to decide anything; then the sides stay as
+// the camera gives them.
 #pragma once
 
 #include <vector>
@@ -16,16 +16,16 @@ namespace chorus::facing {
 struct Figure {
   std::size_t view = 0;  ///< Index in Person::views.
   bool narrow = false;
-  Skeleton<WorldSpace> rays;  ///< The original.
+  Skeleton<WorldSpace> rays;  ///< The skeleton before.
 };
 
-/// Turns ray bodies into flat figures at `core` (world [m]).  Views whose camera is inside the
-/// person stay as they are.
+/// Turns ray bodies into flat figures at `core` (world [m]).  A view whose camera is inside the
+/// person stays as it is.
 [[nodiscard]] std::vector<Figure> stand_in(Person& person, const Eigen::Vector3d& core);
 
-/// Turns those views back into rays.  Wide figures whose sides were exchanged meanwhile stay
-/// exchanged; decisions on single limbs are discarded, because flat limbs are too inaccurate for
-/// them.
+/// Turns these views back into rays.  If the sides of a wide figure were exchanged meanwhile, they
+/// stay exchanged.  Changes to single limbs are discarded, because flat limbs are too inaccurate
+/// for them.
 void back_to_rays(Person& person, const std::vector<Figure>& figures);
 
 }  // namespace chorus::facing

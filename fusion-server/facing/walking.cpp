@@ -5,7 +5,8 @@
 namespace chorus::facing {
 namespace {
 
-constexpr Duration kMaxStep = std::chrono::milliseconds(300);  // a longer step has no single speed
+// Over a longer step, there is no single speed.
+constexpr Duration kMaxStep = std::chrono::milliseconds(300);
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// The direction in which a person walks, from how the trunk moves in each view; a view that appears
-// or disappears adds no speed.
+// Estimates the direction in which a person walks from how the trunk moves in each view, so that a
+// view that appears or disappears adds no speed.
 #pragma once
 
 #include <map>
@@ -9,11 +9,11 @@
 namespace chorus::facing {
 
 struct WalkingCue {
-  double log_odds = 3.0;   ///< For forwards against backwards, at full speed.
-  double from = 0.3;       ///< Anything slower counts as standing [m/s].
-  double full = 1.0;       ///< [m/s]
+  double log_odds = 3.0;   ///< For walking forwards against backwards, at full speed.
+  double from = 0.3;       ///< A lower speed counts as standing [m/s].
+  double full = 1.0;       ///< Speed from which `log_odds` applies in full [m/s].
   double smoothing = 0.2;  ///< Time constant of the speed [s].
-  double same = 0.5;       ///< Walking within this time is one piece of evidence [s].
+  double same = 0.5;       ///< Walking within this time is a single piece of evidence [s].
 
   bool operator==(const WalkingCue&) const = default;
 };

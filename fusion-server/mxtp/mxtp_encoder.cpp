@@ -12,8 +12,8 @@
 namespace chorus::mxtp {
 namespace {
 
-/// A segment's origin lies at the fraction `share` of the way between two joints (beyond them if
-/// more than 1); its rotation is that of a bone of the rig.
+/// A segment's origin is at the fraction `share` of the way between two joints (beyond the second
+/// if more than 1); its rotation is that of a bone of the rig.
 struct Segment {
   JointId from;
   JointId to;
@@ -23,10 +23,10 @@ struct Segment {
 
 using enum JointId;
 
-// Order and meaning of the ids 1..23: Xsens, MVN real-time network streaming protocol.  Neck
-// and head are the inverse of the import of MVN files (common/motion): MVN's neck begins at
-// our SpineShoulder and ends at the joint where its head begins; our Neck is half-way
-// between.
+// The order and the meaning of the ids 1..23 are from Xsens, MVN real-time network streaming
+// protocol.  Neck and head are the inverse of the import of MVN files (common/motion): MVN's neck
+// begins at our SpineShoulder and ends at the joint at which its head begins; our Neck is half-way
+// between these.
 constexpr std::array<Segment, kSegments> kTable{{
     {SpineBase, SpineBase, 0.0, outlet::HumanBone::Hips},                   // Pelvis
     {SpineBase, SpineMid, 1.0 / 3.0, outlet::HumanBone::Spine},             // L5
@@ -64,7 +64,7 @@ void add_real(Bytes& out, double value) {
 
 std::uint32_t time_code(const outlet::TrackerFrame& frame) {
   return static_cast<std::uint32_t>(static_cast<std::uint64_t>(to_unix_ns(frame.instant)) /
-                                    1'000'000U);  // modulo 2^32, because the field has 32 bits
+                                    1'000'000U);  // The field has 32 bits.
 }
 
 /// Every datagram contains all segments, so an unseen limb is placed at its parent.
@@ -73,7 +73,7 @@ Eigen::Vector3d origin_of(const Segment& segment, const outlet::TrackerBody& bod
     return body[outlet::nearest_tracked(body, id)].position;
   };
   const bool both = body[segment.from].tracked && body[segment.to].tracked;
-  // A segment beyond a joint requires that both joints are seen.
+  // A place beyond a joint requires that both joints are seen.
   const double share = both ? segment.share : std::min(segment.share, 1.0);
   return (1.0 - share) * place(segment.from) + share * place(segment.to);
 }

@@ -1,10 +1,10 @@
 // Xsens MVN network streaming, datagram type 02: position and quaternion of 23 segments.
 //
-// Big-endian, metres, right-handed, +z up, x forward. 760 bytes per body; the character id is the
-// slot.  Segments without a joint of ours are interpolated between those that have one: L5, L3 and
-// T8 along the spine, shoulders at its sides, the head as far beyond our Neck as that is from
-// SpineShoulder.  Rotations are relative to humanoid.h's rig, like MVN's: a person in T-pose who
-// looks along +x, our +z, has only identities; a segment whose joints are not tracked follows its
+// Big-endian, metres, right-handed, +z up, x forward.  760 bytes per body; the character id is the
+// slot.  A segment without a joint of ours is interpolated between those with one: L5, L3 and T8
+// along the spine, the shoulders at its sides; the head is as far beyond our Neck as Neck is from
+// SpineShoulder.  Rotations are relative to humanoid.h's rig, as in MVN: a person in T-pose who
+// looks along +x, our +z, has only identities.  A segment whose joints are not tracked follows its
 // parent.
 #pragma once
 
@@ -18,8 +18,8 @@ namespace chorus::mxtp {
 inline constexpr std::size_t kSegments = 23;
 inline constexpr std::size_t kDatagramBytes = 24 + 32 * kSegments;
 
-/// One datagram of exactly kDatagramBytes; empty when the pelvis or the head is not tracked, or
-/// when it is unknown which way the body faces.
+/// One datagram of exactly kDatagramBytes; empty when pelvis or head is not tracked, or when it is
+/// unknown which way the body faces.
 [[nodiscard]] std::vector<char> encode(const outlet::TrackerFrame& frame,
                                        const outlet::TrackerBody& body);
 

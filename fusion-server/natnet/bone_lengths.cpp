@@ -59,8 +59,8 @@ std::optional<BoneOffsets> BoneLengths::add(PersonId person, const MotiveSkeleto
   return found;
 }
 
-/// Directions are those of the T-pose; a bone seen in less than half of the frames gets an adult's
-/// length, and the hip is as high as the legs are long.
+/// The measured offsets.  Directions are those of the T-pose.  A bone seen in less than half of the
+/// frames gets an adult's length.  The hip is as high as the legs are long.
 BoneOffsets BoneLengths::measured() const {
   BoneOffsets offsets = adult_offsets();
   const double adult_leg = leg_of(offsets);

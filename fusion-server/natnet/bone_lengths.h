@@ -1,7 +1,7 @@
-// Measures the bone lengths of a moving person, for the description of their skeleton.
+// Measures the bone lengths of a moving person, for the description of the person's skeleton.
 //
-// Clients build their rest pose from the description and rotate its bones as frames say; with the
-// bones of an average adult, the limbs of other people would end in the wrong place.
+// Clients build their rest pose from the description, and rotate its bones as the frames say.  With
+// the bones of an average adult, other people's limbs would end in the wrong place.
 #pragma once
 
 #include <array>
@@ -15,20 +15,21 @@ namespace chorus::natnet {
 /// Offset of each bone from its parent's origin at rest [m].
 using BoneOffsets = std::array<std::array<double, 3>, kBoneCount>;
 
-/// The offsets in motive_bones().
+/// The offsets that motive_bones() states.
 [[nodiscard]] BoneOffsets adult_offsets();
 
-/// The measurement for one slot.
+/// Measures the people in one slot, one after the other.
 class BoneLengths {
  public:
-  /// Lengths are medians over this many frames of a person: five seconds at 30 Hz.
+  /// Lengths are medians over this many frames of a person, five seconds at 30 Hz.
   static constexpr std::size_t kFrames = 150;
-  /// The description is updated when a bone differs from it by more than this [m].
+  /// The description is updated when a bone's length differs from it by more than this [m].
   static constexpr double kTolerance = 0.005;
 
-  /// False: this person has already been measured.
+  /// False if this person has been measured already.
   [[nodiscard]] bool wants(PersonId person) const { return !done_ || person != person_; }
-  /// `local` uses Coordinates::Local.  Returns the new description once it is complete.
+  /// Adds a frame; `local` uses Coordinates::Local.  Returns a new description when it is complete
+  /// and differs from the last one.
   [[nodiscard]] std::optional<BoneOffsets> add(PersonId person, const MotiveSkeleton& local);
 
  private:
@@ -37,7 +38,7 @@ class BoneLengths {
   PersonId person_{};
   bool done_ = false;
   std::size_t frames_ = 0;
-  /// Lengths from frames in which the bone and its parent are tracked.
+  /// From frames in which the bone and its parent are tracked.
   std::array<std::vector<double>, kBoneCount> lengths_;
   BoneOffsets described_ = adult_offsets();
 };

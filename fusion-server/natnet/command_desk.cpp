@@ -15,15 +15,16 @@ constexpr std::string_view kTooManyOfOne =
     "its address has as many clients already as outputs.natnet.max_clients_per_address allows";
 constexpr std::size_t kMaxKnocks = 4096;
 
-/// Requests with a fixed answer; a text ending in a comma matches all requests that begin with it.
+/// A request with a fixed answer; a string that ends in a comma stands for all requests that begin
+/// with it.
 struct Known {
   std::string_view text;
   std::int32_t number;
 };
 constexpr std::array kNumbers{
     Known{"AnalogSamplesPerMocapFrame", 0},
-    Known{"UpAxis", 1},  // 0 x, 1 y, 2 z
-    // All models are always sent, including those subscribed to.
+    Known{"UpAxis", 1},  // 0: x, 1: y, 2: z.
+    // All models are always sent, whatever a client subscribes to.
     Known{"SubscribeToData", 0},
     Known{"SubscribeToData,", 0},
     Known{"SubscribeByID,", 0},
@@ -64,7 +65,7 @@ std::string_view CommandDesk::objection(const Address& from) const {
 }
 
 void CommandDesk::knock(const Address& from, SteadyTime now) {
-  // This is a flood; a real client will ask again.
+  // So many knocks must be a flood; a real client will ask again.
   if (knocks_.size() >= kMaxKnocks) knocks_.clear();
   if (count_of(knocks_, from.host) >= options_.max_clients_per_address) {
     knocks_.erase(knocks_.lower_bound({from.host, 0}));
@@ -123,7 +124,7 @@ Reply CommandDesk::reply_to(const Incoming& request, const Now& now) const {
   return {unrecognized(), kUnknown};
 }
 
-/// The reply; empty: the request is unknown.
+/// The reply to a request; empty if the request is unknown.
 Bytes CommandDesk::reply_to_text(std::string_view text) const {
   if (text == "FrameRate") return response(frame_rate());
   if (text == "UnitsToMillimeters") return response(kMillimetresPerUnit);
@@ -139,7 +140,7 @@ void CommandDesk::newest(std::shared_ptr<const Bytes> frame, Timestamp instant) 
   if (instants_.size() > kRateFrames) instants_.pop_front();
 }
 
-/// Zero until there are two frames.
+/// Mean rate of the newest frames [Hz]; zero until there are two.
 float CommandDesk::frame_rate() const {
   if (instants_.size() < 2) return 0.0F;
   const double span = seconds(instants_.back() - instants_.front());
@@ -149,7 +150,7 @@ float CommandDesk::frame_rate() const {
 void CommandDesk::expire(SteadyTime now) {
   const auto silent = [&](const auto& each) { return now - each.second > options_.client_timeout; };
   std::erase_if(heard_, silent);
-  if (now - tidied_ < options_.client_timeout) return;  // limits the cost of a flood
+  if (now - tidied_ < options_.client_timeout) return;  // Limits the cost of a flood.
   tidied_ = now;
   std::erase_if(knocks_, silent);
 }

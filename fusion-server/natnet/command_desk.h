@@ -1,14 +1,14 @@
 // NatNet's command channel without a socket: decides who is a client and what to answer.
 //
-// Clients are those that connected or keep alive (in multicast, where connecting only asks for the
-// server's settings, those that keep alive) and then sent something else.  They are identified by
-// address and port, limited in number, in total and per host, and forgotten after `client_timeout`
-// without a message.
+// A client is somebody who connected or keeps alive, and then sent something else.  (In multicast,
+// connecting only asks for the server's settings, so only keeping alive counts.)  Clients are
+// identified by address and port; their number is limited in total and per host; they are forgotten
+// after `client_timeout` without a message.
 // Sender addresses can be forged, and the protocol cannot tell.  Answers are larger than requests,
-// so their total is limited by `answers`.  A single datagram enables nothing and takes no client's
-// place; two with the same forged address still send frames to that host, for `client_timeout` and
-// to at most `max_clients_per_address` ports (docs/decisions/0025).  Messages that only servers
-// send are never answered, so two servers cannot be made to answer each other.
+// so `answers` limits their total.  A single datagram enables nothing and takes no client's place.
+// But two datagrams with the same forged address make us send frames to that host, for
+// `client_timeout` and to at most `max_clients_per_address` ports (docs/decisions/0025).  Messages
+// that only servers send are never answered, so two servers cannot be made to answer each other.
 #pragma once
 
 #include <chrono>
@@ -27,7 +27,7 @@
 
 namespace chorus::natnet {
 
-/// IPv4, because the protocol supports nothing else.
+/// An IPv4 address; the protocol supports nothing else.
 struct Address {
   std::uint32_t host = 0;
   std::uint16_t port = 0;
@@ -37,11 +37,11 @@ struct Address {
 
 struct DeskOptions {
   ServerInfo info;
-  Bytes models;  ///< The whole message.
+  Bytes models;  ///< The whole message with the model definitions.
   std::size_t max_clients = 16;
   std::size_t max_clients_per_address = 4;
   Duration client_timeout = std::chrono::seconds(10);
-  net::Allowance answers{262'144.0, 524'288.0};  ///< Bytes.
+  net::Allowance answers{262'144.0, 524'288.0};  ///< In bytes.
 };
 
 struct Now {
@@ -51,7 +51,7 @@ struct Now {
 
 struct Reply {
   Bytes bytes;               ///< Empty: no answer.
-  std::string_view refusal;  ///< Why the request was refused; empty: it was accepted.
+  std::string_view refusal;  ///< Why the request was refused; empty if it was accepted.
 };
 
 class CommandDesk {
@@ -60,7 +60,7 @@ class CommandDesk {
 
   [[nodiscard]] Reply answer(std::span<const char> datagram, const Address& from, const Now& now);
 
-  /// Sets the descriptions, as a whole message.
+  /// Sets the model definitions, as a whole message.
   void describe(Bytes models) { options_.models = std::move(models); }
 
   /// Sets the frame that is sent on request.
@@ -72,7 +72,7 @@ class CommandDesk {
  private:
   [[nodiscard]] Reply reply_to(const Incoming& request, const Now& now) const;
   [[nodiscard]] Bytes reply_to_text(std::string_view text) const;
-  /// Why it cannot become a client; empty: it can, or it does not ask to.
+  /// Why the sender cannot become a client; empty if it can, or does not ask to.
   [[nodiscard]] std::string_view admit(const Incoming& request, const Address& from,
                                        SteadyTime now);
   [[nodiscard]] std::string_view objection(const Address& from) const;
@@ -83,8 +83,8 @@ class CommandDesk {
   DeskOptions options_;
   using Heard = std::map<Address, SteadyTime>;
 
-  Heard heard_;   ///< Clients, with the time of their last message.
-  Heard knocks_;  ///< Hosts that asked for frames once, and when; tidied at times.
+  Heard heard_;   ///< Clients and when their last message came.
+  Heard knocks_;  ///< Hosts that asked for frames once, and when; old entries are removed at times.
   SteadyTime tidied_{};
   std::shared_ptr<const Bytes> frame_;
   std::deque<Timestamp> instants_;  ///< Instants of the newest frames.

@@ -8,8 +8,8 @@ namespace {
 
 using enum outlet::HumanBone;
 
-// Parents come before children.  Offsets: x to the left, y up, z forward; limbs and trunk as in the
-// simulated adult; the feet point down by 25 degrees, as the rig's do.
+// Parents come before children.  Offsets are to the left, up and forward; limbs and trunk are those
+// of the simulated adult; the feet point down by 25 degrees, as in the rig.
 constexpr std::array<BoneDescription, kBoneCount> kTable{{
     {"Hip", 0, {0, 0.95, 0}},           {"Ab", 1, {0, 0.083, 0}},
     {"Chest", 2, {0, 0.167, 0}},        {"Neck", 3, {0, 0.23, 0}},
@@ -33,7 +33,7 @@ std::size_t parent_index(std::size_t bone) {
   return static_cast<std::size_t>(kTable[bone].parent - 1);
 }
 
-/// The bone in world space; `done` contains the bones before this one.
+/// The bone in world space; `done` contains the bones before it.
 MotiveBone in_world(const outlet::Humanoid& rig, std::size_t bone, const MotiveSkeleton& done) {
   const outlet::BonePose& pose = rig[kRigBones[bone]];
   if (pose.known) return {pose.origin, pose.world_from_bone * outlet::rig_from_ahead_rest(), true};

@@ -1,7 +1,7 @@
-// The body as the 21 bones that OptiTrack's Motive streams, for clients that use their names.
+// The body as the 21 bones that OptiTrack's Motive streams, for clients that know these names.
 //
-// Names, order and hierarchy are Motive's ("Hip", "Ab", "Chest", ...); its rest pose is the T-pose
-// that looks along +z with the left hand at +x; at rest every bone has the identity rotation.  The
+// Names, order and hierarchy are Motive's ("Hip", "Ab", "Chest", ...).  The rest pose is the T-pose
+// that looks along +z with the left hand at +x, in which every bone has the identity rotation.  The
 // rig and the twists are those of humanoid.h, whose UpperChest turns like Chest and has no bone
 // here.  World space, metres.
 #pragma once
@@ -21,8 +21,8 @@ inline constexpr std::size_t kBoneCount = 21;
 struct BoneDescription {
   std::string_view name;
   std::int32_t parent = 0;  ///< Id; 0: none.
-  /// Offset from the parent's origin at rest, for an adult of 1.75 m: clients build their own rest
-  /// pose from it.  Frames contain the person's own lengths [m].
+  /// Offset from the parent's origin at rest, for an adult of 1.75 m [m]: clients build their rest
+  /// pose from it.  Frames contain the person's own lengths.
   std::array<double, 3> offset{};
 };
 
@@ -31,17 +31,18 @@ struct BoneDescription {
 struct MotiveBone {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-  /// False: its joints are not tracked; then it has its rest position relative to its parent.
+  /// False if the bone's joints are not tracked; then it has its rest position relative to its
+  /// parent.
   bool tracked = false;
 };
 using MotiveSkeleton = std::array<MotiveBone, kBoneCount>;
 
 enum class Coordinates {
-  Local,   ///< Each bone relative to its parent, the hip in world space.
-  Global,  ///< All in world space.
+  Local,   ///< Each bone is relative to its parent; the hip is in world space.
+  Global,  ///< All bones are in world space.
 };
 
-/// Empty when the pelvis is not tracked, or when it is unknown which way the body faces.
+/// The bones; none when the pelvis is not tracked, or when it is unknown which way the body faces.
 [[nodiscard]] std::optional<MotiveSkeleton> motive_skeleton(const outlet::TrackerBody& body,
                                                             Coordinates coordinates);
 

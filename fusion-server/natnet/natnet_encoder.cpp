@@ -29,7 +29,7 @@ void add_vector(Bytes& out, const Eigen::Vector3d& v) {
   for (const double c : {v.x(), v.y(), v.z()}) append(out, static_cast<float>(c));
 }
 
-/// A rigid body of a frame, or a bone: both have the same layout.
+/// Appends a rigid body, or a bone, of a frame: both have the same layout.
 void add_pose(Bytes& out, std::int32_t id, const MotiveBone& pose) {
   const outlet::Axes& axes = outlet::natnet_axes();
   append(out, id);
@@ -37,7 +37,7 @@ void add_pose(Bytes& out, std::int32_t id, const MotiveBone& pose) {
   const Eigen::Quaterniond q = axes.quaternion(pose.orientation);
   add_vector(out, q.vec());
   append(out, static_cast<float>(q.w()));
-  append(out, 0.0F);  // mean marker error: there are no markers
+  append(out, 0.0F);  // Mean marker error; there are no markers.
   append(out, pose.tracked ? kTracked : std::int16_t{0});
 }
 
@@ -75,22 +75,22 @@ void add_skeletons(Bytes& out, const outlet::TrackerFrame& frame, Coordinates co
 }
 
 void add_times(Bytes& out, const outlet::TrackerFrame& frame, const Times& times) {
-  append(out, std::uint32_t{0});  // SMPTE timecode ...
-  append(out, std::uint32_t{0});  // ... and its fraction of a frame
+  append(out, std::uint32_t{0});  // The SMPTE timecode.
+  append(out, std::uint32_t{0});  // Its fraction of a frame.
   append(out, seconds(frame.instant - times.start));
   for (const Timestamp t : {frame.instant, times.received, times.sent}) {
     append(out, static_cast<std::uint64_t>(to_unix_ns(t)));
   }
 }
 
-/// A rigid body of the description, or a bone: both have the same layout.
+/// Appends the description of a rigid body or a bone: both have the same layout.
 void add_description(Bytes& out, const std::string& name, std::int32_t id,
                      const BoneDescription& bone) {
   append_text(out, name);
   append(out, id);
   append(out, bone.parent);
   for (const double c : bone.offset) append(out, static_cast<float>(c));
-  append(out, kNone);  // markers
+  append(out, kNone);  // Number of markers.
 }
 
 void describe_rigid_bodies(Bytes& out, std::size_t slot) {
@@ -128,7 +128,8 @@ Bytes encode_frame(const outlet::TrackerFrame& frame, const Models& models, cons
   append(out, kNone);  // force plates
   append(out, kNone);  // devices
   add_times(out, frame, times);
-  append(out, models_changed ? kModelsChanged : std::int16_t{0});  // no bit for recording or replay
+  // Never says that something is recorded or replayed.
+  append(out, models_changed ? kModelsChanged : std::int16_t{0});
   append(out, std::uint32_t{0});
   return message_of(Message::Frame, out);
 }

@@ -38,12 +38,13 @@ struct Times {
   Timestamp sent{};
 };
 
-/// The whole message.  `frame.sequence` is sent modulo 2^31, because clients read it as signed.
-/// `models_changed` tells clients to request the descriptions again.
+/// The whole message with a frame.  `frame.sequence` is sent modulo 2^31, because clients read it
+/// as signed.  `models_changed` tells clients to request the model definitions again.
 [[nodiscard]] Bytes encode_frame(const outlet::TrackerFrame& frame, const Models& models,
                                  const Times& times, bool models_changed = false);
 
-/// The whole message, for all slots.  `bones` is by slot; missing slots get an adult's.
+/// The whole message with the model definitions, for all slots.  `bones` is by slot; a missing slot
+/// gets an adult's.
 [[nodiscard]] Bytes encode_models(std::size_t slots, const Models& models,
                                   const std::vector<BoneOffsets>& bones = {});
 

@@ -9,8 +9,8 @@
 //   10 keep-alive        nothing
 //   12 echo              u64 of the client                                               -> 13
 //   14 discovery         as connect                                                      -> 1
-// The vendor's own clients send bytes beyond the payload they announce, and connect with 264, 271
-// or no bytes at all: extra bytes are ignored, and the payload of connect is not read.
+// The vendor's own clients send bytes beyond the payload that they announce, and connect with 264,
+// 271 or no bytes at all.  So extra bytes are ignored, and the payload of connect is not read.
 #pragma once
 
 #include <array>
@@ -42,23 +42,24 @@ enum class Message : std::uint16_t {
   Unrecognized = 100,
 };
 
-/// The version of the layout used here.
+/// The version of NatNet whose layout is used here.
 inline constexpr std::array<std::uint8_t, 4> kNatNetVersion{3, 1, 0, 0};
-/// Longer datagrams are not requests: the longest that clients send have 275 bytes.
+/// A longer datagram is not a request: the longest that clients send have 275 bytes.
 inline constexpr std::size_t kMaxRequest = 1024;
-/// Unit of all time stamps: nanoseconds of UTC since 1970.
+/// Unit of all time stamps: they are nanoseconds of UTC since 1970.
 inline constexpr std::uint64_t kTicksPerSecond = 1'000'000'000;
 
 struct Incoming {
-  Message message = Message::Connect;  ///< May also have values without a name.
-  std::string_view text;               ///< For Request: the text up to its NUL.
-  std::uint64_t stamp = 0;             ///< For EchoRequest.
+  Message message = Message::Connect;  ///< May also have a value without a name.
+  std::string_view text;               ///< For Request: the string up to its NUL.
+  std::uint64_t stamp = 0;             ///< For EchoRequest: the client's number.
 };
 
-/// Nothing if shorter than its header or stated length, too long, or an echo without its number.
+/// The request; none if it is shorter than its header or stated length, too long, or an echo
+/// without its number.
 [[nodiscard]] std::optional<Incoming> read_request(std::span<const char> datagram);
 
-/// Whether only servers send it: two servers that answer such messages would never stop.
+/// True for messages that only servers send: two servers that answered these would never stop.
 [[nodiscard]] bool is_an_answer(Message message);
 
 struct ServerInfo {
@@ -75,7 +76,7 @@ struct ServerInfo {
 [[nodiscard]] Bytes response(float value);
 [[nodiscard]] Bytes unrecognized();
 
-/// Header and payload; the payload has at most 65503 bytes.
+/// A datagram of header and payload; the payload has at most 65503 bytes.
 [[nodiscard]] Bytes message_of(Message message, const Bytes& payload);
 
 }  // namespace chorus::natnet

@@ -13,7 +13,7 @@
 namespace chorus::natnet {
 namespace {
 
-/// The four bytes of an IPv4 multicast group.
+/// The four bytes of an IPv4 multicast group's address; none if `text` is not such an address.
 std::optional<std::array<std::uint8_t, 4>> group_of(const std::string& text) {
   net::error_code error;
   const auto address = asio::ip::make_address_v4(text, error);
@@ -21,7 +21,7 @@ std::optional<std::array<std::uint8_t, 4>> group_of(const std::string& text) {
   return address.to_bytes();
 }
 
-/// Number of frames that announce changed models, because some frames get lost.
+/// Number of frames that announce changed models; more than one, because frames may get lost.
 constexpr int kTellChange = 5;
 
 /// Encodes on the caller's thread, once for all clients.
@@ -68,7 +68,7 @@ class NatNetOutlet final : public outlet::Outlet {
   Timestamp start_;
   std::vector<BoneLengths> lengths_;  ///< Measurements by slot.
   std::vector<BoneOffsets> bones_;    ///< By slot, as last described.
-  int tell_change_ = 0;               ///< Number of frames that still have to announce a change.
+  int tell_change_ = 0;               ///< Number of frames that have yet to announce a change.
 };
 
 void read_models(ConfigReader& reader, Models& out) {

@@ -32,7 +32,7 @@ struct Settings {
 
 void read_settings(ConfigReader& reader, Settings& out);
 
-/// All slots are described to clients.
+/// Opens the server; all slots are described to clients.
 [[nodiscard]] Result<std::unique_ptr<outlet::Outlet>> open_outlet(
     const Settings& settings, const outlet::OutletContext& context);
 

@@ -18,7 +18,8 @@ namespace {
 using net::error_code;
 using net::udp;
 
-/// Holds frames of six persons for all clients, in case this thread is not scheduled for a while.
+/// Has room for frames of six persons for all clients, in case this thread does not run for a
+/// while.
 constexpr int kSendBuffer = 1 << 20;
 
 Address address_of(const udp::endpoint& endpoint) {
@@ -47,7 +48,8 @@ struct Server::Impl {
   void deliver();
   void send(net::DatagramSocket& socket, const Bytes& bytes, const udp::endpoint& to);
 
-  asio::io_context io{1};  // First member: destroyed last, after everything that uses it.
+  // The first member, so it is destroyed last, after everything that uses it.
+  asio::io_context io{1};
   ServerOptions options;
   CommandDesk desk;
   net::DatagramSocket commands{io.get_executor()};
@@ -62,7 +64,7 @@ struct Server::Impl {
   std::atomic<std::uint64_t> failed = 0;
   std::atomic<std::uint64_t> refused = 0;
   std::atomic<std::uint64_t> clients = 0;
-  outlet::Newest<Pending> newest;  ///< The frame not sent yet.
+  outlet::Newest<Pending> newest;  ///< The frame that has not been sent.
   std::thread thread;
 };
 
@@ -95,7 +97,7 @@ error_code Server::Impl::open_group(const asio::ip::address_v4& interface) {
   if (!error && !interface.is_unspecified()) {
     group.set_option(asio::ip::multicast::outbound_interface(interface), error);
   }
-  // Not the data port, because clients on this host bind to it.
+  // Not bound to the data port, because clients on this host bind to that.
   if (!error) group.bind({interface, 0}, error);
   return error;
 }

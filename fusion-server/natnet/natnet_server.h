@@ -1,5 +1,5 @@
 // The sockets of a NatNet server: one for commands, from which clients also get their frames, and
-// for multicast one for the group.  It has its own thread and never blocks.
+// in multicast one for the group.  The server has its own thread and never blocks.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,13 @@
 namespace chorus::natnet {
 
 struct ServerOptions {
-  /// Numeric IPv4: the address that we listen on and whose interface sends to the group.
+  /// Numeric IPv4 address on which we listen; its interface sends to the group.
   std::string address = "127.0.0.1";
-  std::uint16_t command_port = 1510;  ///< 0: any.
-  net::AllowList allow = {};          ///< Hosts that are answered; others can still join the group.
+  std::uint16_t command_port = 1510;  ///< 0: any free port.
+  net::AllowList allow = {};  ///< Hosts that are answered; other hosts can still join the group.
   int multicast_hops = 1;
   DeskOptions desk;                    ///< Its `info` tells clients where frames are sent.
-  std::shared_ptr<const Clock> clock;  ///< Source of the time in answers to echo requests.
+  std::shared_ptr<const Clock> clock;  ///< Gives the time in answers to echo requests.
 };
 
 class Server {
@@ -30,9 +30,10 @@ class Server {
   ~Server();  ///< Joins the thread.
 
   [[nodiscard]] std::uint16_t port() const;
-  /// Sends a frame to all clients; drops a frame still waiting.  May be called from any thread.
+  /// Sends a frame to all clients; replaces one that is still waiting.  May be called from any
+  /// thread.
   void publish(std::shared_ptr<const Bytes> frame, Timestamp instant);
-  /// Sets the description of the models.  May be called from any thread.
+  /// Sets the model definitions.  May be called from any thread.
   void describe(Bytes models);
   /// All counters except `frames`.  May be called from any thread.
   [[nodiscard]] SinkCounters counters() const;

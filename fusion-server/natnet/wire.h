@@ -1,4 +1,4 @@
-// NatNet's byte order and strings: little-endian; strings end with NUL or are padded with it.
+// NatNet's byte order and strings: little-endian; a string ends with NUL or is padded with it.
 #pragma once
 
 #include <bit>
@@ -33,7 +33,7 @@ inline void append_text(Bytes& out, std::string_view text) {
   out.push_back('\0');
 }
 
-/// The number that begins at `at`; the bytes must be there.
+/// The number whose bytes begin at `at`; all of them must be there.
 template <std::unsigned_integral Unsigned>
 requires(sizeof(Unsigned) > 1) [[nodiscard]] Unsigned
     number_at(std::span<const char> bytes, std::size_t at) {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kWord = 4;
 constexpr std::string_view kBundle{"#bundle\0", 8};
-constexpr std::uint64_t kTimeTagNow = 1;  ///< OSC 1.0: immediately.
+constexpr std::uint64_t kTimeTagNow = 1;  ///< In OSC 1.0: immediately.
 
 void add_text(std::vector<char>& out, std::string_view text) {
   text = text.substr(0, text.find('\0'));

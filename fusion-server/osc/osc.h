@@ -30,11 +30,12 @@ class Message {
   std::vector<char> arguments_;
 };
 
-/// Collects messages into bundles ("#bundle", time tag "now") of at most `limit` bytes each; a
-/// longer message gets a bundle of its own.
+/// Collects messages into bundles ("#bundle", time tag "now") of at most `limit` bytes; a message
+/// longer than that gets a bundle of its own.
 class Bundles {
  public:
-  static constexpr std::size_t kLimit = 1400;  ///< Fits an Ethernet frame with IPv6, UDP headers.
+  /// Fits an Ethernet frame with IPv6 and UDP headers.
+  static constexpr std::size_t kLimit = 1400;
 
   explicit Bundles(std::size_t limit = kLimit) : limit_(limit) {}
   void add(const Message& message);

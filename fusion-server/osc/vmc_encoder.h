@@ -23,11 +23,11 @@ struct Content {
   bool trackers = false;  ///< Adds /VMC/Ext/Tra/Pos.
 };
 
-/// Returns datagrams.  Without a body (nullptr) they only say that nobody is tracked.
+/// The datagrams of one frame.  Without a body (nullptr) they only say that nobody is tracked.
 [[nodiscard]] std::vector<std::vector<char>> encode(const outlet::TrackerBody* body,
                                                     const Content& content);
 
-/// The last datagram: the model is no longer loaded, nothing is tracked.
+/// The last datagrams: the model is no longer loaded, and nothing is tracked.
 [[nodiscard]] std::vector<std::vector<char>> encode_end();
 
 }  // namespace chorus::vmc

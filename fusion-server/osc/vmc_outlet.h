@@ -1,4 +1,5 @@
-// Sends people by VMC over UDP: a performer has one body, so each person has its own targets.
+// Sends people by VMC over UDP.  A VMC performer has one body, so each person has their own
+// targets.
 #pragma once
 
 #include <memory>
@@ -14,8 +15,8 @@ namespace chorus::vmc {
 
 struct Settings {
   std::vector<std::string> targets{"127.0.0.1:39539"};
-  int slot = 0;                                ///< Slot of the person to send.
-  std::vector<outlet::PersonTargets> persons;  ///< Further persons.
+  int slot = 0;                                ///< Slot of the person who is sent to `targets`.
+  std::vector<outlet::PersonTargets> persons;  ///< Further persons, with their targets.
   bool trackers = false;                       ///< Adds poses as /VMC/Ext/Tra/Pos.
 
   bool operator==(const Settings&) const = default;

@@ -16,11 +16,11 @@ using enum outlet::HumanBone;
 
 struct Worn {
   std::string_view name;
-  JointId place;            ///< At this joint ...
-  outlet::HumanBone turns;  ///< ... with the rotation of this bone.
+  JointId place;            ///< Gives the position.
+  outlet::HumanBone turns;  ///< Gives the rotation.
 };
 
-/// VRChat takes the head's position at the base of the head, not at the eyes.
+/// VRChat expects the head's position at the base of the head, not at the eyes.
 constexpr std::string_view kHead = "head";
 
 constexpr std::array<Worn, 9> kTrackers{{

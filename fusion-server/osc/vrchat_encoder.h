@@ -16,7 +16,7 @@ struct Content {
   bool head = true;  ///< Adds /tracking/trackers/head, which aligns the spaces.
 };
 
-/// Trackers whose joints are not tracked are omitted.
+/// The messages of one body; trackers whose joints are not tracked are omitted.
 [[nodiscard]] std::vector<std::vector<char>> encode(const outlet::TrackerBody& body,
                                                     const Content& content = {});
 

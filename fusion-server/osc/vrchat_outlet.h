@@ -1,4 +1,4 @@
-// Sends people as VRChat OSC trackers over UDP, each to targets of its own.
+// Sends people as VRChat OSC trackers over UDP; each person has their own targets.
 #pragma once
 
 #include <memory>
@@ -14,8 +14,8 @@ namespace chorus::vrchat {
 
 struct Settings {
   std::vector<std::string> targets{"127.0.0.1:9000"};
-  int slot = 0;                                ///< Slot of the person to send.
-  std::vector<outlet::PersonTargets> persons;  ///< Further persons.
+  int slot = 0;                                ///< Slot of the person who is sent to `targets`.
+  std::vector<outlet::PersonTargets> persons;  ///< Further persons, with their targets.
   bool head = true;  ///< Adds the head, which VRChat uses to align its space with ours.
 
   bool operator==(const Settings&) const = default;

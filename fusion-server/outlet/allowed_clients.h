@@ -1,4 +1,4 @@
-// The configuration key "allow" of outputs that clients connect to.
+// Reads the configuration key "allow" of outputs to which clients connect.
 #pragma once
 
 #include "common/base/config_reader.h"
@@ -6,7 +6,7 @@
 
 namespace chorus::outlet {
 
-/// Reports entries that are not addresses.
+/// Complains about entries that are not addresses.
 void read_allow(ConfigReader& reader, net::AllowList& out);
 
 }  // namespace chorus::outlet

@@ -1,16 +1,16 @@
-// Axes and units of every output protocol.  The only file that converts them.
+// Axes and units of all output protocols.  Only this file converts them.
 //
 // Ours: world, right-handed, metres, +y up, +z in the master sensor's viewing direction (towards
-// the far wall), quaternions Hamilton.  Facts on the wire formats: docs/guide/outputs.md.
+// the far wall), Hamilton quaternions.  docs/guide/outputs.md describes the wire formats.
 #pragma once
 
 #include <Eigen/Geometry>
 
 namespace chorus::outlet {
 
-/// x_in_target = scale * target_from_world * x_in_world.  `target_from_world` is orthonormal and
-/// may be a reflection (left-handed targets): rotations are conjugated, C R C^T, and stay
-/// rotations.
+/// x_in_target = scale * C * x_in_world, where C is `target_from_world`.  C is orthonormal, and a
+/// reflection for left-handed targets; a rotation R becomes C R C^T, which is a rotation in either
+/// case.
 struct Axes {
   Eigen::Matrix3d target_from_world;
   double units_per_metre = 1.0;
@@ -21,7 +21,7 @@ struct Axes {
   [[nodiscard]] Eigen::Matrix3d rotation(const Eigen::Quaterniond& world_from_joint) const {
     return target_from_world * world_from_joint.toRotationMatrix() * target_from_world.transpose();
   }
-  /// With w >= 0.
+  /// The same rotation, as a quaternion with w >= 0.
   [[nodiscard]] Eigen::Quaterniond quaternion(const Eigen::Quaterniond& world_from_joint) const;
 };
 
@@ -40,15 +40,16 @@ struct Axes {
 /// NatNet, as Motive streams it by default: right-handed, +y up, metres.
 [[nodiscard]] const Axes& natnet_axes();
 
-/// Rotates directions of a rest pose that looks along our +z, like that of Xsens and Motive, to
-/// those of the rig at rest (humanoid.h: it looks along -z).
+/// Rotates directions of a rest pose that looks along our +z, as that of Xsens and Motive does, to
+/// the rest pose of our rig, which looks along -z (humanoid.h).
 [[nodiscard]] const Eigen::Quaterniond& rig_from_ahead_rest();
 
-/// R = Rx(eta) Ry(theta) Rz(phi), |theta| <= 90 deg (A.R.T. DTrack2 manual, App. B) [rad].
+/// The angles with R = Rx(eta) Ry(theta) Rz(phi), |theta| <= 90 deg (A.R.T. DTrack2 manual, App. B)
+/// [rad].
 [[nodiscard]] Eigen::Vector3d dtrack_angles(const Eigen::Matrix3d& rotation);
-/// R = Ry(azimuth) Rx(elevation) Rz(roll), |elevation| <= 90 deg (CAVELib) [rad].
+/// The angles with R = Ry(azimuth) Rx(elevation) Rz(roll), |elevation| <= 90 deg (CAVELib) [rad].
 [[nodiscard]] Eigen::Vector3d trackd_angles(const Eigen::Matrix3d& rotation);
-/// R = Ry(y) Rx(x) Rz(z), returned as (x, y, z): Unity's Euler order, applied Z, X, Y [rad].
+/// The angles (x, y, z) with R = Ry(y) Rx(x) Rz(z): Unity's Euler order, applied Z, X, Y [rad].
 [[nodiscard]] Eigen::Vector3d unity_angles(const Eigen::Matrix3d& rotation);
 
 }  // namespace chorus::outlet

@@ -1,4 +1,4 @@
-// An outlet that only encodes each frame and sends the datagrams to its targets.
+// An outlet that only encodes frames and sends the datagrams to its targets.
 #pragma once
 
 #include <functional>
@@ -16,7 +16,7 @@ using Datagrams = std::vector<std::vector<char>>;
 /// Called for each frame in order, always on the same thread.
 using DatagramEncoder = std::function<Datagrams(const TrackerFrame&)>;
 
-/// The datagrams that one set of targets receives.
+/// What one set of targets receives.
 struct DatagramStream {
   std::vector<std::string> targets;
   DatagramEncoder encode;

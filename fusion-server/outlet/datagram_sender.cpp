@@ -71,7 +71,7 @@ struct DatagramSender::Sockets {
   std::optional<DatagramSocket> v4;
   std::optional<DatagramSocket> v6;
   std::vector<udp::endpoint> targets;
-  bool loopback = true;  ///< Every target is on this host.
+  bool loopback = true;  ///< True if every target is on this host.
 
   [[nodiscard]] std::optional<DatagramSocket>& towards(const udp& protocol) {
     return protocol == udp::v6() ? v6 : v4;
@@ -176,7 +176,7 @@ std::optional<Arrival> DatagramSender::receive() {
     udp::endpoint from;
     error_code error;
     const std::size_t size = (*socket)->receive_from(asio::buffer(bytes), from, 0, error);
-    // A "port unreachable" for something we sent arrives here too; it is ignored.
+    // This may be a "port unreachable" for a datagram that we sent; it is ignored.
     if (error) continue;
     return Arrival{{from.address().to_string(), from.port()}, std::string(bytes.data(), size)};
   }

@@ -1,4 +1,5 @@
-// UDP to a list of targets: "127.0.0.1:5000", "239.255.42.99:1511", "[::1]:39539", "host:9000".
+// Sends UDP datagrams to a list of targets: "127.0.0.1:5000", "239.255.42.99:1511", "[::1]:39539",
+// "host:9000".
 #pragma once
 
 #include <atomic>
@@ -15,13 +16,13 @@
 
 namespace chorus::outlet {
 
-/// Host and port of a target, unresolved.
+/// Host and port of a target; the host's name is not resolved yet.
 struct Target {
   std::string host;
   std::uint16_t port = 0;
 };
 
-/// An InvalidArgument says what is wrong with the text.
+/// Parses a target; an InvalidArgument says what is wrong with it.
 [[nodiscard]] Result<Target> parse_target(std::string_view text);
 
 /// Reads the key "targets"; each target has the form above.
@@ -29,8 +30,9 @@ void read_targets(ConfigReader& reader, std::vector<std::string>& out);
 
 /// How datagrams are sent to multicast groups.
 struct Multicast {
-  std::string address;  ///< Of the interface, numeric IPv4; empty: that of the default route.
-  int hops = 1;         ///< Number of routers a datagram may pass, plus one; 0: this host only.
+  /// Numeric IPv4 address of the interface; empty: that of the default route.
+  std::string address;
+  int hops = 1;  ///< How many routers, plus one, a datagram may pass; 0: it stays on this host.
 
   bool operator==(const Multicast&) const = default;
 };
@@ -40,23 +42,24 @@ void read_multicast(ConfigReader& reader, Multicast& out);
 
 struct DatagramOptions {
   std::vector<std::string> targets;
-  /// 0: any.  The socket is bound to loopback if all targets and `listen_address` are loopback.
+  /// 0: any free port.  The socket is bound to loopback if all targets and `listen_address` are
+  /// loopback.
   std::uint16_t source_port = 0;
-  /// If not empty, an IPv4 socket is open even without a target, so that others can write to it.
+  /// If not empty, an IPv4 socket is opened even without a target, so that others can send to it.
   std::string listen_address = {};
   Multicast multicast = {};
 };
 
 /// A datagram that was sent to us.
 struct Arrival {
-  Target sender;  ///< Its host is numeric.
+  Target sender;  ///< With a numeric host.
   std::string text;
 };
 
-/// Never blocks: datagrams that the operating system does not accept at once are lost and counted.
+/// Never blocks: a datagram that the operating system does not accept at once is lost and counted.
 class DatagramSender {
  public:
-  /// Resolves the targets.  Errors Io and InvalidArgument name the target.
+  /// Opens the sockets and resolves the targets.  Io and InvalidArgument name the target.
   [[nodiscard]] static Result<std::unique_ptr<DatagramSender>> open(const DatagramOptions& options);
   ~DatagramSender();
 
@@ -64,9 +67,9 @@ class DatagramSender {
   void send(std::span<const char> datagram);
   /// Sends one datagram to a host that need not be a target; `to` has a numeric host.
   void send_to(std::span<const char> datagram, const Target& to);
-  /// The next datagram received on our source port, its first 64 bytes; none: there is none.
+  /// The first 64 bytes of the next datagram received on our source port; none if there is none.
   [[nodiscard]] std::optional<Arrival> receive();
-  /// The port that we send IPv4 datagrams from; 0 before the first one.
+  /// The port from which we send IPv4 datagrams; 0 before the first one.
   [[nodiscard]] std::uint16_t source_port() const;
   /// Number of datagrams lost on sending.  May be called from any thread.
   [[nodiscard]] std::uint64_t failed() const noexcept { return failed_; }

@@ -17,10 +17,11 @@ const Eigen::Vector3d kRestLeft = -Eigen::Vector3d::UnitX();
 const Eigen::Vector3d kRestForward = -Eigen::Vector3d::UnitZ();
 
 constexpr double kFootFalls = deg(25);
-constexpr double kStraight = deg(15);     ///< A joint bent less than this has no reliable plane.
-constexpr double kBent = deg(30);         ///< From here on the plane alone defines the twist.
-constexpr double kNearlyParallel = 0.17;  ///< Sine of 10 deg: closer directions define no plane.
-constexpr double kShortest = 1e-4;        ///< Joints closer than this define no direction [m].
+constexpr double kStraight = deg(15);  ///< With a smaller bend, a joint has no reliable plane.
+constexpr double kBent = deg(30);      ///< With a larger bend, the plane alone defines the twist.
+/// Sine of 10 deg; directions closer to each other define no plane.
+constexpr double kNearlyParallel = 0.17;
+constexpr double kShortest = 1e-4;  ///< [m]; joints closer to each other define no direction.
 
 constexpr std::array<HumanBone, kHumanBoneCount> kParents{
     Hips,          Hips,          Spine,         Chest,        UpperChest,   Neck,
@@ -28,7 +29,7 @@ constexpr std::array<HumanBone, kHumanBoneCount> kParents{
     RightUpperArm, RightLowerArm, Hips,          LeftUpperLeg, LeftLowerLeg, LeftFoot,
     Hips,          RightUpperLeg, RightLowerLeg, RightFoot};
 
-/// The point that a bone turns about: at the fraction `share` of the way between two joints.
+/// The point about which a bone turns: at the fraction `share` of the way between two joints.
 struct Origin {
   JointId from;
   JointId to;
@@ -69,7 +70,7 @@ Direction direction(const TrackerBody& body, JointId from, JointId to) {
   return way.normalized();
 }
 
-/// Two directions of the same body part; `along` is the more accurate one.
+/// Two directions of the same body part; `along` is the more exact one.
 struct Cross {
   Eigen::Vector3d along;
   Eigen::Vector3d aside;
@@ -85,14 +86,14 @@ std::optional<Eigen::Matrix3d> frame_of(const Cross& cross) {
   return frame;
 }
 
-/// The shortest rotation added to `before` so that it takes `rest` to `now`.
+/// `before`, followed by the shortest rotation after which `rest` points to `now`.
 Eigen::Quaterniond swung(const Eigen::Quaterniond& before, const Eigen::Vector3d& rest,
                          const Eigen::Vector3d& now) {
   return (Eigen::Quaterniond::FromTwoVectors(before * rest, now) * before).normalized();
 }
 
 /// The rotation from the directions at rest to the present ones: exact for `along`, as close as
-/// possible for `aside`; the shortest rotation from `parent` when `aside` defines no plane.
+/// possible for `aside`.  If `aside` defines no plane, the shortest rotation from `parent`.
 Eigen::Quaterniond turned(const Cross& rest, const Cross& now, const Eigen::Quaterniond& parent) {
   const auto from = frame_of(rest);
   const auto to = frame_of(now);
@@ -104,7 +105,7 @@ struct Limb {
   JointId root, middle, end;
   HumanBone upper, lower, trunk;
   Eigen::Vector3d rest_along;
-  Eigen::Vector3d rest_hinge;  ///< Axis upper x lower for the natural bend
+  Eigen::Vector3d rest_hinge;  ///< Axis upper x lower of the natural bend.
 };
 
 const std::array<Limb, 4> kLimbs{{
@@ -127,7 +128,7 @@ struct Tip {
 const Eigen::Vector3d kRestFoot =
     std::cos(kFootFalls) * kRestForward - std::sin(kFootFalls) * kRestUp;
 
-/// Hands; their `aside` is the thumb.
+/// The hands; their `aside` is the thumb.
 const std::array<Tip, 2> kHands{{
     {LeftHand, LeftLowerArm, JointId::WristLeft, JointId::HandTipLeft, JointId::HandLeft,
      JointId::ThumbLeft, kRestLeft, kRestForward},
@@ -186,7 +187,7 @@ bool Rig::add_hips() {
   return true;
 }
 
-/// `lateral`: the direction to the left.
+/// Adds a bone of the trunk; `lateral`: the direction to the left.
 void Rig::add_upright(HumanBone bone, const Direction& along, const Eigen::Vector3d& lateral) {
   if (!along) return follow(bone, false);
   set(bone, turned({kRestUp, kRestLeft}, {*along, lateral}, turn(parent_of(bone))));
@@ -242,7 +243,8 @@ void Rig::add_hand(const Tip& hand) {
   if (!along) return follow(hand.bone, false);
   const Eigen::Quaterniond forearm = turn(hand.lower);
   const Direction thumb = direction(body_, hand.root, hand.aside);
-  const Cross now{*along, thumb.value_or(*along)};  // without a thumb, `along` itself: no plane
+  // Without a thumb, `along` itself, which defines no plane.
+  const Cross now{*along, thumb.value_or(*along)};
   set(hand.bone, turned({hand.rest_along, hand.rest_aside}, now, forearm));
 }
 

@@ -1,9 +1,10 @@
-// The body as a rig that rests in T-pose: what humanoid protocols (VMC, VRChat, DTrack's 6dj) send.
+// The body as a rig that rests in T-pose, which humanoid protocols (VMC, VRChat, DTrack's 6dj)
+// send.
 //
 // World space, metres.  At rest the rig looks along the world's -z, with its left hand at -x and +y
-// up: converted by unity_axes() this is Unity's T-pose, +z forward.  A bone's rotation takes
-// directions of the rig at rest to directions in the world, so a person in T-pose who looks along
-// -z has identity rotations only.
+// up; after unity_axes() this is Unity's T-pose, which looks along +z.  A bone's rotation takes
+// directions of the rig at rest to directions in the world, so for a person in T-pose who looks
+// along -z all rotations are the identity.
 //
 // Rotations follow from the positions of the joints: every bone lies exactly along its two joints;
 // what remains, the twist about the bone, is taken
@@ -28,7 +29,7 @@
 namespace chorus::outlet {
 
 // clang-format off
-/// The subset of Unity's HumanBodyBones that our joints determine; parents come before children.
+/// Those of Unity's HumanBodyBones that our joints determine; parents come before children.
 enum class HumanBone : std::uint8_t {
   Hips, Spine, Chest, UpperChest, Neck, Head,
   LeftShoulder, LeftUpperArm, LeftLowerArm, LeftHand,
@@ -46,10 +47,10 @@ inline constexpr std::array<std::string_view, kHumanBoneCount> kHumanBoneNames{
 // clang-format on
 
 struct BonePose {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< The joint that it turns about.
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< The joint about which the bone turns.
   Eigen::Quaterniond world_from_bone = Eigen::Quaterniond::Identity();
-  /// False: its joints are not tracked; then it has its parent's position and rotation, so that its
-  /// children's poses are right even for receivers that ignore this flag.
+  /// False: the bone's joints are not tracked.  Then it has its parent's position and rotation, so
+  /// that the poses of its children are right even for receivers that ignore this flag.
   bool known = false;
 };
 
@@ -64,14 +65,14 @@ struct Humanoid {
   }
 };
 
-/// A pose given in the world, relative to another pose.
+/// `pose` relative to `parent`; both are given in the world.
 [[nodiscard]] BonePose relative_to(const BonePose& parent, const BonePose& pose);
 
 /// The parent of Hips is Hips.
 [[nodiscard]] HumanBone parent_of(HumanBone bone);
 
-/// Always returns: Hips is unknown when the pelvis is not tracked or the body's facing is unknown;
-/// then no bone of the body is known.  Every origin and rotation is finite.
+/// The pose of the rig.  Every origin and rotation is finite.  Hips is unknown when the pelvis is
+/// not tracked or the body's facing is unknown; then every bone is.
 [[nodiscard]] Humanoid humanoid_of(const TrackerBody& body);
 
 }  // namespace chorus::outlet

@@ -1,4 +1,4 @@
-// Passes one value between two threads: a new value replaces one that has not been taken.
+// Passes values from one thread to another: a new value replaces one that has not been taken.
 #pragma once
 
 #include <mutex>
@@ -7,13 +7,13 @@
 
 namespace chorus::outlet {
 
-/// For a consumer that is called (by asio::post) and does not wait; compare Handover, whose
-/// consumer waits.
+/// For a consumer that does not wait but is called (by asio::post).  For a consumer that waits, use
+/// Handover.
 template <class T>
 class Newest {
  public:
-  /// True: it was empty, so the consumer must be called.  False: an older value was replaced, and
-  /// the call already posted will take this one.
+  /// True: there was no value, so the consumer must be called.  False: an older value was replaced;
+  /// the call already posted will take the new one.
   [[nodiscard]] bool put(T value) {
     const std::scoped_lock lock(mutex_);
     const bool was_empty = !value_.has_value();

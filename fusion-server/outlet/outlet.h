@@ -1,4 +1,4 @@
-// The sending end of a protocol, and a wrapper that gives it a thread and a bounded queue.
+// The sending end of a protocol, and a wrapper that runs it on its own thread with a bounded queue.
 #pragma once
 
 #include <atomic>
@@ -14,25 +14,26 @@
 
 namespace chorus::outlet {
 
-/// Encodes and sends, synchronously, always on the same thread; it may take its time.
+/// Encodes and sends synchronously, always on the same thread; it may take its time.
 class Outlet {
  public:
   virtual ~Outlet() = default;
   [[nodiscard]] virtual std::string_view name() const = 0;
   virtual void send(const TrackerFrame& frame) = 0;
-  /// Counters known only to the protocol: failed, refused, clients.  May be called from any thread.
+  /// Counters that only the protocol knows: failed, refused, clients.  May be called from any
+  /// thread.
   [[nodiscard]] virtual SinkCounters counters() const = 0;
 };
 
-/// Settings that every protocol receives.
+/// What every protocol receives besides its own settings.
 struct OutletContext {
   std::size_t slots = 6;  ///< Maximum number of people.
   std::shared_ptr<const Clock> clock;
 };
 
 enum class Latency {
-  Exact,      ///< The fused instant itself, with the alignment delay.
-  Predicted,  ///< Predicted to the time of sending at constant velocity.
+  Exact,      ///< Sends the fused poses as they are, later than real time by the alignment delay.
+  Predicted,  ///< Sends poses predicted to the time of sending, at constant velocity.
 };
 
 struct OutletTiming {
@@ -41,13 +42,13 @@ struct OutletTiming {
   std::shared_ptr<const Clock> clock;
 };
 
-/// Passes frames to the outlet on a thread of its own.  When the outlet is two frames behind, the
-/// oldest is dropped and counted; the pipeline never waits.  An exception from the outlet is
-/// logged, counted as failed, and only loses that frame.
+/// Passes frames to the outlet on its own thread.  When the outlet is two frames behind, the oldest
+/// frame is dropped and counted; the pipeline never waits.  An exception from the outlet is logged
+/// and counted as failed; only that frame is lost.
 class OutletSink final : public Sink {
  public:
   OutletSink(std::unique_ptr<Outlet> outlet, OutletTiming timing);
-  ~OutletSink() override;  ///< Stops and joins.
+  ~OutletSink() override;  ///< Stops and joins the thread.
 
   [[nodiscard]] std::string_view name() const override { return outlet_->name(); }
   void publish(std::shared_ptr<const Snapshot> snapshot) override;

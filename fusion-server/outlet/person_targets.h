@@ -1,4 +1,4 @@
-// For protocols with one person per stream: which person is sent to which targets.
+// Which person is sent to which targets, for protocols with one person per stream.
 #pragma once
 
 #include <string>

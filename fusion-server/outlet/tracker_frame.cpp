@@ -13,9 +13,9 @@ namespace chorus::outlet {
 namespace {
 
 constexpr Duration kMaxPrediction = std::chrono::milliseconds(50);
-/// After a longer gap the velocities start anew.
+/// After a longer gap, the velocities start anew.
 constexpr Duration kMaxStep = std::chrono::milliseconds(250);
-/// Exponential smoothing factor of the velocities: weight of the newest difference.
+/// Exponential smoothing of the velocities: the weight of the newest difference.
 constexpr double kNewest = 0.5;
 
 TrackerBody body_of(const FusedBody& fused, std::size_t slot) {

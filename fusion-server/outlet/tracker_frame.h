@@ -1,7 +1,7 @@
-// The content of an output protocol: fused bodies in numbered slots, each joint with a full pose.
+// What an output protocol sends: fused bodies in numbered slots, each joint with a full pose.
 //
-// World space, metres, radians, seconds; encoders convert by axes.h.  A value: encoders are pure
-// functions of it.
+// World space, metres, radians, seconds; encoders convert with axes.h.  A plain value: encoders are
+// pure functions of it.
 #pragma once
 
 #include <array>
@@ -13,22 +13,23 @@
 
 namespace chorus::outlet {
 
-/// Most slots that a configuration may ask for.
+/// Most slots that may be configured.
 inline constexpr int kMaxSlots = 20;
 
 struct TrackerJoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  /// Always a unit quaternion: a joint without an orientation takes that of the next joint towards
-  /// the pelvis that has one; without any, it is the identity.
+  /// Always a unit quaternion.  A joint without an orientation has that of the nearest joint
+  /// towards the pelvis that has one; if there is none, the identity.
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          ///< [m/s]
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< World axes [rad/s]
-  /// False: its position is unknown (or absurdly far away, as in /frame); do not send a pose.
+  /// False: the position is unknown, or too far away to be plausible, as in /frame; do not send a
+  /// pose.
   bool tracked = false;
 };
 
 struct TrackerBody {
-  std::size_t slot = 0;  ///< 0 .. slots - 1; the same as FusedBody::slot.
+  std::size_t slot = 0;  ///< From 0 to slots - 1; as in FusedBody::slot.
   PersonId person;
   std::array<TrackerJoint, kJointCount> joints;
 
@@ -38,16 +39,16 @@ struct TrackerBody {
 struct TrackerFrame {
   std::uint64_t sequence = 0;  ///< Protocols with 32-bit counters send it modulo 2^32.
   Timestamp instant;           ///< Time of the poses: the fused instant, or later if predicted.
-  std::size_t slots = 0;       ///< At most this many persons.
+  std::size_t slots = 0;       ///< Most persons that are sent.
   std::vector<TrackerBody> bodies;  ///< Ordered by slot.
 };
 
-/// The joint itself when it is tracked, else the next tracked one towards the pelvis; if there is
-/// none, the pelvis, tracked or not.  Protocols in which every joint must have a position place
-/// unseen limbs there.
+/// The joint itself if it is tracked, otherwise the nearest tracked joint towards the pelvis; if
+/// there is none, the pelvis, tracked or not.  Protocols in which every joint must have a position
+/// place unseen limbs there.
 [[nodiscard]] JointId nearest_tracked(const TrackerBody& body, JointId joint);
 
-/// The body in a slot, or nullptr if there is none.
+/// The body in this slot; null if there is none.
 [[nodiscard]] const TrackerBody* in_slot(const TrackerFrame& frame, std::size_t slot);
 
 /// Computes joint velocities from successive snapshots.
@@ -55,9 +56,8 @@ class TrackerState {
  public:
   explicit TrackerState(std::size_t slots) : slots_(slots) {}
 
-  /// People without a slot, or beyond the last slot, are left
-  /// out.  With a repeated or older instant all velocities are
-  /// zero.
+  /// The next frame.  People without a slot, or in a slot too high, are left out.  If the instant
+  /// is that of the last snapshot or earlier, all velocities are zero.
   [[nodiscard]] TrackerFrame advance(const Snapshot& snapshot);
 
  private:
@@ -66,8 +66,8 @@ class TrackerState {
   Timestamp instant_{};
 };
 
-/// The frame predicted for `then` at constant velocity, over at most 50 ms (farther ahead, limbs
-/// gain more error than they lose); an earlier time changes nothing.
+/// The frame predicted for `then` at constant velocity, by at most 50 ms (farther ahead, limbs gain
+/// more error than they lose).  If `then` is earlier, the frame is unchanged.
 [[nodiscard]] TrackerFrame predicted(TrackerFrame frame, Timestamp then);
 
 }  // namespace chorus::outlet

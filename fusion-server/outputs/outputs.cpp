@@ -16,7 +16,7 @@ void read_common(ConfigReader& reader, OutputSetting& out) {
   reader.read("max_persons", out.max_persons, 1, outlet::kMaxSlots);
 }
 
-/// The list of all outputs: the key of each, and where its settings are.
+/// Calls `visit` for every output: with its key and its settings.
 template <class Config, class Visitor>
 void for_each_output(Config& config, const Visitor& visit) {
   visit("mxtp", config.mxtp);

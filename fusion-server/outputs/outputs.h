@@ -1,7 +1,8 @@
-// All outputs other than REST, as enabled in the configuration's section "outputs".
+// All outputs except REST, as the configuration section "outputs" enables them.
 //
-// One folder per protocol: NAME_encoder.h (pure: bytes from a TrackerFrame) and NAME_outlet.h (a
-// thin sender, its settings, its factory). outputs.cpp is the only list of them.
+// There is one folder per protocol: NAME_encoder.h makes bytes from a TrackerFrame (pure),
+// NAME_outlet.h has a thin sender, its settings and its factory.  outputs.cpp is the only list of
+// the protocols.
 #pragma once
 
 #include <memory>
@@ -50,15 +51,15 @@ struct OutputsConfig {
   bool operator==(const OutputsConfig&) const = default;
 };
 
-/// Mistakes are reported later, by the reader's finish().
+/// Reads the section; the reader's finish() reports mistakes.
 void read_outputs(ConfigReader reader, OutputsConfig& out);
 
-/// Opens the enabled outputs.  Returns the error of the first that cannot be opened; its context
-/// begins with "outputs.NAME".
+/// Opens the enabled outputs.  Returns the error of the first one that cannot be opened, with a
+/// context that begins with "outputs.NAME".
 [[nodiscard]] Result<std::vector<std::unique_ptr<Sink>>> open_outputs(
     const OutputsConfig& config, const std::shared_ptr<const Clock>& clock);
 
-/// The smallest max_persons of the enabled outputs: slots below this are shown by all of them.
+/// The smallest max_persons of the enabled outputs: all of them show the slots below it.
 [[nodiscard]] std::size_t slots_of_all(const OutputsConfig& config);
 
 }  // namespace chorus::outputs

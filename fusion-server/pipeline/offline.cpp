@@ -13,10 +13,11 @@
 namespace chorus::pipeline {
 namespace {
 
-constexpr double kFastest = 1000.0;  // [Hz] a higher output rate is a mistake in the configuration
+// [Hz]; a higher output rate must be a mistake in the configuration.
+constexpr double kFastest = 1000.0;
 
-/// Instants are integer multiples of 1 / rate; long double keeps them exact to the nanosecond until
-/// 2262.
+/// The output instants, integer multiples of 1 / rate; long double keeps them exact to the
+/// nanosecond until 2262.
 class Grid {
  public:
   explicit Grid(double rate) : period_(1e9L / static_cast<long double>(rate)) {}
@@ -82,7 +83,7 @@ Result<Registration> judged(Registration found) {
               fmt::format("the walk could not be registered: {}", fmt::join(found.reasons, "; ")));
 }
 
-/// Whether some registered sensor covers the instant.
+/// True if a registered sensor covers the instant.
 bool covered(const Snapshot& snapshot) {
   return std::any_of(
       snapshot.reports.begin(), snapshot.reports.end(), [&](const SensorReport& report) {
@@ -91,7 +92,7 @@ bool covered(const Snapshot& snapshot) {
       });
 }
 
-/// Goes through all instants of all recordings in order.
+/// Runs through all instants of all recordings in order.
 class Replay {
  public:
   Replay(OfflineInput input, const Registration& registration, const OfflineConfig& config)
@@ -123,7 +124,7 @@ class Replay {
   }
 
  private:
-  /// The snapshot; nothing if no sensor covers the instant.
+  /// The snapshot; none if no sensor covers the instant.
   std::optional<Snapshot> answer(Timestamp instant) {
     frames_.advance(instant, histories_);
     const Timestamp late = instant + config_.pipeline.align.patience + Duration(1);
@@ -135,7 +136,7 @@ class Replay {
     return std::move(next.snapshot);
   }
 
-  /// The first instant after `index` that a frame could cover; none at the end.
+  /// The index of the first instant after `index` that a frame could cover; none at the end.
   [[nodiscard]] Result<std::optional<std::int64_t>> after_gap(std::int64_t index) {
     const auto next = frames_.next_after(grid_.at(index));
     if (!next) return pass(next);
@@ -165,7 +166,7 @@ Result<void> read_enough(RecordedFrames& frames, RecordedWalk& walk) {
   return {};
 }
 
-/// Wraps a track in memory as a lane; the track must outlive the lane.
+/// A lane that reads a track in memory; the track must outlive the lane.
 FrameLane lane_of(const registration::WalkTrack& track) {
   return {track.sensor.str(),
           [&frames = track.frames,

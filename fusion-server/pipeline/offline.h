@@ -1,5 +1,5 @@
-// Runs recordings of several sensors through the same pipeline: offline, deterministic, with
-// registration.
+// Runs recordings of several sensors through the same pipeline as the server, including
+// registration: offline and deterministic.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@ namespace chorus::pipeline {
 struct OfflineConfig {
   PipelineConfig pipeline;
   registration::RegistrationConfig registration;
-  double rate_hz = 30.0;  ///< Output instants are multiples of 1/rate since the epoch.
+  double rate_hz = 30.0;  ///< Output instants are multiples of 1/rate since the epoch [Hz].
 };
 
 struct OfflineResult {
@@ -23,26 +23,27 @@ struct OfflineResult {
   std::vector<Snapshot> snapshots;
 };
 
-/// Recordings that are read during fusion; to read them again, make new lanes.
+/// Recordings that are read while they are fused; to read them again, make new lanes.
 struct OfflineInput {
   std::vector<FrameLane> lanes;
   std::vector<SensorId> sensors = {};  ///< Sensors known in advance.
 };
 
-/// An error stops the fusion.
+/// Takes each snapshot; an error stops the fusion.
 using TakeSnapshot = std::function<Result<void>(Snapshot)>;
 
-/// Registers from the first minutes in which one person is seen alone; from more of them while
-/// sensors are missing.  Conflict, with reasons, when no registration is found.
+/// Registers the sensors from the first minutes in which one person is seen alone.  If sensors have
+/// no place then, uses more such minutes, until all have one or the recordings end.  Conflict, with
+/// reasons, when no registration is found.
 [[nodiscard]] Result<Registration> register_recordings(OfflineInput input,
                                                        const OfflineConfig& config);
 
-/// Fuses every instant that any sensor covers, with a few seconds of frames in memory.  What the
-/// registration says about clocks is added to the capture times.
+/// Fuses every instant that any sensor covers; keeps only a few seconds of frames in memory.  Adds
+/// to the capture times what the registration says about the sensors' clocks.
 [[nodiscard]] Result<void> fuse_recordings(OfflineInput input, const Registration& registration,
                                            const OfflineConfig& config, const TakeSnapshot& take);
 
-/// All in memory: registers from the whole walk unless extrinsics are given.
+/// The same for recordings in memory: registers from the whole walk unless `extrinsics` are given.
 [[nodiscard]] Result<OfflineResult> fuse_offline(
     const std::vector<registration::WalkTrack>& sensors,
     const std::optional<Registration>& extrinsics, const OfflineConfig& config);

@@ -20,7 +20,7 @@ std::vector<SensorId> registered_sensors(const Registration& registration) {
   return sensors;
 }
 
-/// The patience with the sensors that instants wait for: those with a place.
+/// The patience with those sensors for which instants wait: sensors with a place.
 align::Patience patience_of(const Histories& histories, const Registration& registration,
                             const PipelineConfig& config) {
   std::map<SensorId, const align::History*> placed;
@@ -30,7 +30,7 @@ align::Patience patience_of(const Histories& histories, const Registration& regi
   return {placed, config.align};
 }
 
-/// 5.2.4: aligns every sensor's bodies to the common instant.
+/// 5.2.4: moves every sensor's bodies to the common instant.
 std::vector<AlignedSensor> align_all(const Inputs& in, const Histories& histories,
                                      const Registration& registration,
                                      const PipelineConfig& config) {
@@ -56,7 +56,7 @@ SensorView view_of(const AlignedSensor& from, const BodyFrame& body,
   return view;
 }
 
-/// 5.2.3: moves bodies into the world; those of sensors without a place are left out.
+/// 5.2.3: moves bodies into the world; leaves out those of sensors without a place.
 std::vector<SensorView> views_in_world(const std::vector<AlignedSensor>& aligned,
                                        const Registration& registration,
                                        const fusion::QualityLimits& limits) {
@@ -77,8 +77,8 @@ std::vector<SensorView> views_in_world(const std::vector<AlignedSensor>& aligned
 
 bool has_spoken(Basis basis) { return basis == Basis::Exact || basis == Basis::Interpolated; }
 
-/// Sensors that delivered for this instant.  Another fusion server, whose bodies are in world space
-/// with the floor at y = 0, is no observer.
+/// The sensors that have delivered for this instant.  Another fusion server, whose bodies are in
+/// world space with the floor at y = 0, is not an observer.
 std::vector<associate::Observer> observers_of(const std::vector<AlignedSensor>& aligned,
                                               const Registration& registration) {
   std::vector<associate::Observer> observers;
@@ -97,14 +97,14 @@ associate::Scene scene_of(const Inputs& in, const std::vector<AlignedSensor>& al
           observers_of(aligned, registration)};
 }
 
-/// All people still tracked, whether seen now or not.
+/// Everybody who is still tracked, seen now or not.
 std::set<PersonId> ids_of(const associate::Tracks& tracks) {
   std::set<PersonId> ids;
   for (const associate::Track& track : tracks.people) ids.insert(track.id);
   return ids;
 }
 
-/// 5.2.2 again, now with known identities: the sides that all sensors agree on.
+/// 5.2.2 again, now that identities are known: finds the sides on which all sensors agree.
 void resolve_sides(std::vector<Person>& people, Timestamp instant, Memory& memory,
                    const facing::SidesConfig& config) {
   for (Person& person : people) {
@@ -125,7 +125,7 @@ void weigh(std::vector<Person>& people, const fusion::QualityLimits& limits) {
   }
 }
 
-/// Removes the memory of people who are no longer tracked.
+/// Forgets people who are no longer tracked.
 void forget_the_gone(Memory& memory) {
   const std::set<PersonId> tracked = ids_of(memory.tracks);
   std::erase_if(memory.sides.people,
@@ -153,7 +153,7 @@ std::vector<SensorReport> report(const std::vector<AlignedSensor>& aligned,
   return listed;
 }
 
-/// Removes bodies without joints: a person shown only by single rays soon has no joints left.
+/// Removes bodies without joints: somebody whom only single rays show soon has no joints left.
 void leave_out_the_unplaced(std::vector<FusedBody>& bodies, const std::vector<Person>& people) {
   const auto of_rays = [](const SensorView& view) { return has_rays_alone(view.skeleton.joints); };
   std::erase_if(bodies, [&](const FusedBody& body) {

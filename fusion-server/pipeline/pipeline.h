@@ -1,5 +1,5 @@
-// Otto et al., Figure 10, as one pure step: histories in, snapshot out.  No clock, no socket, no
-// lock.
+// Otto et al., Figure 10, as one pure step: takes histories, returns a snapshot.  No clock, no
+// socket, no lock.
 #pragma once
 
 #include <map>
@@ -30,7 +30,7 @@ using Histories = std::map<SensorId, align::History>;
 
 struct Inputs {
   Timestamp instant;  ///< The common instant to fuse.
-  Timestamp now;      ///< The server's time of this computation.
+  Timestamp now;      ///< When the server computes this.
   std::uint64_t sequence = 0;
 };
 
@@ -66,11 +66,11 @@ struct Waiting {
   Duration extension{0};  ///< Additional wait, because most of the sensors are slow.
 };
 
-/// Before any has answered for an instant: every sensor with a place.
+/// The sensors to wait for before any has answered for an instant: every sensor with a place.
 [[nodiscard]] Waiting all_awaited(const Histories& histories, const Registration& registration,
                                   const PipelineConfig& config);
 
-/// Removes those that have answered, or that are too late.  When none is left, waiting longer
+/// Removes the sensors that have answered or are too late.  When none is left, waiting longer
 /// cannot improve the result.
 void drop_settled(std::vector<Awaited>& awaited, const Inputs& in, const Histories& histories);
 
@@ -79,7 +79,7 @@ void drop_settled(std::vector<Awaited>& awaited, const Inputs& in, const Histori
                                         const Registration& registration,
                                         const PipelineConfig& config);
 
-/// Runs all stages of `step` before fusion; returns the views that are to be fused.
+/// Runs all stages of step() before fusion; returns the views that are to be fused.
 [[nodiscard]] Perceived perceive(const Inputs& in, const Histories& histories,
                                  const Registration& registration, const Memory& memory,
                                  const PipelineConfig& config);

@@ -10,9 +10,9 @@
 namespace chorus::pipeline {
 namespace {
 
-/// A frame may be recorded this much later than it was captured and is still used.
+/// A frame is still used if it was recorded up to this much later than captured.
 constexpr Duration kAhead = std::chrono::seconds(5);
-/// Twice what 64 sensors that see 12 people each deliver in kAhead; about 500 MB.
+/// Twice what 64 sensors that see 12 people each deliver in kAhead; needs about 500 MB.
 constexpr std::size_t kMaxWaiting = 64 * 12 * 300;
 constexpr std::size_t kNoLane = std::numeric_limits<std::size_t>::max();
 
@@ -92,7 +92,7 @@ Result<std::optional<Timestamp>> RecordedFrames::next_after(Timestamp instant) {
     found = waiting_after(instant);
   }
   if (!found) return found;
-  // Another sensor's frame may be captured earlier but recorded later.
+  // A frame of another sensor may have been captured earlier, but recorded later.
   if (auto ok = read_to(*found); !ok) return pass(ok);
   return waiting_after(instant);
 }
@@ -105,8 +105,8 @@ void RecordedFrames::advance(Timestamp instant, Histories& histories) {
       stream.waiting.pop_front();
       bodies_ -= frame.bodies.size();
       stream.played = frame.captured;
-      frame.received =
-          Timestamp{};  // The time at which a file was read says nothing about its stamps.
+      // The time at which a file is read says nothing about how its frames arrived.
+      frame.received = Timestamp{};
       history.push(std::move(frame));
     }
   }

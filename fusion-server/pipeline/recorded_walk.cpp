@@ -6,10 +6,10 @@
 namespace chorus::pipeline {
 namespace {
 
-constexpr std::size_t kMaxWalkers = 60'000;  // 100 MB
-constexpr std::size_t kMaxSeveral = 10'000;  // they only show where the feet are
-constexpr Duration kNextSight =
-    std::chrono::seconds(1);  // Longer gaps do not count as time in which a person was seen.
+constexpr std::size_t kMaxWalkers = 60'000;  // So many bodies need 100 MB.
+constexpr std::size_t kMaxSeveral = 10'000;  // These bodies only show where the feet are.
+/// A longer gap does not count as time in which a person was seen.
+constexpr Duration kNextSight = std::chrono::seconds(1);
 
 }  // namespace
 

@@ -8,19 +8,19 @@
 
 namespace chorus::pipeline {
 
-/// Collects frames of all sensors, roughly ordered by capture, until there are enough.
+/// Collects frames of all sensors, which come roughly in order of capture, until there are enough.
 class RecordedWalk {
  public:
   void take(SensorFrame frame);
 
-  /// One person was seen alone for long enough, or the memory limit is reached.
+  /// True if one person was seen alone for long enough, or the memory limit is reached.
   [[nodiscard]] bool enough() const { return alone_ >= wanted_ || used_up(); }
-  /// The limit of memory is reached: the walk can get no longer.
+  /// True if the memory limit is reached: the walk cannot become longer.
   [[nodiscard]] bool used_up() const;
-  /// Continues collecting until the walk is longer by the same length again.
+  /// Makes enough() false until the walk is longer by the first length again.
   void go_on();
 
-  /// One track for each sensor that delivered a frame, ordered by id.
+  /// One track for each sensor that has delivered a frame, ordered by id.
   [[nodiscard]] const std::vector<registration::WalkTrack>& tracks() const { return tracks_; }
 
  private:
@@ -30,8 +30,8 @@ class RecordedWalk {
   Duration wanted_ = std::chrono::minutes(2);
   Duration alone_{0};
   Timestamp last_alone_ = Timestamp::min();
-  std::size_t bodies_ = 0;   ///< Number kept from frames with one person.
-  std::size_t several_ = 0;  ///< Number kept from frames with more people.
+  std::size_t bodies_ = 0;   ///< Bodies kept from frames with one person.
+  std::size_t several_ = 0;  ///< Bodies kept from frames with more people.
 };
 
 }  // namespace chorus::pipeline

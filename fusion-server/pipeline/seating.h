@@ -1,6 +1,6 @@
-// Seats people in numbered slots, instant by instant, once for all outputs.
+// Seats people in numbered slots, once for all outputs.
 //
-// A value without clock, thread or socket: the instants show how long a person was absent.
+// A plain value without clock, thread or socket: the instants tell how long a person was absent.
 #pragma once
 
 #include <optional>
@@ -11,16 +11,18 @@
 namespace chorus::pipeline {
 
 struct SeatingConfig {
-  /// Slots that every output shows.  A person in a higher slot moves when one of these gets free.
+  /// Number of slots that every output shows.  A person in a higher slot moves when one of these
+  /// becomes free.
   std::size_t front = 6;
 
   bool operator==(const SeatingConfig&) const = default;
 };
 
-/// An absent person's slot stays reserved while the person may return.  A newcomer gets a higher
-/// slot and moves to the reserved one if nobody returns: the newcomer may be the same person with a
-/// new id, and a protocol with one slot would otherwise show nobody any more.  When the clock is
-/// set back by more than slots are reserved for, seating starts anew, as association does.
+/// An absent person's slot stays reserved while the person may return.  Meanwhile a newcomer gets a
+/// higher slot, and moves to the reserved one if nobody returns: the newcomer may be the same
+/// person with a new id, and a protocol with one slot would otherwise show nobody any more.  When
+/// the clock is set back by more than the time for which slots are reserved, seating starts anew,
+/// as association does.
 class Seating {
  public:
   /// Sets FusedBody::slot of each body; bodies beyond kMaxBodies get none.  `keep`: how long an
@@ -33,7 +35,7 @@ class Seating {
     PersonId person;
     Timestamp seen;
     bool absent = false;
-    /// Its own slot, or a lower one whose person was absent when this one arrived.
+    /// The person's own slot, or a lower one whose person was absent when this one arrived.
     std::size_t waits_for = 0;
   };
 

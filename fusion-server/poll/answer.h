@@ -17,8 +17,9 @@ struct FrameAnswer {
   std::shared_ptr<const resource::FrameResource> frame;  ///< Null unless the body is a frame.
 };
 
-/// Returns Unreadable for: a content type that is no frame, an unreadable frame, a frame of another
-/// sensor.  A frame in world space may have any source: fusion servers can be chained.
+/// Reads the answer to a request for a frame.  Its event is Unreadable for a content type that is
+/// no frame, an unreadable frame, or a frame of another sensor.  A frame in world space may have
+/// any source, because fusion servers can be chained.
 [[nodiscard]] FrameAnswer read_frame_answer(const http::ClientResponse& response,
                                             const SensorId& expected);
 
@@ -27,19 +28,21 @@ struct FrameAnswer {
 [[nodiscard]] Result<std::shared_ptr<const resource::FrameResource>> read_frame_event(
     std::string_view text, const SensorId& expected);
 
-/// Reads /floor-plane; none when there is none or it cannot be read.
+/// Reads the answer of /floor-plane; none when it is not a floor plane.
 [[nodiscard]] std::optional<FloorPlane> read_floor_answer(const http::ClientResponse& response);
 
-/// The four time stamps, if the answer has a Chorus-Clock header.
+/// The four time stamps of the exchange; none if the answer has no Chorus-Clock header.
 [[nodiscard]] std::optional<ClockExchange> exchange_of(const http::ClientResponse& response);
 
-/// The frame with times moved to our clock, and its floor: y = 0 in world space.
+/// The frame with its times moved to our clock as `clock` says, and with its floor; in world space
+/// that is y = 0.
 [[nodiscard]] SensorFrame place_in_time(const resource::FrameResource& frame,
                                         const SensorId& sensor, Timestamp received,
                                         const std::optional<ClockEstimate>& clock,
                                         const std::optional<FloorPlane>& floor);
 
-/// Why the pipeline cannot use a frame with this time: it is in the future, or very old.
+/// Why the pipeline cannot use a frame with this time (it is in the future, or very old); otherwise
+/// none.
 [[nodiscard]] std::optional<Error> untimely(const SensorFrame& frame);
 
 }  // namespace chorus::poll

@@ -1,4 +1,5 @@
-// Keeps track of frames that a stream left out, to be fetched from /frames/{seq} one by one.
+// Keeps a list of the frames that a stream left out; they are fetched from /frames/{seq} one by
+// one.
 #pragma once
 
 #include <cstdint>
@@ -11,18 +12,19 @@ namespace chorus::poll {
 
 class Backfill {
  public:
-  /// To be called for every frame that came by stream, in order of arrival.
+  /// Call this for every frame that came by stream, in order of arrival.
   void saw(std::uint64_t sequence, Duration now);
 
-  /// The oldest gap still worth a request; it then counts as being fetched.
+  /// The oldest missing frame that is still worth a request; it is then taken off the list.
   [[nodiscard]] std::optional<std::uint64_t> next(Duration now);
 
-  /// Takes the outcome of the request.  A sensor that keeps no frames is soon asked no more.
+  /// Call this with the outcome of the request.  A sensor that keeps no frames is soon not asked
+  /// any more.
   void answered(bool there);
 
   [[nodiscard]] bool empty() const noexcept { return missing_.empty(); }
 
-  /// To be called for a new stream, perhaps from another run of the sensor.
+  /// Call this for a new stream, which may be of another run of the sensor.
   void restart();
 
  private:

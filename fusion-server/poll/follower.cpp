@@ -20,7 +20,7 @@ constexpr std::string_view kAcceptStream =
 
 Duration steady_now() { return std::chrono::steady_clock::now().time_since_epoch(); }
 
-/// CPU time of this thread: a busy processor is not the sensor's fault.
+/// CPU time of this thread, because the sensor is not to blame for a busy processor.
 Duration cpu_now() {
   timespec spent{};
   ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &spent);
@@ -95,8 +95,8 @@ PollReport Follower::report(Timestamp now) const {
   return copy;
 }
 
-/// Any exception (out of memory, an unforeseen frame) counts as a failed poll of this sensor: it is
-/// asked again after its back-off, and other sensors are not affected.
+/// Runs `doing`.  Any exception (out of memory, an unforeseen frame) counts as a failed poll of
+/// this sensor: the sensor is asked again after its back-off, and other sensors are not affected.
 template <class Doing>
 void Follower::survive(const Doing& doing) {
   try {
@@ -146,7 +146,7 @@ void Follower::act(const Sleep& sleep) {
   timer_.async_wait([weak = weak_from_this()](const net::error_code& error) {
     const auto self = weak.lock();
     if (!self || error || self->stopped_) return;
-    // Expired and replaced in the same instant: what replaced it is under way.
+    // The timer was set again, or replaced by a request, just when it expired.
     if (self->timer_.expiry() > std::chrono::steady_clock::now() || self->fsm_.asking()) return;
     self->survive([&] { self->feed(Woke{}); });
   });

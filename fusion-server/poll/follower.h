@@ -1,4 +1,4 @@
-// Follows one sensor: executes the decisions of PollFsm on the poll thread.
+// Follows one sensor: carries out the decisions of PollFsm on the poll thread.
 #pragma once
 
 #include <deque>
@@ -18,7 +18,7 @@
 
 namespace chorus::poll {
 
-/// Has one connection for requests and one for the event stream.  Lives on the poll thread; only
+/// Has one connection for requests and one for the event stream.  Runs on the poll thread; only
 /// report() may be called from any thread.
 class Follower : public std::enable_shared_from_this<Follower> {
  public:
@@ -30,7 +30,7 @@ class Follower : public std::enable_shared_from_this<Follower> {
 
  private:
   using FramePtr = std::shared_ptr<const resource::FrameResource>;
-  /// A frame that was read, its time of receipt, and whether a newer one came before it.
+  /// A frame that was read, when it was received, and whether a newer one came before it.
   struct Arrival {
     FramePtr raw;
     Timestamp received;
@@ -70,12 +70,12 @@ class Follower : public std::enable_shared_from_this<Follower> {
   std::minstd_rand random_;
   bool stopped_ = false;
   std::uint64_t refused_ = 0;
-  /// The stream was not read for some time: only its newest event is worth reading.
+  /// True if the stream was not read for some time: then only its newest event is worth reading.
   bool rested_ = false;
   Timestamp received_{};
   std::optional<FloorPlane> floor_;
-  std::optional<Arrival> answered_;  ///< The frame contained in the current event.
-  std::deque<Arrival> held_;         ///< Frames held back until their clock is known.
+  std::optional<Arrival> answered_;  ///< The frame in the answer or event that is being handled.
+  std::deque<Arrival> held_;         ///< Frames held back until their sensor's clock is known.
   mutable std::mutex mutex_;
   PollReport report_;  ///< Guarded by mutex_, like tally_.
   FrameTally tally_;

@@ -7,16 +7,16 @@ namespace {
 
 constexpr Duration kWindow = std::chrono::seconds(2);
 constexpr Duration kMinSpan = std::chrono::milliseconds(500);
-/// After a longer pause the rate starts anew.
+/// After a longer pause, the rate starts anew.
 constexpr Duration kPause = std::chrono::seconds(1);
-/// Half a minute; after a longer gap counting starts anew.
+/// Half a minute; after a longer gap, counting starts anew.
 constexpr std::uint64_t kMaxGap = 900;
 
 constexpr std::size_t kAges = 32;
 constexpr std::size_t kMinAges = 8;
 constexpr Duration kEarlier = std::chrono::milliseconds(20);
 constexpr Duration kLater = std::chrono::milliseconds(300);
-constexpr int kNewHabit = 4;  ///< This many odd frames in a row are the new normal.
+constexpr int kNewHabit = 4;  ///< This many odd frames in a row are taken for the new normal.
 
 }  // namespace
 

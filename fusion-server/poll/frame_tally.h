@@ -1,4 +1,4 @@
-// Counts what one sensor delivers; no input can make a count negative or a rate absurd.
+// Counts what one sensor delivers; no input can make a count negative or a rate implausible.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace chorus::poll {
 class FrameTally {
  public:
   void note(const SensorFrame& frame);
-  /// Takes a frame that arrived after a newer one: until now it was counted as missed.
+  /// Counts a frame that arrived after a newer one; until now it was counted as missed.
   void note_late(const SensorFrame& frame);
 
   /// Rate at which frames arrived recently [Hz], by our clock.
@@ -24,7 +24,7 @@ class FrameTally {
  private:
   void arrived(Timestamp received);
 
-  std::deque<Timestamp> arrivals_;  ///< Times of arrival in the last two seconds.
+  std::deque<Timestamp> arrivals_;  ///< Times of arrival, of the last two seconds.
   std::optional<Timestamp> first_;  ///< First arrival since the last pause.
   std::optional<Timestamp> newest_;
   std::optional<std::uint64_t> last_sequence_;
@@ -32,18 +32,18 @@ class FrameTally {
   std::uint64_t missed_ = 0;
 };
 
-/// Detects a frame whose time does not fit the earlier ones: perhaps a clock was set.
+/// Detects a frame whose time does not fit those of earlier frames: perhaps a clock was set.
 class AgeWatch {
  public:
-  /// Whether its age (capture to receipt, as far as the clocks are known) does not fit, or it was
-  /// captured before its predecessor.
+  /// True if the frame's age (capture to receipt, as far as the clocks are known) does not fit, or
+  /// if it was captured before the frame before it.
   [[nodiscard]] bool odd(const SensorFrame& frame);
 
  private:
   [[nodiscard]] bool strange(const SensorFrame& frame) const;
 
   std::deque<Duration> ages_;
-  std::uint64_t sequence_ = 0;  ///< Of the previous frame.
+  std::uint64_t sequence_ = 0;  ///< The previous frame's sequence.
   Timestamp captured_{};
   int odd_in_row_ = 0;
 };

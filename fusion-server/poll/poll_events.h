@@ -1,4 +1,4 @@
-// The inputs and outputs of PollFsm as values: what happened to a sensor's poll, and what to do
+// The inputs and outputs of PollFsm as values: what happened when polling a sensor, and what to do
 // next.
 #pragma once
 
@@ -15,26 +15,27 @@
 namespace chorus::poll {
 
 struct PollTimings {
-  Duration wait = std::chrono::seconds(2);  ///< Prefer: wait; also until a sensor is silent.
-  /// An answer later than wait + this counts as a failure.
+  /// For Prefer: wait.  A stream without frames for this long is silent.
+  Duration wait = std::chrono::seconds(2);
+  /// An answer that comes later than `wait` + this counts as a failure.
   Duration answer_slack = std::chrono::seconds(1);
   /// Least time between two requests, whatever the answers.
   Duration min_interval = std::chrono::milliseconds(4);
-  /// Pause after an immediate answer without anything new.
+  /// Pause after an answer that came at once with nothing new.
   Duration idle_interval = std::chrono::milliseconds(10);
   Duration first_backoff = std::chrono::milliseconds(100);
   Duration max_backoff = std::chrono::seconds(1);
   Duration floor_interval = std::chrono::seconds(10);  ///< How often the floor plane is requested.
-  bool stream = true;  ///< Use an event stream when the sensor has one.
+  bool stream = true;  ///< Use an event stream if the sensor offers one.
 
   bool operator==(const PollTimings&) const = default;
 };
 
 enum class SensorState {
-  Connecting,  ///< Has not delivered a frame yet.
+  Connecting,  ///< The sensor has not delivered a frame yet.
   Live,
-  Lost,     ///< Has delivered before, but does not answer now.
-  Refused,  ///< Answers, but not like a sensor: the last error says what is wrong.
+  Lost,     ///< The sensor has delivered before, but does not answer now.
+  Refused,  ///< The sensor answers, but not like a sensor; the last error says what is wrong.
 };
 [[nodiscard]] std::string_view name_of(SensorState state) noexcept;
 
@@ -42,9 +43,10 @@ enum class Resource { Frame, FloorPlane, KeptFrame, Clock };
 
 // Events.
 struct Started {};
-struct Woke {};  ///< A Sleep is over.
-/// An answer to a request for the latest frame.  `captured` is set when its body was a readable
-/// frame.  Here and below, `rest`: how long to pause reading from this sensor to offset the cost.
+struct Woke {};  ///< The time of a Sleep is over.
+/// An answer to a request for the latest frame.  `captured` is set if the body was a readable
+/// frame. Here and below, `rest` is how long not to read from this sensor, to make up for the cost
+/// of reading.
 struct FrameAnswered {
   int status = 0;
   std::string etag = {};
@@ -52,16 +54,16 @@ struct FrameAnswered {
   Duration rest{0};
 };
 struct FloorAnswered {
-  bool known = true;  ///< False when it says "not yet"; a sensor need not have a floor.
+  bool known = true;  ///< False when the sensor has no floor plane yet; it need not have one.
 };
 struct KeptAnswered {
-  bool there = false;  ///< An earlier frame was returned; it is delivered.
+  bool there = false;  ///< True if the earlier frame was returned; it is then delivered.
   Duration rest{0};
 };
 struct ClockAnswered {
-  /// Of the current clock estimate; none: the sensor sends no time.
+  /// Of the current clock estimate; none: the sensor does not send its time.
   std::optional<Duration> uncertainty = {};
-  bool doubtful = false;  ///< It contradicts the estimate: ask again at once.
+  bool doubtful = false;  ///< True if the answer contradicts the estimate: ask again at once.
 };
 /// Status 200, but the body, or an event, is not a frame of this sensor.
 struct Unreadable {
@@ -74,10 +76,11 @@ struct Failed {
 struct StreamFrame {
   std::uint64_t sequence = 0;
   Timestamp captured;
-  bool odd = false;  ///< Its time does not fit the clock estimate: request the clock at once.
+  /// True if its time does not fit the clock estimate: request the clock at once.
+  bool odd = false;
 };
 struct StreamEnded {
-  Error error;  ///< Unsupported: this sensor has no event stream that we can read.
+  Error error;  ///< Unsupported: the sensor has no event stream that we can read.
 };
 using Event = std::variant<Started, Woke, FrameAnswered, FloorAnswered, KeptAnswered, ClockAnswered,
                            Unreadable, Failed, StreamFrame, StreamEnded>;
@@ -85,19 +88,19 @@ using Event = std::variant<Started, Woke, FrameAnswered, FloorAnswered, KeptAnsw
 // Actions.
 struct Send {
   Resource resource = Resource::Frame;
-  std::string etag = {};       ///< For If-None-Match; empty: do not send it.
-  Duration wait{0};            ///< For Prefer: wait; zero: do not send it.
-  Duration deadline{0};        ///< If there is no answer after this time, report Failed.
-  std::uint64_t sequence = 0;  ///< For a KeptFrame.
+  std::string etag = {};       ///< For If-None-Match; empty: do not send that field.
+  Duration wait{0};            ///< For Prefer: wait; zero: do not send that field.
+  Duration deadline{0};        ///< Report Failed if there is no answer after this time.
+  std::uint64_t sequence = 0;  ///< For a KeptFrame: the number of the frame.
 };
 struct Sleep {
-  Duration duration{0};  ///< A later action replaces the rest of it.
+  Duration duration{0};  ///< A later action replaces what is left of it.
 };
 using Action = std::variant<Send, Sleep>;
 
 enum class StreamOrder { None, Open, Close };
 
-/// A line for the log; at most one a second per sensor, the latest one.
+/// A line for the log.  There is at most one a second per sensor, the latest.
 struct Notice {
   bool warning = false;
   std::string event;  ///< "sensor live", "sensor lost", "sensor refused"
@@ -106,8 +109,8 @@ struct Notice {
 
 struct Step {
   std::optional<Action> action = {};  ///< None: the current request or sleep continues.
-  bool deliver = false;               ///< The frame just received is new: deliver it.
-  bool late = false;                  ///< A newer one has already been delivered.
+  bool deliver = false;               ///< True if the frame just received is new: deliver it.
+  bool late = false;                  ///< True if a newer frame has been delivered already.
   StreamOrder stream = StreamOrder::None;
   std::optional<Notice> notice = {};
 };

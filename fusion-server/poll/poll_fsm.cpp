@@ -10,32 +10,35 @@ namespace chorus::poll {
 namespace {
 
 constexpr Duration kNoticeInterval = std::chrono::seconds(1);
-constexpr int kMaxDoublings = 20;  // 0.1 s * 2^20 is far beyond any max_backoff
+constexpr int kMaxDoublings = 20;  // 0.1 s * 2^20 is far beyond any max_backoff.
 constexpr Duration kFloorPause = std::chrono::seconds(1);
 
-constexpr Duration kStreamAlive = std::chrono::milliseconds(500);  // after that it may be dead
+// A stream without a frame for this long may be dead.
+constexpr Duration kStreamAlive = std::chrono::milliseconds(500);
 constexpr Duration kStreamProven = std::chrono::seconds(10);
 constexpr Duration kStreamPause = std::chrono::seconds(1);
 constexpr Duration kNoStreamPause = std::chrono::seconds(60);
 
-constexpr Duration kClockHurry = std::chrono::milliseconds(100);  // while it is not well known
+// Interval of clock requests while the offset is not well known.
+constexpr Duration kClockHurry = std::chrono::milliseconds(100);
 constexpr Duration kClockInterval = std::chrono::milliseconds(500);
 constexpr Duration kNoClockInterval = std::chrono::seconds(5);
 constexpr Duration kWellKnown = std::chrono::microseconds(300);
 constexpr Duration kOddInterval = std::chrono::seconds(2);
 constexpr std::size_t kMaxBeside = 100;
-constexpr int kClockChecks = 4;  // the filter accepts a step at the third
+// Clock requests after an odd frame; the filter accepts a step of the clock with the third answer.
+constexpr int kClockChecks = 4;
 
 Duration backoff(const PollTimings& timings, int failures_in_row, double jitter) {
   const int doublings = std::clamp(failures_in_row - 1, 0, kMaxDoublings);
   Duration whole = timings.first_backoff;
   for (int i = 0; i < doublings && whole < timings.max_backoff; ++i) whole *= 2;
   whole = std::min(whole, timings.max_backoff);
-  const double fraction = jitter >= 0.0 && jitter < 1.0 ? jitter : 0.0;  // false for NaN, too
+  const double fraction = jitter >= 0.0 && jitter < 1.0 ? jitter : 0.0;  // False for NaN, too.
   return whole / 2 + from_seconds(seconds(whole) * 0.5 * fraction);
 }
 
-/// Why there was no frame, and what to do about it.
+/// Says why there was no frame, and what to do about it.
 std::string refusal_words(int status) {
   const bool of_token = status == http::status::kUnauthorized ||
                         status == http::status::kForbidden ||
@@ -103,8 +106,8 @@ Step PollFsm::on(const FrameAnswered& answer, Duration now, double jitter) {
   return {after(timings_.idle_interval, now, answer.rest)};
 }
 
-/// The frame was requested because the stream is held up and will bring the same frame later; or
-/// before the stream began.
+/// Handles a frame that was requested because the stream is held up and will bring the same frame
+/// later, or that was requested before the stream began.
 Step PollFsm::beside_stream(const FrameAnswered& answer, Duration now) {
   if (answer.status == http::status::kOk) etag_ = answer.etag;
   const bool news = answer.status == http::status::kOk && answer.captured && last_captured_ &&
@@ -121,7 +124,8 @@ Step PollFsm::beside_stream(const FrameAnswered& answer, Duration now) {
   return step;
 }
 
-/// Frames requested in addition to the stream are forgotten once the stream has passed them.
+/// True if this frame was requested in addition to the stream and taken.  Such frames are forgotten
+/// once the stream has passed them.
 bool PollFsm::was_taken_beside(Timestamp captured) {
   const bool taken = std::ranges::find(taken_beside_, captured) != taken_beside_.end();
   std::erase_if(taken_beside_, [&](Timestamp each) { return each <= captured; });
@@ -154,7 +158,7 @@ Step PollFsm::on(const ClockAnswered& answer, Duration now, double) {
 }
 
 Step PollFsm::on(const Unreadable& body, Duration, double jitter) {
-  etag_.clear();  // request the next body, whatever its tag
+  etag_.clear();  // Makes the next request get a body, whatever its tag.
   Step step = fail(SensorState::Refused, to_string(body.error), jitter);
   auto& pause = std::get<Sleep>(*step.action).duration;
   pause = std::max(pause, body.rest);
@@ -165,14 +169,14 @@ Step PollFsm::on(const Failed& failed, Duration now, double jitter) {
   if (asked_ == Resource::FloorPlane && state_ == SensorState::Live)
     floor_pause_ = std::clamp(2 * floor_pause_, kFloorPause, timings_.floor_interval);
   if (asked_ == Resource::Clock) clock_checks_ = 0;
-  if (streaming_ && now - streamed_at_ < kStreamAlive) {  // frames do come: only requests fail
+  if (streaming_ && now - streamed_at_ < kStreamAlive) {  // Frames do come; only requests fail.
     ++failures_;
     clock_due_ = now + kClockInterval;
     return {Sleep{backoff(timings_, ++failures_in_row_, jitter)}};
   }
   const bool close = stream_asked_;
   if (close) leave_stream(now, kStreamPause);
-  stream_due_ = now;  // after coming back, a sensor may be able to stream
+  stream_due_ = now;  // A sensor that comes back may be able to stream.
   floor_known_ = false;
   Step step = fail(gone(), to_string(failed.error), jitter);
   if (close) step.stream = StreamOrder::Close;
@@ -189,7 +193,7 @@ Step PollFsm::on(const StreamFrame& frame, Duration now, double) {
   streamed_at_ = now;
   backfill_.saw(frame.sequence, now);
   rhythm_.saw(now);
-  if (frame.odd) taken_beside_.clear();  // if its clock was set, the times start anew
+  if (frame.odd) taken_beside_.clear();  // If its clock was set, times start anew.
   const bool taken = was_taken_beside(frame.captured);
   step.deliver = !taken && frame.captured != last_captured_;
   step.late = !taken_beside_.empty();
@@ -214,7 +218,7 @@ Step PollFsm::on(const StreamEnded& end, Duration now, double) {
   return step;
 }
 
-/// Sends the next request that is due; a silent stream is closed, and polling continues.
+/// Sends the next request that is due; closes a silent stream, after which polling continues.
 Step PollFsm::go_on(Duration now) {
   const bool silent = streaming_ && now - streamed_at_ > timings_.wait;
   if (silent) leave_stream(now, kStreamPause);
@@ -234,7 +238,7 @@ SensorState PollFsm::gone() const {
   return last_captured_ ? SensorState::Lost : SensorState::Connecting;
 }
 
-/// A floor from an earlier run, or one whose request failed, is requested again.
+/// Requests the floor plane again if it is of an earlier run, or if its request failed.
 void PollFsm::became_live(Duration now) {
   failures_in_row_ = 0;
   if (state_ != SensorState::Live && floor_due_ && !floor_known_) {
@@ -249,7 +253,7 @@ bool PollFsm::wants_stream(Duration now) {
   return stream_asked_ = true;
 }
 
-/// Each end without frames in between doubles the pause, up to a minute.
+/// Ends streaming.  Each end without frames in between doubles the pause, up to a minute.
 void PollFsm::leave_stream(Duration now, Duration pause) {
   stream_asked_ = false;
   streaming_ = false;

@@ -1,12 +1,14 @@
-// How one sensor is followed, as a state machine without I/O: events in, the next action out.
+// How one sensor is followed, as a state machine without I/O: takes events, returns the next
+// action.
 //
-// At first by long polling (If-None-Match + Prefer: wait), which every sensor answers, and which
-// reveals what is wrong with a service that is no sensor.  Once frames come, an event stream is
-// opened in addition; when it delivers, it takes over, and requests are only used for the clock,
-// for the floor plane at times, for frames that the stream left out, and for the newest frame if
-// lost packets hold it up.  When a stream ends, falls silent or is refused, polling goes on.  If
-// nothing answers, a jittered exponential back-off applies.  Time and randomness are arguments; the
-// Asio shell (follower.h) executes the actions and returns the answers.
+// At first it uses long polling (If-None-Match + Prefer: wait), which every sensor answers, and
+// which shows what is wrong with a service that is no sensor.  Once frames come, it opens an event
+// stream in addition.  When the stream delivers, it replaces polling; then requests are used only
+// for the clock, now and then for the floor plane, for frames that the stream left out, and for the
+// newest frame if lost packets hold the stream up.  When a stream ends, falls silent or is refused,
+// polling continues.  If nothing answers, it waits with a jittered exponential back-off.  Time and
+// randomness are arguments; the Asio shell (follower.h) carries out the actions and returns the
+// answers.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +24,7 @@
 
 namespace chorus::poll {
 
-/// `now` is a steady time from any origin; `jitter` in [0, 1) scales the back-off between half and
+/// `now` is a steady time since any origin; `jitter` in [0, 1) scales the back-off between half and
 /// full.
 class PollFsm {
  public:
@@ -34,10 +36,10 @@ class PollFsm {
   /// What is wrong at present; empty while the sensor is live.
   [[nodiscard]] const std::string& last_error() const noexcept { return last_error_; }
   [[nodiscard]] std::uint64_t failures() const noexcept { return failures_; }
-  /// A request is under way.
+  /// True while a request is under way.
   [[nodiscard]] bool asking() const noexcept { return asking_; }
   [[nodiscard]] bool streaming() const noexcept { return streaming_; }
-  /// The clock is being requested because a frame's time did not fit.
+  /// True while the clock is being requested because a frame's time did not fit.
   [[nodiscard]] bool checking_clock() const noexcept { return clock_checks_ > 0; }
 
  private:
@@ -76,21 +78,22 @@ class PollFsm {
   Resource asked_ = Resource::Frame;
   bool asking_ = false;
   Duration asked_wait_{0};
-  std::optional<Duration> floor_due_;  ///< Empty: immediately.
+  std::optional<Duration> floor_due_;  ///< When the floor plane is due; none: at once.
   bool floor_known_ = false;
-  Duration floor_pause_{0};  ///< Grows when floor requests fail although frames are good.
+  Duration floor_pause_{0};  ///< Grows when requests for the floor plane fail although frames come.
   int failures_in_row_ = 0;
   std::uint64_t failures_ = 0;
 
-  bool stream_asked_ = false;  ///< A stream is being opened or is open.
-  bool streaming_ = false;     ///< The stream has delivered, and replaces polling.
-  Duration stream_due_{0};     ///< Earliest time to open it.
-  Duration stream_pause_{0};   ///< Pause after the last stream.
+  bool stream_asked_ = false;  ///< True while a stream is being opened or is open.
+  bool streaming_ = false;     ///< True once the stream has delivered; it then replaces polling.
+  Duration stream_due_{0};     ///< Earliest time to open the next stream.
+  Duration stream_pause_{0};   ///< Pause after the last stream; it grows.
   Duration streamed_since_{0};
   Duration streamed_at_{0};
   Backfill backfill_;
   StreamRhythm rhythm_;
-  std::deque<Timestamp> taken_beside_;  ///< Requested frames that the stream will still bring.
+  /// Capture times of requested frames that the stream will still bring.
+  std::deque<Timestamp> taken_beside_;
   Duration clock_due_{0};
   int clock_checks_ = 0;
   std::optional<Duration> clock_checked_at_;

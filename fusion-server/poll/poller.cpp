@@ -28,13 +28,13 @@ struct Poller::Impl {
         asio::post(io, [follower = follower] { follower->stop(); });
       }
     }
-    asio::post(io, [this] { io.stop(); });  // after the followers have stopped
+    asio::post(io, [this] { io.stop(); });  // After the followers have stopped.
     thread.join();
   }
 
   void add(PolledSensor sensor) {
     auto url = http::parse_url(sensor.url);
-    if (!url) {  // was checked by the config reader
+    if (!url) {  // The configuration reader has checked it.
       log::error("sensor not polled",
                  {{"sensor", sensor.id.str()}, {"reason", url.error().message}});
       return;

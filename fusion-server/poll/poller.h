@@ -1,7 +1,8 @@
-// Follows all sensors: executes the decisions of PollFsm, reads frames, corrects their clocks.
+// Follows all sensors: carries out the decisions of PollFsm, reads frames, corrects the sensors'
+// clocks.
 //
-// One thread for all sensors, one or two connections per sensor; a dead, slow or lying sensor costs
-// the others nothing except its bytes, and a tenth of the thread for reading them.
+// There is one thread for all sensors, and one or two connections per sensor.  A dead, slow or
+// lying sensor costs the others nothing except network traffic and a tenth of the thread's time.
 #pragma once
 
 #include <functional>
@@ -23,28 +24,28 @@ namespace chorus::poll {
 
 struct PolledSensor {
   SensorId id;
-  std::string url;         ///< Of the service's `/`: "http://127.0.0.1:8081/".
+  std::string url;         ///< The URL of the service's `/`: "http://127.0.0.1:8081/".
   std::string token = {};  ///< Sent with every request; empty: none.
-  tls::Trust trust = {};   ///< Who must have issued its certificate, with https.
+  tls::Trust trust = {};   ///< The authorities accepted for https.
 
   bool operator==(const PolledSensor&) const = default;
 };
 
 struct PolledFrame {
-  SensorFrame frame;  ///< By our clock, including the latest floor plane.
-  std::shared_ptr<const resource::FrameResource> raw;  ///< As the sensor sent it.
-  /// The clock estimate used to correct its capture times.
+  SensorFrame frame;  ///< With times by our clock, and the latest floor plane.
+  std::shared_ptr<const resource::FrameResource> raw;  ///< The frame as the sensor sent it.
+  /// The clock estimate with which the capture times were corrected.
   std::optional<ClockEstimate> clock;
 };
 
-/// The state of one sensor's poll; a copy.
+/// The state of polling one sensor; a copy.
 struct PollReport {
   PolledSensor sensor;
   SensorState state = SensorState::Connecting;
-  std::string last_error;           ///< What is wrong at present; empty while it is live.
-  bool streaming = false;           ///< Its frames come by event stream instead of polling.
-  std::optional<Timestamp> newest;  ///< Capture time of the last frame, by our clock.
-  double rate_hz = 0.0;             ///< Frames per second that arrived, over the last two seconds.
+  std::string last_error;  ///< What is wrong at present; empty while the sensor is live.
+  bool streaming = false;  ///< True while its frames come by event stream instead of polling.
+  std::optional<Timestamp> newest;  ///< Capture time of the newest frame, by our clock.
+  double rate_hz = 0.0;             ///< Frames per second that arrived in the last two seconds.
   std::optional<ClockEstimate> clock;
   std::uint64_t frames = 0;
   std::uint64_t missed = 0;   ///< Gaps in the sensor's sequence that were not filled.
@@ -54,9 +55,9 @@ struct PollReport {
 
 struct PollerOptions {
   PollTimings timings;
-  std::size_t max_body_bytes = 512u << 10;  ///< Of one frame; 64 bodies are about 350 kB.
+  std::size_t max_body_bytes = 512u << 10;  ///< Limit for one frame; 64 bodies are about 350 kB.
   std::shared_ptr<const Clock> clock;
-  /// Called on the poll thread; must return at once.  If it throws, the poll counts as failed.
+  /// Called on the poll thread; must return at once.  If it throws, that poll counts as failed.
   std::function<void(PolledFrame)> deliver;
 };
 
@@ -65,11 +66,11 @@ class Poller {
   explicit Poller(PollerOptions options);
   ~Poller();  ///< Stops all polling and joins the thread.
 
-  /// From now on polls exactly these; sensors already polled continue undisturbed.  The urls must
-  /// be valid for http::parse_url.  Thread-safe.
+  /// From now on polls exactly these sensors; those already polled continue undisturbed.  Every url
+  /// must be valid for http::parse_url().  Thread-safe.
   void poll(std::vector<PolledSensor> sensors);
 
-  /// Ends all polling; nothing is delivered afterwards. reports() can still be called.
+  /// Ends all polling; nothing is delivered afterwards.  reports() may still be called.
   void stop();
 
   [[nodiscard]] std::vector<PollReport> reports() const;

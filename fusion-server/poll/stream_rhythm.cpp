@@ -7,14 +7,16 @@
 namespace chorus::poll {
 namespace {
 
-constexpr Duration kShortest = std::chrono::milliseconds(5);  // closer frames were held up together
+// Frames closer together were held up together.
+constexpr Duration kShortest = std::chrono::milliseconds(5);
 constexpr Duration kLeastPatience = std::chrono::milliseconds(60);
 constexpr Duration kRemembered = std::chrono::seconds(60);
 constexpr int kMemory = 16;  // frames
 
 }  // namespace
 
-/// Twice the usual time is overdue, but not before kLeastPatience: busy hosts are as late as that.
+/// A frame is overdue after twice the usual time, but not before kLeastPatience, because busy hosts
+/// are late by that much.
 Duration StreamRhythm::patience() const { return std::max(2 * usual_, kLeastPatience); }
 
 void StreamRhythm::saw(Duration now) {

@@ -1,4 +1,4 @@
-// The block "facing" of the configuration (deploy/config/fusion.json).
+// The configuration block "facing" (deploy/config/fusion.json).
 #pragma once
 
 #include "common/base/config_reader.h"

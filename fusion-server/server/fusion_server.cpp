@@ -46,7 +46,7 @@ core::CoreConfig core_config(const FusionSettings& settings) {
   return core;
 }
 
-/// Logs to which sensors the stored places do not apply.
+/// Logs which sensors have no place in the stored registration.
 void report_fit(const Registration& registration, const std::vector<SensorId>& configured) {
   for (const SensorId& sensor : configured) {
     if (!registration.sensors.contains(sensor)) {
@@ -97,7 +97,8 @@ service::Health health_of(const Status& status) {
   return {true, {}};
 }
 
-/// Logs for each unusable folder what is wrong with it; the tracker runs without that folder.
+/// Logs for each unusable folder what is wrong with it; the server runs without that folder.
+/// Returns what is wrong with the state folder.
 std::string probe_folders(const StartSettings& config, const std::string& state_folder) {
   const auto told = [](const char* what, const Result<void>& probe) {
     if (!probe) log::error(what, {{"reason", to_string(probe.error())}});
@@ -165,7 +166,7 @@ struct FusionServer::Impl {
     return status;
   }
 
-  FusionSettings config;  ///< The live part is guarded by mutex.
+  FusionSettings config;  ///< Its live part is guarded by mutex.
   std::shared_ptr<const Clock> clock;
   service::Serving serving;
   std::vector<std::unique_ptr<Sink>> sinks;  ///< Filled before the first request.
@@ -236,11 +237,11 @@ void FusionServer::Impl::take_status(const Status& next) {
 LoopOptions FusionServer::Impl::loop_options(Registration places) {
   LoopOptions options;
   options.core = core_config(config);
-  // Sequences rise across restarts (no output is faster than 1 kHz), so that a cache never takes
-  // /frames/{seq} and ETags of an earlier run for ours.
+  // Sequences grow across restarts (no output is faster than 1 kHz), so that a cache never takes
+  // /frames/{seq} or an ETag of an earlier run for ours.
   options.core.first_sequence = static_cast<std::uint64_t>(to_unix_ns(clock->now()) / 1'000'000);
-  // Ids of sessions rise too (none is shorter than a second), so that nobody follows a session of
-  // another run.
+  // Ids of sessions grow too (none is shorter than a second), so that no client follows a session
+  // of another run.
   options.core.first_session = static_cast<std::uint64_t>(to_unix_ns(clock->now()) / 1'000'000'000);
   options.core.first_person = first_person(store);
   options.registration = std::move(places);
@@ -347,7 +348,8 @@ bool FusionServer::alive() {
 
 void FusionServer::stop() {
   Impl& s = *impl_;
-  // From the rim inwards: first nobody asks any more, then nothing arrives, then the pipeline ends.
+  // In the order of the data: first clients can ask nothing more, then no frames arrive, then the
+  // pipeline ends.
   if (s.http) s.http->stop();
   if (s.poller) s.poller->stop();
   s.loop.reset();

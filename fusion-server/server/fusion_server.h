@@ -1,5 +1,4 @@
-// The composition root: builds poller, pipeline, registration and HTTP, and owns all of their
-// threads.
+// Builds poller, pipeline, registration and HTTP from the settings, and owns all their threads.
 #pragma once
 
 #include <cstdint>
@@ -15,23 +14,23 @@ namespace chorus::server {
 
 class FusionServer {
  public:
-  /// Uses the host's clock.  Binds nothing yet.
+  /// Uses the host's clock.  Binds no port yet.
   [[nodiscard]] static Result<std::unique_ptr<FusionServer>> make(const FusionSettings& settings);
   FusionServer(FusionSettings settings, std::shared_ptr<const Clock> clock);
-  ~FusionServer();  ///< stop()s.
+  ~FusionServer();  ///< Calls stop().
 
-  /// Binds and starts everything.  Fails when the address is taken or given extrinsics cannot be
-  /// read.
+  /// Binds the ports and starts everything.  Fails when an address is taken or the given extrinsics
+  /// cannot be read.
   [[nodiscard]] Result<void> start();
   [[nodiscard]] std::uint16_t port() const;
 
-  /// Everything that can change while running.
+  /// Applies everything that can change while the server runs.
   void take(const LiveSettings& live);
 
-  /// What would not work here and now.
+  /// What would not work if the server started on this host now.
   [[nodiscard]] service::Concerns concerns() const;
 
-  /// For a watchdog: the threads of network and pipeline move.
+  /// For a watchdog: true while the threads of network and pipeline make progress.
   [[nodiscard]] bool alive();
 
   void stop();
@@ -41,7 +40,7 @@ class FusionServer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// What chorus-fusion says about itself.
+/// How chorus-fusion describes itself.
 [[nodiscard]] service::About about_fusion();
 
 }  // namespace chorus::server

@@ -53,7 +53,7 @@ void read_sensors(ConfigReader& root, LiveSettings& out) {
   }
 }
 
-/// One for all sensors: they are the hosts of one workshop.
+/// The authorities for all sensors, because these are hosts of one workshop.
 tls::Trust read_trust(ConfigReader poll) {
   std::string file;
   poll.read("ca", file);

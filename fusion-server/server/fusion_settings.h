@@ -22,8 +22,8 @@ namespace chorus::server {
 /// The settings that a reload applies.
 struct LiveSettings {
   service::LogConfig log;
-  std::vector<http::Token> tokens;        ///< Of http.
-  std::optional<tls::Identity> identity;  ///< Of http.
+  std::vector<http::Token> tokens;        ///< From the section http.
+  std::optional<tls::Identity> identity;  ///< From the section http.
   std::vector<poll::PolledSensor> sensors;
   core::TickConfig output;
   pipeline::PipelineConfig pipeline;
@@ -37,16 +37,17 @@ struct LiveSettings {
 /// The settings that require a restart.
 struct StartSettings {
   std::string title = "Chorus fusion server";
-  http::ServerConfig http = {.port = 8080};  ///< Without its tokens and identity.
-  bool secure = false;                       ///< Whether there is an identity.
+  http::ServerConfig http = {.port = 8080};  ///< Without tokens and identity.
+  bool secure = false;                       ///< True if there is an identity.
   poll::PollTimings poll;
   Duration history = std::chrono::seconds(10);  ///< How far back /frames/{seq} and ?at= reach.
   outputs::OutputsConfig outputs;
-  std::string registration_file;  ///< File of given extrinsics; empty: registered from a walk.
-  /// Where state is kept across restarts; "auto": the user's folder; empty: nowhere.
+  /// A file with given extrinsics; empty: the sensors are registered from a walk.
+  std::string registration_file;
+  /// The folder for state that is kept across restarts; "auto": the user's folder; empty: none.
   std::string state_dir;
   service::RecordingConfig recording;
-  std::string viewer_dir;  ///< Static files of /viewer/; empty: no viewer.
+  std::string viewer_dir;  ///< The folder of the static files of /viewer/; empty: no viewer.
 
   bool operator==(const StartSettings&) const = default;
 };
@@ -58,7 +59,7 @@ struct FusionSettings {
   bool operator==(const FusionSettings&) const = default;
 };
 
-/// On errors, reports all mistakes at once.
+/// Reads all settings; one Error reports all mistakes.
 [[nodiscard]] Result<FusionSettings> read_fusion_settings(ConfigReader root);
 
 }  // namespace chorus::server

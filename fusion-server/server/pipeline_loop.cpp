@@ -12,16 +12,18 @@
 namespace chorus::server {
 namespace {
 
-constexpr std::size_t kMaxFrames = 4096;   // two seconds of 64 sensors at 30 Hz
-constexpr std::size_t kMaxCommands = 256;  // sent by people, not for every frame
+constexpr std::size_t kMaxFrames = 4096;  // Two seconds of 64 sensors at 30 Hz.
+// Clients send them on people's request, not with every frame.
+constexpr std::size_t kMaxCommands = 256;
 constexpr Duration kMaxIdle = std::chrono::milliseconds(20);
 constexpr Duration kGathering = std::chrono::milliseconds(2);
 constexpr Duration kStatusInterval = std::chrono::milliseconds(200);
-/// Whatever failed may fail again immediately, in every iteration.
+/// Pause after a failure, which may happen again at once in every iteration.
 constexpr Duration kAfterFailure = std::chrono::milliseconds(10);
 constexpr Duration kStale = std::chrono::milliseconds(1500);
 
-/// Bounds around one frame interval, around the alignment delay, and of what nobody should see [s].
+/// Bounds [s]: around one frame interval, around the alignment delay, and values that should never
+/// occur.
 const std::vector<double> kAgeBounds{0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.08, 0.1, 0.15, 0.2, 0.5};
 
 std::string joined(const std::vector<std::string>& reasons) {
@@ -91,8 +93,8 @@ void PipelineLoop::turn() {
   if (now - status_at_ >= kStatusInterval || now < status_at_) publish_status(now);
 }
 
-/// Takes the frames that have arrived, or waits for the first.  With many sensors one arrives every
-/// other millisecond: they are collected, so that not each of them wakes this thread.
+/// Takes the frames that have arrived, or waits for the first.  With many sensors a frame arrives
+/// every other millisecond; frames are collected, so that not each of them wakes this thread.
 void PipelineLoop::gather(Duration idle) {
   const auto since = std::chrono::steady_clock::now() - gathered_at_;
   if (since < kGathering) {
@@ -126,7 +128,7 @@ void PipelineLoop::start_session(const StartSession& wish) {
   obeyed_ = wish.ticket;
   const Timestamp now = options_.clock->now();
   const auto progress = core_.progress(now);
-  // The session that ran when the client asked may be over by now; then that is its answer.
+  // The session that ran when the client asked may have ended; then that session is the answer.
   const bool over =
       wish.session < progress.next_session &&
       !(running(progress.sessions.front()) && progress.sessions.front().id == wish.session);
@@ -204,7 +206,8 @@ void PipelineLoop::take_solutions() {
                                                     : "registration not adopted",
                 {{"reasons", joined(sessions.front().reasons)}});
     }
-    // What a session adopts before its end is withdrawn if the final solve is refused.
+    // A session's result that was adopted before its end is withdrawn if the final solve is
+    // refused, so only the final one is kept.
     if (outcome == core::Outcome::Adopted && kind == core::SolveKind::Final)
       keeper_.keep(worker_, now, core_.earlier());
     publish_status(moment);

@@ -1,4 +1,5 @@
-// The pipeline's thread: takes frames as they come, ticks at the output rate, emits snapshots.
+// The pipeline's thread: takes frames as they come, runs the pipeline at the output rate, publishes
+// snapshots.
 #pragma once
 
 #include <functional>
@@ -21,7 +22,7 @@
 
 namespace chorus::server {
 
-// Requests of other threads.  Tickets increase; Status names the last one carried out.
+// Requests from other threads.  Tickets increase; Status contains the last one carried out.
 struct StartSession {
   Duration target{0};
   std::uint64_t session = 0;  ///< The id that was returned to the client.
@@ -48,14 +49,15 @@ struct LoopOptions {
   core::CoreConfig core;
   Registration registration;
   RegistrationStore store{""};
-  std::string store_trouble;  ///< Why the store's folder cannot be used; empty: it can.
+  std::string store_trouble;  ///< Why the store's folder cannot be used; empty if it can.
   std::shared_ptr<const Clock> clock;
-  std::vector<Sink*> sinks;  ///< They must outlive the loop.
-  /// Called a few times a second and whenever the registration has changed, on the pipeline's
-  /// thread.
+  std::vector<Sink*> sinks;  ///< Must outlive the loop.
+  /// Called on the pipeline's thread, a few times a second and whenever the registration has
+  /// changed.
   std::function<void(const Status&)> on_status;
   std::function<std::vector<poll::PollReport>()> poll_reports;
-  /// Called with an earlier snapshot, fused again with late frames, on the pipeline's thread.
+  /// Called on the pipeline's thread with an earlier snapshot that was fused again with late
+  /// frames.
   std::function<void(const Snapshot&)> on_amended;
 };
 
@@ -68,7 +70,7 @@ class PipelineLoop {
 
   /// Never blocks; if the pipeline falls behind, the oldest frames are dropped.
   void give(SensorFrame frame) { frames_.give(std::move(frame)); }
-  /// Takes effect within one output interval.
+  /// The command takes effect within one output interval.
   void ask(Command command) { commands_.give(std::move(command)); }
 
  private:
@@ -94,7 +96,7 @@ class PipelineLoop {
   Handover<SensorFrame> frames_;
   Handover<Command> commands_;
   Handover<core::Solution> solutions_;
-  std::map<SensorId, std::string> told_;  ///< Last complaint logged per sensor.
+  std::map<SensorId, std::string> told_;  ///< The last complaint that was logged, by sensor.
   Counters counters_;
   Histogram age_;  ///< Time from instant to publication [s].
   Timestamp status_at_{};

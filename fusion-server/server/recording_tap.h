@@ -1,7 +1,7 @@
-// Passes the fusion server's data to the recording in progress, if there is one.
+// Passes the fusion server's data to the current recording, if there is one.
 //
 // It does not wait, encode or access the disk: the recorder does that on its own thread, and counts
-// what it had to drop (common/record/recorder.h).
+// what it has to drop (common/record/recorder.h).
 #pragma once
 
 #include <memory>
@@ -23,8 +23,8 @@ class RecordingTap final : public Sink {
 
   /// May be called from any thread.
   void raw(record::RawFrame frame);
-  /// The registration in use; may be told repeatedly, and is recorded when it or the recording is
-  /// new. One thread.
+  /// Records the registration in use if it, or the recording, is new; may be called repeatedly.
+  /// Call it from one thread only.
   void places(const Registration& registration);
 
  private:

@@ -18,7 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kMaxBytes = 16u << 20;
-constexpr std::uint64_t kMaxPeople = 1ULL << 53U;  // the largest that JSON readers can represent
+// The largest that JSON readers represent exactly.
+constexpr std::uint64_t kMaxPeople = 1ULL << 53U;
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// Keeps data across restarts: the registration and the highest person id so far, one file each,
-// replaced atomically.
+// Keeps two things across restarts: the registration, and the highest person id so far.  Each has a
+// file, which is replaced atomically.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ class RegistrationStore {
   /// If the folder is empty, nothing is stored.
   explicit RegistrationStore(std::string folder) : folder_(std::move(folder)) {}
 
-  /// Loads the stored registration; none if there is none.  An unreadable file is an error and is
-  /// not changed.
+  /// Loads the stored registration; none if nothing is stored.  An unreadable file is an error, and
+  /// is left as it is.
   [[nodiscard]] Result<std::optional<Registration>> load() const;
 
   /// The one before it, for an undo; none if there is none that can be read.
@@ -28,10 +28,10 @@ class RegistrationStore {
   [[nodiscard]] Result<void> save(const Registration& registration,
                                   const std::optional<Registration>& earlier = {}) const;
 
-  /// Moves the stored file to registration.json.old, so that an accidental forget can be undone.
+  /// Moves the stored file to registration.json.old, so that the user can undo it.
   [[nodiscard]] Result<void> forget() const;
 
-  /// The first person id that no earlier run can have used; 1 if nothing is stored.
+  /// The lowest person id that no earlier run can have used; 1 if nothing is stored.
   [[nodiscard]] Result<std::uint64_t> load_next_person() const;
   [[nodiscard]] Result<void> save_next_person(std::uint64_t next) const;
 
@@ -45,7 +45,7 @@ class RegistrationStore {
   std::string folder_;
 };
 
-/// Loads given extrinsics; here a missing file is an error.
+/// Loads given extrinsics; a missing file is an error.
 [[nodiscard]] Result<Registration> load_registration_file(const std::string& path);
 
 }  // namespace chorus::server

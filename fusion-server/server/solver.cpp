@@ -23,7 +23,7 @@ namespace {
 using registration::Walker;
 using registration::WalkTrack;
 
-/// Lower priority than that of pipeline and network, which have deadlines.
+/// Gives solving a lower priority than pipeline and network, which have deadlines.
 constexpr int kNiceness = 10;
 
 struct Pair {
@@ -52,7 +52,7 @@ void on_all_cores(std::size_t count, const Work& work) {
     std::vector<std::jthread> others;
     for (std::size_t i = 1; i < std::min(cores, count); ++i) {
       others.emplace_back([&] {
-        [[maybe_unused]] const int niceness = ::nice(kNiceness);  // of this thread alone
+        [[maybe_unused]] const int niceness = ::nice(kNiceness);  // Applies to this thread alone.
         run();
       });
     }

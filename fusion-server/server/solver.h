@@ -1,12 +1,13 @@
-// Solves a walk on the worker: pairs on all cores, stopped once nobody needs the result.
+// Solves a walk on the worker: solves pairs on all cores, and stops when nobody needs the result
+// any more.
 #pragma once
 
 #include "fusion-server/core/registrar.h"
 
 namespace chorus::server {
 
-/// Gives the same registration as registration::solve.  Exceptions over degenerate point clouds
-/// become a refusal with the reason.
+/// Gives the same registration as registration::solve().  Exceptions that degenerate point clouds
+/// cause become a refusal with the reason.
 [[nodiscard]] core::Solution solve(const core::SolveJob& job, Timestamp now);
 
 }  // namespace chorus::server

@@ -19,7 +19,7 @@ std::string state_folder(std::string_view configured, std::uint16_t port,
   if (!given.empty()) return given.substr(0, given.find(':'));
   if (port == 0) return {};
   const std::string own = "chorus/fusion-" + std::to_string(port);
-  // The XDG base directory specification says that relative paths are ignored.
+  // The XDG base directory specification says that relative paths must be ignored.
   const fs::path state = value_of(environment, "XDG_STATE_HOME");
   if (state.is_absolute()) return (state / own).string();
   const fs::path home = value_of(environment, "HOME");

@@ -1,4 +1,5 @@
-// Where a fusion server keeps data across restarts, and whether folders can be used at all.
+// Decides in which folder a fusion server keeps state across restarts, and checks that folders can
+// be used.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +11,16 @@
 
 namespace chorus::server {
 
-/// `configured` unchanged, unless it is "auto": then the first of $STATE_DIRECTORY (systemd's),
-/// $XDG_STATE_HOME/chorus/fusion-PORT and $HOME/.local/state/chorus/fusion-PORT; empty when none is
-/// set, or there is no port to tell this server from another (0: any).
+/// Returns `configured` unless it is "auto".  Then returns the first of $STATE_DIRECTORY (set by
+/// systemd), $XDG_STATE_HOME/chorus/fusion-PORT and $HOME/.local/state/chorus/fusion-PORT; empty
+/// when none is set, or when the port is 0 (any) and so cannot tell this server from another.
 [[nodiscard]] std::string state_folder(std::string_view configured, std::uint16_t port,
                                        const Environment& environment);
 
 /// Creates the folder if necessary and writes a test file; the error says what is wrong.
 [[nodiscard]] Result<void> probe_folder(const std::string& folder);
 
-/// Checks that the viewer's files are there, with all that they need.
+/// Checks that the viewer's files are there, with everything that they need.
 [[nodiscard]] Result<void> probe_viewer(const std::string& folder);
 
 }  // namespace chorus::server

@@ -7,7 +7,7 @@
 namespace chorus::server {
 namespace {
 
-constexpr std::uint64_t kReserve = 100;  // number of person ids that may be skipped after a crash
+constexpr std::uint64_t kReserve = 100;  // Number of person ids that may be skipped after a crash.
 constexpr std::uint64_t kMinLeft = kReserve / 2;
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Stores what must survive a restart: the registration in use and the highest person id so far.
-// The worker writes; a failure is reported until a later write succeeds.
+// The worker does the writing; a failure is reported until a later write succeeds.
 #pragma once
 
 #include <cstdint>
@@ -18,19 +18,19 @@ namespace chorus::server {
 
 class StateKeeper {
  public:
-  /// `trouble`: an error known beforehand (the folder cannot be used); empty if there is none.
+  /// `trouble`: an error that is known already (the folder cannot be used); empty if there is none.
   StateKeeper(RegistrationStore store, std::string trouble);
 
   void keep(Worker& worker, const Registration& registration,
             const std::optional<Registration>& earlier = {});
   void forget(Worker& worker);
-  /// Person ids from `next` on are free; repeated calls are harmless.
+  /// Notes that person ids from `next` on are free; may be called repeatedly.
   void people(Worker& worker, std::uint64_t next);
 
   [[nodiscard]] StorageStatus status() const;
 
  private:
-  /// May outlive this object, for jobs still running.
+  /// Shared with jobs that are still running when this object is destroyed.
   struct Shared {
     explicit Shared(RegistrationStore s) : store(std::move(s)) {}
     const RegistrationStore store;
@@ -41,7 +41,7 @@ class StateKeeper {
   void post(Worker& worker, std::function<Result<void>(const RegistrationStore&)> job);
 
   std::shared_ptr<Shared> shared_;
-  std::uint64_t reserved_ = 0;  ///< Person ids below this can be used without another write.
+  std::uint64_t reserved_ = 0;  ///< Person ids below this may be used without another write.
 };
 
 }  // namespace chorus::server

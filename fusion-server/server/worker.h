@@ -15,8 +15,8 @@
 
 namespace chorus::server {
 
-/// Runs jobs one after the other.  The owner limits how many are queued; stopping drops those not
-/// begun.  Exceptions from jobs are logged and counted.
+/// Runs jobs one after the other.  The owner limits how many are queued; stopping drops those that
+/// have not begun.  Exceptions from jobs are logged and counted.
 class Worker {
  public:
   Worker() : thread_([this](const std::stop_token& stop) { run(stop); }) {}
@@ -59,7 +59,8 @@ class Worker {
   std::mutex mutex_;
   std::condition_variable_any arrived_;
   std::deque<std::function<void()>> jobs_;
-  std::jthread thread_;  ///< Last, so that it stops and joins before other members go.
+  /// The last member, so that it stops and joins before the others are destroyed.
+  std::jthread thread_;
 };
 
 }  // namespace chorus::server

@@ -27,13 +27,13 @@ tl::unexpected<Error> refused(int key, const char* by) {
 
 bool alive(pid_t process) { return ::kill(process, 0) == 0 || errno != ESRCH; }
 
-/// Takes a name that only one process can hold and that is freed when it ends: an abstract socket.
-/// Returns -1 if another process holds it.
+/// Takes a name that only one process can hold and that is freed when the process ends: an abstract
+/// socket.  Returns -1 if another process holds it.
 int hold(int key) {
   sockaddr_un name{};
   name.sun_family = AF_UNIX;
   const std::string text = "chorus-trackd-" + std::to_string(key);
-  std::copy(text.begin(), text.end(), name.sun_path + 1);  // the first byte stays zero
+  std::copy(text.begin(), text.end(), name.sun_path + 1);  // The first byte stays zero.
   const auto bytes = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + text.size());
   const int held = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (held < 0) return -1;
@@ -42,7 +42,7 @@ int hold(int key) {
   return -1;
 }
 
-/// Why the existing segment cannot be used; empty: it can, it is from an earlier run of ours.
+/// Why the existing segment cannot be used; empty if it can: then an earlier run of ours left it.
 std::string objection(const shmid_ds& there, std::size_t bytes) {
   if (there.shm_perm.uid != ::geteuid()) {
     return "it belongs to the user with id " + std::to_string(there.shm_perm.uid);
@@ -62,7 +62,7 @@ tl::unexpected<Error> in_the_way(int key, const std::string& why) {
                   std::to_string(key));
 }
 
-/// Finds the segment that an earlier run left: readers attached to it keep receiving.
+/// The segment that an earlier run left; readers attached to it keep receiving.
 Result<int> left_over(int key, std::size_t bytes) {
   const int id = ::shmget(key, 0, 0);
   if (id < 0) return refused(key, "there already, and not to be looked at");

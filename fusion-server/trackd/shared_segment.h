@@ -10,9 +10,10 @@ namespace chorus::trackd {
 
 class SharedSegment {
  public:
-  /// A new segment, mode 0666, zeroed; or the one of the same size that an earlier run of this user
-  /// left, with its content, so that attached readers keep receiving.  Conflict names the existing
-  /// segment: it has another size or user, or is in use by a running program.
+  /// Makes a new segment, with mode 0666 and all zero.  Or takes over the one of the same size that
+  /// an earlier run of this user left, with its content, so that attached readers keep receiving.
+  /// Conflict names an existing segment of another size or user, or one that a running program
+  /// uses.
   [[nodiscard]] static Result<SharedSegment> create(int key, std::size_t bytes);
 
   SharedSegment(SharedSegment&& other) noexcept
@@ -27,7 +28,7 @@ class SharedSegment {
  private:
   explicit SharedSegment(int held) : held_(held) {}
 
-  int held_;  ///< Shows other trackers that the key is in use.
+  int held_;  ///< Tells other Chorus programs that the key is in use.
   int id_ = -1;
   std::span<char> bytes_;
 };

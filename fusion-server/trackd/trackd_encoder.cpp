@@ -13,7 +13,8 @@ namespace {
 constexpr std::uint32_t kVersion = 1;
 constexpr std::size_t kHeaderTime = 16;
 constexpr std::size_t kPoseBytes = 24;
-constexpr std::size_t kCalibrated = 32;  ///< After the pose and its time.
+/// Offset of the field `calibrated`, after the pose and its time.
+constexpr std::size_t kCalibrated = 32;
 constexpr std::size_t kControllerBytes = 32;
 
 constexpr std::array kFirst{JointId::Head, JointId::HandRight, JointId::HandLeft};
@@ -77,7 +78,7 @@ std::vector<char> controller_block() {
 }
 
 void write_sensors(const outlet::TrackerFrame& frame, LengthUnit unit, std::span<char> block) {
-  // Readers look at any time: a tracked sensor must not be uncalibrated even for a moment.
+  // Readers may look at any time, so a tracked sensor must not be uncalibrated even for a moment.
   std::vector<bool> tracked(sensors_in(block));
   const auto number = static_cast<std::int32_t>(frame.sequence & 0x7FFF'FFFFU);
   for (const outlet::TrackerBody& body : frame.bodies) {

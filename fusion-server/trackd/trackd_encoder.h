@@ -26,15 +26,15 @@ inline constexpr std::size_t kValuators = 20;
 
 enum class LengthUnit { Feet, Metres };
 
-/// Number of a joint's sensor within its body, 0 .. 24.
+/// Number of the joint's sensor within its body, 0 to 24.
 [[nodiscard]] std::size_t sensor_of(JointId joint);
 
-/// The whole tracker block before any person was seen.
+/// The whole tracker block before any person has been seen.
 [[nodiscard]] std::vector<char> tracker_block(std::size_t sensors);
 [[nodiscard]] std::vector<char> controller_block();
 
-/// Writes into a block made by tracker_block().  Sensors beyond its end are left out.  The header's
-/// time does not change: call write_stamp() afterwards, so that a reader that sees a new time sees
+/// Writes into a block made by tracker_block(); leaves out sensors beyond its end.  The header's
+/// time stays unchanged: call write_stamp() afterwards, so that a reader that sees a new time sees
 /// new sensors.
 void write_sensors(const outlet::TrackerFrame& frame, LengthUnit unit, std::span<char> block);
 void write_stamp(Timestamp instant, std::span<char> block);

@@ -16,13 +16,14 @@ class TrackdOutlet final : public outlet::Outlet {
   TrackdOutlet(LengthUnit unit, SharedSegment tracker, SharedSegment controller)
       : unit_(unit), tracker_(std::move(tracker)), controller_(std::move(controller)) {}
 
-  /// Readers that stay attached shall see nobody, not the last pose forever.
+  /// Makes readers that stay attached see nobody, not the last pose for ever.
   ~TrackdOutlet() override { write_sensors({}, unit_, tracker_.bytes()); }
 
   [[nodiscard]] std::string_view name() const override { return "trackd"; }
   void send(const outlet::TrackerFrame& frame) override {
     write_sensors(frame, unit_, tracker_.bytes());
-    std::atomic_thread_fence(std::memory_order_release);  // write sensors before their time
+    // The sensors must be written before their time.
+    std::atomic_thread_fence(std::memory_order_release);
     write_stamp(frame.instant, tracker_.bytes());
   }
   [[nodiscard]] SinkCounters counters() const override { return {}; }

@@ -1,8 +1,8 @@
-// The trackd segments in System V shared memory: created at the start, removed at exit unless a
-// reader is still attached; a restart then finds them again.
+// The trackd segments in System V shared memory: created at the start, and removed at exit unless a
+// reader is still attached; then a restart takes them over.
 //
-// Readers attach with write access, so every program on this machine can write to them (0666):
-// nothing read back from them is trusted.  There is no lock; the header's time is written last.
+// Readers attach with write access, so every program on this machine can write to the segments
+// (0666): nothing is read back from them.  There is no lock; the header's time is written last.
 #pragma once
 
 #include <memory>
@@ -25,7 +25,7 @@ struct Settings {
 
 void read_settings(ConfigReader& reader, Settings& out);
 
-/// Conflict when a segment with that key exists already, unless an earlier run left it
+/// Conflict when a segment with that key exists, unless an earlier run left it
 /// (SharedSegment::create).
 [[nodiscard]] Result<std::unique_ptr<outlet::Outlet>> open_outlet(
     const Settings& settings, const outlet::OutletContext& context);

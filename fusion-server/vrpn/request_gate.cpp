@@ -24,7 +24,7 @@ RequestGate::Verdict RequestGate::ask(const Asker& asker, SteadyTime now) {
   return Verdict::Connect;
 }
 
-/// The key under which a source is stored; stores the source if it is new.
+/// The key of the address's source; adds the source if it is new.
 const std::string& RequestGate::name_of_source(const std::string& address, SteadyTime now) {
   if (const auto known = sources_.find(address); known != sources_.end()) return known->first;
   if (sources_.size() >= limits_.most_sources) tidy(now);
@@ -33,16 +33,17 @@ const std::string& RequestGate::name_of_source(const std::string& address, Stead
   return sources_.try_emplace(room ? address : std::string(), fresh).first->first;
 }
 
-/// Removes addresses with their full allowance: they are like addresses that never asked.
+/// Removes addresses that have their full allowance, because they count like addresses that never
+/// asked.
 void RequestGate::tidy(SteadyTime now) {
-  if (now - tidied_ < kTidyInterval) return;  // limits the cost of a flood
+  if (now - tidied_ < kTidyInterval) return;  // Limits the cost of a flood.
   tidied_ = now;
   std::erase_if(sources_, [now](const auto& entry) {
     return entry.second.under_way == 0 && entry.second.allowance.full(now);
   });
 }
 
-/// The source of a finished attempt; null if none was under way.
+/// Ends an attempt and returns its source; null if no attempt was under way.
 RequestGate::Source* RequestGate::finished(const Asker& asker) {
   const auto found = under_way_.find(asker);
   if (found == under_way_.end()) return nullptr;

@@ -9,10 +9,10 @@ namespace {
 
 using net::error_code;
 
-/// Old poses are useless: the kernel should buffer one or two frames, not seconds of them.
+/// Room for one or two frames: the kernel should not buffer seconds of old poses.
 constexpr int kSendBuffer = 128 * 1024;
 
-/// An int option that Asio does not define.
+/// An integer option that Asio does not define.
 class TcpOption {
  public:
   TcpOption(int name, int value) : name_(name), value_(value) {}
@@ -38,7 +38,8 @@ class TcpOption {
   int value_;
 };
 
-/// A client with datagrams is silent on TCP; these options detect a dead host after 25 s.
+/// Sets the socket's options.  A client with datagrams is silent on TCP; keep-alive detects a dead
+/// host after 25 s.
 void set_options(net::Socket& socket) {
   error_code ignored;
   socket.set_option(net::tcp::no_delay(true), ignored);
@@ -112,7 +113,7 @@ void Connection::on_written(error_code failed) {
   if (!socket_.is_open()) return;
   if (failed) return close();
   write();
-  read();  // Reading may have stopped because of too many answers.
+  read();  // Reading may have stopped because too many answers were waiting.
 }
 
 void Connection::publish(const std::shared_ptr<const Reports>& reports) {
@@ -147,7 +148,7 @@ void Connection::refuse(const std::string& reason) {
 
 void Connection::close() {
   if (!socket_.is_open()) return;
-  const auto self = shared_from_this();  // closed_ releases the owner's reference
+  const auto self = shared_from_this();  // closed_ releases the owner's reference.
   error_code ignored;
   socket_.close(ignored);
   closed_(this);

@@ -1,4 +1,4 @@
-// The sockets of one client.  Lives on the server's thread.
+// The sockets of one client; runs on the server's thread.
 #pragma once
 
 #include <array>
@@ -15,20 +15,20 @@
 
 namespace chorus::vrpn {
 
-/// Incremented on the server's thread, read on any.
+/// Written on the server's thread, read on any.
 struct ServerCounters {
-  std::atomic<std::uint64_t> dropped = 0;  ///< Number of frames, counted per client.
-  std::atomic<std::uint64_t> failed = 0;   ///< Number of datagrams.
-  std::atomic<std::uint64_t> refused = 0;  ///< Number of clients and requests.
+  std::atomic<std::uint64_t> dropped = 0;  ///< Frames, counted for each client.
+  std::atomic<std::uint64_t> failed = 0;   ///< Datagrams.
+  std::atomic<std::uint64_t> refused = 0;  ///< Clients and requests.
   std::atomic<std::uint64_t> clients = 0;
 };
 
 struct ClientLimits {
   std::chrono::milliseconds handshake{5000};  ///< Time limit for the client's cookie.
-  std::chrono::milliseconds stall{5000};      ///< Longest that one write may take.
+  std::chrono::milliseconds stall{5000};      ///< Longest time that one write may take.
 };
 
-/// Used by all connections of a server; outlives them.
+/// Shared by all connections of a server, and outlives them.
 struct ConnectionContext {
   net::DatagramSocket* datagrams = nullptr;
   const Clock* clock = nullptr;
@@ -37,9 +37,10 @@ struct ConnectionContext {
   ClientLimits limits;
 };
 
-/// A client that does not read costs one frame of memory: while a write is in progress only the
-/// newest frame waits, and older ones are dropped; after ClientLimits::stall the client is closed.
-/// Its answers are limited, too: while kMaxAnswers are waiting, nothing more is read from it.
+/// A client that does not read costs memory for one frame only: while a write is in progress, only
+/// the newest frame waits, and older ones are dropped; after ClientLimits::stall the client is
+/// disconnected.  Its answers are limited too: while kMaxAnswers bytes of them or more are waiting,
+/// nothing is read from it.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   using Closed = std::function<void(const Connection*)>;
@@ -70,11 +71,11 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Closed closed_;
   std::array<char, 4096> input_{};
   bool reading_ = false;
-  std::string answers_;                     ///< Answers to be written before the next frame.
-  std::shared_ptr<const Reports> waiting_;  ///< The newest frame not written yet.
-  std::string output_;                      ///< Data being written.
+  std::string answers_;                     ///< Answers that are written before the next frame.
+  std::shared_ptr<const Reports> waiting_;  ///< The newest frame that has not been written.
+  std::string output_;                      ///< The bytes being written.
   bool writing_ = false;
-  SteadyTime deadline_;  ///< For the cookie; later, for the write in progress.
+  SteadyTime deadline_;  ///< For the cookie; later for the write in progress.
 };
 
 }  // namespace chorus::vrpn

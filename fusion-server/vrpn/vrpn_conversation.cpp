@@ -48,11 +48,11 @@ Result<void> Conversation::obey(const Message& message, Timestamp now, std::stri
     case SystemType::Datagrams:
       take_datagram_port(message);
       return {};
-    case SystemType::Log:  // would make us write files
+    case SystemType::Log:  // Would make us write files.
       return {};
   }
   if (ping_type_ == message.type) answer_ping(message, now, answer);
-  return {};  // requests to trackers that ours cannot fulfil
+  return {};  // Requests to trackers, none of which ours can fulfil.
 }
 
 Result<void> Conversation::take_sender(const Message& message) {
@@ -84,8 +84,8 @@ Result<void> Conversation::take_type(const Message& message) {
   return {};
 }
 
-/// Only the host at the other end of the connection is accepted: a client must not direct our
-/// stream to others.
+/// Accepts only the host at the other end of the connection: a client must not direct our data to
+/// other hosts.
 void Conversation::take_datagram_port(const Message& message) {
   const std::string_view address = message.payload.substr(0, message.payload.find('\0'));
   const std::int32_t port = message.sender;

@@ -1,8 +1,8 @@
-// The conversation with one client, without its sockets: bytes in, bytes out.
+// The conversation with one client, without its sockets: takes bytes, returns bytes.
 //
-// Both sides send a cookie immediately; after the client's cookie we describe our trackers, then we
+// Both sides send a cookie at once.  After the client's cookie we describe our trackers, and then
 // send reports.  A client selects trackers by describing senders of the same names; one that names
-// none of ours gets everything, as from VRPN's own server.
+// none of ours gets all of them, as from VRPN's own server.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,8 @@ namespace chorus::vrpn {
 
 struct Peer {
   std::string address;  ///< Numeric address of the TCP connection's peer.
-  /// The client asked by UDP, so it may name a port for datagrams; a client that connected by TCP
-  /// gets everything there.
+  /// True if the client asked by UDP: then it may name a port for datagrams.  A client that
+  /// connected by TCP gets everything over TCP.
   bool asked_by_datagram = false;
 };
 
@@ -32,17 +32,18 @@ class Conversation {
 
   /// The bytes to send after connecting.
   [[nodiscard]] static std::string greeting() { return cookie(); }
-  /// The bytes to answer over TCP. Malformed: close the connection.
+  /// Takes bytes from the client; returns the answer to send over TCP.  Malformed: close the
+  /// connection.
   [[nodiscard]] Result<std::string> receive(std::string_view bytes, Timestamp now);
 
-  /// Both cookies have arrived and our trackers are described: reports may be sent.
+  /// True once both cookies have arrived and our trackers are described: then reports may be sent.
   [[nodiscard]] bool established() const { return established_; }
-  /// The port for datagrams, at the peer's address; none: everything over TCP.
+  /// The port at the peer's address for datagrams; none: everything goes over TCP.
   [[nodiscard]] std::optional<std::uint16_t> datagram_port() const { return datagram_port_; }
 
-  /// The reports that the client wants, numbered, as one piece of the stream ...
+  /// The reports that the client wants, numbered, as one piece of the TCP stream.
   [[nodiscard]] std::string stream(const Reports& reports);
-  /// ... or as datagrams of whole messages, at most kMaxDatagram each.
+  /// The same reports as datagrams of whole messages, each of at most kMaxDatagram bytes.
   [[nodiscard]] std::vector<std::string> datagrams(const Reports& reports);
 
  private:
@@ -59,9 +60,9 @@ class Conversation {
   MessageReader reader_;
   bool established_ = false;
   std::optional<std::uint16_t> datagram_port_;
-  std::optional<std::int32_t> ping_type_;                      ///< The client's number for pings.
-  std::vector<std::optional<std::size_t>> tracker_of_sender_;  ///< Indexed by the client's numbers.
-  std::vector<bool> wanted_;                                   ///< Indexed by tracker.
+  std::optional<std::int32_t> ping_type_;  ///< The type id that the client gave to pings.
+  std::vector<std::optional<std::size_t>> tracker_of_sender_;  ///< By the client's sender ids.
+  std::vector<bool> wanted_;                                   ///< By tracker.
   bool wants_all_ = true;
   std::uint32_t stream_sequence_ = 0;
   std::uint32_t datagram_sequence_ = 0;

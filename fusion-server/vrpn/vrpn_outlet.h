@@ -24,7 +24,7 @@ struct Settings {
 
 void read_settings(ConfigReader& reader, Settings& out);
 
-/// All slots are announced to clients.
+/// Opens the server; all slots are announced to clients.
 [[nodiscard]] Result<std::unique_ptr<outlet::Outlet>> open_outlet(
     const Settings& settings, const outlet::OutletContext& context);
 

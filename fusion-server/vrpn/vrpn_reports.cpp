@@ -12,18 +12,19 @@
 namespace chorus::vrpn {
 namespace {
 
-/// In the order of ReportType.
+/// VRPN's names of the types, in the order of ReportType.
 constexpr std::array<std::string_view, 3> kTypeNames{
     "vrpn_Base pong_message", "vrpn_Tracker Pos_Quat", "vrpn_Tracker Velocity"};
 
-/// A velocity's rotation is that within this time; short, so that it is never ambiguous.
+/// A velocity message states the rotation within this time, which is so short that it is never
+/// ambiguous.
 constexpr Duration kTurnTime = std::chrono::milliseconds(10);
 
 void add_vectors(Payload& out, const Eigen::Vector3d& v, const Eigen::Quaterniond& q) {
   for (const double value : {v.x(), v.y(), v.z(), q.x(), q.y(), q.z(), q.w()}) out.real(value);
 }
 
-/// The payloads of a joint's report after the sensor number, for its body's tracker and for its
+/// What follows the sensor number in a joint's reports; the same for its body's tracker and for its
 /// own.
 struct JointNumbers {
   Payload pose;
@@ -40,7 +41,7 @@ JointNumbers numbers_of(const outlet::TrackerJoint& joint) {
   return out;
 }
 
-/// Destination of a joint's reports: which tracker, which sensor.
+/// Where a joint's reports go: to which tracker, as which sensor.
 struct Address {
   std::size_t tracker = 0;
   std::size_t sensor = 0;
@@ -49,7 +50,7 @@ struct Address {
 void add(Reports& out, const MessageHead& head, std::size_t sensor, const Payload& numbers) {
   const auto number = static_cast<std::uint32_t>(sensor);
   Payload payload;
-  payload.integer(number).integer(number);  // the second is padding: VRPN repeats the sensor here
+  payload.integer(number).integer(number);  // VRPN repeats the sensor as padding.
   const std::size_t begin = out.bytes.size();
   append_message(out.bytes, head, payload.bytes() + numbers.bytes());
   out.messages.push_back({static_cast<std::size_t>(head.sender), begin, out.bytes.size() - begin});

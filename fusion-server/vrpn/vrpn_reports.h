@@ -1,8 +1,8 @@
-// A tracked frame in VRPN: the trackers, and their reports.  Pure.
+// A tracker frame in VRPN: which trackers there are, and their reports.
 //
-// Body0 has the joints as sensors 0..24 (the numbers of the Kinect v2 SDK).  Body0_Head etc. have
-// only sensor 0, for clients that can only read that one.  World axes, metres, quaternions x y z w;
-// one time stamp per frame, the time of the poses.
+// Body0 has the joints as sensors 0..24 (the numbers of the Kinect v2 SDK).  Body0_Head and so on
+// have only sensor 0, for clients that can read only that one.  World axes, metres, quaternions x y
+// z w; each frame has one time stamp, the time of its poses.
 #pragma once
 
 #include <cstdint>
@@ -15,19 +15,19 @@
 
 namespace chorus::vrpn {
 
-/// Our type ids; their names are defined by VRPN.
+/// The ids that we give to types; VRPN defines their names.
 enum class ReportType : std::int32_t { Pong, PosQuat, Velocity };
 
 /// The trackers that we announce; a tracker's index is its sender id.
 class Trackers {
  public:
-  /// `slots` bodies; `each_joint`: also one tracker per joint, in addition to that of the body.
+  /// `slots`: number of bodies; `each_joint`: adds one tracker per joint to that of each body.
   Trackers(std::size_t slots, bool each_joint);
 
   [[nodiscard]] std::size_t size() const { return names_.size(); }
   [[nodiscard]] std::optional<std::size_t> index_of(std::string_view name) const;
   [[nodiscard]] std::size_t body(std::size_t slot) const { return slot; }
-  /// The tracker of a joint; none when joints have no trackers of their own.
+  /// The tracker of a joint; none if joints have no trackers of their own.
   [[nodiscard]] std::optional<std::size_t> joint(std::size_t slot, std::size_t joint) const;
 
   /// The messages that describe all trackers and types to a client.
@@ -46,7 +46,7 @@ struct Report {
   std::size_t size = 0;
 };
 
-/// A frame's messages, encoded once for all clients; their sequence numbers are still zero.
+/// A frame's messages, encoded once for all clients; their sequence numbers are zero as yet.
 struct Reports {
   std::string bytes;
   std::vector<Report> messages;

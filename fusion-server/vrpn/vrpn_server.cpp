@@ -23,7 +23,7 @@ constexpr std::chrono::milliseconds kConnectTime{2000};
 constexpr int kPortAttempts = 16;
 constexpr std::size_t kMaxRequest = 512;
 
-/// An IPv4 address in dotted form, even from an IPv6 socket, as clients write it.
+/// The address as clients write it: IPv4 in dotted form, even if it comes from an IPv6 socket.
 std::string text_of(const asio::ip::address& address) {
   if (address.is_v6() && address.to_v6().is_v4_mapped()) {
     return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6()).to_string();
@@ -34,7 +34,7 @@ std::string text_of(const asio::ip::address& address) {
 }  // namespace
 
 struct Server::Impl {
-  /// A connection requested by datagram that is not established yet.
+  /// A connection that a datagram requested, while it is being established.
   struct Attempt {
     net::Socket socket;
     Asker asker;
@@ -46,7 +46,7 @@ struct Server::Impl {
 
   Result<void> bind(std::uint16_t port);
   Result<void> listen();
-  /// Starts the asynchronous operations that must always be pending.
+  /// Starts the asynchronous operations that must always be pending, if they are not.
   void ensure();
   void on_accepted(net::Socket socket);
   void receive_request();
@@ -54,14 +54,14 @@ struct Server::Impl {
   void answer_request(const tcp::endpoint& to);
   void connect_back(const tcp::endpoint& to, const Asker& asker);
   void on_connected(error_code failed, const std::shared_ptr<Attempt>& attempt);
-  /// `asker`: the client that requested the connection; none: it connected by itself.
+  /// `asker`: the client that requested the connection by datagram; none if the client connected.
   void welcome(net::Socket socket, const std::optional<Asker>& asker);
   void forget(const Connection* connection);
   void sweep();
   void deliver();
   void stop();
   void turn_away(const std::string& reason);
-  /// Why another client from this address is refused; empty: it is accepted.
+  /// Why a further client from this address is refused; empty if it is accepted.
   [[nodiscard]] std::string objection(const asio::ip::address& of) const;
 
   struct Client {
@@ -70,7 +70,8 @@ struct Server::Impl {
     std::optional<Asker> asker;
   };
 
-  asio::io_context io{1};  // First member: destroyed last, after everything that uses it.
+  // The first member, so it is destroyed last, after everything that uses it.
+  asio::io_context io{1};
   ServerOptions options;
   std::shared_ptr<const Trackers> trackers;
   net::AcceptLoop accepting{io, "VRPN accept failed",
@@ -86,7 +87,8 @@ struct Server::Impl {
   std::vector<std::shared_ptr<Attempt>> attempts;
   std::unordered_map<const Connection*, Client> clients;
   bool stopping = false;
-  outlet::Newest<std::shared_ptr<const Reports>> newest;  ///< The frame not delivered yet.
+  /// The frame that has not been delivered.
+  outlet::Newest<std::shared_ptr<const Reports>> newest;
   std::thread thread;
 };
 
@@ -97,7 +99,7 @@ Result<void> Server::Impl::bind(std::uint16_t port) {
   if (auto bound = accepting.listen(where); !bound) return bound;
   const udp::endpoint same(*address, accepting.port());
   error_code failed;
-  datagrams.close(failed);  // an earlier attempt
+  datagrams.close(failed);  // Left over by an earlier attempt.
   datagrams.open(same.protocol(), failed);
   if (!failed) datagrams.non_blocking(true, failed);
   if (!failed) datagrams.bind(same, failed);
@@ -155,7 +157,7 @@ void Server::Impl::receive_request() {
 
 void Server::Impl::on_request(error_code failed, std::size_t size) {
   if (stopping) return;
-  if (!failed) {  // an error here: an earlier datagram of ours met a closed port
+  if (!failed) {  // An error means that an earlier datagram of ours met a closed port.
     const auto port = read_request({request.data(), size});
     if (!port) {
       turn_away(port.error().message);
@@ -193,7 +195,7 @@ void Server::Impl::on_connected(error_code failed, const std::shared_ptr<Attempt
   try {
     welcome(std::move(attempt->socket), attempt->asker);
   } catch (...) {
-    gate.gone(attempt->asker);  // otherwise it could never ask again
+    gate.gone(attempt->asker);  // Otherwise it could never ask again.
     throw;
   }
 }

@@ -15,12 +15,12 @@ namespace chorus::vrpn {
 
 struct ServerOptions {
   std::string address = "127.0.0.1";
-  std::uint16_t port = 3883;  ///< TCP and UDP; 0: any port that is free for both.
+  std::uint16_t port = 3883;  ///< For TCP and UDP; 0: any port that is free for both.
   net::AllowList allow = {};  ///< Hosts that are served.
   std::size_t max_clients = 128;
-  std::size_t max_clients_per_address = 64;  ///< Prevents that one host takes all places.
+  std::size_t max_clients_per_address = 64;  ///< So that one host cannot take all places.
   ClientLimits limits = {};
-  std::shared_ptr<const Clock> clock;  ///< Source of the time in answers to pings.
+  std::shared_ptr<const Clock> clock;  ///< Gives the time in answers to pings.
 };
 
 class Server {
@@ -32,8 +32,8 @@ class Server {
   [[nodiscard]] Result<void> start();
   [[nodiscard]] std::uint16_t port() const;
 
-  /// Always from the same thread.  Never waits: a frame not taken when the next one comes is
-  /// dropped and counted.
+  /// Sends the reports to all clients.  Never waits: if the next frame comes before this one was
+  /// taken, this one is dropped and counted.  Always call it from the same thread.
   void publish(std::shared_ptr<const Reports> reports);
   /// The counters dropped, failed, refused, clients.  May be called from any thread.
   [[nodiscard]] SinkCounters counters() const;

@@ -20,7 +20,7 @@ using nlohmann::json;
 // 64 sensors with covariances and all edges need less than 1 MB.
 constexpr JsonLimits kLimits{4U << 20U, 16};
 constexpr double kMaxPlace = 1000.0;    // [m]
-constexpr double kMaxNormError = 0.01;  // written with 5 digits
+constexpr double kMaxNormError = 0.01;  // Tolerates quaternions that were rounded to a few digits.
 constexpr const char* kClockOffset = "clockOffsetMilliseconds";
 constexpr const char* kClockUncertainty = "clockUncertaintyMilliseconds";
 constexpr double kMillisecond = 1e3;
@@ -35,7 +35,7 @@ json verdict_json(const SensorVerdict& own) {
 }
 
 json sensor_json(const SensorId& id, const Extrinsics& place) {
-  // The quaternion is for people and other programs; the matrix is exact to the bit.
+  // Humans and other programs read the quaternion; the matrix is exact to the bit.
   json rotation = json::array();
   for (const double value : place.world_from_sensor.linear().reshaped()) rotation.push_back(value);
   const Eigen::Vector3d p = place.world_from_sensor.translation();
@@ -56,7 +56,8 @@ json sensor_json(const SensorId& id, const Extrinsics& place) {
           {"covariance", std::move(covariance)}};
 }
 
-/// A finite number of magnitude below `most`; `fallback` if the key is optional.
+/// A finite number of magnitude below `most`.  An absent key gives `fallback`; without a fallback
+/// it is an error.
 Result<double> number(const json& object, const std::string& where, const char* key, double most,
                       std::optional<double> fallback = {}) {
   const auto it = object.find(key);
@@ -104,7 +105,7 @@ Result<std::vector<SensorId>> ids_of(const json& object, const std::string& wher
   return ids;
 }
 
-/// Reads columns into `out`, which stays unchanged when the key is missing.
+/// Reads a matrix, column by column; `out` stays unchanged when the key is absent.
 template <class Matrix>
 Result<void> read_matrix(const json& object, const std::string& where, const char* key,
                          Matrix& out) {
@@ -124,7 +125,8 @@ Result<void> read_matrix(const json& object, const std::string& where, const cha
   return {};
 }
 
-/// If there is a matrix as well as a quaternion, the matrix is more exact.
+/// Replaces the pose's rotation, which was read from the quaternion, by the matrix if there is one,
+/// because the matrix is more exact.
 Result<void> read_rotation(const json& object, const std::string& where, Eigen::Isometry3d& pose) {
   Eigen::Matrix3d rotation = pose.linear();
   if (auto ok = read_matrix(object, where, "rotation", rotation); !ok) return ok;
@@ -169,7 +171,7 @@ Result<Extrinsics> extrinsics_of(const json& object, const std::string& where) {
   return out;
 }
 
-/// The offset of a sensor's clock, if one was found from the walk.
+/// Reads the offset of a sensor's clock, which is there if it was found from the walk.
 Result<void> read_clock(const json& object, const std::string& where, const SensorId& sensor,
                         Registration& out) {
   if (!object.contains(kClockOffset)) return {};
@@ -228,7 +230,7 @@ Result<void> read_sensors(const json& root, Registration& out) {
   return {};
 }
 
-/// Reads the verdicts per sensor, if present; otherwise the single verdict applies to all.
+/// Reads the sensors' verdicts, if there are any; one that is not stated is `fallback`.
 Result<void> read_verdicts(const json& root, const char* key, Verdict fallback, Registration& out) {
   const auto it = root.find(key);
   if (it == root.end() || !it->is_object()) return {};

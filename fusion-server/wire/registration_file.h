@@ -1,4 +1,4 @@
-// The registration as a file: for restarts, and for given extrinsics.
+// Reads and writes the registration as a file: for restarts, and for given extrinsics.
 #pragma once
 
 #include <string>
@@ -10,12 +10,12 @@
 
 namespace chorus::wire {
 
-/// JSON with the keys of /registration, plus the covariance, which only a restart needs.
+/// Writes JSON with the keys of /registration and the covariance, which only a restart needs.
 [[nodiscard]] std::string write_registration(const Registration& registration);
 
-/// Reads such a file, a saved answer of GET /registration, or just {"sensors": {"s1": {"x": ..}}}
-/// with given extrinsics.  Refuses, naming the sensor: missing or non-finite numbers, invalid
-/// rotations, places more than 1 km away, more than 64 sensors.
+/// Reads such a file, a saved answer of GET /registration, or a file with given extrinsics, for
+/// which {"sensors": {"s1": {"x": ..}}} is enough.  Refuses, naming the sensor: missing or
+/// non-finite numbers, invalid rotations, places more than 1 km away, more than 64 sensors.
 [[nodiscard]] Result<Registration> read_registration(std::string_view json);
 
 /// The part of a registration that a recording stores, valid from `at` on.

@@ -16,7 +16,7 @@ constexpr std::array<std::pair<Verdict, std::string_view>, 4> kVerdicts{{
     {Verdict::Refused, "Refused"},
 }};
 
-/// Row by row; squared units of 0.1 mm and of 0.01 degree, with two more digits.
+/// The covariance row by row, with enough digits for squares of 0.1 mm and 0.01 degree.
 std::vector<Decimal> decimals_of(const Eigen::Matrix<double, 6, 6>& covariance) {
   constexpr int kCovarianceDigits = 10;
   std::vector<Decimal> values;
@@ -48,12 +48,12 @@ Node sensor_node(const SensorId& id, const Extrinsics& place) {
   put("qw", q.w(), kRotationDigits);
   put("error", place.error, kPlaceDigits);
   node.properties.emplace_back("chain", names_of(place.chain));
-  if (!place.covariance.isZero(0.0))  // zero: the covariance is unknown
+  if (!place.covariance.isZero(0.0))  // All zero means that the covariance is unknown.
     node.properties.emplace_back("covariance", decimals_of(place.covariance));
   return node;
 }
 
-/// The offset of its clock, where one was found from the walk.
+/// Adds the offset of the sensor's clock, if one was found from the walk.
 void add_clock(Node& node, const Registration& registration, const SensorId& id) {
   const auto clock = registration.clocks.find(id);
   if (clock == registration.clocks.end()) return;
@@ -77,7 +77,7 @@ Node edge_node(const PairwiseRegistration& edge) {
            {"inliers", static_cast<std::int64_t>(edge.inliers)}}};
 }
 
-/// The session that is running, else the last one; "idle" if none is running.
+/// The newest session; its state is "idle" unless it is running.
 Node newest_session(const RegistrationProgress& progress) {
   constexpr int kDigits = 1;
   const SessionStatus session =

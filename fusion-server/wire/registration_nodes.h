@@ -15,11 +15,12 @@ namespace chorus::wire {
 [[nodiscard]] resource::Node registration_node(const Registration& registration,
                                                const RegistrationProgress& progress);
 
-/// /registration/sessions/{id}: progress and outcome.  `awaits` is shown while it is running.
+/// /registration/sessions/{id}: progress and outcome.  `awaits` is shown while the session is
+/// running.
 [[nodiscard]] resource::Node session_node(const SessionStatus& session,
                                           const std::vector<std::string>& awaits);
 
-/// "collecting", "solving", "done", "cancelled".
+/// The state's name on the wire: "collecting", "solving", "done", "cancelled".
 [[nodiscard]] std::string_view name_of(SessionState state) noexcept;
 
 /// The path of a session: "/registration/sessions/7".

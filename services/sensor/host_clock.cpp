@@ -5,7 +5,7 @@ namespace {
 
 constexpr Duration kLargest = std::chrono::hours(24);
 constexpr double kMillion = 1e6;
-constexpr double kMaxPpm = 10'000;  // no oscillator is off by a whole percent
+constexpr double kMaxPpm = 10'000;  // No oscillator is off by a whole percent.
 
 }  // namespace
 

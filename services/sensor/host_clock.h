@@ -1,4 +1,4 @@
-// A wrong host clock, for testing everything that must cope with one.
+// A wrong host clock, for testing everything that has to cope with one.
 #pragma once
 
 #include <memory>
@@ -9,22 +9,22 @@
 
 namespace chorus::sensor_service {
 
-/// Its errors, counted from the start of the service.
+/// The clock's errors, counted from the start of the service.
 struct ClockErrors {
   Duration offset{0};
   double drift = 0.0;  ///< [s/s]
-  Duration step{0};    ///< One step, as NTP steps a clock.
+  Duration step{0};    ///< The clock steps once by this, as NTP steps a clock.
   Duration step_after = std::chrono::seconds(60);
 
   bool operator==(const ClockErrors&) const = default;
 };
 
-/// The section "clock"; the reader's finish() reports mistakes.
+/// Reads the section "clock"; the reader's finish() reports mistakes.
 void read_clock_errors(ConfigReader config, ClockErrors& out);
 
 [[nodiscard]] synthetic::HostClock host_clock(const ClockErrors& errors, Timestamp start);
 
-/// The host's clock while the true time is that of `world`.
+/// What the host's clock shows while the true time is that of `world`.
 class ErringClock final : public Clock {
  public:
   ErringClock(std::shared_ptr<const Clock> world, const synthetic::HostClock& host)

@@ -6,9 +6,10 @@ namespace chorus::sensor_service {
 
 namespace {
 
-constexpr std::chrono::seconds kDemandLasts{
-    2};                                       // after a request, images are encoded fast this long
-constexpr std::chrono::seconds kIdlePace{1};  // otherwise one image is encoded in this time
+/// After a request, images are encoded as fast as possible for this long.
+constexpr std::chrono::seconds kDemandLasts{2};
+/// Otherwise one capture is encoded in this time.
+constexpr std::chrono::seconds kIdlePace{1};
 
 }  // namespace
 
@@ -43,7 +44,7 @@ Result<LatestCapturePtr> ImageDesk::ask() {
   return pictured_;
 }
 
-/// Called with the mutex held.
+/// True when images should be encoded now.  Call it with the mutex held.
 bool ImageDesk::due() const {
   if (!on_ || offered_ == pictured_ || !offered_) return false;
   const auto now = steady_now_();
@@ -62,7 +63,8 @@ bool ImageDesk::encode_next(const std::stop_token& stop) {
     if (latest->depth) (void)latest->depth->get();
   } catch (...) {
     const std::lock_guard lock(mutex_);
-    if (offered_ == latest) offered_ = nullptr;  // so that it does not fail again and again
+    // So that this capture does not fail again and again.
+    if (offered_ == latest) offered_ = nullptr;
     throw;
   }
   const std::lock_guard lock(mutex_);

@@ -2,7 +2,7 @@
 // and a request for a frame must not wait for an image.
 //
 // While clients ask, captures are encoded as fast as possible; otherwise once a second, so that the
-// first answer is not old.  When switched off, nothing is encoded or kept.
+// first answer is not old.  While switched off, nothing is encoded.
 #pragma once
 
 #include <chrono>
@@ -23,19 +23,20 @@ class ImageDesk {
  public:
   ImageDesk(bool on, SteadyNow steady_now) : steady_now_(std::move(steady_now)), on_(on) {}
 
-  /// Switches encoding on or off; off forgets every image.
+  /// Switches encoding on or off; off drops the encoded capture.
   void allow(bool on);
   [[nodiscard]] bool allowed() const;
 
-  /// Offers the latest capture; replaces an earlier one that has not yet been encoded.
+  /// Offers the latest capture; it replaces an earlier one that has not been encoded yet.
   void offer(LatestCapturePtr latest);
 
-  /// For a request: the latest capture whose images are encoded.  NotFound when switched off,
+  /// For a request: the latest capture with encoded images.  NotFound when switched off,
   /// Unavailable before the first one.
   [[nodiscard]] Result<LatestCapturePtr> ask();
 
   /// Blocks until images are due, encodes them, and returns true; false when told to stop.  An
-  /// encoder's exception becomes the image's Error; any other costs this capture, but not the next.
+  /// encoder's exception becomes the image's Error.  Any other exception is rethrown, after this
+  /// capture has been dropped, so that the next call encodes the next capture.
   bool encode_next(const std::stop_token& stop);
 
  private:

@@ -23,7 +23,7 @@ std::shared_ptr<const LazyImage> lazy(std::function<Result<CameraImage>()> encod
   return encode ? std::make_shared<const LazyImage>(std::move(encode)) : nullptr;
 }
 
-/// The options of all documents that change with each frame.
+/// The options of every document that changes with each frame.
 DocumentOptions options_of(const LatestCapture& latest, const service::Serving& serving) {
   DocumentOptions options;
   options.version = std::to_string(latest.frame->sequence) + "." + serving.run;

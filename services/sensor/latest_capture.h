@@ -1,4 +1,5 @@
-// What the service knows after one capture: immutable, shared by all requests until the next one.
+// What the service knows after one capture: immutable, and shared by all requests until the next
+// capture.
 #pragma once
 
 #include <cstdint>
@@ -19,23 +20,23 @@ struct LatestCapture {
   std::shared_ptr<const resource::FrameResource> frame;
   std::optional<FloorPlane> floor;
   std::uint64_t floor_version = 0;         ///< Counts changes of the floor plane.
-  std::shared_ptr<const LazyImage> color;  ///< Null: the device has none.
+  std::shared_ptr<const LazyImage> color;  ///< Null if the device has no colour image.
   std::shared_ptr<const LazyImage> depth;
 };
 using LatestCapturePtr = std::shared_ptr<const LatestCapture>;
 
-/// What is known after a capture; a capture without a floor plane takes that of `before`, which may
+/// What is known after `capture`.  A capture without a floor plane gets that of `before`, which may
 /// be null.
 [[nodiscard]] LatestCapturePtr latest_capture(Capture capture, const LatestCapture* before);
 
-// The documents of one capture.
+// The documents about one capture.
 
 [[nodiscard]] Result<http::DocumentPtr> floor_plane(const LatestCapture& latest,
                                                     const service::Serving& serving);
 /// `/images/`: the available images, and the camera model of each.
 [[nodiscard]] http::DocumentPtr image_list(const LatestCapture& latest,
                                            const service::Serving& serving);
-/// One image as bytes; an Error when its encoder failed.
+/// The bytes of one image; an Error when its encoder failed.
 [[nodiscard]] Result<http::DocumentPtr> image_document(const LazyImage& image,
                                                        std::uint64_t sequence,
                                                        const service::Serving& serving);

@@ -1,5 +1,5 @@
-// An image of one capture, encoded once, ahead of time or for the first client that asks, and then
-// kept.
+// An image of one capture.  It is encoded once, ahead of time or for the first client that asks,
+// and then kept.
 #pragma once
 
 #include <functional>
@@ -20,7 +20,7 @@ class LazyImage {
 
  private:
   mutable std::once_flag once_;
-  /// Emptied after use, to free what it holds.
+  /// Emptied after use, to free what it captured.
   mutable std::function<Result<CameraImage>()> encode_;
   mutable Result<CameraImage> image_;
 };

@@ -1,4 +1,4 @@
-// `/metrics` of a sensor as Prometheus text.
+// `/metrics` of a sensor in Prometheus' text format.
 #pragma once
 
 #include <string>

@@ -58,7 +58,7 @@ http::ServerConfig server_config(const Setup& setup) {
   return config;
 }
 
-/// The pause before the device is tried again; false when told to stop.
+/// Pauses before the device is tried again; false when told to stop.
 bool rest(const std::stop_token& stop) {
   constexpr auto kRest = std::chrono::seconds(1);
   std::mutex mutex;
@@ -151,7 +151,7 @@ std::optional<Result<void>> SensorHost::run_once(const std::stop_token& stop,
 }
 
 void SensorHost::run_device(const std::stop_token& stop) {
-  std::uint64_t before = 0;  // frames of earlier runs, because the numbers continue
+  std::uint64_t before = 0;  // Frames of earlier runs, because the numbers continue.
   std::uint64_t latest = 0;
   const auto take = [&](Capture capture) {
     capture.frame.sequence += before;

@@ -15,17 +15,18 @@
 
 namespace chorus::sensor_service {
 
-/// What starting needs: the settings, and the device ready to run.
+/// What is needed to start: the settings, and a device that is ready to run.
 struct Setup {
   SensorSettings settings;
-  std::shared_ptr<const Clock> clock;  ///< The host's, with its errors.
+  std::shared_ptr<const Clock> clock;  ///< The host's clock, with its errors.
   std::unique_ptr<FrameSource> device;
-  std::shared_ptr<http::Router> router = std::make_shared<http::Router>();  ///< With device routes.
+  /// Contains the device's routes.
+  std::shared_ptr<http::Router> router = std::make_shared<http::Router>();
 };
 
 class SensorHost {
  public:
-  /// Makes the device, which may be missing or not as configured.  Binds nothing yet.
+  /// Makes the device; an error if it is missing or not as configured.  Binds no port yet.
   [[nodiscard]] static Result<std::unique_ptr<SensorHost>> make(const SensorSettings& settings);
   explicit SensorHost(Setup setup);
   ~SensorHost();
@@ -37,13 +38,14 @@ class SensorHost {
   /// Stops device and server; may be called repeatedly.
   void stop();
 
-  /// Applies everything that can change while running.
+  /// Applies everything that can change while the service runs.
   void take(const LiveSettings& live);
 
-  /// What would not work if it started here and now.
+  /// What would not work if the service started on this host now.
   [[nodiscard]] service::Concerns concerns() const;
 
-  /// For a watchdog: true while the network's thread runs.  A device may be silent for any time.
+  /// For a watchdog: true while the server's thread runs.  A device may be silent for any length of
+  /// time.
   [[nodiscard]] bool alive() { return server_.alive(); }
 
   [[nodiscard]] std::uint16_t port() const { return server_.port(); }
@@ -59,7 +61,7 @@ class SensorHost {
   SensorService service_;
   http::Server server_;
   std::jthread device_;
-  std::jthread encoder_;  ///< Idle unless images are enabled.
+  std::jthread encoder_;  ///< Idle unless images are switched on.
 };
 
 /// How chorus-sensor describes itself.

@@ -11,8 +11,8 @@ using http::Request;
 
 namespace {
 
-// A capture time that goes back by more than this means that the host's clock was set; by less,
-// that the device repeats itself.  The fusion server has the same limit.
+// If a capture time goes back by more than this, the host's clock was set; if by less, the device
+// repeats itself.  The fusion server has the same limit.
 constexpr Duration kMaxRepeat = std::chrono::seconds(1);
 
 }  // namespace
@@ -22,7 +22,7 @@ SensorService::SensorService(ServiceOptions options)
       frames_(options_.serving, options_.history),
       images_(options_.images, options_.steady_now) {}
 
-/// Why a frame cannot be true; empty if it can.  Called with the mutex held.
+/// Why a frame cannot be right; empty if it can.  Call it with the mutex held.
 std::string SensorService::objection(const SensorFrame& frame) const {
   if (frame.bodies.size() > kMaxBodies) return "too many bodies";
   std::unordered_set<std::uint64_t> ids;
@@ -31,7 +31,7 @@ std::string SensorService::objection(const SensorFrame& frame) const {
   }
   if (!latest_) return {};
   const Duration behind = latest_->frame->captured - frame.captured;
-  const bool goes_on_from_there =  // the clock was set back
+  const bool goes_on_from_there =  // The clock was set back.
       behind > Duration::zero() && refused_capture_ && frame.captured > *refused_capture_;
   if (behind >= Duration::zero() && behind <= kMaxRepeat && !goes_on_from_there) {
     return "its capture time does not advance";
@@ -45,7 +45,7 @@ void SensorService::on_failure(std::string_view reason) noexcept {
     failures_.hit(reason);
     const std::lock_guard lock(mutex_);
     ++counters_.failures;
-  } catch (...) {  // not enough memory even for a log line
+  } catch (...) {  // There is not enough memory even for a log line.
   }
 }
 
@@ -103,7 +103,7 @@ void SensorService::on_device_end(const Result<void>& how) {
   ended_ = how ? "the device has come to its end" : "the device failed: " + to_string(how.error());
 }
 
-/// Prefers the device's own reason to ours.
+/// The device's own reason if it gives one, otherwise `reason`.
 std::string SensorService::or_trouble(std::string reason) const {
   std::string known = options_.trouble();
   return known.empty() ? reason : known;

@@ -1,4 +1,4 @@
-// One device as resources.  Captures in, documents out; it has neither socket nor thread.
+// One device as resources: takes captures and gives documents; has neither socket nor thread.
 //
 // on_capture() runs on the device's thread, the routes run on the server's; they share one
 // immutable LatestCapture.
@@ -26,10 +26,11 @@ struct ServiceOptions {
   SensorId id;
   DeviceDescription device;
   service::FrameHistory history;
-  bool images = false;                             ///< They show people: off unless enabled.
-  Duration stall_after = std::chrono::seconds(2);  ///< Not ready after this time without a capture.
+  bool images = false;  ///< Off by default, because images show people.
+  /// Health is not ready after this time without a capture.
+  Duration stall_after = std::chrono::seconds(2);
   service::Serving serving;
-  /// Why the device delivers nothing at the moment, for people; empty when it does not know.
+  /// Human-readable: why the device delivers nothing at the moment; empty when it does not know.
   std::function<std::string()> trouble = [] { return std::string(); };
   /// Called for each capture; must return at once.
   std::function<void(const LatestCapture&)> record = {};
@@ -38,39 +39,39 @@ struct ServiceOptions {
 
 struct ServiceCounters {
   std::uint64_t captured = 0;  ///< Frames published.
-  std::uint64_t lost = 0;      ///< Gaps in the device's numbering.
+  std::uint64_t lost = 0;      ///< Gaps in the device's frame numbers.
   std::uint64_t refused = 0;   ///< Captures that could not be true (see on_capture).
-  std::uint64_t failures = 0;  ///< Of the device, of publishing, and of images.
-  std::uint64_t bodies = 0;    ///< In the latest frame.
+  std::uint64_t failures = 0;  ///< Exceptions of the device, of publishing, and of images.
+  std::uint64_t bodies = 0;    ///< Number in the latest frame.
   double age_s = 0.0;          ///< Since the latest capture arrived; 0 before the first.
 };
 
-/// The self-description at `/` of a sensor.
+/// The self-description of a sensor, for `/`.
 [[nodiscard]] service::Self self_of(const ServiceOptions& options, bool with_images);
 
 class SensorService {
  public:
   explicit SensorService(ServiceOptions options);
 
-  /// Publishes one capture.  Refuses and counts: a time or number that does not advance, two bodies
-  /// with one id, too many bodies.  A time that goes back by more than a second means that the
-  /// clock was set; times count from there.
-  /// An exception is logged and counted; the next capture is published as usual.
+  /// Publishes one capture.  Refuses and counts a capture whose time or number does not advance,
+  /// with two bodies of the same id, or with too many bodies.  A time that goes back by more than a
+  /// second means that the clock was set; from then on times are compared with the new one.  An
+  /// exception is logged and counted; the next capture is published as usual.
   void on_capture(Capture capture) noexcept;
   /// Logs and counts an exception from the device or from another thread of this service.
   void on_failure(std::string_view reason) noexcept;
-  /// The device will deliver nothing more; health() gives the reason.
+  /// Call this when the device will deliver nothing more; health() then gives the reason.
   void on_device_end(const Result<void>& how);
 
   /// Takes effect with the next request.
   void show_images(bool on) { images_.allow(on); }
-  /// For a separate thread: blocks until images are due and encodes them; false when stopped.
+  /// For a separate thread: blocks until images are due and encodes them; false when told to stop.
   bool encode_next(const std::stop_token& stop) noexcept;
 
   [[nodiscard]] service::Health health() const;
   [[nodiscard]] ServiceCounters counters() const;
 
-  /// All resources except those of common/service.  The service must outlive the router.
+  /// Adds all resources except those of common/service.  The service must outlive the router.
   void add_routes(http::Router& router);
 
  private:
@@ -92,7 +93,8 @@ class SensorService {
 
   mutable std::mutex mutex_;  ///< Guards the members below.
   LatestCapturePtr latest_;
-  std::optional<Timestamp> refused_capture_;  ///< Of the capture before, if refused.
+  /// Capture time of the previous capture, if that was refused.
+  std::optional<Timestamp> refused_capture_;
   ServiceCounters counters_;
   std::chrono::steady_clock::time_point last_capture_{};
   std::string ended_;  ///< Why the device delivers nothing more; empty while it is running.

@@ -1,4 +1,4 @@
-// deploy/config/sensor.json as a struct with two parts.
+// The settings in deploy/config/sensor.json, as a struct with two parts.
 #pragma once
 
 #include <optional>
@@ -30,8 +30,9 @@ struct StartSettings {
   SensorId id;
   http::ServerConfig http = {.port = 8081};    ///< Without tokens and identity.
   bool secure = false;                         ///< True if there is an identity.
-  Duration history = std::chrono::seconds(3);  ///< How long /frames/{seq} and ?at= reach back.
-  ClockErrors clock;  ///< For a simulated host; NTP keeps a real host's clock.
+  Duration history = std::chrono::seconds(3);  ///< How far back /frames/{seq} and ?at= reach.
+  /// The errors of a simulated host's clock; NTP keeps the clock of a real host.
+  ClockErrors clock;
   service::RecordingConfig recording;
   DeviceChoice device;
 
@@ -45,7 +46,7 @@ struct SensorSettings {
   bool operator==(const SensorSettings&) const = default;
 };
 
-/// Reports all mistakes in one Error.
+/// Reads all settings; one Error reports all mistakes.
 [[nodiscard]] Result<SensorSettings> read_sensor_settings(ConfigReader root);
 
 }  // namespace chorus::sensor_service

@@ -1,6 +1,6 @@
-// chorus-sensor as installed on every sensor host: without the device camera, whose OpenCV brings
-// more than a hundred packages. Where the whole program is installed too (package chorus-camera),
-// that program is run instead.
+// chorus-sensor as installed on every sensor host: without the device `camera`, because its OpenCV
+// needs more than a hundred packages.  Where the whole program is installed too (package
+// chorus-camera), that program is run instead.
 #include "common/service/hosted_program.h"
 #include "common/service/whole_program.h"
 #include "services/sensor/device/camera/camera.h"
@@ -8,7 +8,8 @@
 
 namespace chorus::camera {
 
-/// Replaces the library's function, which is then not linked, nor anything that it needs.
+/// Replaces the function in the camera's library, so that neither this library nor what it needs is
+/// linked.
 Result<std::unique_ptr<FrameSource>> make_camera(ConfigReader& /*section*/,
                                                  const sensor_service::DeviceContext& /*context*/) {
   return fail(ErrorCode::NotFound, "device.kind",

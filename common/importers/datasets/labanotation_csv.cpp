@@ -16,7 +16,7 @@ constexpr std::size_t kFields = 1 + kFieldsPerJoint * kJointCount;
 constexpr std::int64_t kNanosecondsPerTick = 100;
 constexpr BodyId kOnlyBody{1};
 
-/// An epoch that ticks may count from, with its ticks at 1970, 2010 and 2100.
+/// An epoch that ticks may count from; `unix_epoch` is the beginning of 1970 in its ticks.
 struct TickEpoch {
   std::string_view name;
   std::int64_t unix_epoch;
@@ -42,7 +42,7 @@ struct TickClock {
   std::int64_t origin_ticks = 0;
   Timestamp origin;
 
-  /// Refuses rows that are days away from the first, before they can overflow.
+  /// The capture time; none for rows before the first or days after it, which could overflow.
   [[nodiscard]] std::optional<Timestamp> at(std::int64_t ticks) const {
     constexpr std::int64_t kMaxSpanTicks = 7 * 24 * 3600 * 10'000'000LL;
     if (ticks < origin_ticks || ticks - origin_ticks > kMaxSpanTicks) return std::nullopt;

@@ -20,7 +20,7 @@ constexpr std::uint64_t kMaxKinectBodies = 6;
 
 using IdNumbers = std::map<std::uint64_t, std::uint64_t>;
 
-/// A row that is a single number, or the reason why it is not.
+/// Reads a row that is a single number.
 Result<std::uint64_t> read_count(LineReader& lines, std::string_view what) {
   const auto line = lines.next_filled();
   if (!line) return lines.malformed(fmt::format("ends where {} should follow.", what));

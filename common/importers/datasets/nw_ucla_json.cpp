@@ -13,7 +13,8 @@ namespace {
 
 constexpr BodyId kOnlyBody{1};
 
-/// Our names for the joints of Kinect v1 (SDK 1 order); its ShoulderCenter is SpineShoulder.
+/// Our names for the joints of Kinect v1, in the order of SDK 1; what it calls ShoulderCenter is
+/// our SpineShoulder.
 // clang-format off
 constexpr std::array kOurJoint{
     JointId::SpineBase, JointId::SpineMid, JointId::SpineShoulder, JointId::Head,
@@ -61,7 +62,7 @@ Result<void> read_frames(const nlohmann::json& skeletons, const std::string& at,
   return {};
 }
 
-/// a01_s01_e00_v02.json -> v02; any other name stays as it is.
+/// The sensor's name: a01_s01_e00_v02.json -> v02; any other name stays as it is.
 Result<SensorId> view_of(const std::filesystem::path& file, const ImportOptions& options) {
   if (options.sensor) return *options.sensor;
   const std::string stem = file.stem().string();

@@ -1,4 +1,4 @@
-// The kinds of devices, one row each: the section "device" of the configuration.
+// The kinds of devices, one row each, and the configuration section "device".
 //
 // A new kind is a folder next to this file and a row in device_kinds.cpp.
 #pragma once
@@ -20,22 +20,22 @@ namespace chorus::sensor_service {
 struct DeviceContext {
   SensorId sensor;
   HostTime time;
-  http::Router& router;  ///< Here a device adds its own resources while it is being made.
+  http::Router& router;  ///< A device adds its own resources here while it is being made.
 };
 
 struct DeviceKind {
-  std::string_view name;  ///< device.kind, and the section device.NAME.
-  /// Complains about every mistake in the section, even if another kind is selected, so that a file
-  /// may describe all kinds.
+  std::string_view name;  ///< The value of device.kind, and the NAME of the section device.NAME.
+  /// Reports every mistake in the section, even if another kind is selected, so that a file may
+  /// have sections for all kinds.
   void (*read)(ConfigReader& section, const SensorId& sensor);
   /// Makes the device, ready to run.
   Result<std::unique_ptr<FrameSource>> (*make)(ConfigReader& section, const DeviceContext& context);
 };
 
-/// The first one is the default.
+/// All kinds; the first one is the default.
 [[nodiscard]] std::span<const DeviceKind> device_kinds();
 
-/// The selected device.  Choices are equal when kind and settings are.
+/// The selected device.  Two choices are equal when kind and settings are.
 struct DeviceChoice {
   std::string kind;
   std::string section;  ///< JSON, with the assignments from the command line.
@@ -43,10 +43,10 @@ struct DeviceChoice {
   bool operator==(const DeviceChoice&) const = default;
 };
 
-/// The section "device"; mistakes are reported by the reader's finish().
+/// Reads the section "device"; the reader's finish() reports mistakes.
 void read_device(ConfigReader config, const SensorId& sensor, DeviceChoice& out);
 
-/// Makes only the kind that is selected.
+/// Makes the selected device.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> make_device(const DeviceChoice& choice,
                                                                const DeviceContext& context);
 

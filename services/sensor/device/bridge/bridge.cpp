@@ -36,7 +36,7 @@ DeviceDescription Bridge::describe() const {
   return device;
 }
 
-/// Null when no socket is configured.
+/// The local socket's server; null when no socket is configured.
 Result<std::unique_ptr<LineServer>> Bridge::listen() const {
   const BridgeSettings& settings = desk_->options().settings;
   if (settings.socket.empty()) return nullptr;

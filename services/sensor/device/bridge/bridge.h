@@ -10,7 +10,8 @@
 
 namespace chorus::bridge {
 
-/// The reader's finish() reports mistakes.  Adds `/push` to the context's router.
+/// Makes the device and adds `/push` to the context's router; the reader's finish() reports
+/// mistakes.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> make_bridge(
     ConfigReader& section, const sensor_service::DeviceContext& context);
 

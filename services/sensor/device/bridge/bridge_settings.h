@@ -1,4 +1,4 @@
-// The section device.bridge of the configuration.
+// The configuration section device.bridge.
 #pragma once
 
 #include <cstddef>
@@ -10,19 +10,19 @@
 namespace chorus::bridge {
 
 struct BridgeSettings {
-  std::string label = "bridge";  ///< For people.
+  std::string label = "bridge";  ///< Human-readable.
   std::string socket = {};       ///< Path of a local socket; empty: no socket.
   bool page = false;             ///< Serves /capture/ (capture_page.h).
   double max_rate_hz = 120.0;    ///< Frames beyond this rate are dropped.
   std::size_t max_message_bytes = 256 * 1024;
   double max_bytes_per_s = 4e6;  ///< A program that sends more is disconnected.
-  /// Most programs connected at once; only one of them pushes.
+  /// Most programs that may be connected at once; only one of them pushes.
   std::size_t max_pushers = 4;
-  /// A pusher that is silent for this long makes room for another.
+  /// A pusher that pushes no frame for this long makes room for another one.
   Duration yields_after = std::chrono::seconds(2);
 };
 
-/// The reader's finish() reports mistakes.
+/// Reads the section; the reader's finish() reports mistakes.
 [[nodiscard]] BridgeSettings read_bridge_settings(ConfigReader& section);
 
 }  // namespace chorus::bridge

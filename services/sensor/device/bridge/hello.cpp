@@ -20,7 +20,7 @@ constexpr Bounds kShare{0.0, 1.0};
 
 struct Direction {
   std::string_view word;
-  Eigen::Vector3d in_sensor;  ///< x to the sensor's left, y up, z ahead.
+  Eigen::Vector3d in_sensor;  ///< Its direction: x to the sensor's left, y up, z ahead.
 };
 
 std::optional<Eigen::Vector3d> direction_of(std::string_view word) {
@@ -42,7 +42,7 @@ bool is_name(const std::string& text) {
          std::all_of(text.begin(), text.end(), is_printable);
 }
 
-/// The text for a key; `otherwise` when the key is absent.
+/// The string for a key; `otherwise` when the key is absent.
 Result<std::string> text_at(const Json& message, const char* key, const char* otherwise) {
   const Json* value = find(message, key);
   if (value == nullptr) return std::string(otherwise);
@@ -50,7 +50,7 @@ Result<std::string> text_at(const Json& message, const char* key, const char* ot
   return value->get<std::string>();
 }
 
-/// Leaves `out` unchanged when the key is absent.
+/// Reads a number; leaves `out` unchanged when the key is absent.
 Result<void> number_at(const Json& object, const char* key, Bounds bounds, const At& at,
                        double& out) {
   const Json* value = find(object, key);
@@ -89,7 +89,7 @@ Result<Intrinsics> read_intrinsics(const Json& value) {
   return camera;
 }
 
-/// Reads everything that is a number or consists of numbers.
+/// Reads all members that are numbers or consist of numbers.
 Result<void> read_measures(const Json& message, Hello& hello) {
   hello.tracked_from = hello.layout->tracked_from;
   hello.inferred_from = hello.layout->inferred_from;

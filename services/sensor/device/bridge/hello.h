@@ -16,20 +16,22 @@ namespace chorus::bridge {
 struct Hello {
   std::string name;                        ///< 1 to 64 printable ASCII characters.
   const layout::Layout* layout = nullptr;  ///< Never null after reading.
-  /// From the pusher's axes to ours; a reflection when its axes are left-handed.
+  /// Turns the pusher's axes into ours; a reflection when the pusher's axes are left-handed.
   Eigen::Matrix3d sensor_from_pusher = Eigen::Matrix3d::Identity();
   std::optional<FloorPlane> floor;    ///< In sensor space.
-  std::optional<Intrinsics> camera;   ///< For the pixels that it sends.
+  std::optional<Intrinsics> camera;   ///< The camera of the pixels that the pusher sends.
   std::optional<double> pixel_sigma;  ///< Standard deviation of a pixel coordinate [px].
   double focal_sigma = 0.0;           ///< Standard deviation of the focal length, relative to it.
   double tracked_from = 0.0;          ///< Confidence, as in Layout.
   double inferred_from = 0.0;
 };
 
-/// "right down ahead": where x, y and z point, as seen by somebody looking the way the camera does.
+/// Parses "right down ahead": the directions in which x, y and z point, seen by somebody who looks
+/// where the camera looks.
 [[nodiscard]] Result<Eigen::Matrix3d> read_axes(std::string_view words);
 
-/// Reads nx, ny, nz, d with n.x + d = 0 in the pusher's axes [m]; the normal must point up.
+/// Reads the floor n.x + d = 0 from nx, ny, nz, d in the pusher's axes [m]; the normal must point
+/// up.
 [[nodiscard]] Result<FloorPlane> read_floor(const nlohmann::json& value,
                                             const Eigen::Matrix3d& sensor_from_pusher);
 

@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// The years 2001 to 2223: converting such a stamp to our clock, ours + (a - b), cannot overflow
+// Stamps from 2001 to 2223: converting such a stamp to our clock, ours + (a - b), cannot overflow
 // while our clock is before 2040.
 constexpr std::uint64_t kEarliestNs = 1'000'000'000'000'000'000;
 constexpr std::uint64_t kLatestNs = 8'000'000'000'000'000'000;
@@ -23,7 +23,7 @@ std::string At::text() const {
   std::string path = in != nullptr ? in->text() : std::string();
   if (index) return path + "[" + std::to_string(*index) + "]";
   if (!path.empty() && !key.empty()) path += ".";
-  constexpr std::size_t kShown = 64;  // a key from outside may be long
+  constexpr std::size_t kShown = 64;  // A key from outside may be long.
   return path.append(key.substr(0, kShown));
 }
 

@@ -1,5 +1,5 @@
-// Reads values from untrusted JSON: each is valid, or an Error says where it is and what it must
-// be.
+// Reads values from untrusted JSON: each value is valid, or an Error says where it is and what it
+// must be.
 #pragma once
 
 #include <cstddef>
@@ -16,13 +16,15 @@
 
 namespace chorus::bridge {
 
-/// The place of a value in a message; spelt out only for an error: "bodies[0].points[3]".
+/// The place of a value in a message, such as "bodies[0].points[3]"; the string is built only for
+/// an error.
 struct At {
   const At* in = nullptr;
   std::string_view key = {};
   std::optional<std::size_t> index = {};
 
-  /// Only for an At with a name, because the inner one points to it.  `At{}` is the message itself.
+  /// Call it only on an At with a name, because the result points to that At.  `At{}` is the
+  /// message itself.
   [[nodiscard]] At operator[](std::string_view inner) const { return {outer(), inner, {}}; }
   [[nodiscard]] At operator[](std::size_t inner) const { return {outer(), {}, inner}; }
   [[nodiscard]] std::string text() const;
@@ -36,20 +38,21 @@ struct Bounds {
   double most = 0.0;
 };
 
-/// A Malformed error at `at`.
+/// A Malformed error that names the place.
 [[nodiscard]] tl::unexpected<Error> wrong(const At& at, std::string what_it_must_be);
 
-/// Null when the object has no such key.
+/// The value of the key; null when the object has no such key.
 [[nodiscard]] const nlohmann::json* find(const nlohmann::json& object, const char* key);
 
 [[nodiscard]] Result<double> read_number(const nlohmann::json& value, Bounds bounds, const At& at);
-/// Reads exactly out.size() numbers.
+/// Reads an array of exactly out.size() numbers.
 [[nodiscard]] Result<void> read_numbers(const nlohmann::json& value, std::span<double> out,
                                         Bounds bounds, const At& at);
-/// Reads a non-negative integer, also as decimal text, because JavaScript's numbers are exact only
-/// to 2^53.
+/// Reads a non-negative integer, or a string of its decimal digits, because JavaScript's numbers
+/// are exact only up to 2^53.
 [[nodiscard]] Result<std::uint64_t> read_whole(const nlohmann::json& value, const At& at);
-/// Reads nanoseconds since 1970, later than 2001: an integer or its text.
+/// Reads nanoseconds since 1970, as an integer or a string of its digits; refuses times before
+/// 2001.
 [[nodiscard]] Result<Timestamp> read_stamp(const nlohmann::json& value, const At& at);
 
 }  // namespace chorus::bridge

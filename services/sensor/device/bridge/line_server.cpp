@@ -129,7 +129,7 @@ void LineConnection::send_next() {
                     });
 }
 
-/// True when some program accepts connections at the path.
+/// True when a program accepts connections at the path.
 bool answers(asio::io_context& io, const std::string& path) {
   LocalSocket probe(io.get_executor());
   error_code failed;
@@ -150,7 +150,8 @@ struct LineServer::Impl {
   void accept();
   void look();
 
-  asio::io_context io{1};  // First member, so destroyed last, after everything that uses it.
+  // The first member, so it is destroyed last, after everything that uses it.
+  asio::io_context io{1};
   LineServerOptions options;
   LocalAcceptor acceptor{io.get_executor()};
   net::Every looking{io, kLook, [this] { look(); }};
@@ -174,7 +175,7 @@ Result<void> LineServer::Impl::open() {
   if (!failed) acceptor.bind(local_stream::endpoint(path), failed);
   if (failed) return cannot(path, failed.message());
   bound = true;
-  // Nobody can connect before listen().
+  // Done before listen(), so that nobody can connect while the socket has another mode.
   if (::chmod(path.c_str(), kMode) != 0) return cannot(path, "its mode cannot be set");
   acceptor.listen(asio::socket_base::max_listen_connections, failed);
   if (failed) return cannot(path, failed.message());
@@ -186,7 +187,7 @@ void LineServer::Impl::accept() {
   accepting = true;
   acceptor.async_accept([this](error_code failed, LocalSocket socket) {
     accepting = false;
-    if (failed) return;  // perhaps no descriptor was left; look() tries again
+    if (failed) return;  // Perhaps no descriptor was left; look() tries again.
     auto connection = std::make_shared<LineConnection>(std::move(socket), options.max_line_bytes);
     connections.insert(connection);
     accept();

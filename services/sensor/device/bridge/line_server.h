@@ -1,5 +1,5 @@
-// Dialogues over a local (Unix domain) socket, one message per line.  Every program that may open
-// the socket's file may use it; its mode is 0660.  The server has its own thread.
+// Dialogues over a local (Unix domain) socket, one message per line.  The socket's file has mode
+// 0660: every program that may open it may use it.  The server has its own thread.
 #pragma once
 
 #include <cstddef>
@@ -14,13 +14,13 @@ namespace chorus::bridge {
 struct LineServerOptions {
   std::string path;
   http::Opener open;
-  std::size_t max_line_bytes = 256 * 1024;  ///< A client that sends a longer line is disconnected.
+  std::size_t max_line_bytes = 256 * 1024;  ///< A longer line disconnects its client.
 };
 
 class LineServer {
  public:
-  /// Replaces a socket that an ended program left; Io when the path is something else, or another
-  /// program listens there.
+  /// Replaces a socket that a program left when it ended; Io when the path is something else, or
+  /// when another program listens there.
   [[nodiscard]] static Result<std::unique_ptr<LineServer>> start(LineServerOptions options);
   ~LineServer();  ///< Joins the thread and removes the socket.
   LineServer(const LineServer&) = delete;

@@ -54,7 +54,7 @@ void PushDesk::shut_for_a_moment() {
   shut_until_ = steady_now() + kShut;
 }
 
-/// The caller holds the mutex.
+/// Call it with the mutex held.
 bool PushDesk::idle(const Holder& holder) const {
   return steady_now() - holder.last_frame.value_or(holder.sat_down) >
          options_.settings.yields_after;
@@ -94,13 +94,13 @@ void PushDesk::leave(Seat seat, std::string_view why) {
   holder_.reset();
 }
 
-/// How far our sequence advances: gaps in the pusher's own count are lost frames.
+/// How far our sequence advances: a gap in the pusher's own numbers means lost frames.
 std::uint64_t PushDesk::step_of(const PushedFrame& frame) const {
   if (!frame.sequence || !holder_->last_count || *frame.sequence <= *holder_->last_count) return 1;
   return std::min(*frame.sequence - *holder_->last_count, kWidestGap);
 }
 
-/// The same rule as in SensorService, except that here the program is told.
+/// The same rule as in SensorService; but here the program is told.
 bool PushDesk::advances(Timestamp captured) const {
   if (!last_captured_ || captured > *last_captured_) return true;
   if (*last_captured_ - captured > kMaxRepeat) return true;
@@ -153,7 +153,7 @@ void PushDesk::note_clock(Seat seat, const std::optional<ClockEstimate>& estimat
   if (holder_ && holder_->seat == seat) holder_->status.clock = estimate;
 }
 
-/// The caller holds the mutex.
+/// Human-readable: why no frames of the holder come.  Call it with the mutex held.
 std::string PushDesk::silence_of(const Holder& holder) const {
   const std::string who = described(*holder.status.pusher);
   if (holder.refused_since) {

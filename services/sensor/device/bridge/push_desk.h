@@ -1,7 +1,7 @@
 // Receives pushed frames: one program at a time holds the sensor, and its frames go to the device's
-// thread.  Also tells people the state.  Thread-safe, no IO.
+// thread.  Also gives a human-readable state.  Thread-safe, no IO.
 //
-// A program holds the sensor from its hello until it leaves; one that has pushed no frame for
+// A program holds the sensor from its hello until it leaves.  One that has pushed no frame for
 // `yields_after` makes room for another.
 #pragma once
 
@@ -30,18 +30,18 @@ struct Pusher {
   std::string name;
   std::string layout;
   std::string via;      ///< "WebSocket", "HTTP POST" or "local socket".
-  std::string address;  ///< Its address; empty for a local socket.
+  std::string address;  ///< The program's address; empty for a local socket.
 };
 
 struct PushStatus {
   std::string state;   ///< "waiting" (for a program), "silent" or "live".
-  std::string reason;  ///< Why the state is not live, for people.
+  std::string reason;  ///< Human-readable: why the state is not live.
   std::optional<Pusher> pusher;
   Timestamp since{};           ///< When the pusher took the sensor.
-  std::uint64_t frames = 0;    ///< Frames accepted from it.
-  std::uint64_t refused = 0;   ///< Messages from it that were refused.
-  std::uint64_t left_out = 0;  ///< Its frames beyond the maximum rate.
-  std::string last_error;      ///< The error for its last refused message.
+  std::uint64_t frames = 0;    ///< Frames accepted from this pusher.
+  std::uint64_t refused = 0;   ///< Messages of this pusher that were refused.
+  std::uint64_t left_out = 0;  ///< Frames of this pusher beyond the maximum rate.
+  std::string last_error;      ///< The error for the last refused message.
   std::optional<ClockEstimate> clock;
 };
 
@@ -64,20 +64,23 @@ class PushDesk {
 
   // A connection counts towards max_pushers as soon as it is open, before its hello.
 
-  /// Unavailable when there are too many connections, or just after a flood.
+  /// Counts a new connection.  Unavailable when there are too many, or just after a flood.
   [[nodiscard]] Result<void> connect();
   void disconnect();
-  /// Called when a program was disconnected for flooding: no new one is let in for a second.
+  /// Call this when a program was disconnected for flooding: for a second, no new connection is
+  /// accepted.
   void shut_for_a_moment();
 
-  /// Conflict while another program is pushing; the error names it.
+  /// Gives the sensor to this program.  Conflict while another program is pushing; the error names
+  /// that program.
   [[nodiscard]] Result<Seat> sit_down(const Pusher& pusher);
   [[nodiscard]] bool sits(Seat seat) const;
   void leave(Seat seat, std::string_view why);
 
   /// Takes a frame whose times are by this host's clock.  Refuses it when its capture time does not
-  /// advance; but a step back of more than a second, or one that two frames in a row agree on,
-  /// means that a clock was set.  Conflict when another program holds the sensor.
+  /// advance. But a step back by more than a second means that a clock was set; so does a smaller
+  /// step back if the next frame goes on from there.  Conflict when another program holds the
+  /// sensor.
   [[nodiscard]] Result<void> take(Seat seat, PushedFrame frame, const Hello& hello);
   void note_refusal(Seat seat, const Error& error);
   void note_left_out(Seat seat);
@@ -85,7 +88,8 @@ class PushDesk {
 
   [[nodiscard]] PushStatus status() const;
 
-  /// For the device's thread: everything since the last call; waits at most `patience`.
+  /// For the device's thread: all captures since the last call; waits at most `patience` for the
+  /// first one.
   [[nodiscard]] std::vector<Capture> captures(Duration patience) { return queue_.take(patience); }
 
  private:
@@ -94,8 +98,8 @@ class PushDesk {
     PushStatus status;
     SteadyTime sat_down{};
     std::optional<SteadyTime> last_frame;
-    std::optional<std::uint64_t> last_count;  ///< The last number of the pusher's own count.
-    /// True if something was refused after the last frame.
+    std::optional<std::uint64_t> last_count;  ///< The pusher's number of its last frame.
+    /// True if a message was refused after the last frame.
     bool refused_since = false;
   };
   [[nodiscard]] bool idle(const Holder& holder) const;
@@ -108,13 +112,14 @@ class PushDesk {
   Handover<Capture> queue_;
   mutable std::mutex mutex_;  ///< Guards everything below.
   std::optional<Holder> holder_;
-  std::string departed_;  ///< How the last program left, for people.
+  std::string departed_;  ///< Human-readable: how the last program left.
   Seat last_seat_ = 0;
   std::size_t connections_ = 0;
   SteadyTime shut_until_{};
   std::uint64_t sequence_ = 0;
   std::optional<Timestamp> last_captured_;
-  std::optional<Timestamp> refused_captured_;  ///< The previous frame's, if its time went back.
+  /// Capture time of the previous frame, if that was refused because its time went back.
+  std::optional<Timestamp> refused_captured_;
 };
 
 }  // namespace chorus::bridge

@@ -14,7 +14,8 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr auto kHelloWithin = std::chrono::seconds(5);
-constexpr auto kSilentFor = std::chrono::seconds(30);  // without any message or clock answer
+// Time without a message or an answer to a question for the time.
+constexpr auto kSilentFor = std::chrono::seconds(30);
 constexpr auto kClockEvery = std::chrono::seconds(1);
 constexpr auto kErrorEvery = std::chrono::seconds(1);
 constexpr int kMaxErrorsInARow = 300;
@@ -56,8 +57,8 @@ class PushDialogue final : public http::Dialogue {
   PushSession session_;
   SteadyTime begun_;
   SteadyTime heard_;
-  std::optional<SteadyTime> asked_;  ///< When we last asked for its time.
-  /// Complaints go out at most once a second; errors in between are only counted.
+  std::optional<SteadyTime> asked_;  ///< When we last asked the program for its time.
+  /// When the last complaint was sent: at most one a second, errors in between are only counted.
   std::optional<SteadyTime> complained_;
   std::uint64_t unsaid_ = 0;
   int errors_in_a_row_ = 0;

@@ -1,4 +1,5 @@
-// A PushSession as a dialogue: JSON messages in both directions, by WebSocket or local socket.
+// Carries a PushSession as a dialogue: JSON messages in both directions, over a WebSocket or a
+// local socket.
 #pragma once
 
 #include <memory>
@@ -10,7 +11,7 @@
 
 namespace chorus::bridge {
 
-/// Unavailable when there are too many connections.
+/// Opens a dialogue; Unavailable when there are too many connections.
 [[nodiscard]] Result<std::unique_ptr<http::Dialogue>> open_dialogue(
     const std::shared_ptr<PushDesk>& desk, std::string via, std::string address);
 

@@ -22,7 +22,7 @@ constexpr double kMaxPixels = 1e5;
 constexpr double kMaxVariance = 1e8;  // [m^2]
 constexpr JsonLimits kLimits{.bytes = 2'000'000, .nesting = 8};
 
-/// What an element says in addition to the landmark's place.
+/// What an element says besides the landmark's place.
 struct Sureness {
   double confidence = 1.0;
   std::optional<JointState> state;
@@ -136,7 +136,7 @@ Result<Landmark> read_pixel(const Json& value, const Hello& hello, const At& at)
   }
   const auto ray = ray_of({element->place[0], element->place[1]}, *hello.camera);
   if (!ray) return Landmark{};
-  // An image defines "right" and "down", whatever the axes of the pusher's points are.
+  // An image defines what "right" and "down" are, whatever the axes of the pusher's points are.
   const Eigen::Matrix3d sensor_from_image = Eigen::Vector3d(-1.0, -1.0, 1.0).asDiagonal();
   Landmark landmark{sensor_from_image * *ray, state_of(element->sure, hello), Measurement::Ray};
   if (sigma)

@@ -11,25 +11,25 @@
 
 namespace chorus::bridge {
 
-/// The pusher's answer when we asked for its time.
+/// The pusher's answer to our question for its time.
 struct ClockAnswer {
-  Timestamp sent;      ///< Our clock, as in the question.
-  Timestamp received;  ///< The pusher's clock when the question arrived ...
-  Timestamp answered;  ///< ... and when this answer was sent.
+  Timestamp sent;      ///< By our clock, when we asked; copied from the question.
+  Timestamp received;  ///< By the pusher's clock, when the question arrived.
+  Timestamp answered;  ///< By the pusher's clock, when this answer was sent.
 };
 
 struct PushedFrame {
   std::optional<std::uint64_t> sequence;  ///< The pusher's own frame number.
   Timestamp captured;                     ///< By the pusher's clock; the same for all bodies.
-  /// In sensor space; bodies without any joint are left out.
+  /// In sensor space; bodies without joints are left out.
   std::vector<BodyFrame> bodies;
   std::optional<FloorPlane> floor;
 };
 
 using PushMessage = std::variant<Hello, ClockAnswer, PushedFrame>;
 
-/// `hello`: that of the pusher; null before it has arrived.  Unknown keys are ignored.  Errors say
-/// where in the message the mistake is ("bodies[0].points[3]") and what is expected there.
+/// `hello`: the pusher's; null before it has arrived.  Unknown keys are ignored.  Errors say where
+/// in the message the mistake is ("bodies[0].points[3]") and what is expected there.
 [[nodiscard]] Result<PushMessage> read_push_message(std::string_view text, const Hello* hello);
 
 }  // namespace chorus::bridge

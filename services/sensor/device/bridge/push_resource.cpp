@@ -52,8 +52,8 @@ http::DocumentPtr status_document(const PushDesk& desk) {
   return json_document(json, std::to_string(to_unix_ns(desk.now())));
 }
 
-/// Serves programs that push by POST.  Remembers the last one, so that its clock and frame count
-/// continue from one request to the next.  Used on the server's thread.
+/// Serves programs that push by POST.  Keeps the session of the last one, so that its clock and its
+/// frame count continue from one request to the next.  Used on the server's thread.
 class PostBox {
  public:
   explicit PostBox(std::shared_ptr<PushDesk> desk) : desk_(std::move(desk)) {}
@@ -74,7 +74,7 @@ class PostBox {
   std::unique_ptr<PushSession> session_;
 };
 
-/// Takes one line off the text, without its line feed; skips empty lines.
+/// Takes the first line that is not empty off the text; returns it without its line end.
 std::string_view next_line(std::string_view& text) {
   while (!text.empty()) {
     std::string_view line = text.substr(0, text.find('\n'));
@@ -85,7 +85,8 @@ std::string_view next_line(std::string_view& text) {
   return {};
 }
 
-/// Handles the first line of each request.  A hello from another program begins a new session.
+/// Handles the first line of each request, which must be a hello.  A hello of another program
+/// begins a new session.
 Result<void> PostBox::greet(std::string_view line) {
   const auto read = read_push_message(line, nullptr);
   if (!read) return pass(read);

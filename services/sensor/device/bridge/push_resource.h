@@ -8,7 +8,7 @@
 
 namespace chorus::bridge {
 
-/// The router keeps the desk alive.
+/// Adds `/push`; the router keeps the desk alive.
 void add_push_routes(http::Router& router, const std::shared_ptr<PushDesk>& desk);
 
 }  // namespace chorus::bridge

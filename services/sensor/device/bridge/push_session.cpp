@@ -7,9 +7,10 @@
 namespace chorus::bridge {
 namespace {
 
-constexpr double kMessagesPerFrame = 4.0;  // for clock answers, and for frames beyond the rate
+// Leaves room for clock answers, and for frames beyond the rate.
+constexpr double kMessagesPerFrame = 4.0;
 constexpr int kFewExchanges = 8;
-// Many programs stamp in whole milliseconds; this rounding must not look like a contradiction.
+// Many programs stamp in whole milliseconds; that rounding must not look like a contradiction.
 constexpr Duration kCoarseStamps = std::chrono::milliseconds(1);
 // The fusion server's limits for the times of sensors (proto/README.md, section 4).
 constexpr Duration kOldest = std::chrono::seconds(10);
@@ -39,7 +40,8 @@ void PushSession::expect_clock() {
 
 bool PushSession::wants_clock() const { return exchanges_ < kFewExchanges || clock_.doubtful(); }
 
-/// Comes before a message is parsed, so that refusing a flood costs almost nothing.
+/// Limits size and rate.  Called before a message is parsed, so that refusing a flood costs almost
+/// nothing.
 Result<void> PushSession::admit(std::size_t bytes) {
   const BridgeSettings& settings = desk_->options().settings;
   if (bytes > settings.max_message_bytes) {
@@ -104,7 +106,7 @@ Result<Heard> PushSession::on(const ClockAnswer& answer) {
   return Heard::Clock;
 }
 
-/// What to add to a capture time to convert it to our clock.
+/// What has to be added to a capture time to convert it to our clock.
 Result<Duration> PushSession::shift_of(Timestamp captured) const {
   const Timestamp now = desk_->now();
   const auto estimate = clock_.at(now);

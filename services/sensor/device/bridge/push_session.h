@@ -1,4 +1,4 @@
-// One pushing program, from its hello on: reads its messages, estimates its clock, and passes its
+// One pushing program from its hello on: reads its messages, estimates its clock, and passes its
 // frames to the desk.  No IO; not thread-safe.
 #pragma once
 
@@ -12,12 +12,12 @@
 
 namespace chorus::bridge {
 
-/// What became of a message.
+/// What a message was, and what was done with it.
 enum class Heard {
   Hello,
   Clock,
   Frame,
-  LeftOut,  ///< A frame beyond the rate, or sent before its clock is known.
+  LeftOut,  ///< A frame beyond the maximum rate, or sent before the pusher's clock is known.
 };
 
 class PushSession {
@@ -28,18 +28,20 @@ class PushSession {
   PushSession(const PushSession&) = delete;
   PushSession& operator=(const PushSession&) = delete;
 
-  /// An error is meant for the program; lost() says whether it may continue after one.
+  /// Handles one message.  The program is told the error; lost() says whether it may continue after
+  /// that.
   [[nodiscard]] Result<Heard> hear(std::string_view message);
-  /// True when the program floods, has been replaced, or never sent a valid hello.
+  /// True when the program has sent too much, has been replaced, or has not sent a valid hello.
   [[nodiscard]] bool lost() const { return lost_; }
-  /// Why the program leaves, for people.
+  /// Human-readable: why the program leaves.
   void leave_because(std::string why) { why_ = std::move(why); }
 
   [[nodiscard]] const std::optional<Hello>& hello() const { return hello_; }
-  /// Call after asking for its time: for a second, frames before the answer are left out.
+  /// Call this after asking for the pusher's time: for a second, frames that come before the answer
+  /// are left out.
   void expect_clock();
-  /// True when more exchanges with its clock are needed soon: there are too few, or they contradict
-  /// each other.
+  /// True when the pusher should be asked for its time again soon: there have been too few answers,
+  /// or they contradict each other.
   [[nodiscard]] bool wants_clock() const;
   [[nodiscard]] bool holds_sensor() const { return seat_ != 0 && desk_->sits(seat_); }
 
@@ -58,7 +60,8 @@ class PushSession {
   PushDesk::Seat seat_ = 0;
   ClockFilter clock_;
   int exchanges_ = 0;
-  SteadyTime unknown_until_{};  ///< Applies while there has been no exchange.
+  /// Until then frames are left out, if the pusher's clock is unknown.
+  SteadyTime unknown_until_{};
   net::TokenBucket messages_;
   net::TokenBucket bytes_;
   net::TokenBucket frames_;

@@ -11,13 +11,17 @@ namespace chorus::camera {
 namespace {
 
 constexpr std::size_t kFewest = 8;
-constexpr double kNearest = 0.3;       // [m]
-constexpr double kFarthest = 50.0;     // [m]
-constexpr double kOutlier = 0.04;      // [m] across the ray; beyond it a landmark's weight falls
-constexpr double kUseless = 0.15;      // [m], median; beyond it this is not a body of that shape
-constexpr double kSizeSigma = 0.10;    // of the distance: how people differ from the model's size
-constexpr double kShapeSigma = 0.15;   // [m] along the ray, of one landmark relative to the others
-constexpr double kLeastSpread = 1e-3;  // of the fit's matrix; less means that all rays are alike
+constexpr double kNearest = 0.3;    // [m]
+constexpr double kFarthest = 50.0;  // [m]
+constexpr double kOutlier = 0.04;   // Across the ray [m]; beyond it, a landmark's weight decreases.
+// Median [m]; beyond it, the landmarks are not a body of that shape.
+constexpr double kUseless = 0.15;
+// How people's sizes differ from the model's, which makes the distance wrong by the same share.
+constexpr double kSizeSigma = 0.10;
+constexpr double kShapeSigma = 0.15;  // Along the ray [m]; of one landmark relative to the others.
+// Least determinant of the fit's matrix, relative to its mean diagonal cubed; below it, all rays
+// are nearly parallel.
+constexpr double kLeastSpread = 1e-3;
 
 /// Projector onto the plane perpendicular to the ray.
 Eigen::Matrix3d across(const Eigen::Vector3d& ray) {
@@ -43,7 +47,7 @@ double off_the_ray(const SizedLandmark& landmark, const Eigen::Vector3d& shift) 
   return (across(landmark.ray) * (landmark.shape + shift)).norm();
 }
 
-/// Reweights with Huber's weights for a few rounds.
+/// Repeats the fit a few times with Huber's weights.
 std::optional<Eigen::Vector3d> robust_shift(std::span<const SizedLandmark> landmarks) {
   constexpr int kRounds = 8;
   std::vector<double> weights;

@@ -28,7 +28,7 @@ struct Parts {
   std::shared_ptr<CameraState> state = std::make_shared<CameraState>();
 };
 
-/// Supplies the newest picture; its thread lives as long as the object.
+/// Supplies the newest picture; its thread, once begun, runs as long as the object lives.
 class Pictures {
  public:
   explicit Pictures(const Parts& parts)
@@ -107,7 +107,7 @@ Result<Capture> Camera::ask(Looker& looker, const Shot& shot, const std::stop_to
   return capture_of(std::move(frame), shot.picture, found->lens);
 }
 
-/// Runs for as long as one runner lives; success at the end of the pictures.
+/// Looks at pictures as long as one runner lives; success at the end of the pictures.
 Result<void> Camera::look(Pictures& pictures, const std::stop_token& stop, const Sink& sink) {
   auto looker = start_runner(stop);
   if (!looker) return pass(looker);
@@ -128,7 +128,8 @@ Result<void> Camera::look(Pictures& pictures, const std::stop_token& stop, const
 Result<void> Camera::run(std::stop_token stop, const Sink& sink) {
   Pictures pictures(parts_);
   const bool once = kind_of(parts_.settings.source) == SourceKind::File && !parts_.settings.loop;
-  if (!once) pictures.begin();  // a file that plays once waits for the runner
+  // A file that plays only once does not begin before the runner is ready.
+  if (!once) pictures.begin();
   RestartPause pause(kShortestPause, kLongestPause);
   while (!stop.stop_requested()) {
     const auto began = std::chrono::steady_clock::now();
@@ -140,7 +141,7 @@ Result<void> Camera::run(std::stop_token stop, const Sink& sink) {
   return {};
 }
 
-/// A missing file will not turn up later, but a camera may.
+/// Refuses a missing file, which will not turn up later; a missing camera may.
 Result<void> check_source(const CameraSettings& settings) {
   std::error_code failed;
   if (kind_of(settings.source) == SourceKind::Stream ||

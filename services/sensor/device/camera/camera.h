@@ -10,8 +10,9 @@
 
 namespace chorus::camera {
 
-/// The reader's finish() reports mistakes.  An Error says what is missing: the file, the runner or
-/// its models.  A webcam or a stream may turn up later.  Adds `/camera` to the context's router.
+/// Makes the device and adds `/camera` to the context's router; the reader's finish() reports
+/// mistakes.  An Error says what is missing: the file, the runner or its models.  A missing webcam
+/// or stream is not an error, because it may turn up later.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> make_camera(
     ConfigReader& section, const sensor_service::DeviceContext& context);
 

@@ -9,7 +9,7 @@
 
 namespace chorus::camera {
 
-/// `source`: in the form that people may read.  The router keeps the state alive.
+/// Adds `/camera`.  `source`: as told_source() gives it.  The router keeps the state alive.
 void add_camera_route(http::Router& router, std::string source,
                       std::shared_ptr<const CameraState> state);
 

@@ -43,7 +43,8 @@ void read_lens(ConfigReader& section, CameraSettings& out) {
   if (section.has("intrinsics")) read_intrinsics(section.child("intrinsics"), out);
 }
 
-/// In a camera that looks down by `pitch`, "up" is tilted back towards the camera.
+/// Reads height and pitch as a floor plane.  If the camera looks down by `pitch`, "up" is tilted
+/// back towards the camera.
 void read_place(ConfigReader& section, CameraSettings& out) {
   double height = 0.0;
   double pitch = 0.0;

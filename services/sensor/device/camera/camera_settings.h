@@ -1,4 +1,4 @@
-// The section device.camera of the configuration.
+// The configuration section device.camera.
 #pragma once
 
 #include <optional>
@@ -16,24 +16,25 @@ namespace chorus::camera {
 /// The kind of source that device.camera.source names.
 enum class SourceKind {
   Device,  ///< A webcam: /dev/video0.
-  Stream,  ///< rtsp://..., http://...: anything with a scheme.
+  Stream,  ///< rtsp://..., http://...: everything with a scheme.
   File,
 };
 
 struct CameraSettings {
   std::string source = "/dev/video0";
-  std::string label = {};  ///< For people; empty: the source.
-  int width = 0;           ///< For a webcam [px]; 0: its own choice (also height and rate).
+  std::string label = {};  ///< Human-readable; empty: the source.
+  /// Width that a webcam is asked for [px]; 0: its own choice (also for height and rate).
+  int width = 0;
   int height = 0;
   double rate_hz = 0.0;
-  bool loop = true;  ///< A file starts again at its end.
-  /// From light to arrival, if no clock of the camera tells.
+  bool loop = true;  ///< True: a file starts again at its end.
+  /// Time from light to arrival, used if the camera has no clock that tells it.
   Duration latency = std::chrono::milliseconds(60);
-  double max_rate_hz = 30.0;             ///< Most images per second that the runner gets.
-  std::vector<std::string> runner{};     ///< The command; empty: the runner that comes with Chorus.
-  std::string model = "movenet";         ///< Passed to the runner as --model; empty: not passed.
-  bool depth_from_size = false;          ///< Points instead of rays, if the runner supports it.
-  std::optional<FloorPlane> floor = {};  ///< From height and pitch, if they are configured.
+  double max_rate_hz = 30.0;          ///< Most images per second that the runner gets.
+  std::vector<std::string> runner{};  ///< The command; empty: the runner that comes with Chorus.
+  std::string model = "movenet";      ///< Passed to the runner as --model, unless empty.
+  bool depth_from_size = false;       ///< Makes points instead of rays, if the runner supports it.
+  std::optional<FloorPlane> floor = {};  ///< Made from height and pitch, if they are configured.
   std::optional<Intrinsics> intrinsics = {};
   double focal_sigma = 0.0;  ///< Standard deviation of their focal length, relative to it.
   double fov = deg(65.0);    ///< Across the image's longer side [rad], if nothing better is known.
@@ -41,10 +42,10 @@ struct CameraSettings {
 };
 
 [[nodiscard]] SourceKind kind_of(const std::string& source);
-/// The source in the form that people may read: without the password in a URL.
+/// The source in the form that may be shown: without the password in a URL.
 [[nodiscard]] std::string told_source(const std::string& source);
 
-/// The reader's finish() reports mistakes.
+/// Reads the section; the reader's finish() reports mistakes.
 [[nodiscard]] CameraSettings read_camera_settings(ConfigReader& section);
 
 }  // namespace chorus::camera

@@ -1,4 +1,4 @@
-// The state of the camera and its runner, for people.  Thread-safe.
+// The human-readable state of the camera and its runner.  Thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,15 @@ namespace chorus::camera {
 struct CameraReport {
   std::string source_trouble;  ///< Why no pictures arrive; empty while they do.
   std::string runner_trouble;  ///< Why no runner works; empty while one does.
-  std::string runner;          ///< Its name, taken from its hello.
+  std::string runner;          ///< The runner's name, from its hello.
   std::string layout;
   Size picture;                 ///< Size of the source's pictures.
-  Size sent;                    ///< Size at which the runner gets them.
-  std::uint64_t pictures = 0;   ///< From the source.
-  std::uint64_t looked_at = 0;  ///< By the runner.
+  Size sent;                    ///< Size in which the runner gets them.
+  std::uint64_t pictures = 0;   ///< Number of pictures from the source.
+  std::uint64_t looked_at = 0;  ///< Number of pictures that the runner looked at.
   std::uint64_t connects = 0;   ///< How often the source was opened.
   std::uint64_t starts = 0;     ///< How often the runner was started.
-  double answer_ms = 0.0;       ///< Runner's time per image, smoothed.
+  double answer_ms = 0.0;       ///< The runner's time per image, smoothed.
   double latency_ms = 0.0;      ///< From light to landmarks, smoothed.
 };
 

@@ -26,7 +26,7 @@ Duration FilePace::begin(const FileTiming& timing, Timestamp now) {
 }
 
 Timestamp FilePace::due(std::optional<Duration> position) {
-  // Some containers have no times for their last pictures.
+  // Some containers state no times for their last pictures.
   const bool advances = position && (first_ || *position > position_);
   if (advances)
     position_ = *position;

@@ -1,7 +1,7 @@
-// When each picture of a video file is due, at the file's own rate.  Pure.
+// When each picture of a video file is due, at the file's own rate.
 //
-// A looping file begins its rounds at whole multiples of its length since 1970, so that several
-// sensors that loop videos of one length show them in step without knowing of one another.
+// A looping file begins its rounds at whole multiples of its length since 1970.  So several sensors
+// that loop videos of the same length show them in step without knowing of each other.
 #pragma once
 
 #include <optional>
@@ -20,18 +20,20 @@ class FilePace {
  public:
   explicit FilePace(bool loop) : loop_(loop) {}
 
-  /// Called when the file has been opened, even again.  Returns how much of it is already over.
+  /// Call this each time the file has been opened.  Returns how much of the file's time is already
+  /// over.
   [[nodiscard]] Duration begin(const FileTiming& timing, Timestamp now);
-  /// When the next picture is due.  `position`: its time in the file, if the file has one.
+  /// When the next picture is due.  `position`: the picture's time in the file, if the file states
+  /// it.
   [[nodiscard]] Timestamp due(std::optional<Duration> position);
-  /// Delays the next picture by this much, because reading it took too long.
+  /// Delays all further pictures by this much, because reading one took too long.
   void fall_behind(Duration by) { epoch_ += by; }
 
  private:
   bool loop_;
   FileTiming timing_;
   bool begun_ = false;
-  bool first_ = true;  ///< At the beginning of a round.
+  bool first_ = true;  ///< True at the beginning of a round.
   Timestamp epoch_{};  ///< When the round began.
   Duration position_{0};
 };

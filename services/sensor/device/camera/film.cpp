@@ -8,13 +8,13 @@
 namespace chorus::camera {
 namespace {
 
-constexpr std::size_t kMaxFrames = 1'000'000;  // nine hours at 30 Hz
+constexpr std::size_t kMaxFrames = 1'000'000;  // Nine hours at 30 Hz.
 
 /// The capture times of pictures, counted from the file's first one.
 class FilmClock {
  public:
   explicit FilmClock(const FileTiming& timing) : step_(timing.step) {}
-  /// Some containers have no times for their last pictures.
+  /// The time of the next picture.  Some containers state no times for their last pictures.
   Duration next(std::optional<Duration> told) {
     if (!begun_) {
       begun_ = true;
@@ -43,7 +43,8 @@ SensorFrame frame_of(const Film& film, Timestamp captured, std::uint64_t sequenc
 }
 
 bool wanted(const Film& film, const FilmFrames& out, Timestamp captured) {
-  constexpr double kNearly = 0.9;  // of a step, because pictures are not evenly spaced
+  // A picture after this share of a step is wanted, because pictures are not evenly spaced.
+  constexpr double kNearly = 0.9;
   return out.frames.empty() ||
          seconds(captured - out.frames.back().captured) * film.settings.max_rate_hz >= kNearly;
 }
@@ -67,7 +68,7 @@ Result<FilmFrames> look_through(const Film& film, const std::stop_token& stop) {
     const Timestamp captured = film.start + over;
     if (!wanted(film, out, captured)) continue;
     const auto picture = (*video)->picture();
-    if (!picture) continue;  // damaged
+    if (!picture) continue;  // The picture is damaged.
     auto found = looker->look(*picture, captured, out.frames.size() + 1, stop);
     if (!found) return pass(found);
     out.lens = found->lens;

@@ -1,5 +1,5 @@
-// Runs all pictures of a video file through a runner, one after the other, without leaving any out,
-// however long that takes.
+// Sends all pictures of a video file through a runner, one after the other, however long that
+// takes.
 #pragma once
 
 #include <functional>
@@ -9,23 +9,23 @@
 namespace chorus::camera {
 
 struct Film {
-  CameraSettings settings;  ///< Its source is the file; max_rate_hz limits the pictures used.
-  std::vector<std::string> command;  ///< The command of the runner.
+  CameraSettings settings;  ///< The source is the file; max_rate_hz limits the pictures used.
+  std::vector<std::string> command;  ///< Starts the runner.
   SensorId sensor;
-  Timestamp start;  ///< Capture time of its first picture.
-  /// Called after every picture: the fraction of the file that is done, [0, 1].
+  Timestamp start;  ///< Capture time of the first picture.
+  /// Called after every picture with the share of the file that is done, in [0, 1].
   std::function<void(double share)> progress = {};
 };
 
 struct FilmFrames {
-  std::vector<SensorFrame> frames;  ///< One per picture; captured = received.
-  std::string runner;               ///< Its name.
+  std::vector<SensorFrame> frames;  ///< One per picture; `received` equals `captured`.
+  std::string runner;               ///< The runner's name.
   std::string layout;
   Lens lens;
-  std::size_t people = 0;  ///< The most in one picture.
+  std::size_t people = 0;  ///< Most people in one picture.
 };
 
-/// An error names the file and what is wrong with it, or the runner.
+/// Runs the film; an error names the file and what is wrong with it, or the runner.
 [[nodiscard]] Result<FilmFrames> look_through(const Film& film, const std::stop_token& stop = {});
 
 }  // namespace chorus::camera

@@ -37,7 +37,7 @@ Grabber::Grabber(const CameraSettings& settings, const Clock& clock, CameraState
       stream_(settings.latency),
       pace_(settings.loop) {}
 
-/// Waits in steps, because a clock may be set meanwhile.
+/// Waits until `due`, in steps, because the clock may be set meanwhile.
 void Grabber::wait_for(Timestamp due, const std::stop_token& stop) {
   constexpr Duration kStep = std::chrono::milliseconds(100);
   constexpr Duration kNever = std::chrono::seconds(10);
@@ -54,7 +54,8 @@ Timestamp Grabber::captured(const VideoMoment& taken) {
   if (kind_ == SourceKind::Stream) return stream_.captured(arrived, taken.time);
   const Timestamp due = pace_.due(taken.time);
   late_ = arrived - due;
-  if (settings_.loop || late_ <= kLost) return due;  // looping files play in step with others
+  // Looping files stay in step with other sensors.
+  if (settings_.loop || late_ <= kLost) return due;
   pace_.fall_behind(late_);
   late_ = Duration{0};
   return arrived;
@@ -65,14 +66,16 @@ void Grabber::begin_file(Video& video) {
   if (over_ > kWorthSkipping) video.skip_to(over_);
 }
 
-/// True when the file was begun in the middle and this picture was due before that.
+/// True for a picture that was due before the instant at which the file was opened in its middle.
 bool Grabber::is_over(const VideoMoment& taken) const {
   return kind_ == SourceKind::File && taken.time && *taken.time < over_;
 }
 
-/// Limits the rate to what the runner gets; a file that is read too slowly gives only one a second.
+/// True if the runner should get this picture: limits the rate to max_rate_hz, and to one picture a
+/// second while a file is read too slowly.
 bool Grabber::is_wanted(Timestamp captured) const {
-  constexpr double kNearly = 0.9;  // of a step, because pictures are not evenly spaced
+  // A picture after this share of a step is wanted, because pictures are not evenly spaced.
+  constexpr double kNearly = 0.9;
   if (!given_ || captured < *given_) return true;
   const Duration since = captured - *given_;
   if (late_ > kTooLate) return since >= kSlowest;
@@ -95,13 +98,13 @@ Result<bool> Grabber::play(Video& video, const std::stop_token& stop) {
     any = true;
     if (is_over(**taken)) continue;
     const Timestamp when = captured(**taken);
-    if (late_ > kLost) return true;  // opens the file again, at the right place
+    if (late_ > kLost) return true;  // Makes run() open the file again, at the right place.
     if (kind_ == SourceKind::File) wait_for(when, stop);
     if (!is_wanted(when)) continue;
     given_ = when;
     auto picture = video.picture();
     if (!picture && ++damaged > kMostDamaged) return pass(picture);
-    if (!picture) continue;  // webcams lose one occasionally
+    if (!picture) continue;  // Webcams lose one occasionally.
     damaged = 0;
     state_.picture(picture->size);
     newest_.give({std::move(*picture), when});
@@ -119,7 +122,7 @@ void Grabber::run(const std::stop_token& stop) {
     if (ended && *ended && !settings_.loop) break;
     if (ended) continue;
     state_.source_failed(to_string(ended.error()));
-    video = pass(ended);  // destroys the video: a webcam that returns needs its device free
+    video = pass(ended);  // Destroys the video: a webcam that returns needs its device free.
     if (!rest(stop, pause.after(std::chrono::steady_clock::now() - began))) break;
   }
   newest_.close();

@@ -1,5 +1,5 @@
-// Takes pictures from the source while there are any, and tries again when there are none.  Only
-// the newest one waits: a consumer slower than the camera misses pictures, but never falls behind.
+// Takes pictures from the source while there are any; when there are none, tries again.  Only the
+// newest picture waits: a consumer slower than the camera misses pictures, but never falls behind.
 #pragma once
 
 #include <optional>
@@ -28,7 +28,7 @@ class Grabber {
   void run(const std::stop_token& stop);
 
  private:
-  /// True at the end of a file.
+  /// Takes pictures from an open source.  True at the end of a file.
   [[nodiscard]] Result<bool> play(Video& video, const std::stop_token& stop);
   void begin_file(Video& video);
   [[nodiscard]] bool is_over(const VideoMoment& taken) const;
@@ -45,10 +45,10 @@ class Grabber {
   FilePace pace_;
   std::optional<Timestamp> given_;  ///< Capture time of the last picture passed on.
   Duration late_{0};                ///< By how much a file's last picture was late.
-  Duration over_{0};                ///< How much of a file was over when it was opened.
+  Duration over_{0};  ///< How much of a file's time was over when the file was opened.
 };
 
-/// Sleeps; returns false if it is stopped.
+/// Sleeps for `pause`; returns false if stopped before its end.
 bool rest(const std::stop_token& stop, Duration pause);
 
 }  // namespace chorus::camera

@@ -8,8 +8,8 @@
 namespace chorus::camera {
 namespace {
 
-constexpr double kSameShape = 0.01;  // tolerance for the ratio of the sides
-constexpr double kMiddle = 0.5;      // from a pixel's corner to its centre
+constexpr double kSameShape = 0.01;  // Tolerance for the ratio of the sides.
+constexpr double kMiddle = 0.5;      // From a pixel's corner to its centre.
 
 Intrinsics scaled(const Intrinsics& camera, Size size) {
   const double x = static_cast<double>(size.width) / camera.width;

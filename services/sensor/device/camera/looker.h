@@ -1,4 +1,4 @@
-// A runner that is ready, and the people it finds in pictures.
+// A runner that is ready, and the people that it finds in pictures.
 #pragma once
 
 #include <memory>
@@ -14,15 +14,15 @@ namespace chorus::camera {
 
 struct Found {
   std::vector<BodyFrame> bodies;
-  Lens lens;                        ///< For the picture.
-  Size sent;                        ///< Size at which the runner got it.
-  std::optional<FloorPlane> floor;  ///< From the runner, or as configured.
+  Lens lens;                        ///< The lens of the picture.
+  Size sent;                        ///< Size in which the runner got the picture.
+  std::optional<FloorPlane> floor;  ///< From the runner or, if it gives none, as configured.
 };
 
 /// Not thread-safe; keeps a reference to its settings.
 class Looker {
  public:
-  /// Starts the command and waits for its hello.
+  /// Starts the runner and waits for its hello.
   [[nodiscard]] static Result<Looker> start(const CameraSettings& settings,
                                             const std::vector<std::string>& command,
                                             const std::stop_token& stop);
@@ -31,7 +31,7 @@ class Looker {
   [[nodiscard]] Result<Found> look(const Picture& picture, Timestamp captured,
                                    std::uint64_t sequence, const std::stop_token& stop);
   [[nodiscard]] const RunnerHello& about() const { return about_; }
-  /// Reads its standard error; Unavailable when it has ended.
+  /// Reads the runner's standard error; Unavailable when the runner has ended.
   [[nodiscard]] Result<void> listen() { return process_->listen(); }
 
  private:

@@ -1,4 +1,4 @@
-// One picture of a camera, and its conversion.  OpenCV's own type stays in .cpp files.
+// One picture of a camera, and its conversion.  OpenCV's type is used only in .cpp files.
 #pragma once
 
 #include <memory>

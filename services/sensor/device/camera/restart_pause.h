@@ -1,4 +1,5 @@
-// How long to wait before trying again: doubles each time, short again after a good run.  Pure.
+// How long to wait before trying again: the pause doubles each time, and is short again after a
+// good run.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +13,7 @@ class RestartPause {
   RestartPause(Duration shortest, Duration longest)
       : shortest_(shortest), longest_(longest), next_(shortest) {}
 
-  /// `lived`: how long it worked before it failed.
+  /// The pause after a run; `lived`: how long it worked before it failed.
   [[nodiscard]] Duration after(Duration lived) {
     if (lived >= kWell) next_ = shortest_;
     const Duration pause = next_;

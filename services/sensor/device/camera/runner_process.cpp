@@ -43,14 +43,15 @@ struct Streams {
     for (auto* pair : {&input, &output, &errors})
       for (int& end : *pair) close_if_open(end);
   }
-  /// Its input is a socket: there, writing to an ended runner is an error instead of a signal.
+  /// Opens the streams.  The child's input is a socket: writing to a socket of a runner that has
+  /// ended is an error, not a signal.
   [[nodiscard]] bool open() {
     return socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, input.data()) == 0 &&
            pipe2(output.data(), O_CLOEXEC) == 0 && pipe2(errors.data(), O_CLOEXEC) == 0;
   }
 };
 
-/// Starts it in its own process group, with no signal blocked or ignored, as a shell would.
+/// Starts the child in its own process group, with no signal blocked or ignored, as a shell would.
 int spawn(const std::vector<std::string>& command, const Streams& streams, pid_t& pid) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
@@ -68,7 +69,7 @@ int spawn(const std::vector<std::string>& command, const Streams& streams, pid_t
                            POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
   std::vector<char*> arguments;
   for (const std::string& argument : command)
-    arguments.push_back(const_cast<char*>(argument.c_str()));  // exec takes no const
+    arguments.push_back(const_cast<char*>(argument.c_str()));  // exec takes no const pointers.
   arguments.push_back(nullptr);
   const int failed =
       posix_spawnp(&pid, arguments[0], &actions, &attributes, arguments.data(), environ);
@@ -77,7 +78,7 @@ int spawn(const std::vector<std::string>& command, const Streams& streams, pid_t
   return failed;
 }
 
-/// Reads what is available now; false at the end.
+/// Reads all bytes that are available now; false at the end of the stream.
 template <class Take>
 bool read_all(int descriptor, const Take& take) {
   std::array<char, 16 * 1024> bytes{};
@@ -155,7 +156,8 @@ bool RunnerProcess::take_output() {
   return output_ >= 0 && read_all(output_, [this](std::string_view bytes) { heard_ += bytes; });
 }
 
-/// Its output ends slightly before the process itself.
+/// The error that says how the process ended.  Waits briefly for its end, because its output ends
+/// slightly earlier.
 Error RunnerProcess::obituary() {
   constexpr int kLooks = 20;
   for (int look = 0; look < kLooks && !reap(); ++look)

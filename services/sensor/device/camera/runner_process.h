@@ -1,6 +1,6 @@
 // A runner as a child process: images go into its standard input, lines come out of its standard
-// output. Its standard error goes to the log; the last line is remembered, because it usually says
-// why the process ended.
+// output.  Its standard error goes to the log; the last line is kept, because it usually says why
+// the process ended.
 //
 // Not thread-safe.  Every wait ends with Timeout when `stop` is requested.
 #pragma once
@@ -23,47 +23,48 @@ namespace chorus::camera {
 
 class RunnerProcess {
  public:
-  /// NotFound when the program does not exist.
+  /// Starts the process; NotFound when the program does not exist.
   [[nodiscard]] static Result<std::unique_ptr<RunnerProcess>> start(
       const std::vector<std::string>& command);
-  /// Closes its input, which tells it to end, and kills it if it has not ended within a second.
+  /// Closes the process's input, which tells it to end, and kills it if it has not ended within a
+  /// second.
   ~RunnerProcess();
   RunnerProcess(const RunnerProcess&) = delete;
   RunnerProcess& operator=(const RunnerProcess&) = delete;
 
-  /// Unavailable when it has ended; the message has its exit status and last words.  Timeout when
-  /// it does not read.
+  /// Writes to the process.  Unavailable when it has ended; the message contains its exit status
+  /// and last words.  Timeout when it does not read.
   [[nodiscard]] Result<void> send(std::string_view bytes, Duration within,
                                   const std::stop_token& stop);
-  /// The next line of its output, without the line feed; errors as for send().
+  /// The next line of the process's output, without the line feed; errors as for send().
   [[nodiscard]] Result<std::string> read_line(Duration within, const std::stop_token& stop);
-  /// Reads its standard error; Unavailable when it has ended.
+  /// Reads the process's standard error; Unavailable when the process has ended.
   [[nodiscard]] Result<void> listen();
-  /// Closes its input and waits until it ends; an exit code other than 0 is an error.
+  /// Closes the process's input and waits until it ends; an exit code other than 0 is an error.
   [[nodiscard]] Result<void> finish(Duration within);
 
  private:
   enum class Want { Read, Write };
 
   RunnerProcess() = default;
-  /// Waits once, for a tenth of a second at most.  Takes everything that can be read.
+  /// Waits once, for at most a tenth of a second, and takes everything that can be read.
   [[nodiscard]] Result<void> wait_a_moment(Want want, SteadyTime until,
                                            const std::stop_token& stop);
   void take_words();
-  /// False at the end of its output.
+  /// Takes output that can be read; false at its end.
   [[nodiscard]] bool take_output();
   [[nodiscard]] bool reap();
   [[nodiscard]] Error obituary();
 
   std::string name_;  ///< For messages.
   pid_t pid_ = -1;
-  int input_ = -1;  ///< Our end of its standard input; likewise below.
+  int input_ = -1;  ///< Our end of the process's standard input; of its output and error below.
   int output_ = -1;
   int errors_ = -1;
   bool ended_ = false;
   int status_ = 0;
   std::string heard_;  ///< Output that has not been returned yet.
-  std::string word_;   ///< The incomplete last line of its standard error.
+  std::string word_;   ///< The last line of the process's standard error, while it is incomplete.
   std::string last_words_;
   RateReport says_{"the runner says", log::Level::Info};
 };

@@ -13,29 +13,30 @@ namespace chorus::camera {
 
 /// What a runner says about itself.
 struct RunnerHello {
-  bridge::Hello hello;  ///< Without a camera, which only the sensor knows.
-  int max_side = 640;   ///< Of an image, in either direction [px].
+  bridge::Hello hello;  ///< Without the camera, which only the sensor knows.
+  int max_side = 640;   ///< Largest width and height of an image [px].
 };
 
 /// An image on its way to the runner.
 struct Question {
   std::uint64_t sequence = 0;
   Timestamp captured;
-  Size size;  ///< The size at which it is sent.
+  Size size;  ///< In which it is sent.
 };
 
 [[nodiscard]] Result<RunnerHello> read_runner_hello(std::string_view line);
 
-/// The line that precedes an image's bytes, with its line feed.
+/// The line that precedes an image's bytes, including its line feed.
 [[nodiscard]] std::string image_header(const Question& question);
 
 /// What landmarks are turned into.
 enum class Depth {
   None,      ///< Rays.
-  FromSize,  ///< Points, if the runner gives people's shape in metres; else rays.
+  FromSize,  ///< Points, if the runner gives people's shape in metres; otherwise rays.
 };
 
-/// The people in that image.  `hello.camera` is the camera of the image as sent.
+/// The people in the image of `question`.  `hello.camera` is the camera of the image in the size
+/// sent.
 [[nodiscard]] Result<std::vector<BodyFrame>> read_runner_answer(std::string_view line,
                                                                 const Question& question,
                                                                 const bridge::Hello& hello,

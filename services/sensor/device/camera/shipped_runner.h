@@ -1,4 +1,4 @@
-// The runner that ships with Chorus: where it is, and whether it can run.
+// The runner that comes with Chorus: where it is, and whether it can run.
 #pragma once
 
 #include "common/base/result.h"
@@ -6,11 +6,12 @@
 
 namespace chorus::camera {
 
-/// The command to start: device.camera.runner, or the runner that ships with Chorus; with the
-/// model. NotFound when the latter does not exist.
+/// The command that starts the runner, with the model: device.camera.runner or, if that is empty,
+/// the runner that comes with Chorus.  NotFound when this runner is not there.
 [[nodiscard]] Result<std::vector<std::string>> runner_command(const CameraSettings& settings);
 
-/// Asks the shipped runner whether it has everything it needs; does not ask other runners.
+/// Asks the runner that comes with Chorus whether it has everything it needs; does not ask other
+/// runners.
 [[nodiscard]] Result<void> check_runner(const CameraSettings& settings);
 
 }  // namespace chorus::camera

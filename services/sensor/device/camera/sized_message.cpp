@@ -21,7 +21,7 @@ using Json = nlohmann::json;
 constexpr JsonLimits kLimits{.bytes = 2'000'000, .nesting = 8};
 constexpr bridge::Bounds kMetres{-10.0, 10.0};
 
-/// A landmark from [u, v, confidence] and [x, y, z]; one that does not count has weight zero.
+/// Reads a landmark from [u, v, confidence] and [x, y, z]; one that is not used has weight zero.
 Result<SizedLandmark> read_landmark(const Json& pixel, const Json& shape,
                                     const bridge::Hello& hello, const At& at) {
   SizedLandmark out;

@@ -8,9 +8,9 @@
 
 namespace chorus::camera {
 
-/// The same frame, except that bodies whose "pixels" and "world" fit each other get "points" in the
-/// hello's axes instead, with covariances.  Needs hello.camera and pixel_sigma.  Malformed when
-/// "world" is not as proto/runner.md specifies.
+/// Returns the frame of `line`, in which bodies whose "pixels" and "world" fit each other have
+/// "points" in the hello's axes, with covariances, instead.  Needs hello.camera and pixel_sigma.
+/// Malformed when "world" is not as proto/runner.md specifies.
 [[nodiscard]] Result<std::string> points_by_size(std::string_view line, const bridge::Hello& hello);
 
 }  // namespace chorus::camera

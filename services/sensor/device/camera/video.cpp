@@ -15,9 +15,9 @@
 namespace chorus::camera {
 namespace {
 
-constexpr int kPatienceMs = 5000;  // for opening a stream, and for its next picture
+constexpr int kPatienceMs = 5000;  // For opening a stream, and for its next picture.
 constexpr double kUsualRate = 30.0;
-constexpr int kSmallWebcam = 640;  // wider pictures are fast enough only if compressed
+constexpr int kSmallWebcam = 640;  // Wider pictures are fast enough only if compressed.
 
 Duration since_boot() {
   timespec now{};
@@ -42,7 +42,7 @@ std::string why_closed(const CameraSettings& settings) {
   return std::strerror(reason);
 }
 
-/// Best effort: a webcam uses the nearest mode that it has.
+/// Asks for the configured mode; a webcam uses the nearest mode that it has.
 void ask_webcam(cv::VideoCapture& capture, const CameraSettings& settings) {
   if (settings.width > kSmallWebcam)
     capture.set(cv::CAP_PROP_FOURCC, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'));

@@ -10,24 +10,26 @@
 namespace chorus::camera {
 
 struct VideoMoment {
-  /// For a webcam: time since the driver's stamp.  For streams and files: time since the beginning.
+  /// For a webcam: time since the driver stamped the picture.  For streams and files: time since
+  /// the beginning.
   std::optional<Duration> time;
 };
 
 class Video {
  public:
   virtual ~Video() = default;
-  /// Waits for the next picture, a few seconds at most; none at the end of a file.
+  /// Waits for the next picture, at most a few seconds; none at the end of a file.
   [[nodiscard]] virtual Result<std::optional<VideoMoment>> next() = 0;
-  /// The picture found by next(); converting it to pixels costs about half as much as decoding it.
+  /// The picture that next() found; converting it to pixels costs about half as much as decoding
+  /// it.
   [[nodiscard]] virtual Result<Picture> picture() = 0;
-  /// For a file only.
+  /// For files only.
   [[nodiscard]] virtual FileTiming timing() const = 0;
-  /// For a file only: continues near that position.
+  /// For files only: continues near this position.
   virtual void skip_to(Duration position) = 0;
 };
 
-/// Opens the source.  Errors say what is wrong with it, and what to do.
+/// Opens the source.  An error says what is wrong and what to do.
 [[nodiscard]] Result<std::unique_ptr<Video>> open_video(const CameraSettings& settings);
 
 }  // namespace chorus::camera

@@ -13,7 +13,8 @@ namespace chorus::sensor_service {
 
 namespace {
 
-// After the host slept, the past must not come all at once: frames later than this are skipped.
+// A frame that would be later than this is skipped, so that after the host has slept the past does
+// not come all at once.
 constexpr Duration kLatest = std::chrono::seconds(1);
 // UTC may be stepped while we wait, so a long wait checks the clock regularly.
 constexpr Duration kMaxNap = std::chrono::milliseconds(200);
@@ -30,8 +31,7 @@ bool wait_on(const Clock& clock, std::stop_token stop, Timestamp until) {
   return false;
 }
 
-/// Reads what importers note about a set: "set_origin_ns" in nanoseconds, or "set_origin" in ISO
-/// 8601; never before 1970.
+/// Reads a time that importers note about a set, in nanoseconds or in ISO 8601; none before 1970.
 std::optional<std::int64_t> noted_ns(const record::FrameRecording& recording,
                                      const std::string& key) {
   const auto note = recording.notes.find(key);
@@ -127,7 +127,8 @@ class Player {
  public:
   Player(ReplayTape& tape, const ReplaySchedule& plan) : tape_(tape), plan_(plan) {}
 
-  /// Skips to the round before the one playing at `now`; run() drops what is past.  Never back.
+  /// Skips forward to the round before the one that is playing at `now`; run() leaves out its past
+  /// frames.
   void skip_to(Timestamp now) {
     const std::int64_t round = plan_.round_before(now);
     if (round <= turn_.round && begun_) return;
@@ -171,7 +172,7 @@ Result<void> Replay::run(std::stop_token stop, const Sink& sink) {
   const Timestamp start = time_.world->now();
   const auto plan = schedule(start);
   if (!plan) return pass(plan);
-  // Delivery follows the actual clock; "as recorded" frames are stamped in their own time.
+  // Frames are delivered by the actual clock; those of "as recorded" keep their recorded times.
   const Duration ahead = is_as_recorded() ? start - origin_of(*tape_, options_) : Duration::zero();
   Player player(*tape_, *plan);
   player.skip_to(start - ahead);
@@ -195,7 +196,7 @@ Result<void> Replay::run(std::stop_token stop, const Sink& sink) {
 }
 
 void read_ns(ConfigReader& config, std::string_view key, std::optional<std::int64_t>& out) {
-  // A double holds UTC nanoseconds to 256 ns, equally in all processes that get this number.
+  // A double rounds UTC nanoseconds to 256 ns, equally in all processes that get the same number.
   constexpr double kMax = 9.2e18;
   if (!config.has(key)) return;
   double value = 0.0;

@@ -1,4 +1,4 @@
-// The device `replay`: plays a recording in real time, with new stamps.
+// The device `replay`: plays a recording in real time, with new time stamps.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,7 @@ namespace chorus::sensor_service {
 /// When the replay begins.
 enum class ReplayEpoch {
   Now,         ///< The set begins when the service starts.
-  AsRecorded,  ///< Captures keep their recorded times, but are delivered from now on.
+  AsRecorded,  ///< Captures keep their recorded times; the delivery begins when the service starts.
 };
 
 struct ReplayOptions {
@@ -26,32 +26,34 @@ struct ReplayOptions {
   bool loop = true;
   double speed = 1.0;
   ReplayEpoch epoch = ReplayEpoch::Now;
-  std::optional<Timestamp> epoch_at = {};  ///< Replaces `epoch`, for several processes.
-  std::optional<Timestamp> origin = {};    ///< First capture of the set; none: as noted.
-  std::optional<Duration> period = {};     ///< Length of the set; none: as noted.
+  /// If set, replaces `epoch`; for several processes that play in step.
+  std::optional<Timestamp> epoch_at = {};
+  /// First capture time of the set; none: as the recording notes it.
+  std::optional<Timestamp> origin = {};
+  std::optional<Duration> period = {};  ///< Length of the set; none: as the recording notes it.
 };
 
-/// Reads device.replay; mistakes are reported at their keys.
+/// Reads device.replay; the reader's finish() reports mistakes.
 [[nodiscard]] ReplayOptions read_replay_options(ConfigReader& config);
 
-/// Waits until the clock shows an instant; false when it is told to stop before that.
+/// Waits until the clock shows an instant; false when told to stop before.
 using WaitUntil = std::function<bool(std::stop_token, Timestamp)>;
 
-/// The time of a replay.  Playing follows true time, so that people are where they were seen
-/// together, whatever the hosts' clocks say; frames are stamped by the host's clock.
+/// The time of a replay.  Playing follows true time, so that the replays of several hosts show the
+/// same moment, whatever these hosts' clocks say.  Frames are stamped by the host's clock.
 struct ReplayClock {
   std::shared_ptr<const Clock> world;
-  WaitUntil wait;  ///< Until the world's clock shows it; empty: really waits.
+  WaitUntil wait;  ///< Waits until `world` shows an instant; empty: really waits.
   synthetic::HostClock host = {};
 };
 
-/// Makes the device; its frames carry the id `sensor`, whatever the recording says.
+/// Makes the device; its frames have the id `sensor`, whatever the recording says.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> make_replay(std::unique_ptr<ReplayTape> tape,
                                                                const ReplayOptions& options,
                                                                const SensorId& sensor,
                                                                ReplayClock time);
 
-/// Reads device.replay and opens the recording it names; damage is logged.
+/// Reads device.replay and opens the recording that it names; logs damage.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_replay(ConfigReader& config,
                                                                const SensorId& sensor,
                                                                const HostTime& time);

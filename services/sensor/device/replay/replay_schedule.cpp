@@ -8,12 +8,13 @@ namespace chorus::sensor_service {
 namespace {
 
 constexpr double kMaxSpeed = 1000.0;
-constexpr Duration kRounding =
-    std::chrono::microseconds(1);  // tolerance for an origin that was a double
-constexpr Duration kMaxPeriod = std::chrono::hours(24 * 366);  // no product exceeds 64 bits
+// Tolerance for an origin that was a double.
+constexpr Duration kRounding = std::chrono::microseconds(1);
+// Keeps every product within 64 bits.
+constexpr Duration kMaxPeriod = std::chrono::hours(24 * 366);
 
 Duration divided(Duration span, double speed) {
-  if (speed == 1.0) return span;  // exact, to the nanosecond
+  if (speed == 1.0) return span;  // Exact to the nanosecond.
   return Duration(
       static_cast<Duration::rep>(std::llround(static_cast<double>(span.count()) / speed)));
 }
@@ -32,7 +33,7 @@ Result<ReplaySchedule> ReplaySchedule::make(const TapeSpan& span, const ReplayTi
         ErrorCode::InvalidArgument, "origin_ns",
         "lies after the first frame of the recording; use the first capture of the whole set");
   }
-  // Recordings may state anything about their set: nothing below may exceed 64 bits or divide by
+  // A recording may state anything about its set, but nothing below may exceed 64 bits or divide by
   // zero.
   if (timing.origin < span.first - kMaxPeriod) {
     return fail(ErrorCode::InvalidArgument, "origin_ns",

@@ -1,10 +1,10 @@
-// When each frame of a recording is due again.  Pure: no clock, no thread.
+// Computes when each frame of a recording is due again; has no clock and no thread.
 //
 //   due = epoch + ((recorded - origin) + loop * period) / speed
 //
 // All recordings of a set share `origin` and `period` (first capture and length of the whole set),
-// so that replays in several processes with one epoch stay in step, round after round (`loop`
-// counts the rounds).
+// so that replays with the same epoch in several processes stay in step, round after round.  `loop`
+// counts the rounds.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,14 @@
 namespace chorus::sensor_service {
 
 struct ReplayTiming {
-  Timestamp epoch;   ///< When `origin` is played.
+  Timestamp epoch;   ///< When the instant `origin` is played.
   Timestamp origin;  ///< First capture of the set.
-  Duration period;   ///< Length of the set; one round.
+  Duration period;   ///< Length of the set, which is that of one round.
   double speed = 1.0;
   bool loop = true;
 };
 
-/// One frame when it is played: which frame of the recording, in which round.
+/// One frame of the recording in one round of playing.
 struct Turn {
   Timestamp captured;
   std::uint64_t number = 0;  ///< Within the recording, from 0.
@@ -39,10 +39,10 @@ class ReplaySchedule {
                                                    const ReplayTiming& timing);
 
   [[nodiscard]] Timestamp due(const Turn& turn) const;
-  /// A round that contains, or directly precedes, the first frame due at or after `now`.
+  /// A round that contains the first frame due at or after `now`, or the round before that one.
   [[nodiscard]] std::int64_t round_before(Timestamp now) const;
   [[nodiscard]] bool over(std::int64_t round) const;
-  /// Counts frames from the epoch on, from 1; gaps are frames that were not played.
+  /// Counts frames from the epoch on, beginning with 1; a gap means frames that were not played.
   [[nodiscard]] std::uint64_t sequence(const Turn& turn) const;
 
  private:

@@ -11,7 +11,7 @@
 namespace chorus::sensor_service {
 namespace {
 
-constexpr std::size_t kSampleFrames = 300;  // ten seconds suffice for the usual step
+constexpr std::size_t kSampleFrames = 300;  // Ten seconds suffice to find the usual step.
 
 Duration median_step(const std::vector<Timestamp>& captured) {
   std::vector<Duration> steps;
@@ -57,7 +57,7 @@ class FileTape final : public ReplayTape {
       stay_.about.notes["damage." + std::to_string(i + 1)] = std::move(damage[i]);
   }
 
-  /// Reads the first frames, or all of them if the file does not state how many there are.
+  /// Reads the first frames, or all frames if the file does not state their number.
   Result<void> measure() {
     std::vector<Timestamp> captured;
     std::uint64_t frames = 0;
@@ -99,7 +99,7 @@ class FileTape final : public ReplayTape {
   TapeSpan span_;
 };
 
-/// The stream to play, chosen as read_frame_recording() does.
+/// Chooses the stream to play by the rule of read_frame_recording().
 Result<record::SensorStay> chosen(std::vector<record::SensorStay> stays, const SensorId& which,
                                   const std::string& path) {
   std::string there;

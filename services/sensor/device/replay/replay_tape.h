@@ -23,10 +23,10 @@ class ReplayTape {
  public:
   virtual ~ReplayTape() = default;
 
-  /// Everything except the frames.
+  /// Everything in the recording except the frames.
   [[nodiscard]] virtual const record::FrameRecording& about() const = 0;
   [[nodiscard]] virtual TapeSpan span() const = 0;
-  /// Frames with strictly rising capture times; none at the end.
+  /// The next frame, with strictly rising capture times; none at the end.
   [[nodiscard]] virtual Result<std::optional<SensorFrame>> next() = 0;
   virtual void rewind() = 0;
 };
@@ -34,8 +34,8 @@ class ReplayTape {
 /// A tape in memory.
 [[nodiscard]] Result<std::unique_ptr<ReplayTape>> tape_of(record::FrameRecording recording);
 
-/// A tape from a file or a folder of files: ready at once, and read while it plays.  `which`
-/// selects one of several sensors; a recording of one sensor may be played under any name.
+/// A tape from a file or a folder of files; it is read while it plays, so opening it is quick.
+/// `which` selects one of several sensors; a recording of one sensor may be played under any name.
 [[nodiscard]] Result<std::unique_ptr<ReplayTape>> open_tape(const std::filesystem::path& path,
                                                             const SensorId& which);
 

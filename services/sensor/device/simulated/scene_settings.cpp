@@ -13,12 +13,12 @@ namespace {
 using synthetic::kOccluderKinds;
 using synthetic::Occluder;
 
-constexpr double kFarthest = 100.0;  // distance of anything from the room's origin [m]
-constexpr double kLargest = 20.0;    // longest edge of a thing [m]
+constexpr double kFarthest = 100.0;  // Distance of anything from the room's origin [m].
+constexpr double kLargest = 20.0;    // Longest edge of a thing [m].
 constexpr double kSmallest = 0.01;   // [m]
 constexpr int kMaxSeed = 1'000'000'000;
 constexpr int kMaxPeople = 6;
-constexpr std::size_t kMaxOccluders = 32;  // each costs a ray test per joint and frame
+constexpr std::size_t kMaxOccluders = 32;  // Each costs a ray test per joint and frame.
 constexpr Duration kUsualPeriod = std::chrono::seconds(20);
 
 synthetic::WalkerScript read_script(ConfigReader& config) {

@@ -24,11 +24,11 @@
 namespace chorus::sensor_service {
 
 struct SceneSettings {
-  synthetic::Scene scene;  ///< As yet without sensors.
-  std::string people;      ///< "CMU walking", "motion of walk.bvh"
+  synthetic::Scene scene;  ///< Without sensors.
+  std::string people;      ///< Where their motion comes from: "CMU walking", "motion of walk.bvh".
 };
 
-/// The reader's finish() reports mistakes.
+/// Reads the settings; the reader's finish() reports mistakes.
 [[nodiscard]] SceneSettings read_scene(ConfigReader config);
 
 }  // namespace chorus::sensor_service

@@ -39,12 +39,14 @@ class Simulated final : public FrameSource {
   [[nodiscard]] Capture with_images(SensorFrame frame) const;
   void stamp(SensorFrame& frame) const;
 
-  std::shared_ptr<const SimulatedSettings> settings_;  ///< Shared with images, which outlive a run.
+  /// Shared with images, which may outlive a run.
+  std::shared_ptr<const SimulatedSettings> settings_;
   HostTime time_;
   synthetic::CameraModel camera_;
 };
 
-/// True when the clock was stepped or we were stopped for long.
+/// True when the next frame is far from now: the clock was stepped, or the process did not run for
+/// long.
 bool Simulated::is_lost(const BodySensor& sensor) const {
   const Duration ahead = sensor.next_exposure() + settings_->latency - time_.world->now();
   return ahead > kMaxBehind || -ahead > kMaxBehind;
@@ -56,7 +58,7 @@ bool Simulated::wait_until(const std::stop_token& stop, Timestamp due) const {
   std::unique_lock lock(mutex);
   while (!stop.stop_requested()) {
     const Duration left = due - time_.world->now();
-    // A clock that was set back must not freeze the device; the caller starts again.
+    // A clock that was set back must not freeze the device; the caller then starts again.
     if (left <= Duration::zero() || left > kMaxBehind) return true;
     never.wait_for(lock, stop, std::min(left, kMaxNap), [] { return false; });
   }
@@ -81,7 +83,7 @@ Capture Simulated::with_images(SensorFrame frame) const {
   return capture;
 }
 
-/// Converts true time to what this host's clock shows.
+/// Replaces true time by what this host's clock shows.
 void Simulated::stamp(SensorFrame& frame) const {
   frame.captured = time_.host.host_time(frame.captured);
   frame.received = time_.host.host_time(time_.world->now());
@@ -90,7 +92,7 @@ void Simulated::stamp(SensorFrame& frame) const {
 
 Result<void> Simulated::run(std::stop_token stop, const Sink& sink) {
   auto sensor = settings_->sensor_from(time_.world->now() - settings_->latency);
-  std::uint64_t sequence = 0;  // also counts dropped frames, so that gaps are visible
+  std::uint64_t sequence = 0;  // Also counts dropped frames, so that gaps are visible.
   while (sensor && !stop.stop_requested()) {
     if (is_lost(**sensor)) {
       sensor = settings_->sensor_from(time_.world->now() - settings_->latency);

@@ -10,7 +10,7 @@
 namespace chorus::sensor_service {
 namespace {
 
-constexpr double kFarthest = 100.0;  // distance of anything from the room's origin [m]
+constexpr double kFarthest = 100.0;  // Distance of anything from the room's origin [m].
 constexpr int kMaxSeed = 1'000'000'000;
 constexpr std::array<std::string_view, 5> kProfiles{synthetic::kGaussProfile, "A", "B", "C", "D"};
 
@@ -46,8 +46,8 @@ Eigen::Isometry3d read_pose(ConfigReader config) {
   return synthetic::stand_sensor(eye, yaw, pitch);
 }
 
-/// Errors that sensors of one room share come from `seed` alone; the others depend on the sensor's
-/// id.
+/// Errors that the sensors of one room share come from `seed` alone; the others depend also on the
+/// sensor's id.
 void read_noise(ConfigReader config, synthetic::SensorChoice& choice) {
   synthetic::SensorModel& model = choice.gauss;
   int seed = 1;
@@ -74,7 +74,7 @@ void read_profile(ConfigReader& config, synthetic::SensorChoice& choice) {
   config.read("profile_draw", draw, 0, kMaxSeed);
   choice.profile = kProfiles.at(profile);
   if (draw > 0) choice.draw = static_cast<std::uint64_t>(draw);
-  choice.own_clock = false;  // the service sets the host's clock
+  choice.own_clock = false;  // Own clock off: the service sets the host's clock.
 }
 
 }  // namespace

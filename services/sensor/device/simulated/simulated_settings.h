@@ -29,18 +29,18 @@
 namespace chorus::sensor_service {
 
 struct SimulatedSettings {
-  synthetic::Scene scene;          ///< With one sensor: this one.
+  synthetic::Scene scene;          ///< This sensor is the only one in it.
   synthetic::SensorChoice choice;  ///< The sensor model.
-  std::string people;              ///< "CMU walking"
+  std::string people;              ///< Where their motion comes from: "CMU walking".
   Duration latency{0};
 
   /// The sensor in `scene`, from `start` on.
   [[nodiscard]] Result<std::unique_ptr<synthetic::BodySensor>> sensor_from(Timestamp start) const;
-  /// For people: "gauss", "A 0123456789ab".
+  /// Human-readable: "gauss", "A 0123456789ab".
   [[nodiscard]] std::string profile() const;
 };
 
-/// The reader's finish() reports mistakes.
+/// Reads the settings; the reader's finish() reports mistakes.
 [[nodiscard]] SimulatedSettings read_simulated_settings(ConfigReader& config,
                                                         const SensorId& sensor);
 
