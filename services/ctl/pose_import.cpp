@@ -1,6 +1,7 @@
 #include "services/ctl/pose_import.h"
 
 #include "common/importers/pose_frames.h"
+#include "common/sensor/pixel_ray.h"
 #include "services/ctl/lens_file.h"
 
 namespace chorus::ctl {
@@ -16,7 +17,7 @@ Result<record::FrameRecording> import_one(const fs::path& input, const std::stri
   if (!recording) return recording;
   for (SensorFrame& frame : recording->frames) {
     for (BodyFrame& body : frame.bodies) {
-      for (Joint& joint : body.skeleton.joints) camera::widen(joint, lens->focal_sigma);
+      for (Joint& joint : body.skeleton.joints) widen_ray(joint, lens->focal_sigma);
     }
   }
   return recording;
