@@ -48,6 +48,7 @@ void CrossFade::begin(const std::vector<FusedBody>& before, const std::vector<Fu
 }
 
 void CrossFade::apply(std::vector<FusedBody>& bodies, Timestamp at) const {
+  if (at < begun_) return;  // the clock was set back
   const double left = left_at(seconds(at - begun_));
   if (left == 0.0) return;
   for (FusedBody& body : bodies) {

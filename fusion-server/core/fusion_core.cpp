@@ -19,6 +19,19 @@ constexpr std::string_view kFuture =
 constexpr std::string_view kFrozen =
     "a body is left out: its coordinates are repeated to the last digit under new stamps";
 
+/// Whether some sensor stands in both where people would be matched: the two are one world.
+bool share_a_place(const Registration& one, const Registration& other) {
+  constexpr double kReach = 2.5;  // [m] from the sensor to people
+  constexpr double kSame = 0.3;   // [m]
+  const Eigen::Vector3d mark = kReach * Eigen::Vector3d::UnitZ();
+  return std::ranges::any_of(one.sensors, [&](const auto& entry) {
+    const auto found = other.sensors.find(entry.first);
+    return found != other.sensors.end() &&
+           (entry.second.world_from_sensor * mark - found->second.world_from_sensor * mark).norm() <
+               kSame;
+  });
+}
+
 }  // namespace
 
 FusionCore::FusionCore(CoreConfig config, Registration registration)
@@ -36,6 +49,7 @@ void FusionCore::reconfigure(CoreConfig config) {
   registrar_.reconfigure(registrar_config(config_));
   std::erase_if(histories_,
                 [&](const auto& entry) { return !config_.sensors.contains(entry.first); });
+  guard_.keep(config_.sensors);
   awaited_by_ = 0;
 }
 
@@ -91,7 +105,7 @@ std::optional<Snapshot> FusionCore::tick(Timestamp now) {
   hindsight_.remember(std::move(answered));
   schedule_.answered(now);
   guard_.look(step.people, tick.instant, config_.watch);
-  displace_moved();
+  displace_moved(tick.instant);
   return std::move(step.snapshot);
 }
 
@@ -110,13 +124,18 @@ pipeline::Step FusionCore::step_at(const Tick& tick, Timestamp now) {
   return step;
 }
 
-/// A sensor that was moved has no place from the next instant on, and waits for another one.
-void FusionCore::displace_moved() {
+/// A sensor that was moved has no place from the next instant on, and waits for another one.  If it
+/// is off again soon, another walk would not mend it: the alarm stays, and people decide.
+void FusionCore::displace_moved(Timestamp instant) {
+  constexpr Duration kAgain = std::chrono::minutes(30);
   const auto moved = guard_.moved();
   if (!moved) return;
+  const auto last = displaced_at_.find(*moved);
+  if (last != displaced_at_.end() && instant - last->second < kAgain) return;
   Registration before = registration();
   if (!registrar_.displace(*moved, reason_of(*moved, *guard_.alarm_of(*moved)))) return;
   guard_.displaced(*moved);
+  displaced_at_[*moved] = instant;
   before_ = std::move(before);
   hindsight_.forget();
   awaited_by_ = 0;
@@ -186,6 +205,10 @@ Result<void> FusionCore::undo() {
   auto done = registrar_.undo();
   if (!done) return done;
   guard_.replaced(before, registration());
+  if (!share_a_place(before, registration())) {
+    leave_world();
+    return done;
+  }
   hindsight_.forget();
   if (!before.sensors.empty()) before_ = std::move(before);
   return done;
@@ -226,7 +249,8 @@ RegistrationProgress FusionCore::progress(Timestamp now) const {
 
 std::string FusionCore::alarm_text(const SensorId& sensor, Timestamp now) const {
   const auto told = alarm(sensor);
-  return told ? sentence_of(sensor, *told, now, config_.session.automatic) : std::string();
+  const bool anew = config_.session.automatic && !registration().sensors.contains(sensor);
+  return told ? sentence_of(sensor, *told, now, anew) : std::string();
 }
 
 std::uint64_t FusionCore::refused(const SensorId& sensor) const {

@@ -104,7 +104,7 @@ class FusionCore {
 
   void leave_world();
   [[nodiscard]] pipeline::Step step_at(const Tick& tick, Timestamp now);
-  void displace_moved();
+  void displace_moved(Timestamp instant);
   void refuse(const SensorFrame& frame, std::string_view why);
   void sift(SensorFrame& frame);
   [[nodiscard]] bool improves(const Answered& answered, Timestamp now) const;
@@ -125,6 +125,7 @@ class FusionCore {
   Guard guard_;
   CrossFade fade_;
   std::optional<Registration> before_;  ///< Until the next instant: what is to be faded from.
+  std::map<SensorId, Timestamp> displaced_at_;  ///< When each sensor last lost its place.
   std::uint64_t displaced_ = 0;
 };
 

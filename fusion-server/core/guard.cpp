@@ -20,16 +20,10 @@ SensorAlarm alarm_of(const watch::Finding& finding) {
 
 double rounded_mm(double shift) { return kRounded * std::round(to_mm(shift) / kRounded); }
 
-/// Sensors whose place is the same in both.
-std::set<SensorId> unchanged(const Registration& before, const Registration& now) {
-  std::set<SensorId> same;
-  for (const auto& [sensor, place] : now.sensors) {
-    const auto was = before.sensors.find(sensor);
-    if (was != before.sensors.end() &&
-        was->second.world_from_sensor.isApprox(place.world_from_sensor))
-      same.insert(sensor);
-  }
-  return same;
+bool same_places(const Registration& before, const Registration& now) {
+  return std::ranges::equal(before.sensors, now.sensors, [](const auto& a, const auto& b) {
+    return a.first == b.first && a.second.world_from_sensor.isApprox(b.second.world_from_sensor);
+  });
 }
 
 std::string ago(Duration passed) {
@@ -66,7 +60,7 @@ void Guard::look(const std::vector<Person>& people, Timestamp instant,
   watch_.look(people, instant, config);
   auto next = watch_.finding();
   // The same finding a moment later is still about when it began.
-  if (next && finding_ && next->sensor == finding_->sensor)
+  if (next && finding_ && (next->sensor == finding_->sensor || next->or_else == finding_->sensor))
     next->since = std::min(next->since, finding_->since);
   finding_ = std::move(next);
 }
@@ -90,13 +84,23 @@ void Guard::displaced(const SensorId& sensor) {
   if (!finding_ || finding_->sensor != sensor) return;
   displaced_[sensor] = core::alarm_of(*finding_);
   finding_.reset();
-  watch_.forget(sensor);
+  watch_.forget();
 }
 
 void Guard::replaced(const Registration& before, const Registration& now) {
-  watch_.keep_only(unchanged(before, now));
+  if (!same_places(before, now)) watch_.forget();
   finding_.reset();
   std::erase_if(displaced_, [&](const auto& e) { return now.sensors.contains(e.first); });
+  if (now.sensors.empty()) displaced_.clear();
+}
+
+void Guard::keep(const std::set<SensorId>& sensors) {
+  const auto gone = [&](const SensorId& sensor) { return !sensors.contains(sensor); };
+  if (finding_ && (gone(finding_->sensor) || (finding_->or_else && gone(*finding_->or_else)))) {
+    watch_.forget();
+    finding_.reset();
+  }
+  std::erase_if(displaced_, [&](const auto& e) { return gone(e.first); });
 }
 
 }  // namespace chorus::core

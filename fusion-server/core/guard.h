@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -42,8 +43,10 @@ class Guard {
 
   /// The sensor has lost its place; its alarm lasts until it has another one.
   void displaced(const SensorId& sensor);
-  /// Forgets what was seen by sensors whose place is another one now.
+  /// Forgets what was seen if any place is another one now.
   void replaced(const Registration& before, const Registration& now);
+  /// Forgets sensors that are no longer configured.
+  void keep(const std::set<SensorId>& sensors);
 
  private:
   watch::Watch watch_;

@@ -22,6 +22,14 @@ void keep_configured(Registration& registration, const std::set<SensorId>& senso
   const auto gone = [&](const auto& entry) { return !sensors.contains(entry.first); };
   std::erase_if(registration.sensors, gone);
   std::erase_if(registration.verdicts, gone);
+  std::erase_if(registration.edges, [&](const PairwiseRegistration& edge) {
+    return !sensors.contains(edge.source) || !sensors.contains(edge.target);
+  });
+  // A registration without its master among the sensors could not be read again.
+  if (registration.sensors.empty() || registration.sensors.contains(registration.master)) return;
+  registration.master = std::ranges::min_element(registration.sensors, {}, [](const auto& entry) {
+                          return entry.second.error;
+                        })->first;
 }
 
 }  // namespace
@@ -108,6 +116,7 @@ void Registrar::forget() {
   if (before_) registration_ = *before_;  // a session's own is not worth going back to
   end_session(SessionState::Cancelled);
   if (!registration_.sensors.empty()) forgotten_ = registration_.sensors;
+  lacks_displaced_ = false;
   keep_earlier(registration_);
   retries_.clear();
   not_before_ = Timestamp{};
@@ -126,20 +135,26 @@ Result<void> Registrar::undo() {
                 "a registration session is running; wait for its end or cancel it");
   if (!earlier_)
     return fail(ErrorCode::NotFound, "registration", "no registration from before is known");
-  Registration back = *std::exchange(earlier_, std::nullopt);
+  Registration back = *earlier_;
   keep_configured(back, config_.sensors);
+  if (back.sensors.empty())
+    return fail(ErrorCode::NotFound, "registration", "none of its sensors is configured any more");
+  earlier_.reset();
   keep_earlier(registration_);
+  lacks_displaced_ = false;
   replace(std::move(back));
   return {};
 }
 
 bool Registrar::displace(const SensorId& sensor, const std::string& reason) {
-  constexpr std::size_t kLeastPlaced = 3;
+  constexpr std::ptrdiff_t kLeastPlaced = 3;
   const bool busy = !sessions_.empty() && running(sessions_.front());
-  const bool enough = registration_.sensors.size() >= kLeastPlaced;
-  if (busy || !enough || !registration_.sensors.contains(sensor)) return false;
+  const auto placed = std::ranges::count_if(registration_.sensors, [&](const auto& entry) {
+    return config_.sensors.contains(entry.first);
+  });
+  if (busy || placed < kLeastPlaced || !registration_.sensors.contains(sensor)) return false;
   retries_.erase(sensor);
-  keep_earlier(registration_);
+  if (!std::exchange(lacks_displaced_, true)) keep_earlier(registration_);
   replace(without(registration_, sensor, reason));
   return true;
 }
@@ -150,6 +165,7 @@ Result<void> Registrar::move_origin(const Origin& origin) {
                 "a registration session is running; wait for its end or cancel it");
   auto next = with_origin(registration_, origin);
   if (!next) return pass(next);
+  lacks_displaced_ = false;
   keep_earlier(registration_);
   replace(std::move(*next));
   return {};
@@ -262,7 +278,7 @@ Outcome Registrar::settle_final(const Registration& candidate, Timestamp now) {
   current.adopted = next.has_value();
   Outcome outcome = Outcome::Adopted;
   if (next) {
-    keep_earlier(before_ ? *before_ : registration_);
+    if (!std::exchange(lacks_displaced_, false)) keep_earlier(before_ ? *before_ : registration_);
     replace(std::move(*next));
   } else {
     const bool withdrawn = take_back();

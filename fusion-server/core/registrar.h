@@ -121,7 +121,9 @@ class Registrar {
   std::deque<SessionStatus> sessions_;  ///< Newest first; the running one, if any, is at the front.
   std::optional<Registration> before_;  ///< Set while the session's own registration is in use.
   std::optional<Registration>
-      earlier_;       ///< In use before; sessions' provisional ones do not count.
+      earlier_;  ///< In use before; sessions' provisional ones do not count.
+  /// `earlier_` is from before a sensor was displaced; the session that places it anew keeps it.
+  bool lacks_displaced_ = false;
   Places forgotten_;  ///< Of the last registration that was forgotten.
   bool solving_ = false;
   std::stop_source stop_solve_;

@@ -18,6 +18,7 @@ namespace chorus::registration {
 namespace {
 
 constexpr std::size_t kMaxPoints = 1500;  // of the walk; successive ones are redundant
+constexpr std::size_t kPointsEach = 100;  // of many sensors: each overlap needs its own
 constexpr std::size_t kMinMeasurements =
     20;  // with fewer a sensor keeps the place given by its chain
 constexpr int kIterations = 40;
@@ -100,7 +101,8 @@ std::vector<Timestamp> instants_of(const std::vector<Station>& stations, std::si
     }
   }
   std::sort(all.begin(), all.end());
-  const std::size_t step = std::max<std::size_t>(1, all.size() * slots / kMaxPoints);
+  const std::size_t most = std::max(kMaxPoints, kPointsEach * stations.size());
+  const std::size_t step = std::max<std::size_t>(1, all.size() * slots / most);
   std::vector<Timestamp> instants;
   for (std::size_t i = 0; i < all.size(); i += step) instants.push_back(all[i]);
   return instants;

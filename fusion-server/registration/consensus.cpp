@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <set>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -114,14 +115,13 @@ Standings standings_of(const Evidence& evidence) {
 /// Who stands worst; of equals, whose pairs fit worst.  None where there is nothing to blame.
 std::optional<SensorId> worst_of(const Standings& standings) {
   const auto key = [](const Standing& standing) {
-    return std::pair(standing.excess(), standing.misfit / std::max(1, standing.credit));
+    const bool convicted = standing.blame > 0 && (standing.excess() >= 0 || standing.widest > 0.0);
+    return std::tuple(convicted, standing.excess(), standing.misfit / std::max(1, standing.credit));
   };
   const auto worst = std::ranges::max_element(
       standings, [&](const auto& a, const auto& b) { return key(a.second) < key(b.second); });
   if (worst == standings.end()) return std::nullopt;
-  const Standing& standing = worst->second;
-  const bool convicted = standing.excess() >= 0 || standing.widest > 0.0;
-  if (standing.blame == 0 || !convicted) return std::nullopt;
+  if (!std::get<0>(key(worst->second))) return std::nullopt;
   return worst->first;
 }
 

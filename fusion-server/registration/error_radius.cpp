@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Eigenvalues>
 
@@ -16,7 +17,11 @@ constexpr std::array kRadii{1.960, 1.963, 1.972, 1.991, 2.021, 2.064,
 }  // namespace
 
 double radius_of_95(const Eigen::Matrix2d& covariance) {
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
+  constexpr double kRounding = 1e-9;  // of the largest term
+  if (!covariance.allFinite()) return kUnknown;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance, Eigen::EigenvaluesOnly);
+  if (axes.eigenvalues()[0] < -kRounding * covariance.cwiseAbs().maxCoeff()) return kUnknown;
   const double wide = std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
   if (!(wide > 0)) return 0.0;
   const double narrow = std::sqrt(std::max(0.0, axes.eigenvalues()[0]));

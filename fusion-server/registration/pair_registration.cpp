@@ -176,9 +176,14 @@ std::vector<Pair> half_of(const std::vector<Pair>& pairs, bool second) {
 /// Each half of the walk must place the other: whoever follows somebody else may fit one stretch of
 /// a walk by chance, hardly two.
 Result<void> halves_agree(const std::vector<Pair>& pairs, double rms, Freedom freedom,
-                          const std::string& both) {
-  const auto first = fit_robustly(half_of(pairs, false), freedom);
-  const auto second = fit_robustly(half_of(pairs, true), freedom);
+                          const std::string& both, double min_spread) {
+  const std::vector<Pair> early = half_of(pairs, false);
+  const std::vector<Pair> late = half_of(pairs, true);
+  for (const auto* half : {&early, &late}) {  // a half on one spot cannot place the other
+    if (extent_of(*half, std::vector<double>(half->size(), 1.0)).spread < min_spread) return {};
+  }
+  const auto first = fit_robustly(early, freedom);
+  const auto second = fit_robustly(late, freedom);
   if (!first || !second) return {};
   std::vector<double> apart;
   for (const Pair& pair : pairs) {
@@ -227,7 +232,8 @@ Result<PairwiseRegistration> timed(const Walker& target, const Walker& source,
   edge.inflation = refined.inflation;
   if (const auto ok = believable(edge, extent, both, config); !ok) return pass(ok);
   const Freedom freedom = levelled.both ? Freedom::Yaw : Freedom::Full;
-  if (const auto ok = halves_agree(pairs, edge.rms, freedom, both); !ok) return pass(ok);
+  if (const auto ok = halves_agree(pairs, edge.rms, freedom, both, config.min_spread); !ok)
+    return pass(ok);
   const Eigen::Isometry3d target_from_level = levelled.level_from_target.inverse();
   edge.target_from_source =
       target_from_level * refined.target_from_source * levelled.level_from_source;

@@ -131,6 +131,10 @@ void choose_master(Work& work) {
     work.doubt(fmt::format("the configured master {} took no part in the walk", wanted->str()));
   }
   work.result.master = best_master(work);
+  if (there) {
+    work.doubt(fmt::format("the configured master {} was refused: the world stands on {}",
+                           wanted->str(), work.result.master.str()));
+  }
 }
 
 /// The common floor of all linked sensors; none if none has one.

@@ -61,12 +61,14 @@ double prior_of(const WalkTrack& track) {
 }
 
 /// The pairs that are worth a search, each searched.
-void measure(Network& network, const RegistrationConfig& config) {
+void measure(Network& network, const RegistrationConfig& config,
+             const std::function<bool()>& stopped) {
   const std::vector<Walker>& walkers = network.walkers;
   for (std::size_t target = 0; target < walkers.size(); ++target) {
     for (std::size_t source = target + 1; source < walkers.size(); ++source) {
       const double sigma = std::hypot(network.priors[target], network.priors[source]);
       if (sigma < kKnown) continue;
+      if (stopped && stopped()) return;
       const double range = std::min(kMostSearched, kSearchSigmas * sigma);
       const OffsetProfile profile(walkers[target], walkers[source], config, range);
       network.pairs.push_back({target, source, range, profile.best()});
@@ -155,20 +157,23 @@ bool all_known(const std::vector<WalkTrack>& walk) {
 
 }  // namespace
 
-WalkClocks clocks_of(const std::vector<WalkTrack>& walk, const RegistrationConfig& config) {
+WalkClocks clocks_of(const std::vector<WalkTrack>& walk, const RegistrationConfig& config,
+                     const std::function<bool()>& stopped) {
   WalkClocks clocks;
   if (config.method == PairMethod::IcpOnly || all_known(walk)) return clocks;
   Network network;
   for (const WalkTrack& track : walk) {
+    if (track.frames.empty()) continue;  // it has no clock to compare
     if (std::ranges::find(network.sensors, track.sensor) != network.sensors.end()) continue;
     network.sensors.push_back(track.sensor);
     network.priors.push_back(prior_of(track));
     network.walkers.push_back(offset_walker(track, config));
   }
-  measure(network, config);
+  measure(network, config, stopped);
   for (int i = 0; i < kIterations; ++i) solve(network);
   clocks.offsets = against_the_best(network);
   for (const Measured& pair : network.pairs) {
+    if (stopped && stopped()) break;
     if (place_spread(network, pair, config) <= kMaxSpread) continue;
     const SensorId& target = network.sensors[pair.target];
     const SensorId& source = network.sensors[pair.source];

@@ -6,6 +6,7 @@
 // what the network leaves open of its offset.  Derived in docs/papers/registration.md, Section 10.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -17,16 +18,19 @@ namespace chorus::registration {
 
 /// What the walk says about the clocks.
 struct WalkClocks {
-  /// For every sensor, if some clock is not known: all against the one that is known best.  Empty
-  /// when all are known.
+  /// For every sensor that sent frames, if some clock is not known: all against the one that is
+  /// known best.  Empty when all are known.
   std::map<SensorId, ClockOffset> offsets;
   /// Target and source of pairs whose place depends on an offset that the walk leaves open, and
   /// why.
   std::map<std::pair<SensorId, SensorId>, Error> open;
 };
 
+/// `stopped` is asked between pairs; once it says so, the rest is not measured and the result is of
+/// no use.
 [[nodiscard]] WalkClocks clocks_of(const std::vector<WalkTrack>& walk,
-                                   const RegistrationConfig& config);
+                                   const RegistrationConfig& config,
+                                   const std::function<bool()>& stopped = {});
 
 /// Moves every stamp to the common clock.
 void bring_in_step(std::vector<WalkTrack>& walk, const WalkClocks& clocks);

@@ -82,7 +82,8 @@ std::map<SensorId, Walker> walkers_of(const std::vector<WalkTrack>& walk,
 
 Registration solve_pairs_first(const core::SolveJob& job, Timestamp now) {
   std::vector<WalkTrack> walk = core::assembled(job.walk);
-  const registration::WalkClocks clocks = registration::clocks_of(walk, job.config);
+  const registration::WalkClocks clocks =
+      registration::clocks_of(walk, job.config, [&] { return job.stop.stop_requested(); });
   registration::bring_in_step(walk, clocks);
   const auto walkers = walkers_of(walk, job.config);
   std::vector<Pair> pairs = pairs_of(walkers);

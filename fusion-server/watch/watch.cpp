@@ -77,7 +77,8 @@ bool Watch::walks(const Person& person, Timestamp instant) {
 
 void Watch::add(Residual residual, Timestamp instant) {
   Watched& sensor = sensors_[residual.sensor];
-  if (!sensor.open.empty() && instant - sensor.began > kStale) sensor.open.clear();
+  const Duration open_for = instant - sensor.began;  // negative: the clock was set back
+  if (open_for < Duration{0} || open_for > kStale) sensor.open.clear();
   if (!sensor.open.empty() && instant - sensor.began >= kBlock && sensor.open.size() >= kLeast)
     close(sensor);
   if (sensor.open.empty()) sensor.began = instant;
@@ -88,7 +89,9 @@ void Watch::close(Watched& sensor) {
   sensor.recent.push_back(block_of(sensor.open, sensor.began));
   sensor.open.clear();
   if (sensor.recent.size() > kLongestWindow) {
-    if (sensor.shift.sigmas < config_.least_sigmas) sensor.usual.learn(sensor.recent.front());
+    const bool suspicious = sensor.shift.sigmas >= config_.least_sigmas &&
+                            sensor.shift.mean.norm() >= config_.least_shift;
+    if (!suspicious) sensor.usual.learn(sensor.recent.front());
     sensor.recent.pop_front();
   }
   judge(sensor);
@@ -105,6 +108,7 @@ void Watch::judge(Watched& sensor) const {
 
 /// Zero unless the sensor counts as moved or drifted.
 double Watch::size_of(const Watched& sensor) const {
+  if (sensor.recent.empty()) return 0.0;
   const double shift = sensor.shift.mean.norm();
   const bool moved = sensor.shift.lasting && sensor.shift.sigmas >= config_.least_sigmas &&
                      shift >= config_.least_shift;
@@ -145,17 +149,6 @@ std::optional<double> Watch::shift_of(const SensorId& sensor) const {
   return own->second.shift.mean.norm();
 }
 
-void Watch::forget(const SensorId& sensor) {
-  sensors_.erase(sensor);
-  for (auto& [id, other] : sensors_) {
-    other.recent.clear();
-    other.open.clear();
-    other.shift = {};
-  }
-}
-
-void Watch::keep_only(const std::set<SensorId>& sensors) {
-  std::erase_if(sensors_, [&](const auto& entry) { return !sensors.contains(entry.first); });
-}
+void Watch::forget() { sensors_.clear(); }
 
 }  // namespace chorus::watch

@@ -7,7 +7,6 @@
 #include <deque>
 #include <map>
 #include <optional>
-#include <set>
 #include <vector>
 
 #include "fusion-server/flow.h"
@@ -36,10 +35,8 @@ class Watch {
   /// until somebody has walked for a while.
   [[nodiscard]] std::optional<double> shift_of(const SensorId& sensor) const;
 
-  /// Forgets a sensor that was moved, and what the others saw beside it lately.
-  void forget(const SensorId& sensor);
-  /// Forgets all sensors but these.
-  void keep_only(const std::set<SensorId>& sensors);
+  /// Forgets all that is usual: it was learned beside sensors of which one has another place now.
+  void forget();
 
  private:
   struct Watched {

@@ -4,7 +4,7 @@
 namespace chorus::watch {
 
 struct WatchConfig {
-  bool enabled = true;
+  bool enabled = false;
   /// People must appear displaced by this much before a sensor counts as moved [m] ...
   double least_shift = 0.03;
   /// ... and by so many standard deviations of what is usual for that sensor.

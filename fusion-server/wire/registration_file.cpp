@@ -24,7 +24,7 @@ constexpr double kMaxNormError = 0.01;  // Tolerates quaternions that were round
 constexpr const char* kClockOffset = "clockOffsetMilliseconds";
 constexpr const char* kClockUncertainty = "clockUncertaintyMilliseconds";
 constexpr double kMillisecond = 1e3;
-constexpr double kMaxClockOffset = 1e5;  // [ms]
+constexpr double kMaxClockOffset = 4e3;  // [ms]
 
 Error wrong(std::string where, std::string what) {
   return {ErrorCode::Malformed, "registration: " + std::move(where), std::move(what)};

@@ -26,7 +26,7 @@ struct RoomSetting {
   std::size_t persons = 1;
   Duration length = std::chrono::seconds(60);
   std::optional<Push> push = {};
-  watch::WatchConfig watch = {};
+  watch::WatchConfig watch = {.enabled = true};
 };
 
 /// What happened, by true time; durations count from the beginning.

@@ -320,6 +320,36 @@ TEST_F(Sessions, AnUndoGoesBackOneStepAndAgainForward) {
   EXPECT_TRUE(place().isApprox(moved)) << "a forgotten one comes back, too";
 }
 
+TEST_F(Sessions, AMoveThatWasNoneIsUndoneAlsoAfterTheSensorWasPlacedAnew) {
+  begin_with(ring());
+  const SensorId moved = sensor_id("s3");
+  ASSERT_TRUE(registrar().displace(moved, "sensor s3 was moved"));
+  walk(seconds(1));
+  Registration anew = ring();
+  anew.sensors.at(moved).world_from_sensor.translation().x() += 0.2;
+  EXPECT_EQ(registrar().solved({newest().id, SolveKind::Final, anew}, now_), Outcome::Adopted);
+  ASSERT_TRUE(registrar().registration().sensors.contains(moved));
+  ASSERT_TRUE(registrar().undo());
+  EXPECT_TRUE(registrar().registration().sensors.at(moved).world_from_sensor.isApprox(
+      ring().sensors.at(moved).world_from_sensor));
+}
+
+TEST_F(Sessions, AnUndoAfterTheMasterIsGoneStandsOnAnotherSensor) {
+  begin_with(ring());
+  ASSERT_TRUE(registrar().move_origin({1.0, 0.0, 0.0}));
+  RegistrarConfig fewer = config();
+  fewer.sensors.erase(registrar().registration().master);
+  registrar().reconfigure(fewer);
+  ASSERT_TRUE(registrar().undo());
+  const Registration& back = registrar().registration();
+  EXPECT_EQ(back.sensors.size(), 2u);
+  EXPECT_TRUE(back.sensors.contains(back.master)) << "else it could not be stored";
+  fewer.sensors = {sensor_id("another")};
+  registrar().reconfigure(fewer);
+  EXPECT_EQ(registrar().undo().error().code, ErrorCode::NotFound);
+  EXPECT_FALSE(registrar().registration().sensors.empty());
+}
+
 TEST_F(Sessions, AnUndoAfterAWalkGoesBackToBeforeItsProvisionalOnes) {
   begin_with(ring(kSensors, Verdict::Provisional));
   ASSERT_TRUE(registrar().start(seconds(8), now_));

@@ -92,7 +92,7 @@ class Room : public ::testing::Test {
   std::vector<Vector3d> slow_;
   std::mt19937 random_{7};
   std::normal_distribution<double> normal_;
-  WatchConfig config_;
+  WatchConfig config_{.enabled = true};
   Watch watch_;
   Timestamp now_ = kStart;
 };
@@ -165,7 +165,7 @@ TEST_F(Room, OnceForgottenTheOthersAreComparedAnew) {
   ASSERT_EQ(walk(seconds(60)), std::nullopt);
   push(2, {0.2, 0.0, 0.0});
   ASSERT_TRUE(walk(seconds(20)));
-  watch_.forget(name(2));
+  watch_.forget();
   push(2, Vector3d::Zero());  // placed anew
   EXPECT_EQ(walk(seconds(60)), std::nullopt);
 }
