@@ -80,6 +80,17 @@ TEST(CastOut, OfThreeThatDoNotCloseTheWorstFittingGoes) {
   EXPECT_EQ(names(cast_out(evidence)), std::vector{sensor(2)});
 }
 
+TEST(CastOut, NobodyIsShieldedByAnInnocentOneWhosePairFitsWorst) {
+  PairwiseRegistration poor = edge(0, 3);
+  poor.rms = 0.06;
+  Evidence evidence =
+      evidence_of({edge(0, 1), edge(0, 2), edge(1, 2, elsewhere()), std::move(poor)});
+  const auto outcasts = cast_out(evidence);
+  ASSERT_EQ(outcasts.size(), 1u);
+  EXPECT_NE(outcasts[0].sensor, sensor(3));
+  EXPECT_NE(outcasts[0].sensor, sensor(0)) << "an edge of its own speaks for it";
+}
+
 TEST(CastOut, OfTwoNobodyCanSayWhoIsWrong) {
   Evidence evidence = evidence_of({}, {{sensor(0), sensor(1)}});
   EXPECT_TRUE(cast_out(evidence).empty());

@@ -2,6 +2,8 @@
 
 #include <random>
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
@@ -11,6 +13,15 @@ namespace {
 TEST(RadiusOf95, OfARoundAndOfAnInfinitelyNarrowOne) {
   EXPECT_NEAR(radius_of_95(9.0 * Eigen::Matrix2d::Identity()), 3.0 * 2.4477, 1e-3);
   EXPECT_NEAR(radius_of_95(Eigen::Vector2d(4.0, 0.0).asDiagonal()), 2.0 * 1.95996, 1e-3);
+  EXPECT_EQ(radius_of_95(Eigen::Matrix2d::Zero()), 0.0);
+}
+
+TEST(RadiusOf95, OfWhatIsNoCovarianceIsInfinite) {
+  Eigen::Matrix2d broken = Eigen::Matrix2d::Identity();
+  broken(0, 1) = broken(1, 0) = 2.0;
+  EXPECT_TRUE(std::isinf(radius_of_95(broken)));
+  broken(0, 0) = std::nan("");
+  EXPECT_TRUE(std::isinf(radius_of_95(broken)));
   EXPECT_EQ(radius_of_95(Eigen::Matrix2d::Zero()), 0.0);
 }
 
