@@ -37,7 +37,13 @@ TEST(Alarms, AreSentencesForPeople) {
 /// the world's x.
 class Pushed : public ::testing::Test {
  protected:
-  Pushed() : core_(of_three<CoreConfig>(), ring()) {}
+  Pushed() : core_(watched(), ring()) {}
+
+  static CoreConfig watched() {
+    auto config = of_three<CoreConfig>();
+    config.watch.enabled = true;
+    return config;
+  }
 
   SensorFrame sight(int sensor, Duration t) const {
     const double angle = 0.9 * chorus::seconds(t);

@@ -41,7 +41,7 @@ TEST(FuseCommand, RegistersFromTheWalkAndFusesIt) {
 }
 
 TEST(FuseCommand, TheSameRecordingsGiveTheSameBytes) {
-  const Cell cell(3.0);
+  const Cell cell(4.0);
   const Outcome first = run_chorus({"fuse", cell.recordings(), "--out", "-"});
   const Outcome second = run_chorus({"fuse", cell.recordings(), "--out", "-"});
   EXPECT_FALSE(first.out.empty());
@@ -74,7 +74,7 @@ TEST(FuseCommand, ASavedRegistrationStandsInForTheWalk) {
 }
 
 TEST(FuseCommand, TheMethodAndEveryOtherKeyCanBeChosen) {
-  const Cell cell(3.0);
+  const Cell cell(4.0);
   for (const char* method : {"otto", "mean", "best-view"}) {
     const Outcome done = run_chorus({"fuse", cell.recordings(), "--out", "-", "--method", method});
     EXPECT_EQ(done.code, kExitOk) << method << done.error;
@@ -82,7 +82,7 @@ TEST(FuseCommand, TheMethodAndEveryOtherKeyCanBeChosen) {
   const Outcome slow =
       run_chorus({"fuse", cell.recordings(), "--out", "-", "--set", "output.rate_hz=10"});
   EXPECT_EQ(slow.code, kExitOk) << slow.error;
-  EXPECT_NEAR(static_cast<double>(lines_of(slow.out).size()), 30.0, 3.0);
+  EXPECT_NEAR(static_cast<double>(lines_of(slow.out).size()), 40.0, 3.0);
   const Outcome wrong =
       run_chorus({"fuse", cell.recordings(), "--out", "-", "--set", "output.rate_hertz=10"});
   EXPECT_EQ(wrong.code, kExitFailed);
