@@ -89,9 +89,7 @@ TEST(FuseOffline, EveryInstantOnceAtTheGrid) {
 }
 
 TEST(FuseOffline, GivenExtrinsicsAreUsedAsTheyAre) {
-  OfflineConfig config;
-  config.pipeline.fusion.method = fusion::Method::InverseVariance;  // no filter's delay
-  const auto fused = fuse_offline(walk({.length = 5, .noise = 0.0}), published(), config);
+  const auto fused = fuse_offline(walk({.length = 5, .noise = 0.0}), published(), {});
   ASSERT_TRUE(fused);
   EXPECT_LT(mean_error(fused->snapshots, Eigen::Isometry3d::Identity()), mm(2));
 }
