@@ -17,10 +17,9 @@
 namespace chorus::registration {
 namespace {
 
-constexpr std::size_t kMaxPoints = 1500;  // of the walk; successive ones are redundant
-constexpr std::size_t kPointsEach = 100;  // of many sensors: each overlap needs its own
-constexpr std::size_t kMinMeasurements =
-    20;  // with fewer a sensor keeps the place given by its chain
+constexpr std::size_t kMaxPoints = 1500;      // of the walk; successive ones are redundant
+constexpr std::size_t kPointsEach = 100;      // of many sensors: each overlap needs its own
+constexpr std::size_t kMinMeasurements = 20;  // with fewer a sensor keeps its chain's place
 constexpr int kIterations = 40;
 constexpr double kSettled = 1e-6;    // [rad], [m]
 constexpr double kMinScale = 0.02;   // in standard deviations
@@ -146,7 +145,6 @@ struct Adjustment {
   double scale = 0.0;  ///< Standard deviation of a point, in units of its sigma.
   double along = 1.0;
   double upward = 1.0;
-
   [[nodiscard]] std::vector<FusedPoint> fuse_all() const {
     std::vector<Eigen::Isometry3d> places;
     for (const Station& station : stations) places.push_back(station.world_from_level);
