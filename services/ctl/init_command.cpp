@@ -187,10 +187,14 @@ Result<ServiceWishes> write_sensor(InitArguments& arguments) {
 Result<void> add_discovered(std::vector<PolledWish>& sensors) {
   const auto found = discovered_sensors();
   if (!found) return pass(found);
+  const std::vector<PolledWish> named = sensors;
   for (const FoundSensor& sensor : *found) {
-    const bool named = std::any_of(sensors.begin(), sensors.end(),
-                                   [&](const PolledWish& each) { return each.id == sensor.id; });
-    if (named) continue;
+    const auto of_this = [&](const auto& each) { return each.id == sensor.id; };
+    if (std::ranges::any_of(named, of_this)) continue;
+    // One of them may be a stranger who wants the token: a person has to say which is meant.
+    if (std::ranges::count_if(*found, of_this) > 1)
+      return fail(ErrorCode::Conflict, sensor.id,
+                  "is announced more than once (chorus discover): name it with --sensor");
     sensors.push_back({sensor.id, sensor.url(), ""});
     std::cerr << "found " << sensor.id << " at " << sensor.url()
               << "; its token is not announced: chorus init printed it there\n";
