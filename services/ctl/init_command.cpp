@@ -115,10 +115,20 @@ std::string shown_host() {
   return name.empty() ? "HOST" : name;
 }
 
+/// A token may have any character; in a link "+" would be a blank, and "&" and "%" more than text.
+std::string percent_encoded(const std::string& text) {
+  std::string encoded;
+  for (const unsigned char c : text) {
+    const bool plain = c < 128 && (std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.');
+    encoded += plain ? std::string(1, static_cast<char>(c)) : fmt::format("%{:02X}", c);
+  }
+  return encoded;
+}
+
 /// The page to open; a browser gives its camera to https, and on the own host to http.
 void tell_phone(const ServiceWishes& wishes, const std::string& url) {
   std::cerr << "On the phone, which needs ca.crt:\n  " << url << "capture/"
-            << (wishes.token.empty() ? "" : "#token=" + wishes.token) << "\n";
+            << (wishes.token.empty() ? "" : "#token=" + percent_encoded(wishes.token)) << "\n";
   if (wishes.tls.empty() && !is_loopback(wishes.address)) {
     std::cerr << "Without a certificate no browser gives it a camera: chorus init ca and chorus "
                  "init certificate, then this again.\n";
