@@ -280,5 +280,6 @@ element('pace').value = String(settings.rate);
 element('token').value = token;
 element('run').disabled = false;
 showLens();
+window.addEventListener('hashchange', () => location.reload()); // a link that is opened where the page is already: its token is taken, and leaves the address
 show();
 if (brought.start) start();
