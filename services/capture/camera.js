@@ -20,6 +20,7 @@ export class Camera {
     this.state = 'off';
     this.turn = 0; // counts openings, so that what belongs to an earlier one is recognised
     this.seen = 0;
+    this.last = ''; // the camera that was open, or is meant to be
     navigator.mediaDevices?.addEventListener('devicechange', () => this.#again(true));
   }
 
@@ -27,6 +28,7 @@ export class Camera {
   async open(id) {
     this.#release();
     this.id = id;
+    this.last = id || this.last;
     const turn = ++this.turn;
     if (!navigator.mediaDevices?.getUserMedia) return this.#set('insecure');
     this.#set('asking');
@@ -43,6 +45,9 @@ export class Camera {
   }
 
   close() {
+  /// Names the camera that is meant, while none is open; '' when it is not known yet which that will be.
+  mean(id) { this.last = id; }
+
     this.turn += 1;
     this.#release();
     this.#set('off');
@@ -63,7 +68,9 @@ export class Camera {
   }
 
   label() { return this.stream?.getVideoTracks()[0]?.label ?? ''; }
-  device() { return this.stream?.getVideoTracks()[0]?.getSettings().deviceId ?? ''; }
+  /// Of the open camera; else of the one before, or that is meant.
+  device() { return this.stream ? this.stream.getVideoTracks()[0]?.getSettings().deviceId ?? '' : this.last; }
+  opened() { return Boolean(this.stream); }
   size() { return { width: this.video.videoWidth, height: this.video.videoHeight }; }
 
   #set(state) {
@@ -97,6 +104,8 @@ export class Camera {
     this.video.srcObject = stream;
     await this.video.play();
     this.seen = performance.now();
+    if (turn !== this.turn) return;
+    this.last = this.device();
     this.#follow(turn);
     this.#set('on');
   }

@@ -4,7 +4,7 @@ import { USUAL_VIEW, lensOfCalibration, lensOfView, readCalibration, sentSize, v
 import { HOPELESS, Link, atTheDoor } from './link.js';
 import { Looker } from './looker.js';
 import { Overlay } from './overlay.js';
-import { fromLink, load, loadToken, save, saveToken } from './settings.js';
+import { adoptLens, fromLink, load, loadToken, save, saveToken } from './settings.js';
 import { Pace, stateOf } from './state.js';
 
 const ROOT = new URL('../', location.href);
@@ -63,7 +63,7 @@ async function onPicture(captured) {
 }
 
 // ---- the lens, and what the sensor is told of it -------------------------------------------------------------------
-const ownLens = () => settings.lenses[camera.device()] ?? settings.lenses[''] ?? USUAL_VIEW;
+const ownLens = () => settings.lenses[camera.device()] ?? USUAL_VIEW;
 
 function lensFor(picture, sent) {
   const own = ownLens();
@@ -169,6 +169,7 @@ function visibilityChanged() {
 function cameraChanged(state) {
   known.camera = { state };
   if (state !== 'on') overlay.show();
+  if (state === 'on' && adoptLens(settings.lenses, camera.device())) save(settings);
   if (state === 'on') listCameras().then(showLens);
   show();
 }
@@ -243,7 +244,12 @@ function onChange(id, take) {
   element(id).addEventListener('change', () => take(element(id).value));
 }
 
-onChange('camera', (value) => { remember({ camera: value }); if (known.running) camera.open(value); });
+onChange('camera', (value) => {
+  remember({ camera: value });
+  camera.mean(value);
+  if (known.running) camera.open(value);
+  showLens();
+});
 onChange('model', (value) => { remember({ model: value }); if (known.running) startLooking(); });
 onChange('pace', (value) => remember({ rate: Number(value) }));
 onChange('token', (value) => {
@@ -282,4 +288,5 @@ element('run').disabled = false;
 showLens();
 window.addEventListener('hashchange', () => location.reload()); // a link that is opened where the page is already: its token is taken, and leaves the address
 show();
+camera.mean(settings.camera);
 if (brought.start) start();

@@ -4,7 +4,7 @@ import { test } from 'node:test';
 
 import { capturedAt } from '../../services/capture/camera.js';
 import { bonesOf, fitted } from '../../services/capture/overlay.js';
-import { fromLink, load, loadToken, save, saveToken } from '../../services/capture/settings.js';
+import { adoptLens, fromLink, load, loadToken, save, saveToken } from '../../services/capture/settings.js';
 import { Pace, cameraStateOf, stateOf } from '../../services/capture/state.js';
 
 const known = (changes) => ({
@@ -82,6 +82,15 @@ test('settings are remembered, and a browser that keeps nothing is no error', ()
 });
 
 test('a link brings a token and no more than it says', () => {
+test('a lens that no camera has yet is that of the first one that opens, and of no other', () => {
+  const [told, old] = [{ calibration: { fx: 900 } }, { fov: 70, sigma: 2 }];
+  const lenses = { '': told, c1: old, c2: old };
+  assert.equal(adoptLens(lenses, ''), false, 'a browser that tells no id');
+  assert.equal(adoptLens(lenses, 'c1'), true);
+  assert.equal(adoptLens(lenses, 'c2'), false);
+  assert.deepEqual(lenses, { c1: told, c2: old });
+});
+
   assert.deepEqual(fromLink(''), { start: false });
   assert.deepEqual(fromLink('#token=a%2Bb&start&rate=5&model=movenet'), { token: 'a+b', model: 'movenet', rate: 5, start: true });
   assert.deepEqual(fromLink('#rate=-1'), { start: false });
