@@ -38,16 +38,17 @@ export class Camera {
       if (turn === this.turn) await this.#show(stream, turn);
       else stream.getTracks().forEach((track) => track.stop());
     } catch (error) {
+      if (turn === this.turn) this.#release(); // a stream that cannot be played keeps the camera from others
       if (turn === this.turn) this.#set(id && error?.name === 'OverconstrainedError' ? 'absent' : cameraStateOf(error));
       if (this.state === 'denied') this.#whenAllowed(turn);
     }
     return undefined;
   }
 
-  close() {
   /// Names the camera that is meant, while none is open; '' when it is not known yet which that will be.
   mean(id) { this.last = id; }
 
+  close() {
     this.turn += 1;
     this.#release();
     this.#set('off');
@@ -103,9 +104,9 @@ export class Camera {
     stream.getVideoTracks()[0].addEventListener('ended', () => turn === this.turn && this.#set('lost'));
     this.video.srcObject = stream;
     await this.video.play();
-    this.seen = performance.now();
     if (turn !== this.turn) return;
     this.last = this.device();
+    this.seen = performance.now();
     this.#follow(turn);
     this.#set('on');
   }

@@ -38,6 +38,7 @@ test('what a person must do comes before what only takes time', () => {
   assert.equal(said({ model: { state: 'loading', detail: '' }, link: { state: 'wrong' } }), 'bad: The token is wrong.');
   assert.equal(said({ model: { state: 'loading', detail: '40 %' }, link: { state: 'connecting' } }), 'warn: Loading the model …');
   assert.equal(said({ hidden: true, link: { state: 'connecting' } }), 'warn: Asleep: this page is hidden.');
+  assert.equal(said({ hidden: true, camera: { state: 'off' } }), 'warn: Asleep: this page is hidden, its camera closed.');
   assert.match(stateOf(known({ slept: 41.2 })).next, /asleep for 41 s/);
 });
 
@@ -81,7 +82,6 @@ test('settings are remembered, and a browser that keeps nothing is no error', ()
   assert.equal(load(storage(new Map([['chorus.capture', '{broken']]))).rate, 30);
 });
 
-test('a link brings a token and no more than it says', () => {
 test('a lens that no camera has yet is that of the first one that opens, and of no other', () => {
   const [told, old] = [{ calibration: { fx: 900 } }, { fov: 70, sigma: 2 }];
   const lenses = { '': told, c1: old, c2: old };
@@ -91,6 +91,7 @@ test('a lens that no camera has yet is that of the first one that opens, and of 
   assert.deepEqual(lenses, { c1: told, c2: old });
 });
 
+test('a link brings a token and no more than it says', () => {
   assert.deepEqual(fromLink(''), { start: false });
   assert.deepEqual(fromLink('#token=a%2Bb&start&rate=5&model=movenet'), { token: 'a+b', model: 'movenet', rate: 5, start: true });
   assert.deepEqual(fromLink('#rate=-1'), { start: false });
