@@ -206,7 +206,17 @@ TEST(PeopleNumbers, FollowPeopleWhoseOrderChanges) {
 TEST(PeopleNumbers, OfTheFileCountWhereAllHaveTheirOwn) {
   PeopleNumbers numbers;
   EXPECT_THAT(numbers.number({person_at(100, 7), person_at(400, 9)}), ElementsAre(7, 9));
-  EXPECT_THAT(numbers.number({person_at(100, 7), person_at(400, 7)}), ElementsAre(1, 2));
+  EXPECT_THAT(numbers.number({person_at(100, 7), person_at(400, 7)}), ElementsAre(10, 11))
+      << "7 and 9 are the tracker's";
+}
+
+TEST(PeopleNumbers, ForgetWhoWasThereWhileNobodyIs) {
+  PeopleNumbers numbers;
+  EXPECT_THAT(numbers.number({person_at(100)}), ElementsAre(1));
+  for (int i = 0; i < 20; ++i) EXPECT_THAT(numbers.number({}), ::testing::IsEmpty());
+  EXPECT_THAT(numbers.number({person_at(100)}), ElementsAre(1)) << "back soon";
+  for (int i = 0; i < 40; ++i) EXPECT_THAT(numbers.number({}), ::testing::IsEmpty());
+  EXPECT_THAT(numbers.number({person_at(100)}), ElementsAre(2));
 }
 
 TEST(PictureNumbers, AreTheDigitsThatTellTheNamesApart) {
