@@ -124,7 +124,7 @@ certify() {  # SSH ADDRESS [--renew]
   name=$(on "$1" hostname </dev/null)
   [[ $name =~ ^[A-Za-z0-9_.-]+$ ]] || name=$2
   on "$fusion_host" "t=\$(mktemp -d) && chorus init certificate $name $name.local $2 --out \$t/tls 2>/dev/null && tar -C \$t -cf - tls; rm -rf \$t" </dev/null |
-    on "$1" "tar -C /etc/chorus --no-same-owner -xf - && chown -R root:chorus /etc/chorus/tls && chmod 750 /etc/chorus/tls"
+    on "$1" "tar -C /etc/chorus --no-same-owner -xf - && chown -R root:chorus /etc/chorus/tls && chmod 751 /etc/chorus/tls"
 }
 
 lay_out_sensor() {  # SSH ADDRESS ID DEVICE

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <map>
 
 #include <fmt/format.h>
 
-#include "common/base/parse.h"
 #include "common/importers/json_values.h"
+#include "common/importers/picture_numbers.h"
 #include "common/importers/pose_people.h"
 #include "common/layout/tables.h"
 #include "common/sensor/limits.h"
@@ -22,7 +21,8 @@ using nlohmann::json;
 
 constexpr double kMaxPixel = 1e5;
 constexpr double kMaxConfidence = 1e3;  // some networks exceed 1, which then counts as 1
-constexpr std::size_t kLongestNumber = 12;
+constexpr std::uint64_t kMostId = 1'000'000'000;
+constexpr double kLongest = 1e7;  // [s] from the first picture: 115 days; more fits no Timestamp
 /// Standard deviation of a landmark by the height of its person: about 8 px at 500 px.
 constexpr double kSigmaByHeight = 0.016;
 constexpr double kLeastSigma = 2.0;  // [px]
@@ -41,7 +41,24 @@ const std::array<Count, 6> kCounts{{{17, &layout::kCoco17},
 
 using People = std::vector<PosePerson>;
 /// By the number of the picture.
-using Pictures = std::map<std::uint64_t, People>;
+struct Pictures {
+  double rate_hz = 30.0;
+  std::map<std::uint64_t, People> people = {};
+
+  /// Malformed: no number of a picture.  Conflict: another picture has that number, and nobody can
+  /// tell which one is meant.
+  [[nodiscard]] Result<void> add(std::uint64_t number, People&& found, const std::string& at) {
+    if (!(static_cast<double>(number) <= kLongest * rate_hz))
+      return fail(ErrorCode::Malformed, at,
+                  fmt::format("is picture {}, which is more than {:g} s from the first.", number,
+                              kLongest));
+    if (people.try_emplace(number, std::move(found)).second) return {};
+    return fail(ErrorCode::Conflict, at,
+                fmt::format("is picture {}, and another one is that too; each picture of a camera "
+                            "needs a number of its own, and each camera a folder.",
+                            number));
+  }
+};
 
 const layout::Layout* layout_of(const PosePerson& person) {
   const auto found = std::find_if(kCounts.begin(), kCounts.end(), [&](const Count& each) {
@@ -60,13 +77,14 @@ Result<PosePerson> checked(PosePerson person, const std::string& at) {
 
 double confidence_of(double value) { return std::clamp(value, 0.0, 1.0); }
 
-/// An id of a tracker: a number, or an array with one; negative: none.
+/// An id of a tracker: a number, or an array with one; negative or absurdly large: none.
 std::optional<std::uint64_t> id_in(const json& person) {
   for (const char* key : {"person_id", "track_id"}) {
     const auto found = person.find(key);
     if (found == person.end()) continue;
     const json& value = found->is_array() && found->size() == 1 ? (*found)[0] : *found;
-    if (value.is_number_unsigned()) return value.get<std::uint64_t>() + 1;  // ours begin at 1
+    if (value.is_number_unsigned() && value.get<std::uint64_t>() < kMostId)
+      return value.get<std::uint64_t>() + 1;  // ours begin at 1
   }
   return std::nullopt;
 }
@@ -146,7 +164,9 @@ Result<void> read_video(const json& list, const std::string& at, Pictures& out) 
     if (!people) return pass(people);
     const auto number = list[i].find("frame_id");
     const bool numbered = number != list[i].end() && number->is_number_unsigned();
-    out[numbered ? number->get<std::uint64_t>() : i] = std::move(*people);
+    const auto added =
+        out.add(numbered ? number->get<std::uint64_t>() : i, std::move(*people), here);
+    if (!added) return pass(added);
   }
   return {};
 }
@@ -166,18 +186,7 @@ Result<void> read_document(const fs::path& file, std::uint64_t number, const Imp
   }
   auto read = read_people(*people, at + ": people");
   if (!read) return pass(read);
-  out[number] = std::move(*read);
-  return {};
-}
-
-/// "cam1_000000000012_keypoints" -> 12; none without a number.
-std::optional<std::uint64_t> last_number(const std::string& stem) {
-  const auto digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
-  const auto end = std::find_if(stem.rbegin(), stem.rend(), digit);
-  const auto begin = std::find_if_not(end, stem.rend(), digit);
-  const std::string text(begin.base(), end.base());
-  if (text.empty() || text.size() > kLongestNumber) return std::nullopt;
-  return parse_number<std::uint64_t>(text);
+  return out.add(number, std::move(*read), at);
 }
 
 struct Damage {
@@ -185,8 +194,9 @@ struct Damage {
   std::string first;
 };
 
-Result<Pictures> read_pictures(const fs::path& input, const ImportLimits& limits, Damage& damage) {
-  Pictures pictures;
+Result<Pictures> read_pictures(const fs::path& input, double rate_hz, const ImportLimits& limits,
+                               Damage& damage) {
+  Pictures pictures{rate_hz};
   std::error_code failed;
   if (!fs::is_directory(input, failed)) {
     if (auto read = read_document(input, 0, limits, pictures); !read) return pass(read);
@@ -199,13 +209,16 @@ Result<Pictures> read_pictures(const fs::path& input, const ImportLimits& limits
       return fail(ErrorCode::TooLarge, input.string(), "holds too many files.");
   }
   std::sort(files.begin(), files.end());
+  std::vector<std::string> names;
+  for (const fs::path& file : files) names.push_back(file.stem().string());
+  const auto numbers = picture_numbers(names);
   for (std::size_t i = 0; i < files.size(); ++i) {
-    const auto number = last_number(files[i].stem().string()).value_or(i);
-    const auto read = read_document(files[i], number, limits, pictures);
+    const auto read = read_document(files[i], numbers[i], limits, pictures);
     if (read) continue;
+    if (read.error().code == ErrorCode::Conflict) return pass(read);
     if (damage.files++ == 0) damage.first = to_string(read.error());
   }
-  if (!pictures.empty()) return pictures;
+  if (!pictures.people.empty()) return pictures;
   return fail(ErrorCode::NotFound, input.string(),
               damage.files == 0 ? "holds no .json files; name the folder of one camera."
                                 : "holds no file that can be used; the first: " + damage.first);
@@ -216,7 +229,7 @@ Result<void> check_size(const Pictures& pictures, const Intrinsics& camera, cons
   std::size_t sure = 0;
   std::size_t outside = 0;
   double farthest = 0.0;
-  for (const auto& [number, people] : pictures) {
+  for (const auto& [number, people] : pictures.people) {
     for (const PosePerson& person : people) {
       for (const PosePoint& point : person.points) {
         if (point.confidence < 0.3) continue;
@@ -286,7 +299,7 @@ SensorFrame frame_of(const People& people, const std::vector<std::uint64_t>& num
 }
 
 std::string layout_name(const Pictures& pictures) {
-  for (const auto& [number, people] : pictures) {
+  for (const auto& [number, people] : pictures.people) {
     if (!people.empty()) return std::string(layout_of(people.front())->name);
   }
   return "unknown: nobody was found";
@@ -308,7 +321,7 @@ record::FrameRecording header_of(const fs::path& input, const PoseCamera& camera
 void add_frames(const Pictures& pictures, const PoseCamera& camera, const ImportOptions& options,
                 record::FrameRecording& out) {
   PeopleNumbers numbers;
-  for (const auto& [number, people] : pictures) {
+  for (const auto& [number, people] : pictures.people) {
     const Timestamp captured =
         options.start + from_seconds(static_cast<double>(number) / camera.rate_hz);
     SensorFrame frame = frame_of(people, numbers.number(people), camera.intrinsics, captured);
@@ -326,7 +339,7 @@ Result<record::FrameRecording> read_pose_frames(const fs::path& input, const Pos
   const auto sensor = sensor_for(input, options);
   if (!sensor) return pass(sensor);
   Damage damage;
-  const auto pictures = read_pictures(input, options.limits, damage);
+  const auto pictures = read_pictures(input, camera.rate_hz, options.limits, damage);
   if (!pictures) return pass(pictures);
   if (const auto ok = check_size(*pictures, camera.intrinsics, input.string()); !ok)
     return pass(ok);

@@ -22,10 +22,10 @@ struct PoseCamera {
   double rate_hz = 30.0;  ///< Pictures a second.
 };
 
-/// One camera.  A picture's number is the last one in its file's name, or its "frame_id"; number 0
-/// is at options.start.  A damaged file has no frame; the note "damage.1" counts them and names the
-/// first.  NotFound when no file can be used; InvalidArgument when the landmarks do not lie in
-/// pictures of the intrinsics' size.
+/// One camera.  A picture's number is in its file's name (picture_numbers.h), or its "frame_id";
+/// number 0 is at options.start.  Conflict when two pictures have the same.  A damaged file has no
+/// frame; the note "damage.1" counts them and names the first.  NotFound when no file can be used;
+/// InvalidArgument when the landmarks do not lie in pictures of the intrinsics' size.
 [[nodiscard]] Result<record::FrameRecording> read_pose_frames(const std::filesystem::path& input,
                                                               const PoseCamera& camera,
                                                               const ImportOptions& options = {});

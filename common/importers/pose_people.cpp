@@ -61,11 +61,16 @@ void PeopleNumbers::follow(const std::vector<PosePerson>& people,
 
 std::vector<std::uint64_t> PeopleNumbers::number(const std::vector<PosePerson>& people) {
   std::vector<std::uint64_t> numbers(people.size(), 0);
-  if (all_have_their_own_id(people)) {
-    for (std::size_t i = 0; i < people.size(); ++i) numbers[i] = *people[i].id;
+  // Also in pictures of nobody, or of people with ids: whoever was there is forgotten in time.
+  std::erase_if(known_, [](const Known& each) { return each.missed > kRemembered; });
+  for (Known& each : known_) ++each.missed;
+  if (!people.empty() && all_have_their_own_id(people)) {
+    for (std::size_t i = 0; i < people.size(); ++i) {
+      numbers[i] = *people[i].id;
+      last_ = std::max(last_, numbers[i]);  // our own must not be the tracker's of somebody else
+    }
     return numbers;
   }
-  for (Known& each : known_) ++each.missed;
   follow(people, numbers);
   for (std::size_t i = 0; i < people.size(); ++i) {
     if (numbers[i] != 0) continue;
@@ -73,7 +78,6 @@ std::vector<std::uint64_t> PeopleNumbers::number(const std::vector<PosePerson>& 
     const auto box = box_of(people[i]);
     if (!box.isEmpty()) known_.push_back({numbers[i], box.center(), box.diagonal().norm(), 0});
   }
-  std::erase_if(known_, [](const Known& each) { return each.missed > kRemembered; });
   return numbers;
 }
 

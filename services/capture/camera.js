@@ -20,6 +20,7 @@ export class Camera {
     this.state = 'off';
     this.turn = 0; // counts openings, so that what belongs to an earlier one is recognised
     this.seen = 0;
+    this.last = ''; // the camera that was open, or is meant to be
     navigator.mediaDevices?.addEventListener('devicechange', () => this.#again(true));
   }
 
@@ -27,6 +28,7 @@ export class Camera {
   async open(id) {
     this.#release();
     this.id = id;
+    this.last = id || this.last;
     const turn = ++this.turn;
     if (!navigator.mediaDevices?.getUserMedia) return this.#set('insecure');
     this.#set('asking');
@@ -36,11 +38,15 @@ export class Camera {
       if (turn === this.turn) await this.#show(stream, turn);
       else stream.getTracks().forEach((track) => track.stop());
     } catch (error) {
+      if (turn === this.turn) this.#release(); // a stream that cannot be played keeps the camera from others
       if (turn === this.turn) this.#set(id && error?.name === 'OverconstrainedError' ? 'absent' : cameraStateOf(error));
       if (this.state === 'denied') this.#whenAllowed(turn);
     }
     return undefined;
   }
+
+  /// Names the camera that is meant, while none is open; '' when it is not known yet which that will be.
+  mean(id) { this.last = id; }
 
   close() {
     this.turn += 1;
@@ -63,7 +69,9 @@ export class Camera {
   }
 
   label() { return this.stream?.getVideoTracks()[0]?.label ?? ''; }
-  device() { return this.stream?.getVideoTracks()[0]?.getSettings().deviceId ?? ''; }
+  /// Of the open camera; else of the one before, or that is meant.
+  device() { return this.stream ? this.stream.getVideoTracks()[0]?.getSettings().deviceId ?? '' : this.last; }
+  opened() { return Boolean(this.stream); }
   size() { return { width: this.video.videoWidth, height: this.video.videoHeight }; }
 
   #set(state) {
@@ -96,6 +104,8 @@ export class Camera {
     stream.getVideoTracks()[0].addEventListener('ended', () => turn === this.turn && this.#set('lost'));
     this.video.srcObject = stream;
     await this.video.play();
+    if (turn !== this.turn) return;
+    this.last = this.device();
     this.seen = performance.now();
     this.#follow(turn);
     this.#set('on');

@@ -1,16 +1,18 @@
 // Makes the camera of this device a sensor: looks for people in its pictures and pushes their landmarks to the sensor that serves this page.
+import { Awake } from './awake.js';
 import { Camera } from './camera.js';
 import { USUAL_VIEW, lensOfCalibration, lensOfView, readCalibration, sentSize, viewOf } from './lens.js';
 import { HOPELESS, Link, atTheDoor } from './link.js';
 import { Looker } from './looker.js';
 import { Overlay } from './overlay.js';
-import { fromLink, load, loadToken, save, saveToken } from './settings.js';
+import { adoptLens, fromLink, load, loadToken, save, saveToken } from './settings.js';
 import { Pace, stateOf } from './state.js';
 
 const ROOT = new URL('../', location.href);
 const SHOW_EVERY_MS = 250;
 const COMPLAINT_MS = 5000;
 const ASLEEP_MS = 3000; // no timer is that late unless the device slept
+const HIDDEN_MS = 5 * 60 * 1000; // so long a hidden page keeps its camera
 
 const element = (id) => document.getElementById(id);
 const settings = load();
@@ -37,7 +39,8 @@ let link = null;
 let said = {}; // the hello that the sensor has
 let complained = 0;
 let looked = 0;
-let awake = null;
+let hidSince = performance.now();
+const awake = new Awake();
 
 // ---- pictures ------------------------------------------------------------------------------------------------
 function grabbed(sent) {
@@ -63,7 +66,7 @@ async function onPicture(captured) {
 }
 
 // ---- the lens, and what the sensor is told of it -------------------------------------------------------------------
-const ownLens = () => settings.lenses[camera.device()] ?? settings.lenses[''] ?? USUAL_VIEW;
+const ownLens = () => settings.lenses[camera.device()] ?? USUAL_VIEW;
 
 function lensFor(picture, sent) {
   const own = ownLens();
@@ -126,17 +129,13 @@ function startLooking() {
   looker = new Looker(settings.model, (state) => { known.model = state; show(); });
 }
 
-async function keepAwake() {
-  awake = await navigator.wakeLock?.request('screen').catch(() => null);
-}
-
 function start() {
   Object.assign(known, { running: true, slept: 0, complaint: '', link: { state: 'connecting', detail: '' } });
   element('settings').open = false;
   ask();
   startLooking();
   camera.open(settings.camera);
-  keepAwake();
+  awake.ask();
   show();
 }
 
@@ -146,7 +145,7 @@ function stop() {
   looker?.end();
   looker = null;
   camera.close();
-  awake?.release();
+  awake.end();
   overlay.show();
   show();
 }
@@ -154,20 +153,23 @@ function stop() {
 /// A hidden page gets no pictures, and a sensor should not wait for it: leaves, and comes back with the page.
 function visibilityChanged() {
   known.hidden = document.hidden;
+  hidSince = ticked = performance.now(); // timers of a hidden page are late: that is no sleep
   if (!known.running) return;
   if (known.hidden) {
     disconnect();
     overlay.show();
     known.link = HOPELESS.includes(known.link.state) ? known.link : { state: 'connecting', detail: '' };
   } else {
+    if (camera.state === 'off') camera.open(settings.camera);
     camera.awake(performance.now());
-    keepAwake();
+    awake.ask();
   }
   show();
 }
 
 function cameraChanged(state) {
   known.camera = { state };
+  if (state === 'on' && adoptLens(settings.lenses, camera.device())) save(settings);
   if (state !== 'on') overlay.show();
   if (state === 'on') listCameras().then(showLens);
   show();
@@ -184,6 +186,7 @@ function tick() {
   if (known.complaint && now - complained > COMPLAINT_MS) known.complaint = '';
   Object.assign(known, pace.at(now));
   if (known.running && !known.hidden) camera.watch(now);
+  if (known.running && known.hidden && camera.opened() && now - hidSince > HIDDEN_MS) camera.close();
   show();
 }
 
@@ -243,7 +246,12 @@ function onChange(id, take) {
   element(id).addEventListener('change', () => take(element(id).value));
 }
 
-onChange('camera', (value) => { remember({ camera: value }); if (known.running) camera.open(value); });
+onChange('camera', (value) => {
+  remember({ camera: value });
+  camera.mean(value);
+  if (known.running) camera.open(value);
+  showLens();
+});
 onChange('model', (value) => { remember({ model: value }); if (known.running) startLooking(); });
 onChange('pace', (value) => remember({ rate: Number(value) }));
 onChange('token', (value) => {
@@ -272,6 +280,7 @@ element('calibration').addEventListener('change', async () => {
 element('uncalibrate').addEventListener('click', () => rememberLens({ ...USUAL_VIEW }));
 element('run').addEventListener('click', () => (known.running ? stop() : start()));
 document.addEventListener('visibilitychange', visibilityChanged);
+window.addEventListener('hashchange', () => location.reload()); // a link that is opened where the page is already: its token is taken, and leaves the address
 window.addEventListener('pagehide', () => known.running && disconnect());
 setInterval(tick, SHOW_EVERY_MS);
 
@@ -279,6 +288,7 @@ element('model').value = settings.model;
 element('pace').value = String(settings.rate);
 element('token').value = token;
 element('run').disabled = false;
+camera.mean(settings.camera);
 showLens();
 show();
 if (brought.start) start();

@@ -18,6 +18,16 @@ export function load(store = () => localStorage) {
   return { camera: '', model: 'movenet', rate: 30, ...known, lenses: { ...known?.lenses } };
 }
 
+/// A lens that was told before any camera was open, kept under '', belongs to the first one that opens.  True when there was one.
+export function adoptLens(lenses, device) {
+  const found = device !== '' && Object.hasOwn(lenses, '');
+  if (found) {
+    lenses[device] = lenses[''];
+    delete lenses[''];
+  }
+  return found;
+}
+
 export function save(settings, store = () => localStorage) {
   kept(() => store().setItem(KEY, JSON.stringify(settings)));
 }

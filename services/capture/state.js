@@ -45,6 +45,7 @@ export function stateOf(known) {
   if (CAMERA[camera.state]) return said(camera.state === 'asking' ? 'warn' : 'bad', CAMERA[camera.state], '');
   if (model.state === 'failed') return { tone: 'bad', sentence: 'The model cannot be loaded.', next: model.detail };
   if (known.lens) return { tone: 'bad', sentence: 'The calibration is for another picture.', next: known.lens };
+  if (known.hidden && camera.state === 'off') return { tone: 'warn', sentence: 'Asleep: this page is hidden, its camera closed.', next: 'After five minutes nothing keeps the camera open. Come back to this page and it goes on.' };
   if (known.hidden) return { tone: 'warn', sentence: 'Asleep: this page is hidden.', next: 'Browsers give no pictures to hidden pages. Come back to it and it goes on.' };
   const gate = ofTheLink(link);
   if (gate?.tone === 'bad') return gate;

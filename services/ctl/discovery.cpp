@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cstdio>
 #include <optional>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -69,6 +70,12 @@ std::optional<FoundSensor> sensor_in(std::string_view line) {
   return valid ? std::optional(sensor) : std::nullopt;
 }
 
+/// Whether it is the same sensor, perhaps at another of its addresses.  The id alone does not tell:
+/// anybody may announce it, and must not take the place of whom it belongs to.
+bool same_sensor(const FoundSensor& a, const FoundSensor& b) {
+  return a.id == b.id && a.host == b.host && a.port == b.port && a.tls == b.tls;
+}
+
 /// Less is better.
 int rank_of(const std::string& address) {
   if (address.starts_with("127.") || address == "::1") return 3;
@@ -121,16 +128,18 @@ std::vector<FoundSensor> read_browsed(std::string_view text) {
     text.remove_prefix(std::min(text.size(), line.size() + 1));
     const auto sensor = sensor_in(line);
     if (!sensor) continue;
-    const auto known = std::find_if(found.begin(), found.end(),
-                                    [&](const FoundSensor& each) { return each.id == sensor->id; });
+    const auto known = std::find_if(found.begin(), found.end(), [&](const FoundSensor& each) {
+      return same_sensor(each, *sensor);
+    });
     if (known == found.end()) {
       found.push_back(*sensor);
     } else if (rank_of(sensor->address) < rank_of(known->address)) {
       *known = *sensor;
     }
   }
-  std::sort(found.begin(), found.end(),
-            [](const FoundSensor& a, const FoundSensor& b) { return a.id < b.id; });
+  std::sort(found.begin(), found.end(), [](const FoundSensor& a, const FoundSensor& b) {
+    return std::tie(a.id, a.host, a.port, a.tls) < std::tie(b.id, b.host, b.port, b.tls);
+  });
   return found;
 }
 

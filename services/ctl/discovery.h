@@ -29,8 +29,9 @@ struct FoundSensor {
 /// The file for kAvahiFolder that announces a sensor; no secret is in it.
 [[nodiscard]] std::string announcement(const std::string& id, std::uint16_t port, bool tls);
 
-/// Reads what `avahi-browse --resolve --parsable` prints: each sensor once, by id; IPv4 before
-/// IPv6, loopback and link-local addresses last.  Anybody in the network may announce anything, so
+/// Reads what `avahi-browse --resolve --parsable` prints: each sensor once, by id, host, port
+/// and TLS; of its addresses IPv4 before IPv6, loopback and link-local ones last.  An id that two
+/// announce is there twice.  Anybody in the network may announce anything, so
 /// lines without a valid id, name, address and port are left out.
 [[nodiscard]] std::vector<FoundSensor> read_browsed(std::string_view text);
 

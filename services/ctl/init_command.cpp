@@ -115,10 +115,20 @@ std::string shown_host() {
   return name.empty() ? "HOST" : name;
 }
 
+/// A token may have any character; in a link "+" would be a blank, and "&" and "%" more than text.
+std::string percent_encoded(const std::string& text) {
+  std::string encoded;
+  for (const unsigned char c : text) {
+    const bool plain = c < 128 && (std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.');
+    encoded += plain ? std::string(1, static_cast<char>(c)) : fmt::format("%{:02X}", c);
+  }
+  return encoded;
+}
+
 /// The page to open; a browser gives its camera to https, and on the own host to http.
 void tell_phone(const ServiceWishes& wishes, const std::string& url) {
   std::cerr << "On the phone, which needs ca.crt:\n  " << url << "capture/"
-            << (wishes.token.empty() ? "" : "#token=" + wishes.token) << "\n";
+            << (wishes.token.empty() ? "" : "#token=" + percent_encoded(wishes.token)) << "\n";
   if (wishes.tls.empty() && !is_loopback(wishes.address)) {
     std::cerr << "Without a certificate no browser gives it a camera: chorus init ca and chorus "
                  "init certificate, then this again.\n";
@@ -187,10 +197,14 @@ Result<ServiceWishes> write_sensor(InitArguments& arguments) {
 Result<void> add_discovered(std::vector<PolledWish>& sensors) {
   const auto found = discovered_sensors();
   if (!found) return pass(found);
+  const std::vector<PolledWish> named = sensors;
   for (const FoundSensor& sensor : *found) {
-    const bool named = std::any_of(sensors.begin(), sensors.end(),
-                                   [&](const PolledWish& each) { return each.id == sensor.id; });
-    if (named) continue;
+    const auto of_this = [&](const auto& each) { return each.id == sensor.id; };
+    if (std::ranges::any_of(named, of_this)) continue;
+    // One of them may be a stranger who wants the token: a person has to say which is meant.
+    if (std::ranges::count_if(*found, of_this) > 1)
+      return fail(ErrorCode::Conflict, sensor.id,
+                  "is announced more than once (chorus discover): name it with --sensor");
     sensors.push_back({sensor.id, sensor.url(), ""});
     std::cerr << "found " << sensor.id << " at " << sensor.url()
               << "; its token is not announced: chorus init printed it there\n";

@@ -36,6 +36,12 @@ bool hand_over(int file) {
   return services == nullptr || ::geteuid() != 0 || ::fchown(file, 0, services->gr_gid) == 0;
 }
 
+/// The mode of open() and mkdir() is cut by the umask: with 077 the services could not read their
+/// configuration, nor anybody ca.crt.  A file system without modes is no failure.
+bool give_mode(int file, mode_t mode) {
+  return ::fchmod(file, mode) == 0 || errno == EPERM || errno == ENOTSUP;
+}
+
 }  // namespace
 
 Result<void> write_file(const std::string& file, const std::string& text, Readers readers,
@@ -54,7 +60,8 @@ Result<void> write_file(const std::string& file, const std::string& text, Reader
                 "exists and is not overwritten: edit it, move it away, or give --out FILE");
   }
   if (made < 0) return cannot(file, " (as root, or with --out FILE)");
-  const bool handed = readers != Readers::Services || hand_over(made);
+  const bool handed =
+      (readers != Readers::Services || hand_over(made)) && give_mode(made, mode_for(readers));
   const bool written = ::write(made, text.data(), text.size()) == static_cast<ssize_t>(text.size());
   ::close(made);
   if (handed && written && (fresh == file || ::rename(fresh.c_str(), file.c_str()) == 0)) return {};
@@ -74,10 +81,10 @@ Result<void> make_folder(const std::string& named, Readers readers) {
   if (!above.empty()) std::filesystem::create_directories(above, failed);
   const bool shared = readers == Readers::Services;
   constexpr mode_t kShared = 0751;  // everybody may read the ca.crt in it, by its name
-  if (::mkdir(folder.c_str(), shared ? kShared : 0700) != 0)
-    return cannot(folder, " (as root, or with --out FOLDER)");
+  const mode_t mode = shared ? kShared : 0700;
+  if (::mkdir(folder.c_str(), mode) != 0) return cannot(folder, " (as root, or with --out FOLDER)");
   const int made = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool handed = !shared || (made >= 0 && hand_over(made));
+  const bool handed = made >= 0 && (!shared || hand_over(made)) && give_mode(made, mode);
   if (made >= 0) ::close(made);
   return handed ? Result<void>{} : cannot(folder);
 }

@@ -126,3 +126,41 @@ test('a camera that opens after another was chosen is let go', async () => {
   assert.ok(late.stopped && !door.stopped);
   assert.equal(camera.label(), 'door');
 });
+
+test('which camera a lens belongs to is known while none is open', async () => {
+  devices.getUserMedia = async () => streamOf(new Track('door'));
+  const camera = made();
+  assert.equal(camera.device(), '');
+  camera.mean('c1');
+  assert.equal(camera.device(), 'c1', 'chosen, but not opened');
+  camera.mean('');
+  await camera.open('');
+  camera.close();
+  assert.equal(camera.device(), 'id of door', 'the one that was open');
+  devices.getUserMedia = refused('OverconstrainedError');
+  await camera.open('c2');
+  assert.equal(camera.device(), 'c2', 'the one that is waited for');
+});
+
+test('a camera whose pictures cannot be shown is let go', async () => {
+  const track = new Track('door');
+  devices.getUserMedia = async () => streamOf(track);
+  video.play = refused('AbortError');
+  const camera = made();
+  await camera.open('');
+  assert.equal(states.at(-1), 'busy');
+  assert.ok(track.stopped && !camera.opened());
+});
+
+test('a camera that is closed before its first picture stays closed', async () => {
+  let shown;
+  video.play = () => new Promise((resolve) => { shown = resolve; });
+  devices.getUserMedia = async () => streamOf(new Track('door'));
+  const camera = made();
+  const opening = camera.open('');
+  await settle();
+  camera.close();
+  shown();
+  await opening;
+  assert.deepEqual(states, ['asking', 'off']);
+});

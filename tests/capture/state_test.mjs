@@ -4,7 +4,7 @@ import { test } from 'node:test';
 
 import { capturedAt } from '../../services/capture/camera.js';
 import { bonesOf, fitted } from '../../services/capture/overlay.js';
-import { fromLink, load, loadToken, save, saveToken } from '../../services/capture/settings.js';
+import { adoptLens, fromLink, load, loadToken, save, saveToken } from '../../services/capture/settings.js';
 import { Pace, cameraStateOf, stateOf } from '../../services/capture/state.js';
 
 const known = (changes) => ({
@@ -38,6 +38,7 @@ test('what a person must do comes before what only takes time', () => {
   assert.equal(said({ model: { state: 'loading', detail: '' }, link: { state: 'wrong' } }), 'bad: The token is wrong.');
   assert.equal(said({ model: { state: 'loading', detail: '40 %' }, link: { state: 'connecting' } }), 'warn: Loading the model …');
   assert.equal(said({ hidden: true, link: { state: 'connecting' } }), 'warn: Asleep: this page is hidden.');
+  assert.equal(said({ hidden: true, camera: { state: 'off' } }), 'warn: Asleep: this page is hidden, its camera closed.');
   assert.match(stateOf(known({ slept: 41.2 })).next, /asleep for 41 s/);
 });
 
@@ -79,6 +80,15 @@ test('settings are remembered, and a browser that keeps nothing is no error', ()
   assert.equal(load(forbidden).model, 'movenet');
   assert.equal(loadToken(forbidden), '');
   assert.equal(load(storage(new Map([['chorus.capture', '{broken']]))).rate, 30);
+});
+
+test('a lens that no camera has yet is that of the first one that opens, and of no other', () => {
+  const [told, old] = [{ calibration: { fx: 900 } }, { fov: 70, sigma: 2 }];
+  const lenses = { '': told, c1: old, c2: old };
+  assert.equal(adoptLens(lenses, ''), false, 'a browser that tells no id');
+  assert.equal(adoptLens(lenses, 'c1'), true);
+  assert.equal(adoptLens(lenses, 'c2'), false);
+  assert.deepEqual(lenses, { c1: told, c2: old });
 });
 
 test('a link brings a token and no more than it says', () => {

@@ -105,7 +105,7 @@ class Installed(unittest.TestCase):
                 self.assertTrue(self.exists(path) or self.exists(path + ".gz"))
         self.assertTrue(self.exists("/etc/systemd/system/multi-user.target.wants/chorus-fusion.service"), "it starts at boot")
         self.assertEqual(self.inside("stat -c '%a %U %G' /etc/chorus /var/lib/chorus").split("\n")[:2],
-                         ["750 root chorus", "750 chorus chorus"])
+                         ["751 root chorus", "750 chorus chorus"])
         said = self.inside("chorus init fusion --sensor s1=http://127.0.0.1:8081/; "
                            "runuser -u chorus -- chorus-fusion --check --config /etc/chorus/fusion.json")
         self.assertIn("The configuration is good.", said)
@@ -136,8 +136,11 @@ class Installed(unittest.TestCase):
         first = self.version()
         self.inside("chorus init sensor --id mine --device simulated; echo 'OPTIONS=\"--log-level warn\"' > /etc/default/chorus-sensor;"
                     "mkdir -p /var/lib/chorus/sensor/recordings && touch /var/lib/chorus/sensor/recordings/walk")
+        self.inside("cd /etc/chorus && chmod 750 . && mkdir -m 750 tls && touch token tls/ca.crt && chmod 644 token tls/ca.crt")
         self.inside(f"dpkg --force-confdef --force-confold -i {self.another_version('99.0')}")
         self.assertEqual(self.version(), "99.0")
+        self.assertEqual(self.inside("cd /etc/chorus && stat -c '%a %U %G' . token tls tls/ca.crt").split("\n")[:4],
+                         ["751 root chorus", "640 root chorus", "751 root root", "644 root root"], "the opened folder opens no file")
         self.inside("/packages/install.sh chorus-sensor=" + first + " chorus-common=" + first)
         self.assertEqual(self.version(), first)
         self.assertIn("--log-level warn", self.inside("cat /etc/default/chorus-sensor"))
@@ -146,13 +149,19 @@ class Installed(unittest.TestCase):
 
     def test_removing_keeps_state_and_purging_does_not(self):
         self.install("chorus-sensor")
-        self.inside("chorus init sensor --device simulated; mkdir -p /var/lib/chorus/sensor && touch /var/lib/chorus/sensor/x")
+        announced = "/etc/avahi/services/chorus-sensor.service"
+        self.inside("mkdir -p /etc/avahi/services; chorus init sensor --device simulated; mkdir -p /var/lib/chorus/sensor && touch /var/lib/chorus/sensor/x")
+        self.assertTrue(self.exists(announced))
+        self.inside("apt-get -y remove chorus-sensor")
+        self.assertFalse(self.exists(announced), "a sensor that is gone is not announced")
+        self.install("chorus-sensor")
+        self.assertTrue(self.exists(announced), "and is again when it is back")
         self.inside("apt-get -y remove chorus-sensor")
         self.assertFalse(self.exists("/usr/bin/chorus-sensor"))
         for kept in ("/etc/chorus/sensor.json", "/var/lib/chorus/sensor/x", "/etc/default/chorus-sensor"):
             self.assertTrue(self.exists(kept), kept)
         self.inside("dpkg --purge chorus-sensor")
-        for gone in ("/etc/chorus/sensor.json", "/var/lib/chorus/sensor", "/etc/default/chorus-sensor"):
+        for gone in ("/etc/chorus/sensor.json", "/var/lib/chorus/sensor", "/etc/default/chorus-sensor", announced, announced + ".removed"):
             self.assertFalse(self.exists(gone), gone)
         self.inside("dpkg --purge chorus-common")
         for gone in ("/etc/chorus", "/var/lib/chorus", "/usr/bin/chorus"):

@@ -169,6 +169,15 @@ test('permission, absence and a camera in use are told apart', async () => {
   await context.close();
 });
 
+test('a link that is opened where the page is already brings its token, which leaves the address', async () => {
+  const context = await browser.newContext();
+  const fresh = await opened(context, '#token=an-old-token');
+  await fresh.waitForFunction(() => !document.getElementById('run').disabled);
+  await fresh.evaluate((token) => { location.hash = `token=${token}`; }, encodeURIComponent(CONTROL));
+  await fresh.waitForFunction((token) => document.getElementById('token').value === token && location.hash === '', CONTROL);
+  await context.close();
+});
+
 test('one page at a time holds a sensor; the other waits and takes over', async () => {
   const second = await opened(page.context());
   await second.click('#run');

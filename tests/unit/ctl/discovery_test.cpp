@@ -1,5 +1,8 @@
 #include "services/ctl/discovery.h"
 
+#include <cstdlib>
+#include <filesystem>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -26,6 +29,49 @@ TEST(Discovery, EachSensorIsFoundOnceAtItsBestAddress) {
   EXPECT_THAT(read_browsed(kBrowsed),
               ElementsAre(FoundSensor{"a2", "a2.local", "10.9.0.2", 9000, false},
                           FoundSensor{"s1", "s1.local", "10.9.0.1", 8081, true}));
+}
+
+constexpr const char* kStranger =
+    R"(=;d0;IPv4;other;_chorus-sensor._tcp;local;evil.local;10.9.0.66;8081;"tls=0" "id=s1"
+)";
+
+TEST(Discovery, AStrangerWithTheSameIdIsShownBesidesTheSensor) {
+  const FoundSensor stranger{"s1", "evil.local", "10.9.0.66", 8081, false};
+  const FoundSensor sensor{"s1", "s1.local", "10.9.0.1", 8081, true};
+  EXPECT_THAT(read_browsed(std::string(kStranger) + kBrowsed),
+              ElementsAre(::testing::_, stranger, sensor));
+  EXPECT_THAT(read_browsed(std::string(kBrowsed) + kStranger),
+              ElementsAre(::testing::_, stranger, sensor));
+}
+
+/// An avahi-browse that prints this, for as long as it lives.
+class Browsed {
+ public:
+  explicit Browsed(const std::string& text) : path_(::getenv("PATH")) {
+    const auto program = folder_.write("avahi-browse", "#!/bin/sh\ncat <<'END'\n" + text + "END\n");
+    std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+    ::setenv("PATH", (folder_.path().string() + ":" + path_).c_str(), 1);
+  }
+  ~Browsed() { ::setenv("PATH", path_.c_str(), 1); }
+  Browsed(const Browsed&) = delete;
+  Browsed& operator=(const Browsed&) = delete;
+
+ private:
+  chorus::testing::TemporaryFolder folder_;
+  std::string path_;
+};
+
+TEST(Discovery, InitFusionTakesNoSensorThatTwoAnnounce) {
+  const Browsed two(std::string(kBrowsed) + kStranger);
+  const Outcome refused = run_chorus({"init", "fusion", "--discover", "--out", "-"});
+  EXPECT_EQ(refused.code, kExitFailed);
+  EXPECT_THAT(refused.error, HasSubstr("s1: is announced more than once"));
+  const Outcome named = run_chorus({"init", "fusion", "--discover", "--sensor",
+                                    "s1=https://s1.local:8081/,0123456789ab", "--out", "-"});
+  ASSERT_EQ(named.code, kExitOk) << named.error;
+  EXPECT_THAT(named.out, HasSubstr("https://s1.local:8081/"));
+  EXPECT_THAT(named.out, HasSubstr("http://10.9.0.2:9000/")) << "the other one is found";
+  EXPECT_THAT(named.out, ::testing::Not(HasSubstr("10.9.0.66")));
 }
 
 TEST(Discovery, TlsIsAskedByNameAndPlainHttpByAddress) {

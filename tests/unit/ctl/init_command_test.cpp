@@ -91,6 +91,14 @@ TEST(Init, APhoneIsABridgeWithItsPageAndALinkToOpen) {
   EXPECT_THAT(made.out, AllOf(HasSubstr("\"kind\": \"bridge\""), HasSubstr("\"page\": true")));
 }
 
+TEST(Init, ATokenInALinkIsPercentEncoded) {
+  const testing::TemporaryFolder folder;
+  const Outcome made = run({"sensor", "--device", "phone", "--no-tls", "--token", "a+b&c%20-d_e.f#",
+                            "--out", (folder / "sensor.json").string()});
+  ASSERT_EQ(made.code, kExitOk) << made.error;
+  EXPECT_THAT(made.error, HasSubstr("/capture/#token=a%2Bb%26c%2520-d_e.f%23\n"));
+}
+
 TEST(Init, LoopbackNeedsNoTokens) {
   const Outcome made = run({"fusion", "--out", "-", "--listen", "127.0.0.1", "--port", "9000"});
   ASSERT_EQ(made.code, kExitOk) << made.error;

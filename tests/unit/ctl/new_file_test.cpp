@@ -1,5 +1,7 @@
 #include "services/ctl/new_file.h"
 
+#include <sys/stat.h>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +13,18 @@ namespace {
 
 namespace fs = std::filesystem;
 using fs::perms;
+
+/// The umask of the process, for as long as it lives.
+class Umask {
+ public:
+  explicit Umask(mode_t mask) : before_(::umask(mask)) {}
+  ~Umask() { ::umask(before_); }
+  Umask(const Umask&) = delete;
+  Umask& operator=(const Umask&) = delete;
+
+ private:
+  mode_t before_;
+};
 
 perms mode_of(const fs::path& path) { return fs::status(path).permissions(); }
 
@@ -30,6 +44,20 @@ TEST(MakeFolder, OthersMayPassThroughOneForTheServicesButNotLookAround) {
   ASSERT_THAT(make_folder(made.string(), Readers::Services), chorus::testing::IsOk());
   EXPECT_EQ(mode_of(made),
             perms::owner_all | perms::group_read | perms::group_exec | perms::others_exec);
+}
+
+TEST(NewFiles, HaveTheModeOfTheirReadersWhateverTheUmask) {
+  const chorus::testing::TemporaryFolder folder;
+  const auto at = [&](const char* name) { return (folder / name).string(); };
+  const Umask closed(077);
+  ASSERT_THAT(make_folder(at("tls"), Readers::Services), chorus::testing::IsOk());
+  ASSERT_THAT(write_file(at("ca.crt"), "", Readers::Everybody), chorus::testing::IsOk());
+  ASSERT_THAT(write_file(at("sensor.json"), "", Readers::Services), chorus::testing::IsOk());
+  ASSERT_THAT(write_file(at("ca.key"), "", Readers::Owner), chorus::testing::IsOk());
+  EXPECT_EQ(mode_of(at("tls")), perms{0751});
+  EXPECT_EQ(mode_of(at("ca.crt")), perms{0644});
+  EXPECT_EQ(mode_of(at("sensor.json")), perms{0640});
+  EXPECT_EQ(mode_of(at("ca.key")), perms{0600});
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include "common/importers/picture_numbers.h"
 #include "common/importers/pose_people.h"
 #include "common/sensor/pixel_ray.h"
 #include "tests/support/matchers.h"
@@ -134,6 +135,40 @@ TEST_F(PoseFrames, ADamagedOrEmptyFileCostsItsPictureOnly) {
   EXPECT_THAT(read_->notes.at("damage.1"), HasSubstr("1.json"));
 }
 
+TEST_F(PoseFrames, TwoPicturesOfOneNumberAreRefused) {
+  write("1.json", frame_text({flat_person(17, 300)}));
+  write("01.json", frame_text({flat_person(17, 200)}));
+  EXPECT_THAT(refusal(read()),
+              ::testing::AllOf(::testing::StartsWith("conflict"), HasSubstr("1.json"),
+                               HasSubstr("is picture 1, and another one is that too")));
+  const json twice = json::array({{{"frame_id", 4}, {"instances", json::array()}},
+                                  {{"frame_id", 4}, {"instances", json::array()}}});
+  EXPECT_THAT(refusal(read_pose_frames(folder_.write("video.json", twice.dump()), kCamera)),
+              HasSubstr("[1]: is picture 4, and another"));
+}
+
+TEST_F(PoseFrames, NumbersBeyondAllTimeAreRefused) {
+  write("250000000.json", frame_text({flat_person(17, 300)}));
+  EXPECT_THAT(read(), IsOk()) << "1e7 s";
+  for (const std::uint64_t number : {std::uint64_t{250000001}, ~std::uint64_t{0}}) {
+    const json late = json::array({{{"frame_id", number}, {"instances", json::array()}}});
+    EXPECT_THAT(refusal(read_pose_frames(folder_.write("video.json", late.dump()), kCamera)),
+                HasSubstr("more than 1e+07 s from the first"));
+  }
+}
+
+TEST_F(PoseFrames, AnAbsurdIdOfATrackerIsNone) {
+  json person = instance(17, 200);
+  person["track_id"] = ~std::uint64_t{0};
+  write("0.json", json::array({person}).dump());
+  const auto absurd = read();
+  ASSERT_THAT(absurd, IsOk());
+  EXPECT_EQ(absurd->frames.at(0).bodies.at(0).id, BodyId{1});
+  person["track_id"] = 41;
+  write("0.json", json::array({person}).dump());
+  EXPECT_EQ(read()->frames.at(0).bodies.at(0).id, BodyId{42});
+}
+
 TEST_F(PoseFrames, AFolderWithNothingUsefulSaysWhy) {
   EXPECT_THAT(refusal(read()),
               ::testing::AllOf(::testing::StartsWith("not-found"), HasSubstr("no .json files")));
@@ -171,7 +206,38 @@ TEST(PeopleNumbers, FollowPeopleWhoseOrderChanges) {
 TEST(PeopleNumbers, OfTheFileCountWhereAllHaveTheirOwn) {
   PeopleNumbers numbers;
   EXPECT_THAT(numbers.number({person_at(100, 7), person_at(400, 9)}), ElementsAre(7, 9));
-  EXPECT_THAT(numbers.number({person_at(100, 7), person_at(400, 7)}), ElementsAre(1, 2));
+  EXPECT_THAT(numbers.number({person_at(100, 7), person_at(400, 7)}), ElementsAre(10, 11))
+      << "7 and 9 are the tracker's";
+}
+
+TEST(PeopleNumbers, ForgetWhoWasThereWhileNobodyIs) {
+  PeopleNumbers numbers;
+  EXPECT_THAT(numbers.number({person_at(100)}), ElementsAre(1));
+  for (int i = 0; i < 20; ++i) EXPECT_THAT(numbers.number({}), ::testing::IsEmpty());
+  EXPECT_THAT(numbers.number({person_at(100)}), ElementsAre(1)) << "back soon";
+  for (int i = 0; i < 40; ++i) EXPECT_THAT(numbers.number({}), ::testing::IsEmpty());
+  EXPECT_THAT(numbers.number({person_at(100)}), ElementsAre(2));
+}
+
+TEST(PictureNumbers, AreTheDigitsThatTellTheNamesApart) {
+  EXPECT_THAT(picture_numbers({"cam1_000_keypoints", "cam1_012_keypoints"}), ElementsAre(0, 12));
+  EXPECT_THAT(picture_numbers({"cam_000012_pose2d", "cam_000013_pose2d"}), ElementsAre(12, 13));
+  EXPECT_THAT(picture_numbers({"7_of_2", "8_of_1", "9_of_2"}), ElementsAre(7, 8, 9));
+  EXPECT_THAT(picture_numbers({"1700000000_8", "1700000001_9"}), ElementsAre(8, 9));
+  EXPECT_THAT(picture_numbers({"9", "10"}), ElementsAre(9, 10));
+}
+
+TEST(PictureNumbers, OfOneNameAreItsLongestRun) {
+  EXPECT_THAT(picture_numbers({"cam_000012_pose2d"}), ElementsAre(12));
+  EXPECT_THAT(picture_numbers({"a1b2"}), ElementsAre(2));
+  EXPECT_THAT(picture_numbers({"0", "also_5_x"}), ElementsAre(0, 5)) << "names unlike each other";
+}
+
+TEST(PictureNumbers, AreThePlaceInTheListWithoutDigits) {
+  EXPECT_THAT(picture_numbers({"a", "b"}), ElementsAre(0, 1));
+  EXPECT_THAT(picture_numbers({"20261123101530123456", "20261123101530123457"}), ElementsAre(0, 1));
+  EXPECT_THAT(picture_numbers({"", "5"}), ElementsAre(0, 5));
+  EXPECT_THAT(picture_numbers({}), ::testing::IsEmpty());
 }
 
 }  // namespace

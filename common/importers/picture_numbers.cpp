@@ -1,0 +1,76 @@
+#include "common/importers/picture_numbers.h"
+
+#include <cctype>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "common/base/parse.h"
+
+namespace chorus::importers {
+namespace {
+
+constexpr std::size_t kLongestNumber = 12;
+
+/// Each run of digits in a name.
+using Runs = std::vector<std::string>;
+
+bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+
+/// The runs of a name; `shape`: the name with a # for each, so that runs of names with the same
+/// shape mean the same.
+Runs runs_of(const std::string& name, std::string& shape) {
+  Runs runs;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const bool digit = is_digit(name[i]);
+    const bool begins = digit && (i == 0 || !is_digit(name[i - 1]));
+    if (begins) runs.emplace_back();
+    if (digit) runs.back() += name[i];
+    if (begins || !digit) shape += begins ? '#' : name[i];
+  }
+  return runs;
+}
+
+std::optional<std::uint64_t> number_of(const std::string& run) {
+  return run.size() <= kLongestNumber ? parse_number<std::uint64_t>(run) : std::nullopt;
+}
+
+/// The run that numbers these names, which have the same shape; none if no run does.
+std::optional<std::size_t> numbering_run(const std::vector<const Runs*>& names) {
+  const Runs& first = *names.front();
+  for (std::size_t run = first.size(); names.size() > 1 && run-- > 0;) {
+    std::set<std::uint64_t> seen;
+    for (const Runs* name : names) {
+      if (const auto number = number_of((*name)[run])) seen.insert(*number);
+    }
+    if (seen.size() == names.size()) return run;
+  }
+  std::optional<std::size_t> longest;
+  for (std::size_t run = 0; run < first.size(); ++run) {
+    const bool longer = !longest || first[run].size() >= first[*longest].size();
+    if (longer && number_of(first[run])) longest = run;
+  }
+  return longest;
+}
+
+}  // namespace
+
+std::vector<std::uint64_t> picture_numbers(const std::vector<std::string>& names) {
+  std::vector<Runs> runs;
+  std::map<std::string, std::vector<std::size_t>> alike;  // by shape
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    std::string shape;
+    runs.push_back(runs_of(names[i], shape));
+    alike[shape].push_back(i);
+  }
+  std::vector<std::uint64_t> numbers(names.size());
+  for (const auto& [shape, members] : alike) {
+    std::vector<const Runs*> of_members;
+    for (const std::size_t i : members) of_members.push_back(&runs[i]);
+    const auto run = numbering_run(of_members);
+    for (const std::size_t i : members) numbers[i] = run ? number_of(runs[i][*run]).value_or(i) : i;
+  }
+  return numbers;
+}
+
+}  // namespace chorus::importers
