@@ -31,4 +31,8 @@ double radius_of_95(const Eigen::Matrix2d& covariance) {
   return wide * std::lerp(kRadii[below], kRadii[below + 1], rest);
 }
 
+double radius_on_floor(const Eigen::Matrix<double, 6, 6>& covariance) {
+  return radius_of_95(covariance.block<3, 3>(3, 3)({0, 2}, {0, 2}));
+}
+
 }  // namespace chorus::registration

@@ -1,15 +1,12 @@
-#include "common/base/median.h"
 #include "fusion-server/registration/registration.h"
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <map>
 #include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <Eigen/Eigenvalues>
 
 #include "fusion-server/registration/adjoint.h"
 #include "fusion-server/registration/adjustment.h"
@@ -220,15 +217,11 @@ void place_sensors(Work& work) {
   }
 }
 
-double radius_on_floor(const Extrinsics& place) {
-  return radius_of_95(place.covariance.block<3, 3>(3, 3)({0, 2}, {0, 2}));
-}
-
 /// Nothing is accepted that nobody can vouch for.
 void refuse_wide(Work& work) {
   const std::map<SensorId, Extrinsics> all = work.result.sensors;
   for (const auto& [sensor, place] : all) {
-    const double radius = radius_on_floor(place);
+    const double radius = radius_on_floor(place.covariance);
     if (radius <= work.config.max_position || place.chain.size() < 2) continue;
     const SensorId& neighbour = place.chain[place.chain.size() - 2];
     work.refuse(sensor,
@@ -316,7 +309,7 @@ void judge_chain(Work& work, const SensorId& sensor, const std::vector<SensorId>
 void judge_accuracy(Work& work) {
   for (const auto& [sensor, place] : work.result.sensors) judge_chain(work, sensor, place.chain);
   for (const auto& [sensor, place] : work.result.sensors) {
-    const double radius = radius_on_floor(place);
+    const double radius = radius_on_floor(place.covariance);
     if (radius <= work.config.good_position) continue;
     work.doubt(
         sensor,
@@ -373,8 +366,8 @@ Registration solve_with(const PairEstimator& estimate, const std::vector<WalkTra
   Work work{walk, config, {}, {}, {}, {}, {}, false};
   work.result.solved = now;
   reduce_tracks(work);
-  const bool silent = std::all_of(walk.begin(), walk.end(),
-                                  [](const WalkTrack& track) { return track.frames.empty(); });
+  const bool silent =
+      std::ranges::all_of(walk, [](const WalkTrack& track) { return track.frames.empty(); });
   if (silent) {
     work.result.reasons.push_back("no sensor has delivered a frame yet");
     return work.result;
