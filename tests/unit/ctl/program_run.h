@@ -66,7 +66,8 @@ class Cell {
   explicit Cell(double length = 6.0) {
     std::filesystem::create_directory(folder_ / "rec");
     for (int i = 0; i < kRing; ++i) {
-      const auto recording = walk_seen_by(i, length);
+      auto recording = walk_seen_by(i, length);
+      recording.notes["set_origin"] = to_iso8601(recording.frames.front().captured);  // one clock
       const auto file = folder_ / "rec" / (recording.sensor.str() + ".mcap");
       EXPECT_THAT(record::write_frame_recording(file, recording), chorus::testing::IsOk());
     }
