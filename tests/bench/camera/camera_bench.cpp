@@ -16,7 +16,7 @@ struct Case {
 constexpr std::array kCases{
     Case{"people", simulated_people, true}, Case{"four-views", four_views, true},
     Case{"four-views-live", live_views, false}, Case{"video", runner_speed, false},
-    Case{"calibrate", lens_calibration, true}};
+    Case{"calibrate", lens_calibration, false}};
 
 }  // namespace
 
