@@ -75,6 +75,7 @@ function showRaw(view, frame) {
 let framedVersion = null;
 function placeSensors(registration) {
   const places = Object.entries(registration.sensors ?? {});
+  for (const view of sensors.values()) view.place.visible = false; // one that lost its place is drawn nowhere
   for (const [id, pose] of places) {
     const view = sensorView(id);
     view.place.position.set(pose.x, pose.y, pose.z);
@@ -127,8 +128,9 @@ async function followSession(registration) {
   const runs = (state === 'collecting' || state === 'solving') && progress;
   if (!runs) session = null;
   else if (session?.path !== progress) session = { path: progress, resource: resource(progress.slice(1)) };
-  const told = session && await session.resource.next();
-  if (session && !told) return;
+  const asked = session;
+  const told = asked && await asked.resource.next();
+  if (asked !== session || (asked && !told)) return; // the session has ended, or there is nothing new
   showCoverage(document.getElementById('coverage'), document.getElementById('pairs'), told, registration.sensors);
 }
 
