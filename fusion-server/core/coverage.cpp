@@ -79,11 +79,11 @@ void Coverage::add(const SensorFrame& frame) {
     newest_.erase(frame.sensor);
     return;
   }
-  for (const auto& [other, sight] : newest_) {
+  for (auto& [other, sight] : newest_) {
     if (other == frame.sensor || frame.received - sight.received > kTogether) continue;
     const bool first = frame.sensor < other;
-    // Counted when the second of the two comes, so that both rates are the slower one's.
-    if (!first) continue;
+    // Each sight counts once with each sensor, so that the faster sensor does not count it again.
+    if (!first || !sight.counted.insert(frame.sensor).second) continue;
     Common& common = common_[{frame.sensor, other}];
     ++common.sightings;
     common.sum += *neck;
@@ -93,7 +93,7 @@ void Coverage::add(const SensorFrame& frame) {
   auto& cells = seen_[frame.sensor];
   const Cell cell{cell_of(neck->x()), cell_of(neck->z())};
   if (cells.size() < kMostCells || cells.contains(cell)) cells[cell] = *neck;
-  newest_[frame.sensor] = {frame.received, *neck};
+  newest_[frame.sensor] = {frame.received, *neck, {}};
 }
 
 std::vector<PairCoverage> Coverage::pairs() const {

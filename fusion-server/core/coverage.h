@@ -29,7 +29,8 @@ class Coverage {
  private:
   struct Sight {
     Timestamp received;
-    Eigen::Vector3d place;  ///< Of the neck, in the sensor's space [m].
+    Eigen::Vector3d place;       ///< Of the neck, in the sensor's space [m].
+    std::set<SensorId> counted;  ///< With which it was counted.
   };
   struct Common {
     std::size_t sightings = 0;

@@ -2,6 +2,7 @@
 #include "fusion-server/core/coverage.h"
 
 #include <cmath>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -51,6 +52,17 @@ TEST(Coverage, CountsWhatTwoSeeAtTheSameTimeAndHowFarItSpreads) {
   EXPECT_EQ(coverage.pairs().size(), 1u) << "a minute later is not together";
   coverage.clear();
   EXPECT_THAT(coverage.pairs(), IsEmpty());
+}
+
+TEST(Coverage, CountsAtTheRateOfTheSlowerSensorWhicheverIsNamedFirst) {
+  for (const auto& [fast, slow] : {std::pair{"s1", "s2"}, {"s2", "s1"}}) {
+    Coverage coverage;
+    for (int ms = 0; ms < 3000; ms += 11) {
+      if (ms % 33 == 0) coverage.add(frame(slow, milliseconds(ms), {0, 0, 2}));
+      coverage.add(frame(fast, milliseconds(ms + 1), {0, 0, 2}));
+    }
+    EXPECT_NEAR(static_cast<double>(coverage.pairs().at(0).sightings), 91.0, 2.0) << fast;
+  }
 }
 
 TEST(Coverage, LeavesOutFramesWithSeveralBodiesOrNone) {
