@@ -202,7 +202,7 @@ std::string header_of(const Take& take, std::size_t data_start) {
   return header;
 }
 
-void append_joint(std::string& bytes, const Joint& joint, double variance) {
+void append_point(std::string& bytes, const Joint& joint, double variance) {
   for (Eigen::Index axis = 0; axis < 3; ++axis)
     append_float(bytes, joint.seen() ? static_cast<float>(to_mm(joint.position[axis])) : 0.0f);
   float residual = -1.0f;
@@ -232,7 +232,7 @@ Result<std::string> c3d_of(const Take& take) {
     for (const PersonTrack& track : take.persons) {
       const Pose& pose = track.poses[f];
       for (std::size_t j = 0; j < kJointCount; ++j)
-        append_joint(bytes, pose.skeleton.joints[j], pose.variance[j]);
+        append_point(bytes, pose.skeleton.joints[j], pose.variance[j]);
     }
   }
   bytes.resize((bytes.size() + kBlock - 1) / kBlock * kBlock, '\0');

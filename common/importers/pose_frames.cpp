@@ -19,7 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr double kMaxPixel = 1e5;
 constexpr double kMaxConfidence = 1e3;  // some networks exceed 1, which then counts as 1
 constexpr std::uint64_t kMostId = 1'000'000'000;
 constexpr double kLongest = 1e7;  // [s] from the first picture: 115 days; more fits no Timestamp

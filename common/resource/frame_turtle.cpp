@@ -116,7 +116,7 @@ class TurtleFrame {
 
   void put_origin() {
     pen_.put(" ;\n  ch:source ");
-    pen_.put(quoted(frame_.source));
+    pen_.put(in_quotes(frame_.source));
     pen_.put(" ;\n  ch:space ch:");
     pen_.put(name_of(frame_.space));
   }

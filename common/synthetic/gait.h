@@ -13,6 +13,8 @@
 
 namespace chorus::synthetic {
 
+inline constexpr double kToeHeight = 0.03;  ///< Of a standing foot joint over the floor [m].
+
 class Gait {
  public:
   /// Cuts out of a take of straight walking the cycle whose ends fit together best.

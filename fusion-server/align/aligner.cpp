@@ -13,7 +13,7 @@ namespace {
 constexpr Duration kGrace = std::chrono::milliseconds(15);
 constexpr int kPeriods = 2;  // A gap of this many of a sensor's periods is still interpolated.
 
-constexpr double kSlack = 0.1;  // By how much a body's core may jump through noise alone [m].
+constexpr double kJumpSlack = 0.1;  // By how much a body's core may jump through noise alone [m].
 
 /// The frames around an instant; if one was captured at the instant itself, `before` and `after`
 /// are that frame.
@@ -76,7 +76,7 @@ std::vector<BodyFrame> bodies_between(const Bracket& around, Timestamp instant,
                                       const AlignConfig& config) {
   const Duration gap = around.after->captured - around.before->captured;
   const double s = seconds(instant - around.before->captured) / seconds(gap);
-  const double reach = config.max_speed * seconds(gap) + kSlack;
+  const double reach = config.max_speed * seconds(gap) + kJumpSlack;
   std::vector<BodyFrame> bodies;
   for (const BodyFrame& earlier : around.before->bodies) {
     const BodyFrame* later = body_of(*around.after, earlier.id);

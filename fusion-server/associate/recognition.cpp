@@ -7,7 +7,7 @@
 namespace chorus::associate {
 namespace {
 
-constexpr std::size_t kMostMissing = 64;
+constexpr std::size_t kMostMissingTracks = 64;
 // [s] of sight, summed over the views, from which on builds can exclude people.
 constexpr double kGlance = 1.5;
 // With n times as many views as this, an n-th of the time is enough to recognise somebody.
@@ -115,7 +115,7 @@ void question(Track& track, Tracks& tracks, const AssociationConfig& config) {
 void miss(const Track& track, Tracks& tracks) {
   if (!(track.named || track.before) || !track.admitted) return;
   tracks.missing.push_back(missing_of(track));
-  if (tracks.missing.size() > kMostMissing) tracks.missing.erase(tracks.missing.begin());
+  if (tracks.missing.size() > kMostMissingTracks) tracks.missing.erase(tracks.missing.begin());
 }
 
 void forget(Tracks& tracks, Timestamp instant, const AssociationConfig& config) {

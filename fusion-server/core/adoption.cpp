@@ -13,7 +13,6 @@
 namespace chorus::core {
 namespace {
 
-constexpr double kReach = 2.5;   // [m] sensor to walk: rotation errors are judged at this range
 constexpr double kMisfit = 0.3;  // [m] held sensors that differ by more were moved
 
 int rank(Verdict verdict) {

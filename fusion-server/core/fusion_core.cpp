@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "fusion-server/core/world.h"
+
 namespace chorus::core {
 namespace {
 
@@ -21,8 +23,7 @@ constexpr std::string_view kFrozen =
 
 /// Whether some sensor stands in both where people would be matched: the two are one world.
 bool share_a_place(const Registration& one, const Registration& other) {
-  constexpr double kReach = 2.5;  // [m] from the sensor to people
-  constexpr double kSame = 0.3;   // [m]
+  constexpr double kSame = 0.3;  // [m]
   const Eigen::Vector3d mark = kReach * Eigen::Vector3d::UnitZ();
   return std::ranges::any_of(one.sensors, [&](const auto& entry) {
     const auto found = other.sensors.find(entry.first);

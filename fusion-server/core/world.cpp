@@ -11,8 +11,7 @@
 namespace chorus::core {
 namespace {
 
-constexpr double kReach = 2.5;  // [m] sensor to walk: rotation errors are judged at this range
-constexpr double kSame = 0.3;   // [m] marks differ by more: the sensor was moved
+constexpr double kSame = 0.3;  // [m] marks differ by more: the sensor was moved
 
 /// A sensor that both worlds have: its position and a point in front of it.
 struct Common {

@@ -13,6 +13,9 @@
 
 namespace chorus::core {
 
+/// [m] sensor to walk: rotation errors are judged at this range.
+inline constexpr double kReach = 2.5;
+
 using Places = std::map<SensorId, Extrinsics>;
 
 /// The origin of a new world, given in the present one.

@@ -18,6 +18,8 @@ inline constexpr std::array<JointId, 6> kSidePairs{JointId::ShoulderLeft, JointI
 /// zero if one is not seen.
 using Spans = std::array<Eigen::Vector3d, kSidePairs.size()>;
 
+inline constexpr double kMinSpan = 0.05;  ///< [m]; shorter spans have no direction.
+
 [[nodiscard]] Spans no_spans();
 
 [[nodiscard]] Spans spans_of(const Skeleton<WorldSpace>& body);

@@ -10,7 +10,7 @@
 namespace chorus::facing {
 namespace {
 
-constexpr double kGuessed = 0.3;  // Weight of an offset that depends on an inferred joint.
+constexpr double kGuessedOffset = 0.3;  // Weight of an offset that depends on an inferred joint.
 
 /// Weighted mean of offsets in world space [m].
 struct Offset {
@@ -32,7 +32,7 @@ template <class... Ids>
 double weight_of(const Skeleton<WorldSpace>& body, Ids... ids) {
   const bool seen = (body[ids].seen() && ...);
   const bool tracked = ((body[ids].state == JointState::Tracked) && ...);
-  return seen ? (tracked ? 1.0 : kGuessed) : 0.0;
+  return seen ? (tracked ? 1.0 : kGuessedOffset) : 0.0;
 }
 
 /// Offset of `p` from the nearest point of the line between `a` and `b`.

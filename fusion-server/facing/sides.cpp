@@ -11,8 +11,7 @@
 namespace chorus::facing {
 namespace {
 
-constexpr double kMinLength = 0.05;  // [m]; shorter spans have no direction.
-constexpr double kClear = 2.0;       // Log odds from which on one view alone counts as certain.
+constexpr double kClear = 2.0;  // Log odds from which on one view alone counts as certain.
 constexpr double kBlind = 1.0;  // Log odds of all views together; with less, they show nothing.
 constexpr double kFrameTime = 0.033;  // [s]; the labels of one frame are one observation.
 
@@ -46,7 +45,7 @@ std::optional<Sides> recall(const SidesMemory& memory, PersonId person, Timestam
 /// A pair whose direction is unknown at present keeps its last one.
 void keep_lost(Spans& spans, const Spans& before) {
   for (std::size_t i = 0; i < spans.size(); ++i) {
-    if (spans[i].norm() < kMinLength) spans[i] = before[i];
+    if (spans[i].norm() < kMinSpan) spans[i] = before[i];
   }
 }
 
@@ -89,7 +88,7 @@ double trust_in(const Spans& now, const Spans& before) {
   // Spans this short, relative to the held ones, are not trusted at all.
   constexpr double kNone = 0.5;
   constexpr double kFull = 0.8;
-  const double part = size_of(now) / std::max(size_of(before), kMinLength);
+  const double part = size_of(now) / std::max(size_of(before), kMinSpan);
   return std::clamp((part - kNone) / (kFull - kNone), 0.0, 1.0);
 }
 

@@ -13,6 +13,9 @@
 
 namespace chorus::fusion {
 
+/// [m/s] standard deviation of a velocity not yet measured.
+inline constexpr double kFirstSpeed = 1.0;
+
 /// Accepts measurements at any times, in order.
 class PointFilter {
  public:

@@ -22,7 +22,6 @@ constexpr std::size_t kPointsEach = 100;      // of many sensors: each overlap n
 constexpr std::size_t kMinMeasurements = 20;  // with fewer a sensor keeps its chain's place
 constexpr int kIterations = 40;
 constexpr double kSettled = 1e-6;    // [rad], [m]
-constexpr double kMinScale = 0.02;   // in standard deviations
 constexpr double kRidge = 1e-6;      // holds the state in directions that nothing observes
 constexpr double kGauge = 1e-5;      // [rad], [m] sigma of what is held of the master
 constexpr double kFarthest = 1.0;    // [m] that an adjustment may move a sensor

@@ -19,8 +19,8 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kMinUpright = 0.0;  // cos of the tilt beyond which a sensor would be upside down
-constexpr double kMinHeight = 0.0;   // [m] a sensor below the floor is a wrong solution
+constexpr double kMinUpright = 0.0;   // cos of the tilt beyond which a sensor would be upside down
+constexpr double kLeastHeight = 0.0;  // [m] a sensor below the floor is a wrong solution
 
 /// Why two sensors have no edge.
 struct Refusal {
@@ -161,7 +161,7 @@ std::optional<std::string> impossible(const Eigen::Isometry3d& world_from_sensor
   if (!world_from_sensor.matrix().allFinite()) return "has no finite place";
   if (world_from_sensor.linear()(1, 1) < kMinUpright) return "would hang head down";
   const double height = world_from_sensor.translation().y();
-  if (height < kMinHeight) return fmt::format("would stand {:.2f} m below the floor", -height);
+  if (height < kLeastHeight) return fmt::format("would stand {:.2f} m below the floor", -height);
   return std::nullopt;
 }
 

@@ -21,7 +21,7 @@ constexpr double kSearchSigmas = 4.0;
 constexpr double kLeastSigma = 0.001;  // [s] of a pair: what views differ in is no time
 constexpr double kExact = 1e-4;        // [s] a clock that is known exactly
 constexpr double kOutlier = 3.0;       // sigmas from which a pair counts less and less
-constexpr int kIterations = 10;
+constexpr int kSolveIterations = 10;
 constexpr double kMaxSpread = 0.05;  // [m] of the place, over what is open of the offset
 
 /// One pair's measurement: offset of source minus that of target.
@@ -170,7 +170,7 @@ WalkClocks clocks_of(const std::vector<WalkTrack>& walk, const RegistrationConfi
     network.walkers.push_back(offset_walker(track, config));
   }
   measure(network, config, stopped);
-  for (int i = 0; i < kIterations; ++i) solve(network);
+  for (int i = 0; i < kSolveIterations; ++i) solve(network);
   clocks.offsets = against_the_best(network);
   for (const Measured& pair : network.pairs) {
     if (stopped && stopped()) break;

@@ -58,9 +58,9 @@ void add_clock(Node& node, const Registration& registration, const SensorId& id)
   const auto clock = registration.clocks.find(id);
   if (clock == registration.clocks.end()) return;
   constexpr int kDigits = 3;
-  constexpr double kMillisecond = 1e3;
+  constexpr double kPerSecond = 1e3;
   const auto put = [&](const char* key, Duration value) {
-    node.properties.emplace_back(key, Decimal{kMillisecond * seconds(value), kDigits});
+    node.properties.emplace_back(key, Decimal{kPerSecond * seconds(value), kDigits});
   };
   put("clockOffsetMilliseconds", clock->second.added);
   put("clockUncertaintyMilliseconds", clock->second.sigma);

@@ -63,8 +63,8 @@ std::string existing(std::filesystem::path folder) {
 }
 
 Result<tls::CertificateFacts> facts_in(const std::string& file) {
-  constexpr std::uintmax_t kMaxBytes = 1u << 20;
-  const auto text = read_file(file, kMaxBytes);
+  constexpr std::uintmax_t kMaxFileBytes = 1u << 20;
+  const auto text = read_file(file, kMaxFileBytes);
   if (!text) return pass(text);
   return tls::facts_of(*text);
 }
@@ -184,8 +184,8 @@ std::string ExaminedService::read_token() const {
 }
 
 Result<ExaminedService> examined_service(const std::string& kind, const std::string& file) {
-  constexpr std::uintmax_t kMaxBytes = 1u << 20;
-  const auto text = read_file(file, kMaxBytes);
+  constexpr std::uintmax_t kMaxFileBytes = 1u << 20;
+  const auto text = read_file(file, kMaxFileBytes);
   if (!text) return pass(text);
   JsonLimits limits;
   limits.comments = true;

@@ -9,12 +9,11 @@
 #include "common/base/median.h"
 #include "common/body/bones.h"
 #include "common/geometry/rotation.h"
+#include "tests/judge/measures.h"
 
 namespace chorus::bench {
 namespace {
 
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kRest = 0.03;  // [m/s] a slower joint is at rest
 constexpr double kJump = 0.08;  // [m] a jump exceeds the true step by this
 // Instants more than this many usual steps apart are not successive.
 constexpr double kNextTo = 1.5;
@@ -22,21 +21,6 @@ constexpr double kMinLag = -0.2;  // [s]
 constexpr double kMaxLag = 0.4;   // [s]
 
 using enum JointId;
-constexpr std::array kLongBones{ElbowLeft,  WristLeft,  KneeLeft,  AnkleLeft,
-                                ElbowRight, WristRight, KneeRight, AnkleRight};
-
-struct Mean {
-  double sum = 0.0;
-  std::size_t count = 0;
-
-  void add(double value) {
-    sum += value;
-    ++count;
-  }
-  [[nodiscard]] double value() const {
-    return count > 0 ? sum / static_cast<double>(count) : kNothing;
-  }
-};
 
 /// Usual time between successive instants [s].
 double usual_step(const Answers& answers) {
@@ -87,12 +71,6 @@ void each_error(const Answers& answers, JointGroup group, const Visit& visit) {
             Eigen::Vector3d(answer.body.joints[j].position - answer.exact.joints[j].position));
     }
   }
-}
-
-std::optional<double> length_of(const Skeleton<WorldSpace>& body, JointId child) {
-  const auto bone = std::ranges::find(kBones, child, &Bone::child);
-  if (bone == kBones.end() || !body[child].seen() || !body[bone->parent].seen()) return {};
-  return (body[child].position - body[bone->parent].position).norm();
 }
 
 /// Standard deviation over mean of one bone's length; NaN below two samples.

@@ -2,13 +2,12 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <limits>
+
+#include "tests/judge/measures.h"
 
 namespace chorus::bench {
 namespace {
 
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kRest = 0.03;       // [m/s] a slower joint is at rest
 constexpr double kChi2Of3 = 7.8147;  // 95 % with three degrees of freedom
 
 /// Speed of a true joint at an instant [m/s]; 0 if there is only one instant.

@@ -16,7 +16,6 @@ namespace chorus::bench {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 using synthetic::BodySensor;
 
 SensorId sensor_of(std::size_t place) {
@@ -95,7 +94,7 @@ Room::Room(const RoomSetting& setting) : setting_(setting) {
   const Workshop workshop = draw_workshop(walk);
   Registration registration =
       registration::solve(workshop.tracks, workshop.begin, registration::RegistrationConfig{});
-  begin_ = workshop.begin + seconds(60);
+  begin_ = workshop.begin + std::chrono::seconds(60);
   world_from_scene_ = world_from_scene(workshop, registration.master);
   scene_ = workshop.scene;
   if (setting.persons > 1) {
@@ -125,7 +124,7 @@ std::unique_ptr<BodySensor> Room::make(const synthetic::Scene& scene, std::size_
 }
 
 void Room::advance(Lane& lane) const {
-  const Timestamp end = begin_ + setting_.length + seconds(1);
+  const Timestamp end = begin_ + setting_.length + std::chrono::seconds(1);
   lane.next.reset();
   while (!lane.next && lane.sensor->next_exposure() < end) lane.next = lane.sensor->next();
 }
@@ -165,7 +164,7 @@ std::optional<Eigen::Vector3d> trunk_of(const Skeleton<WorldSpace>& body) {
 }
 
 void Room::score(const Snapshot& snapshot) {
-  constexpr Duration kAverage = seconds(10);
+  constexpr Duration kAverage = std::chrono::seconds(10);
   constexpr double kSomebodyElse = 0.5;  // [m]
   std::map<PersonId, Eigen::Vector3d> errors;
   for (const FusedBody& body : snapshot.bodies) {

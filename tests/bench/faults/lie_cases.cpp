@@ -14,7 +14,7 @@
 namespace chorus::bench {
 namespace {
 
-constexpr int kSensors = 3;
+constexpr int kHonest = 3;
 constexpr int kRing = 4;
 constexpr double kNear = 0.3;  // largest distance from the person to the nearest fused body [m]
 
@@ -63,7 +63,7 @@ using Lie = std::function<Guest::Said(Timestamp now, Guest::Said truth)>;
 struct Liars {
   explicit Liars(int count, const Lie& lie) {
     for (int i = 0; i < count; ++i) {
-      const auto place = place_of(kSensors + i, kSensors + count);
+      const auto place = place_of(kHonest + i, kHonest + count);
       guests.push_back(
           std::make_unique<Guest>(fmt::format("liar{}", i + 1), [this, place, lie](Timestamp when) {
             auto truth = honest(place, when);
@@ -73,10 +73,10 @@ struct Liars {
   }
   [[nodiscard]] CellPlan plan() const {
     CellPlan plan;
-    plan.sensors = kSensors;
+    plan.sensors = kHonest;
     for (std::size_t i = 0; i < guests.size(); ++i)
       plan.neighbours.push_back(
-          {guests[i]->id(), guests[i]->port(), kSensors + static_cast<int>(i)});
+          {guests[i]->id(), guests[i]->port(), kHonest + static_cast<int>(i)});
     return plan;
   }
 
@@ -141,7 +141,7 @@ Result<void> ghost_repeats(Trial& trial) {
   const auto old = std::make_shared<std::optional<Timestamp>>();
   return no_second_person(trial, [old](Timestamp when, Guest::Said truth) {
     if (!*old) *old = furthest_before(when);
-    truth.bodies = honest(place_of(kSensors, kSensors + 1), **old).bodies;
+    truth.bodies = honest(place_of(kHonest, kHonest + 1), **old).bodies;
     for (BodyFrame& body : truth.bodies) body.captured = when;
     return truth;
   });
@@ -213,7 +213,7 @@ Result<void> coat_stand(Trial& trial) {
     for (BodyFrame& body : said.bodies) body.captured = when;
     return said;
   });
-  CellPlan plan{.sensors = kSensors, .neighbours = {{"x", guest.port()}}};
+  CellPlan plan{.sensors = kHonest, .neighbours = {{"x", guest.port()}}};
   plan.stored = true;
   plan.fusion = {"registration.seconds=8", "registration.good_duration_s=6"};
   auto cell = Cell::start(plan);

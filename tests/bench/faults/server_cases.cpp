@@ -186,7 +186,7 @@ struct Ending {
   std::string said;
 };
 Result<std::optional<Ending>> start_with_memory(std::size_t bytes) {
-  constexpr double kPatience = 3.0;
+  constexpr double kExitPatience = 3.0;
   constexpr int kRuns = -1;
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) return fail(ErrorCode::Io, "pipe", "there is none");
@@ -202,7 +202,7 @@ Result<std::optional<Ending>> start_with_memory(std::size_t bytes) {
     ::close(ends[0]);
     return pass(fusion);
   }
-  Ending ending{fusion->wait(kPatience), {}};
+  Ending ending{fusion->wait(kExitPatience), {}};
   std::array<char, 4096> text{};
   if (ending.code != kRuns) {
     const ssize_t got = ::read(ends[0], text.data(), text.size());

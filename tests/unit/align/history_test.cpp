@@ -6,13 +6,12 @@ namespace chorus::align {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
-constexpr Timestamp kStart = from_unix_ns(1'790'000'000'000'000'000);
+constexpr Timestamp kHistoryStart = from_unix_ns(1'790'000'000'000'000'000);
 
 SensorFrame frame_at(Duration after) {
   SensorFrame frame;
-  frame.captured = kStart + after;
+  frame.captured = kHistoryStart + after;
   frame.received = frame.captured + milliseconds(5);
   return frame;
 }
@@ -22,7 +21,7 @@ TEST(HistoryPush, KeepsFramesInCaptureOrder) {
   EXPECT_EQ(history.push(frame_at(milliseconds(0))), PushVerdict::Added);
   EXPECT_EQ(history.push(frame_at(milliseconds(33))), PushVerdict::Added);
   ASSERT_EQ(history.frames().size(), 2u);
-  EXPECT_EQ(history.newest(), kStart + milliseconds(33));
+  EXPECT_EQ(history.newest(), kHistoryStart + milliseconds(33));
 }
 
 TEST(HistoryPush, AnEmptyHistoryHasNoNewest) { EXPECT_FALSE(History().newest().has_value()); }
@@ -45,23 +44,23 @@ TEST(HistoryPush, AShortStepBackIsRefused) {
 
 TEST(HistoryPush, ALongStepBackStartsAnew) {
   History history;
-  history.push(frame_at(seconds(10)));
-  EXPECT_EQ(history.push(frame_at(seconds(8))), PushVerdict::Restarted);
+  history.push(frame_at(std::chrono::seconds(10)));
+  EXPECT_EQ(history.push(frame_at(std::chrono::seconds(8))), PushVerdict::Restarted);
   ASSERT_EQ(history.frames().size(), 1u);
-  EXPECT_EQ(history.newest(), kStart + seconds(8));
+  EXPECT_EQ(history.newest(), kHistoryStart + std::chrono::seconds(8));
 }
 
 TEST(HistoryPush, AFrameFromTheFutureIsRefused) {
   History history;
-  SensorFrame frame = frame_at(seconds(60));
-  frame.received = kStart;
+  SensorFrame frame = frame_at(std::chrono::seconds(60));
+  frame.received = kHistoryStart;
   EXPECT_EQ(history.push(frame), PushVerdict::Future);
   EXPECT_TRUE(history.frames().empty());
 }
 
 TEST(HistoryPush, WithoutAReceiveTimeNothingIsCalledFuture) {
   History history;
-  SensorFrame frame = frame_at(seconds(60));
+  SensorFrame frame = frame_at(std::chrono::seconds(60));
   frame.received = Timestamp{};
   EXPECT_EQ(history.push(frame), PushVerdict::Added);
 }
@@ -72,7 +71,7 @@ TEST(HistoryPush, ForgetsByCountAndByAge) {
   EXPECT_EQ(few.frames().size(), 3u);
   History young({.max_age = milliseconds(100)});
   for (int i = 0; i < 10; ++i) young.push(frame_at(milliseconds(30 * i)));
-  EXPECT_EQ(young.frames().front().captured, kStart + milliseconds(180));
+  EXPECT_EQ(young.frames().front().captured, kHistoryStart + milliseconds(180));
 }
 
 TEST(HistoryPush, OfTwoBodiesWithOneIdTheFirstIsKept) {

@@ -10,9 +10,9 @@
 namespace chorus::core {
 namespace {
 
-SensorId id(const char* text) { return *SensorId::parse(text); }
+SensorId sensor_id(const char* text) { return *SensorId::parse(text); }
 
-constexpr int kRing = 5;
+constexpr int kAdoptionRing = 5;
 
 /// Sensors s1, s2, ... of the ring, in a world moved by `world_from_ring`.
 Registration ring(Verdict verdict, std::vector<int> members,
@@ -20,9 +20,10 @@ Registration ring(Verdict verdict, std::vector<int> members,
   Registration r;
   r.verdict = verdict;
   for (const int i : members) {
-    const SensorId sensor = id(("s" + std::to_string(i)).c_str());
+    const SensorId sensor = sensor_id(("s" + std::to_string(i)).c_str());
     if (r.sensors.empty()) r.master = sensor;
-    r.sensors[sensor].world_from_sensor = world_from_ring * testing::ring_sensor(i - 1, kRing);
+    r.sensors[sensor].world_from_sensor =
+        world_from_ring * testing::ring_sensor(i - 1, kAdoptionRing);
     r.sensors[sensor].chain = {r.master, sensor};
     r.verdicts[sensor] = {verdict, {}};
   }
@@ -78,19 +79,19 @@ TEST(Extending, HoldsThePlacedSensorsAndMovesTheNewOneIntoTheirWorld) {
     EXPECT_EQ(wider->sensors.at(sensor).world_from_sensor.matrix(),
               place.world_from_sensor.matrix());
   }
-  EXPECT_TRUE(
-      wider->sensors.at(id("s4")).world_from_sensor.isApprox(testing::ring_sensor(3, kRing), 1e-9));
+  EXPECT_TRUE(wider->sensors.at(sensor_id("s4"))
+                  .world_from_sensor.isApprox(testing::ring_sensor(3, kAdoptionRing), 1e-9));
   EXPECT_EQ(wider->verdict, Verdict::Good);
   EXPECT_EQ(wider->master, current.master);
-  EXPECT_EQ(wider->sensors.at(id("s4")).chain.front(), current.master);
+  EXPECT_EQ(wider->sensors.at(sensor_id("s4")).chain.front(), current.master);
 }
 
 TEST(Extending, OneHeldSensorIsEnough) {
   const auto wider = adopted(ring(Verdict::Good, {2}), ring(Verdict::Good, {2, 4}, elsewhere()),
                              SolveKind::Final, true);
   ASSERT_TRUE(wider) << wider.error().message;
-  EXPECT_TRUE(
-      wider->sensors.at(id("s4")).world_from_sensor.isApprox(testing::ring_sensor(3, kRing), 1e-9));
+  EXPECT_TRUE(wider->sensors.at(sensor_id("s4"))
+                  .world_from_sensor.isApprox(testing::ring_sensor(3, kAdoptionRing), 1e-9));
 }
 
 TEST(Extending, ANewcomerThatIsNotGoodWaitsForTheEndOfTheWalkAndSpoilsNobodysVerdict) {
@@ -101,10 +102,10 @@ TEST(Extending, ANewcomerThatIsNotGoodWaitsForTheEndOfTheWalkAndSpoilsNobodysVer
             ErrorCode::NotFound);
   const auto wider = adopted(current, candidate, SolveKind::Final, true);
   ASSERT_TRUE(wider);
-  EXPECT_EQ(verdict_of(*wider, id("s1")), Verdict::Good);
-  EXPECT_EQ(verdict_of(*wider, id("s2")), Verdict::Good);
-  EXPECT_EQ(verdict_of(*wider, id("s3")), Verdict::Provisional);
-  EXPECT_EQ(wider->verdicts.at(id("s3")).reasons, candidate.reasons);
+  EXPECT_EQ(verdict_of(*wider, sensor_id("s1")), Verdict::Good);
+  EXPECT_EQ(verdict_of(*wider, sensor_id("s2")), Verdict::Good);
+  EXPECT_EQ(verdict_of(*wider, sensor_id("s3")), Verdict::Provisional);
+  EXPECT_EQ(wider->verdicts.at(sensor_id("s3")).reasons, candidate.reasons);
   EXPECT_EQ(wider->verdict, Verdict::Provisional);
 }
 
@@ -121,7 +122,7 @@ TEST(Extending, GivenPlacesWithoutVerdictsAreHeldToo) {
 TEST(Extending, SaysSoWhenThePlacedSensorsDoNotStandAsTheWalkShowsThem) {
   Registration candidate = ring(Verdict::Good, {1, 2, 3});
   // Somebody has moved s2 by accident.
-  candidate.sensors.at(id("s2")).world_from_sensor.translation().x() += 2.0;
+  candidate.sensors.at(sensor_id("s2")).world_from_sensor.translation().x() += 2.0;
   const auto wider = adopted(ring(Verdict::Good, {1, 2}), candidate, SolveKind::Final, true);
   ASSERT_FALSE(wider);
   EXPECT_EQ(wider.error().code, ErrorCode::Conflict);
@@ -131,13 +132,13 @@ TEST(Extending, SaysSoWhenThePlacedSensorsDoNotStandAsTheWalkShowsThem) {
 TEST(Extending, AskedForByAPersonAGoodWalkReplacesAllInTheWorldThatThereIs) {
   const Registration current = ring(Verdict::Good, {1, 2});
   Registration candidate = ring(Verdict::Good, {1, 2, 3}, elsewhere());
-  candidate.sensors.at(id("s2")).error = 0.007;
+  candidate.sensors.at(sensor_id("s2")).error = 0.007;
   const auto next = adopted(current, candidate, SolveKind::Final, false);
   ASSERT_TRUE(next);
-  EXPECT_EQ(next->sensors.at(id("s2")).error, 0.007) << "nobody is held";
+  EXPECT_EQ(next->sensors.at(sensor_id("s2")).error, 0.007) << "nobody is held";
   EXPECT_EQ(next->sensors.size(), 3u);
-  const Eigen::Vector3d jump = next->sensors.at(id("s1")).world_from_sensor.translation() -
-                               current.sensors.at(id("s1")).world_from_sensor.translation();
+  const Eigen::Vector3d jump = next->sensors.at(sensor_id("s1")).world_from_sensor.translation() -
+                               current.sensors.at(sensor_id("s1")).world_from_sensor.translation();
   EXPECT_LT(std::hypot(jump.x(), jump.z()), 1e-9);
   EXPECT_NEAR(jump.y(), 0.02, 1e-9) << "the floor is the new walk's";
 }
@@ -145,15 +146,15 @@ TEST(Extending, AskedForByAPersonAGoodWalkReplacesAllInTheWorldThatThereIs) {
 TEST(Refusals, AreToldOfSensorsWithoutAPlaceAndLeaveTheVerdict) {
   Registration current = ring(Verdict::Good, {1, 2});
   Registration candidate = ring(Verdict::Good, {1, 2});
-  candidate.verdicts[id("s5")] = {Verdict::Refused, {"s5 saw a coat stand"}};
-  candidate.verdicts[id("s1")] = {Verdict::Refused, {"not this time"}};
+  candidate.verdicts[sensor_id("s5")] = {Verdict::Refused, {"s5 saw a coat stand"}};
+  candidate.verdicts[sensor_id("s1")] = {Verdict::Refused, {"not this time"}};
   note_refusals(current, candidate);
   note_refusals(current, candidate);
   EXPECT_EQ(current.verdict, Verdict::Good);
   EXPECT_EQ(current.reasons, std::vector<std::string>{"s5 saw a coat stand"});
-  EXPECT_EQ(verdict_of(current, id("s1")), Verdict::Good);
-  EXPECT_EQ(verdict_of(current, id("s5")), Verdict::None);
-  EXPECT_EQ(current.verdicts.at(id("s5")).verdict, Verdict::Refused);
+  EXPECT_EQ(verdict_of(current, sensor_id("s1")), Verdict::Good);
+  EXPECT_EQ(verdict_of(current, sensor_id("s5")), Verdict::None);
+  EXPECT_EQ(current.verdicts.at(sensor_id("s5")).verdict, Verdict::Refused);
   // Once s5 is placed, its old refusal is gone.
   const auto wider = adopted(current, ring(Verdict::Good, {1, 2, 5}), SolveKind::Final, true);
   ASSERT_TRUE(wider);
@@ -162,9 +163,9 @@ TEST(Refusals, AreToldOfSensorsWithoutAPlaceAndLeaveTheVerdict) {
 
 TEST(Unplaced, NamesTheSensorsThatSeeButHaveNoPlace) {
   const Registration r = ring(Verdict::Good, {1, 2});
-  EXPECT_TRUE(unplaced(r, {id("s1"), id("s2")}).empty());
-  EXPECT_EQ(unplaced(r, {id("s1"), id("s3")}), std::set<SensorId>{id("s3")});
-  EXPECT_EQ(unplaced({}, {id("s1")}).size(), 1u);
+  EXPECT_TRUE(unplaced(r, {sensor_id("s1"), sensor_id("s2")}).empty());
+  EXPECT_EQ(unplaced(r, {sensor_id("s1"), sensor_id("s3")}), std::set<SensorId>{sensor_id("s3")});
+  EXPECT_EQ(unplaced({}, {sensor_id("s1")}).size(), 1u);
 }
 
 }  // namespace

@@ -12,7 +12,6 @@ namespace chorus::core {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 using testing::kStart;
 using testing::sensor_id;
 
@@ -80,7 +79,8 @@ struct Outcome {
 
 /// What the instants from `settled` to the end show; fractions are of all of them.
 Outcome run(const std::vector<Source>& sources, CoreConfig config = {},
-            Duration length = seconds(20), Duration settled = seconds(6)) {
+            Duration length = std::chrono::seconds(20),
+            Duration settled = std::chrono::seconds(6)) {
   Registration registration;
   registration.verdict = Verdict::Good;
   registration.master = sensor_id(name(0));

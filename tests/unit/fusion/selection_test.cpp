@@ -15,7 +15,7 @@ namespace {
 
 using enum JointId;
 
-const std::vector<SensorId> kSensors{sensor(1), sensor(2), sensor(3)};
+const std::vector<SensorId> kSelectionSensors{sensor(1), sensor(2), sensor(3)};
 
 /// A view that tracks the first `count` joints, all of them at x, of a body turned by `facing`.
 SensorView view_of(int number, std::size_t count, double facing, double x = 0.0) {
@@ -30,7 +30,7 @@ SensorView view_of(int number, std::size_t count, double facing, double x = 0.0)
 FusedBody fused(Method method, std::vector<SensorView> views) {
   FusionConfig config;
   config.method = method;
-  return fuse({PersonId{1}, std::move(views)}, kSensors, config);
+  return fuse({PersonId{1}, std::move(views)}, kSelectionSensors, config);
 }
 
 double x_of(const FusedBody& body, JointId joint) { return body.skeleton[joint].position.x(); }

@@ -35,7 +35,7 @@ Frame Time: 0.05
 50 100 0 90 90 0 0 0 0
 )";
 
-std::string replaced(std::string text, std::string_view from, std::string_view to) {
+std::string with_replaced(std::string text, std::string_view from, std::string_view to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return text.replace(at, from.size(), to);
@@ -75,7 +75,7 @@ TEST(Bvh, RefusesBrokenFilesAndSaysWhere) {
       {"JOINT Arm", "LIMB Arm", "b:6", "unknown keyword"},
   };
   for (const auto& [from, to, line, why] : cases) {
-    const auto parsed = parse_bvh(replaced(std::string(kArm), from, to), "b");
+    const auto parsed = parse_bvh(with_replaced(std::string(kArm), from, to), "b");
     ASSERT_FALSE(parsed) << why;
     EXPECT_EQ(parsed.error().context, line) << parsed.error().message;
     EXPECT_THAT(parsed.error().message, HasSubstr(std::string(why)));

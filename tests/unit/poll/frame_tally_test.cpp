@@ -11,7 +11,6 @@ namespace {
 
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 using testing::kStart;
 
 SensorFrame frame(std::uint64_t sequence, Duration received) {
@@ -49,7 +48,7 @@ TEST(FrameTally, TheRateIsOfArrivalsWhateverTheStampsSay) {
     tally.note(f);
   }
   EXPECT_NEAR(tally.rate_hz(kStart + milliseconds(89 * 33)), 30.3, 1.0);
-  EXPECT_EQ(tally.rate_hz(kStart + seconds(5)), 0.0);
+  EXPECT_EQ(tally.rate_hz(kStart + std::chrono::seconds(5)), 0.0);
 }
 
 TEST(FrameTally, AFewAtOnceAreNoThousandASecond) {

@@ -21,10 +21,10 @@ namespace chorus::poll {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 using testing::sensor_id;
 
-constexpr auto kPatience = seconds(20);  // for loaded machines; nothing takes that long
+constexpr auto kPatience =
+    std::chrono::seconds(20);  // for loaded machines; nothing takes that long
 
 /// A sensor service that serves frames on demand, or anything else at /frame.
 class FakeSensor {
@@ -92,7 +92,7 @@ class Polling : public ::testing::Test {
   Polling() {
     PollerOptions options;
     options.clock = clock_;
-    options.timings.wait = seconds(1);
+    options.timings.wait = std::chrono::seconds(1);
     options.timings.first_backoff = milliseconds(10);
     options.timings.max_backoff = milliseconds(50);
     options.deliver = [this](PolledFrame polled) {
@@ -321,7 +321,7 @@ TEST_F(Polling, AClockThatIsSetIsFollowedAndCostsHardlyAFrame) {
       });
       wrong += std::chrono::abs(*nearest - frames[i].captured) > milliseconds(10) ? 1 : 0;
     }
-    EXPECT_LE(wrong, 2) << seconds(1) / step;
+    EXPECT_LE(wrong, 2) << std::chrono::seconds(1) / step;
     poller_->poll({});
     frames_.clear();
   }

@@ -38,6 +38,9 @@ struct Bounds {
   double most = 0.0;
 };
 
+/// Limit of a coordinate, length or focal length in a picture [px].
+inline constexpr double kMaxPixels = 1e5;
+
 /// A Malformed error that names the place.
 [[nodiscard]] tl::unexpected<Error> wrong(const At& at, std::string what_it_must_be);
 

@@ -18,7 +18,6 @@ namespace {
 using Json = nlohmann::json;
 using layout::Landmark;
 
-constexpr double kMaxPixels = 1e5;
 constexpr double kMaxVariance = 1e8;  // [m^2]
 constexpr JsonLimits kLimits{.bytes = 2'000'000, .nesting = 8};
 

@@ -15,13 +15,13 @@ namespace {
 
 using bridge::At;
 
-constexpr JsonLimits kLimits{.bytes = 64 * 1024, .nesting = 4};
+constexpr JsonLimits kLineLimits{.bytes = 64 * 1024, .nesting = 4};
 constexpr bridge::Bounds kSides{16.0, 4096.0};
 // Standard deviation as a share of the longest side, if the runner states none.
 constexpr double kSigmaShare = 0.01;
 
 Result<int> read_max_side(std::string_view line) {
-  const auto message = parse_json(line, kLimits);
+  const auto message = parse_json(line, kLineLimits);
   if (!message) return pass(message);
   const nlohmann::json* image = bridge::find(*message, "image");
   const nlohmann::json* side =

@@ -6,12 +6,11 @@
 
 #include "common/base/fnv.h"
 #include "common/sensor/limits.h"
+#include "services/sensor/device/simulated/scene_settings.h"
 
 namespace chorus::sensor_service {
 namespace {
 
-constexpr double kFarthest = 100.0;  // Distance of anything from the room's origin [m].
-constexpr int kMaxSeed = 1'000'000'000;
 constexpr std::array<std::string_view, 5> kProfiles{synthetic::kGaussProfile, "A", "B", "C", "D"};
 
 void read_mm(ConfigReader& config, std::string_view key, double& out, double most) {
