@@ -10,7 +10,7 @@
 namespace chorus::core {
 namespace {
 
-SensorId sensor_id(const char* text) { return *SensorId::parse(text); }
+SensorId named(const char* text) { return *SensorId::parse(text); }
 
 constexpr int kAdoptionRing = 5;
 
@@ -20,7 +20,7 @@ Registration ring(Verdict verdict, std::vector<int> members,
   Registration r;
   r.verdict = verdict;
   for (const int i : members) {
-    const SensorId sensor = sensor_id(("s" + std::to_string(i)).c_str());
+    const SensorId sensor = named(("s" + std::to_string(i)).c_str());
     if (r.sensors.empty()) r.master = sensor;
     r.sensors[sensor].world_from_sensor =
         world_from_ring * testing::ring_sensor(i - 1, kAdoptionRing);
@@ -79,18 +79,18 @@ TEST(Extending, HoldsThePlacedSensorsAndMovesTheNewOneIntoTheirWorld) {
     EXPECT_EQ(wider->sensors.at(sensor).world_from_sensor.matrix(),
               place.world_from_sensor.matrix());
   }
-  EXPECT_TRUE(wider->sensors.at(sensor_id("s4"))
+  EXPECT_TRUE(wider->sensors.at(named("s4"))
                   .world_from_sensor.isApprox(testing::ring_sensor(3, kAdoptionRing), 1e-9));
   EXPECT_EQ(wider->verdict, Verdict::Good);
   EXPECT_EQ(wider->master, current.master);
-  EXPECT_EQ(wider->sensors.at(sensor_id("s4")).chain.front(), current.master);
+  EXPECT_EQ(wider->sensors.at(named("s4")).chain.front(), current.master);
 }
 
 TEST(Extending, OneHeldSensorIsEnough) {
   const auto wider = adopted(ring(Verdict::Good, {2}), ring(Verdict::Good, {2, 4}, elsewhere()),
                              SolveKind::Final, true);
   ASSERT_TRUE(wider) << wider.error().message;
-  EXPECT_TRUE(wider->sensors.at(sensor_id("s4"))
+  EXPECT_TRUE(wider->sensors.at(named("s4"))
                   .world_from_sensor.isApprox(testing::ring_sensor(3, kAdoptionRing), 1e-9));
 }
 
@@ -102,10 +102,10 @@ TEST(Extending, ANewcomerThatIsNotGoodWaitsForTheEndOfTheWalkAndSpoilsNobodysVer
             ErrorCode::NotFound);
   const auto wider = adopted(current, candidate, SolveKind::Final, true);
   ASSERT_TRUE(wider);
-  EXPECT_EQ(verdict_of(*wider, sensor_id("s1")), Verdict::Good);
-  EXPECT_EQ(verdict_of(*wider, sensor_id("s2")), Verdict::Good);
-  EXPECT_EQ(verdict_of(*wider, sensor_id("s3")), Verdict::Provisional);
-  EXPECT_EQ(wider->verdicts.at(sensor_id("s3")).reasons, candidate.reasons);
+  EXPECT_EQ(verdict_of(*wider, named("s1")), Verdict::Good);
+  EXPECT_EQ(verdict_of(*wider, named("s2")), Verdict::Good);
+  EXPECT_EQ(verdict_of(*wider, named("s3")), Verdict::Provisional);
+  EXPECT_EQ(wider->verdicts.at(named("s3")).reasons, candidate.reasons);
   EXPECT_EQ(wider->verdict, Verdict::Provisional);
 }
 
@@ -122,7 +122,7 @@ TEST(Extending, GivenPlacesWithoutVerdictsAreHeldToo) {
 TEST(Extending, SaysSoWhenThePlacedSensorsDoNotStandAsTheWalkShowsThem) {
   Registration candidate = ring(Verdict::Good, {1, 2, 3});
   // Somebody has moved s2 by accident.
-  candidate.sensors.at(sensor_id("s2")).world_from_sensor.translation().x() += 2.0;
+  candidate.sensors.at(named("s2")).world_from_sensor.translation().x() += 2.0;
   const auto wider = adopted(ring(Verdict::Good, {1, 2}), candidate, SolveKind::Final, true);
   ASSERT_FALSE(wider);
   EXPECT_EQ(wider.error().code, ErrorCode::Conflict);
@@ -132,13 +132,13 @@ TEST(Extending, SaysSoWhenThePlacedSensorsDoNotStandAsTheWalkShowsThem) {
 TEST(Extending, AskedForByAPersonAGoodWalkReplacesAllInTheWorldThatThereIs) {
   const Registration current = ring(Verdict::Good, {1, 2});
   Registration candidate = ring(Verdict::Good, {1, 2, 3}, elsewhere());
-  candidate.sensors.at(sensor_id("s2")).error = 0.007;
+  candidate.sensors.at(named("s2")).error = 0.007;
   const auto next = adopted(current, candidate, SolveKind::Final, false);
   ASSERT_TRUE(next);
-  EXPECT_EQ(next->sensors.at(sensor_id("s2")).error, 0.007) << "nobody is held";
+  EXPECT_EQ(next->sensors.at(named("s2")).error, 0.007) << "nobody is held";
   EXPECT_EQ(next->sensors.size(), 3u);
-  const Eigen::Vector3d jump = next->sensors.at(sensor_id("s1")).world_from_sensor.translation() -
-                               current.sensors.at(sensor_id("s1")).world_from_sensor.translation();
+  const Eigen::Vector3d jump = next->sensors.at(named("s1")).world_from_sensor.translation() -
+                               current.sensors.at(named("s1")).world_from_sensor.translation();
   EXPECT_LT(std::hypot(jump.x(), jump.z()), 1e-9);
   EXPECT_NEAR(jump.y(), 0.02, 1e-9) << "the floor is the new walk's";
 }
@@ -146,15 +146,15 @@ TEST(Extending, AskedForByAPersonAGoodWalkReplacesAllInTheWorldThatThereIs) {
 TEST(Refusals, AreToldOfSensorsWithoutAPlaceAndLeaveTheVerdict) {
   Registration current = ring(Verdict::Good, {1, 2});
   Registration candidate = ring(Verdict::Good, {1, 2});
-  candidate.verdicts[sensor_id("s5")] = {Verdict::Refused, {"s5 saw a coat stand"}};
-  candidate.verdicts[sensor_id("s1")] = {Verdict::Refused, {"not this time"}};
+  candidate.verdicts[named("s5")] = {Verdict::Refused, {"s5 saw a coat stand"}};
+  candidate.verdicts[named("s1")] = {Verdict::Refused, {"not this time"}};
   note_refusals(current, candidate);
   note_refusals(current, candidate);
   EXPECT_EQ(current.verdict, Verdict::Good);
   EXPECT_EQ(current.reasons, std::vector<std::string>{"s5 saw a coat stand"});
-  EXPECT_EQ(verdict_of(current, sensor_id("s1")), Verdict::Good);
-  EXPECT_EQ(verdict_of(current, sensor_id("s5")), Verdict::None);
-  EXPECT_EQ(current.verdicts.at(sensor_id("s5")).verdict, Verdict::Refused);
+  EXPECT_EQ(verdict_of(current, named("s1")), Verdict::Good);
+  EXPECT_EQ(verdict_of(current, named("s5")), Verdict::None);
+  EXPECT_EQ(current.verdicts.at(named("s5")).verdict, Verdict::Refused);
   // Once s5 is placed, its old refusal is gone.
   const auto wider = adopted(current, ring(Verdict::Good, {1, 2, 5}), SolveKind::Final, true);
   ASSERT_TRUE(wider);
@@ -163,9 +163,9 @@ TEST(Refusals, AreToldOfSensorsWithoutAPlaceAndLeaveTheVerdict) {
 
 TEST(Unplaced, NamesTheSensorsThatSeeButHaveNoPlace) {
   const Registration r = ring(Verdict::Good, {1, 2});
-  EXPECT_TRUE(unplaced(r, {sensor_id("s1"), sensor_id("s2")}).empty());
-  EXPECT_EQ(unplaced(r, {sensor_id("s1"), sensor_id("s3")}), std::set<SensorId>{sensor_id("s3")});
-  EXPECT_EQ(unplaced({}, {sensor_id("s1")}).size(), 1u);
+  EXPECT_TRUE(unplaced(r, {named("s1"), named("s2")}).empty());
+  EXPECT_EQ(unplaced(r, {named("s1"), named("s3")}), std::set<SensorId>{named("s3")});
+  EXPECT_EQ(unplaced({}, {named("s1")}).size(), 1u);
 }
 
 }  // namespace

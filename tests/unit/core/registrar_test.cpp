@@ -234,7 +234,7 @@ TEST_F(Sessions, NobodyWaitsForAProvisionalSolveAtTheEndOfTheWalk) {
 }
 
 /// The ring as seen by a walk whose world is different: rotated, and 3 m away.
-Registration elsewhere(Verdict verdict = Verdict::Good) {
+Registration placed_elsewhere(Verdict verdict = Verdict::Good) {
   const auto moved_there = with_origin(ring(kSensors, verdict), {3.0, -1.0, 1.2});
   return *moved_there;
 }
@@ -249,7 +249,7 @@ double off(const Registration& registration, const char* sensor, const Registrat
 TEST_F(Sessions, ANewWalkLeavesTheWorldWhereItWas) {
   begin_with(ring());
   ASSERT_TRUE(registrar().start(std::chrono::seconds(8), now_));
-  EXPECT_EQ(registrar().solved({7, SolveKind::Final, elsewhere()}, now_), Outcome::Adopted);
+  EXPECT_EQ(registrar().solved({7, SolveKind::Final, placed_elsewhere()}, now_), Outcome::Adopted);
   EXPECT_LT(off(registrar().registration(), "s2", ring()), 1e-9);
 }
 
@@ -258,10 +258,11 @@ TEST_F(Sessions, TheWorldIsRememberedWhenTheRegistrationIsForgotten) {
   registrar().forget();
   registrar().forget();
   ASSERT_TRUE(registrar().start(std::chrono::seconds(8), now_));
-  EXPECT_EQ(registrar().solved({7, SolveKind::Provisional, elsewhere(Verdict::Provisional)}, now_),
-            Outcome::Adopted);
+  EXPECT_EQ(
+      registrar().solved({7, SolveKind::Provisional, placed_elsewhere(Verdict::Provisional)}, now_),
+      Outcome::Adopted);
   EXPECT_LT(off(registrar().registration(), "s2", ring()), 1e-9);
-  EXPECT_EQ(registrar().solved({7, SolveKind::Final, elsewhere()}, now_), Outcome::Adopted);
+  EXPECT_EQ(registrar().solved({7, SolveKind::Final, placed_elsewhere()}, now_), Outcome::Adopted);
   EXPECT_LT(off(registrar().registration(), "s3", ring()), 1e-9);
 }
 
@@ -272,11 +273,11 @@ TEST_F(Sessions, TheOriginIsMovedBetweenSessionsOnly) {
   EXPECT_EQ(registrar().move_origin(origin).error().code, ErrorCode::Conflict);
   ASSERT_TRUE(registrar().cancel(7, now_));
   ASSERT_TRUE(registrar().move_origin(origin));
-  EXPECT_LT(off(registrar().registration(), "s1", elsewhere()), 1e-9);
+  EXPECT_LT(off(registrar().registration(), "s1", placed_elsewhere()), 1e-9);
   EXPECT_EQ(registrar().registration().version, 5u);
   ASSERT_TRUE(registrar().start(std::chrono::seconds(8), now_));
   EXPECT_EQ(registrar().solved({8, SolveKind::Final, ring()}, now_), Outcome::Adopted);
-  EXPECT_LT(off(registrar().registration(), "s3", elsewhere()), 1e-9) << "it stays there";
+  EXPECT_LT(off(registrar().registration(), "s3", placed_elsewhere()), 1e-9) << "it stays there";
 }
 
 TEST_F(Sessions, ASensorThatWasMovedLosesItsPlaceAndOneForItStartsAtOnce) {

@@ -8,9 +8,9 @@
 namespace chorus::http {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
-class ResponderTest : public testing::Test {
+class ResponderTest : public ::testing::Test {
  protected:
   ResponderTest() {
     auto router = std::make_shared<Router>();

@@ -12,7 +12,7 @@
 namespace chorus::motion {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr std::string_view kArm = R"(HIERARCHY
 ROOT Hips
@@ -113,7 +113,7 @@ struct Dialect {
   double metres_per_unit;
 };
 
-class RealBvh : public testing::TestWithParam<Dialect> {};
+class RealBvh : public ::testing::TestWithParam<Dialect> {};
 
 TEST_P(RealBvh, LooksLikeAPerson) {
   const auto path = std::filesystem::path("../shared/data") / GetParam().path;
@@ -146,11 +146,11 @@ TEST_P(RealBvh, LooksLikeAPerson) {
 
 INSTANTIATE_TEST_SUITE_P(
     Dialects, RealBvh,
-    testing::Values(Dialect{"bvh_misc/tests/test_freebvh.bvh", 0.01},
-                    Dialect{"bvh_misc/tests/test_mocapbank.bvh", 0.01},
-                    Dialect{"bvh_misc/demos/data/AV_8Walk_Meredith_HVHA_Rep1.bvh", 0.0254},
-                    Dialect{"bandai_bvh/dataset-1_walk_normal_001.bvh", 0.01},
-                    Dialect{"xsens_mvnx_bvh/test_mocap.bvh", 0.01}));
+    ::testing::Values(Dialect{"bvh_misc/tests/test_freebvh.bvh", 0.01},
+                      Dialect{"bvh_misc/tests/test_mocapbank.bvh", 0.01},
+                      Dialect{"bvh_misc/demos/data/AV_8Walk_Meredith_HVHA_Rep1.bvh", 0.0254},
+                      Dialect{"bandai_bvh/dataset-1_walk_normal_001.bvh", 0.01},
+                      Dialect{"xsens_mvnx_bvh/test_mocap.bvh", 0.01}));
 
 }  // namespace
 }  // namespace chorus::motion

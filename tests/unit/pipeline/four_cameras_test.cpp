@@ -140,7 +140,7 @@ TEST(FourRealCameras, RegisterFromThePersonAlone) {
   Registration found =
       registration::solve(recording.tracks, importers::kDefaultStart, camera_registration());
   EXPECT_EQ(found.verdict, Verdict::Provisional);
-  ASSERT_EQ(found.sensors.size(), 4u) << testing::PrintToString(found.reasons);
+  ASSERT_EQ(found.sensors.size(), 4u) << ::testing::PrintToString(found.reasons);
   const auto& published = recording.published.sensors;
   const Eigen::Isometry3d published_from_found =
       published.at(found.master).world_from_sensor *

@@ -16,7 +16,7 @@ using registration::sensor;
 using registration::WalkSpec;
 using registration::WalkTrack;
 using registration::watch;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr int kSensors = 4;
 
