@@ -15,8 +15,9 @@ SensorId named(const char* text) { return *SensorId::parse(text); }
 constexpr int kAdoptionRing = 5;
 
 /// Sensors s1, s2, ... of the ring, in a world moved by `world_from_ring`.
-Registration ring(Verdict verdict, std::vector<int> members,
-                  const Eigen::Isometry3d& world_from_ring = Eigen::Isometry3d::Identity()) {
+Registration adopted_ring(
+    Verdict verdict, std::vector<int> members,
+    const Eigen::Isometry3d& world_from_ring = Eigen::Isometry3d::Identity()) {
   Registration r;
   r.verdict = verdict;
   for (const int i : members) {
@@ -38,40 +39,42 @@ Eigen::Isometry3d elsewhere() {
 }
 
 TEST(Replacing, AFailingSolveNeverReplacesAnything) {
-  const Registration good = ring(Verdict::Good, {1, 2});
+  const Registration good = adopted_ring(Verdict::Good, {1, 2});
   for (const Verdict verdict : {Verdict::None, Verdict::Refused}) {
-    EXPECT_FALSE(adopted(good, ring(verdict, {1, 2, 3}), SolveKind::Final, false));
-    EXPECT_FALSE(adopted({}, ring(verdict, {1}), SolveKind::Final, false));
+    EXPECT_FALSE(adopted(good, adopted_ring(verdict, {1, 2, 3}), SolveKind::Final, false));
+    EXPECT_FALSE(adopted({}, adopted_ring(verdict, {1}), SolveKind::Final, false));
   }
-  EXPECT_FALSE(adopted({}, ring(Verdict::Good, {}), SolveKind::Final, false));
+  EXPECT_FALSE(adopted({}, adopted_ring(Verdict::Good, {}), SolveKind::Final, false));
 }
 
 TEST(Replacing, AnythingUsableReplacesNothing) {
-  EXPECT_TRUE(should_replace({}, ring(Verdict::Provisional, {1, 2}), SolveKind::Provisional));
+  EXPECT_TRUE(
+      should_replace({}, adopted_ring(Verdict::Provisional, {1, 2}), SolveKind::Provisional));
 }
 
 TEST(Replacing, NeverByASmallerCircle) {
-  const Registration three = ring(Verdict::Provisional, {1, 2, 3});
-  EXPECT_FALSE(should_replace(three, ring(Verdict::Good, {1, 2}), SolveKind::Final));
-  EXPECT_FALSE(should_replace(three, ring(Verdict::Good, {1, 2, 4}), SolveKind::Final));
+  const Registration three = adopted_ring(Verdict::Provisional, {1, 2, 3});
+  EXPECT_FALSE(should_replace(three, adopted_ring(Verdict::Good, {1, 2}), SolveKind::Final));
+  EXPECT_FALSE(should_replace(three, adopted_ring(Verdict::Good, {1, 2, 4}), SolveKind::Final));
 }
 
 TEST(Replacing, AFinishedGoodWalkReplacesAnOlderGoodOneButNotHalfway) {
-  const Registration good = ring(Verdict::Good, {1, 2});
+  const Registration good = adopted_ring(Verdict::Good, {1, 2});
   EXPECT_TRUE(should_replace(good, good, SolveKind::Final));
   EXPECT_FALSE(should_replace(good, good, SolveKind::Provisional));
-  EXPECT_FALSE(should_replace(good, ring(Verdict::Provisional, {1, 2}), SolveKind::Final));
+  EXPECT_FALSE(should_replace(good, adopted_ring(Verdict::Provisional, {1, 2}), SolveKind::Final));
 }
 
 TEST(Replacing, ProvisionalOnesFollowEachOtherDuringAWalk) {
-  const Registration provisional = ring(Verdict::Provisional, {1, 2});
+  const Registration provisional = adopted_ring(Verdict::Provisional, {1, 2});
   EXPECT_TRUE(should_replace(provisional, provisional, SolveKind::Provisional));
-  EXPECT_TRUE(should_replace(provisional, ring(Verdict::Good, {1, 2}), SolveKind::Provisional));
+  EXPECT_TRUE(
+      should_replace(provisional, adopted_ring(Verdict::Good, {1, 2}), SolveKind::Provisional));
 }
 
 TEST(Extending, HoldsThePlacedSensorsAndMovesTheNewOneIntoTheirWorld) {
-  const Registration current = ring(Verdict::Good, {1, 2, 3});
-  const Registration candidate = ring(Verdict::Good, {1, 2, 3, 4}, elsewhere());
+  const Registration current = adopted_ring(Verdict::Good, {1, 2, 3});
+  const Registration candidate = adopted_ring(Verdict::Good, {1, 2, 3, 4}, elsewhere());
   const auto wider = adopted(current, candidate, SolveKind::Provisional, true);
   ASSERT_TRUE(wider) << wider.error().message;
   ASSERT_EQ(wider->sensors.size(), 4u);
@@ -87,16 +90,17 @@ TEST(Extending, HoldsThePlacedSensorsAndMovesTheNewOneIntoTheirWorld) {
 }
 
 TEST(Extending, OneHeldSensorIsEnough) {
-  const auto wider = adopted(ring(Verdict::Good, {2}), ring(Verdict::Good, {2, 4}, elsewhere()),
-                             SolveKind::Final, true);
+  const auto wider =
+      adopted(adopted_ring(Verdict::Good, {2}), adopted_ring(Verdict::Good, {2, 4}, elsewhere()),
+              SolveKind::Final, true);
   ASSERT_TRUE(wider) << wider.error().message;
   EXPECT_TRUE(wider->sensors.at(named("s4"))
                   .world_from_sensor.isApprox(testing::ring_sensor(3, kAdoptionRing), 1e-9));
 }
 
 TEST(Extending, ANewcomerThatIsNotGoodWaitsForTheEndOfTheWalkAndSpoilsNobodysVerdict) {
-  const Registration current = ring(Verdict::Good, {1, 2});
-  Registration candidate = ring(Verdict::Provisional, {1, 2, 3});
+  const Registration current = adopted_ring(Verdict::Good, {1, 2});
+  Registration candidate = adopted_ring(Verdict::Provisional, {1, 2, 3});
   candidate.reasons = {"the walk lasted only 8 s"};
   EXPECT_EQ(adopted(current, candidate, SolveKind::Provisional, true).error().code,
             ErrorCode::NotFound);
@@ -110,28 +114,29 @@ TEST(Extending, ANewcomerThatIsNotGoodWaitsForTheEndOfTheWalkAndSpoilsNobodysVer
 }
 
 TEST(Extending, GivenPlacesWithoutVerdictsAreHeldToo) {
-  Registration given = ring(Verdict::Good, {1, 2});
+  Registration given = adopted_ring(Verdict::Good, {1, 2});
   given.verdicts.clear();
   const auto wider =
-      adopted(given, ring(Verdict::Good, {1, 2, 3}, elsewhere()), SolveKind::Final, true);
+      adopted(given, adopted_ring(Verdict::Good, {1, 2, 3}, elsewhere()), SolveKind::Final, true);
   ASSERT_TRUE(wider);
   EXPECT_EQ(wider->verdict, Verdict::Good);
   EXPECT_EQ(wider->verdicts.size(), 3u);
 }
 
 TEST(Extending, SaysSoWhenThePlacedSensorsDoNotStandAsTheWalkShowsThem) {
-  Registration candidate = ring(Verdict::Good, {1, 2, 3});
+  Registration candidate = adopted_ring(Verdict::Good, {1, 2, 3});
   // Somebody has moved s2 by accident.
   candidate.sensors.at(named("s2")).world_from_sensor.translation().x() += 2.0;
-  const auto wider = adopted(ring(Verdict::Good, {1, 2}), candidate, SolveKind::Final, true);
+  const auto wider =
+      adopted(adopted_ring(Verdict::Good, {1, 2}), candidate, SolveKind::Final, true);
   ASSERT_FALSE(wider);
   EXPECT_EQ(wider.error().code, ErrorCode::Conflict);
   EXPECT_NE(wider.error().message.find("--fresh"), std::string::npos);
 }
 
 TEST(Extending, AskedForByAPersonAGoodWalkReplacesAllInTheWorldThatThereIs) {
-  const Registration current = ring(Verdict::Good, {1, 2});
-  Registration candidate = ring(Verdict::Good, {1, 2, 3}, elsewhere());
+  const Registration current = adopted_ring(Verdict::Good, {1, 2});
+  Registration candidate = adopted_ring(Verdict::Good, {1, 2, 3}, elsewhere());
   candidate.sensors.at(named("s2")).error = 0.007;
   const auto next = adopted(current, candidate, SolveKind::Final, false);
   ASSERT_TRUE(next);
@@ -144,8 +149,8 @@ TEST(Extending, AskedForByAPersonAGoodWalkReplacesAllInTheWorldThatThereIs) {
 }
 
 TEST(Refusals, AreToldOfSensorsWithoutAPlaceAndLeaveTheVerdict) {
-  Registration current = ring(Verdict::Good, {1, 2});
-  Registration candidate = ring(Verdict::Good, {1, 2});
+  Registration current = adopted_ring(Verdict::Good, {1, 2});
+  Registration candidate = adopted_ring(Verdict::Good, {1, 2});
   candidate.verdicts[named("s5")] = {Verdict::Refused, {"s5 saw a coat stand"}};
   candidate.verdicts[named("s1")] = {Verdict::Refused, {"not this time"}};
   note_refusals(current, candidate);
@@ -156,13 +161,14 @@ TEST(Refusals, AreToldOfSensorsWithoutAPlaceAndLeaveTheVerdict) {
   EXPECT_EQ(verdict_of(current, named("s5")), Verdict::None);
   EXPECT_EQ(current.verdicts.at(named("s5")).verdict, Verdict::Refused);
   // Once s5 is placed, its old refusal is gone.
-  const auto wider = adopted(current, ring(Verdict::Good, {1, 2, 5}), SolveKind::Final, true);
+  const auto wider =
+      adopted(current, adopted_ring(Verdict::Good, {1, 2, 5}), SolveKind::Final, true);
   ASSERT_TRUE(wider);
   EXPECT_TRUE(wider->reasons.empty());
 }
 
 TEST(Unplaced, NamesTheSensorsThatSeeButHaveNoPlace) {
-  const Registration r = ring(Verdict::Good, {1, 2});
+  const Registration r = adopted_ring(Verdict::Good, {1, 2});
   EXPECT_TRUE(unplaced(r, {named("s1"), named("s2")}).empty());
   EXPECT_EQ(unplaced(r, {named("s1"), named("s3")}), std::set<SensorId>{named("s3")});
   EXPECT_EQ(unplaced({}, {named("s1")}).size(), 1u);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr Timestamp kStart = from_unix_ns(1'790'000'000'000'000'000);
 constexpr Duration kFrame = std::chrono::milliseconds(33);
-constexpr double kStep = 0.033;  // [s]
+constexpr double kSidesStep = 0.033;  // [s]
 
 /// The habits that real trackers have shown; the model contains none of them.
 const std::vector<std::vector<Flips>> kTrackers{
@@ -30,7 +30,7 @@ double wrong_share(Ring ring, double seconds, const Heading& heading, const Post
   SidesMemory memory;
   int wrong = 0;
   int all = 0;
-  for (double t = 0.0; t < seconds; t += kStep, ++all) {
+  for (double t = 0.0; t < seconds; t += kSidesStep, ++all) {
     const auto exact = body_at({0, 0, 0}, heading(t), posture(t));
     Person person = ring.look(exact, heading(t));
     resolve_sides(person, kStart + from_seconds(t), memory, {});
@@ -239,7 +239,7 @@ TEST(Sides, OfALaterPersonAreToldByTheHabitThatAnEarlierOneTaught) {
   };
   SidesMemory memory;
   Ring ring({0.0}, {kNever});
-  for (double t = 0.0; t < 30.0; t += kStep) {
+  for (double t = 0.0; t < 30.0; t += kSidesStep) {
     const double heading = wrap_angle(deg(40) * t);
     Person person = ring.look(body_at({0, 0, 0}, heading, kAtWork), heading);
     resolve_sides(person, kStart + from_seconds(t), memory, {});
