@@ -43,7 +43,8 @@ struct DepthProfile {
 /// clothing.  Delivery and clock as in kinect/.  The other sources have no parameter here.
 [[nodiscard]] DepthProfile with_source(DepthProfile profile, kinect::Source source, double factor);
 
-/// First 12 hex digits of the SHA-256 of this folder's sources: errors emerge from all of them.
+/// First 12 hex digits of the SHA-256 of the code of this folder, without comments and white space
+/// (../code_hash.cmake): errors emerge from all of it.
 [[nodiscard]] std::string frozen_depth_hash();
 
 }  // namespace chorus::synthetic::depth

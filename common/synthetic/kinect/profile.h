@@ -138,8 +138,8 @@ struct Parameter {
 };
 [[nodiscard]] std::vector<Parameter> parameters_of(Profile profile);
 
-/// First 12 hex digits of the SHA-256 of profiles.json and all sources of this folder: printed with
-/// every result.
+/// First 12 hex digits of the SHA-256 of profiles.json and the code of this folder, without
+/// comments and white space (../code_hash.cmake): printed with every result.
 [[nodiscard]] std::string frozen_hash();
 
 }  // namespace chorus::synthetic::kinect
