@@ -31,8 +31,9 @@ struct FoundSensor {
 
 /// Reads what `avahi-browse --resolve --parsable` prints: each sensor once, by id, host, port
 /// and TLS; of its addresses IPv4 before IPv6, loopback and link-local ones last.  An id that two
-/// announce is there twice.  Anybody in the network may announce anything, so
-/// lines without a valid id, name, address and port are left out.
+/// announce is there twice; so is a sensor without TLS at two addresses, because one of them may
+/// be a stranger's.  Anybody in the network may announce anything, so lines without a valid id,
+/// name, address and port are left out.
 [[nodiscard]] std::vector<FoundSensor> read_browsed(std::string_view text);
 
 /// Asks Avahi, for a second or two.  Unsupported: avahi-browse is not installed; Unavailable: no
