@@ -26,6 +26,7 @@ struct Walkers {
   SensorId master;
   /// The master's floor where no sensor reports one: a guess, good to 2 deg and 50 mm.
   std::optional<FloorPlane> guessed = {};
+  Stopped stopped = {};  ///< Asked before each iteration.
 };
 
 struct Adjusted {
@@ -34,8 +35,8 @@ struct Adjusted {
   std::map<SensorId, Matrix6> covariances;
 };
 
-/// Starts from `places`.  None if nothing was seen together or the result fits the walk and the
-/// floors worse.
+/// Starts from `places`.  None if nothing was seen together, if the result fits the walk and the
+/// floors worse, or if it was stopped.
 [[nodiscard]] std::optional<Adjusted> adjust_together(const Places& places, const Walkers& walkers,
                                                       const RegistrationConfig& config);
 

@@ -26,10 +26,14 @@ struct Walker {
 /// Estimates an edge from two walks.
 using PairEstimator = std::function<Result<PairwiseRegistration>(const Walker&, const Walker&)>;
 
+/// Asked now and then during long work; once it says so, the result is of no use to anybody.
+using Stopped = std::function<bool()>;
+
 /// solve() with another estimator of edges and everything else the same, to compare
 /// estimators.
 [[nodiscard]] Registration solve_with(const PairEstimator& estimate,
                                       const std::vector<WalkTrack>& walk, Timestamp now,
-                                      const RegistrationConfig& config);
+                                      const RegistrationConfig& config,
+                                      const Stopped& stopped = {});
 
 }  // namespace chorus::registration

@@ -13,6 +13,7 @@
 #include "fusion-server/registration/consensus.h"
 #include "fusion-server/registration/error_radius.h"
 #include "fusion-server/registration/pair_registration.h"
+#include "fusion-server/registration/partners.h"
 #include "fusion-server/registration/time_offset.h"
 #include "fusion-server/registration/transform_graph.h"
 
@@ -33,6 +34,7 @@ struct Refusal {
 struct Work {
   const std::vector<WalkTrack>& walk;
   const RegistrationConfig& config;
+  const Stopped& stopped;
   std::map<SensorId, Walker> walkers;
   std::map<SensorId, const WalkTrack*> tracks;
   std::vector<Refusal> refusals;
@@ -68,14 +70,12 @@ void reduce_tracks(Work& work) {
 }
 
 void register_pairs(Work& work, const PairEstimator& estimate) {
-  for (auto target = work.walkers.begin(); target != work.walkers.end(); ++target) {
-    for (auto source = std::next(target); source != work.walkers.end(); ++source) {
-      auto edge = estimate(target->second, source->second);
-      if (edge) {
-        work.result.edges.push_back(std::move(*edge));
-      } else {
-        work.refusals.push_back({target->first, source->first, edge.error()});
-      }
+  for (const auto& [target, source] : partners_of(work.walkers)) {
+    auto edge = estimate(work.walkers.at(target), work.walkers.at(source));
+    if (edge) {
+      work.result.edges.push_back(std::move(*edge));
+    } else {
+      work.refusals.push_back({target, source, edge.error()});
     }
   }
 }
@@ -186,8 +186,8 @@ std::map<SensorId, Placed> placed(Work& work, const std::map<SensorId, Chain>& c
   }
   const bool timed = work.config.method == PairMethod::TimedRobust;
   if (chains.size() < 2 || !timed || !work.config.adjust_together) return all;
-  const auto adjusted =
-      adjust_together(places, {work.walkers, work.result.master, guessed}, work.config);
+  const auto adjusted = adjust_together(
+      places, {work.walkers, work.result.master, guessed, work.stopped}, work.config);
   if (!adjusted) return all;
   for (auto& [sensor, place] : all) {
     place.world_from_sensor = adjusted->places.at(sensor);
@@ -362,8 +362,8 @@ void judge(Work& work) {
 }  // namespace
 
 Registration solve_with(const PairEstimator& estimate, const std::vector<WalkTrack>& walk,
-                        Timestamp now, const RegistrationConfig& config) {
-  Work work{walk, config, {}, {}, {}, {}, {}, false};
+                        Timestamp now, const RegistrationConfig& config, const Stopped& stopped) {
+  Work work{walk, config, stopped, {}, {}, {}, {}, {}, false};
   work.result.solved = now;
   reduce_tracks(work);
   const bool silent =

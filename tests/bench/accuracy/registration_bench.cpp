@@ -13,6 +13,7 @@
 #include "tests/bench/accuracy/bump_cases.h"
 #include "tests/bench/accuracy/exchange.h"
 #include "tests/bench/accuracy/registration_cases.h"
+#include "tests/bench/accuracy/registration_scale.h"
 #include "tests/bench/methods/comparison.h"
 #include "tests/bench/methods/over_draws.h"
 #include "tests/bench/methods/stress.h"
@@ -276,6 +277,24 @@ void measure_all_bystanders(Report& report, std::size_t count) {
       "else all the time.  honest-250: the same without.");
 }
 
+/// The case as it is asked for: that of its first walk.
+std::string full_name(const RegistrationCase& each) {
+  return fmt::format(fmt::runtime(each.name), each.lengths.front());
+}
+
+/// Measures the case that was asked for; false if there is none of that name.
+bool measure_only(Report& report) {
+  bool found = false;
+  for (const char* profile : {"A", "B", "C"}) {
+    for (const RegistrationCase& each : registration_cases(profile)) {
+      if (full_name(each) != report.only()) continue;
+      measure(report, each);
+      found = true;
+    }
+  }
+  return found;
+}
+
 void measure_cases(Report& report, const std::string& profile) {
   for (RegistrationCase& each : registration_cases(profile)) {
     if (report.quick()) {
@@ -301,7 +320,16 @@ void measure_ablations(Report& report, const std::string& profile) {
 Result<void> run_registration(Report& report) {
   constexpr std::string_view kBump = "bump";
   if (report.list()) {
-    std::cout << kBump << "\nwalks\nbystanders\n";
+    std::cout << kBump << "\nwalks\nbystanders\n" << kScale << '\n';
+    for (const char* profile : {"A", "B", "C"}) {
+      for (const RegistrationCase& each : registration_cases(profile))
+        std::cout << full_name(each) << '\n';
+    }
+    return {};
+  }
+  if (report.only() == kScale) {
+    report.profile(described({"A"}));
+    measure_scale(report);
     return {};
   }
   if (report.only() == "walks") {
@@ -316,7 +344,13 @@ Result<void> run_registration(Report& report) {
   }
   report.profile(described({"gauss", "A", "B", "C", "D"}));
   if (report.only().empty() || report.only() == kBump) measure_bumps(report);
-  if (!report.only().empty()) return {};
+  if (report.only() == kBump) return {};
+  if (!report.only().empty()) {
+    if (measure_only(report)) return {};
+    return fail(ErrorCode::InvalidArgument, "--only",
+                "there is no case \"" + report.only() + "\"; --list shows all");
+  }
+  if (!report.quick()) measure_scale(report);
   measure_gauss(report);
   for (const char* profile : {"A", "B", "C"}) measure_cases(report, profile);
   measure_all_short_walks(report, report.quick() ? 20 : 1000);
