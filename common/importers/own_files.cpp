@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "common/base/units.h"
 #include "common/body/bones.h"
 #include "common/geometry/rotation.h"
 #include "common/importers/instants.h"
@@ -51,6 +52,17 @@ Result<std::optional<std::array<double, Count>>> numbers(
   return values;
 }
 
+/// The covariance that a joint's one standard deviation says; unknown without one.
+Result<Covariance> covariance_of(const Table& row) {
+  constexpr double kWidest = 1e4;  // [mm]
+  const auto deviation = row.number("sd_mm", kWidest);
+  if (!deviation) return pass(deviation);
+  if (!*deviation || **deviation == 0.0) return Covariance{};  // Nobody is that exact.
+  if (**deviation < 0) return row.wrong("sd_mm", "is below 0");
+  const double sigma = mm(**deviation);
+  return Covariance(Eigen::Matrix3d(sigma * sigma * Eigen::Matrix3d::Identity()));
+}
+
 Result<Joint> joint_of(const Table& row) {
   Joint joint;
   const auto place = numbers(row, kPosition, kMaxImported);
@@ -64,6 +76,9 @@ Result<Joint> joint_of(const Table& row) {
       return row.wrong("state", "is none of NotTracked, Inferred and Tracked");
     joint.state = static_cast<JointState>(known - kStates.begin());
   }
+  const auto covariance = covariance_of(row);
+  if (!covariance) return pass(covariance);
+  joint.covariance = *covariance;
   const auto turn = numbers(row, kTurn, 1.01);
   if (!turn) return pass(turn);
   if (!*turn) return joint;

@@ -10,8 +10,9 @@
 
 namespace chorus::importers {
 
-/// Requires the columns joint, x_m, y_m, z_m and utc or time_s; person, state and qx..qw are
-/// optional. The rows of one instant must be adjacent, and the instants in order.
+/// Requires the columns joint, x_m, y_m, z_m and utc or time_s; person, state, qx..qw and sd_mm
+/// (standard deviation along each axis) are optional. The rows of one instant must be adjacent, and
+/// the instants in order.
 [[nodiscard]] Result<record::FrameRecording> read_joint_csv(const std::filesystem::path& file,
                                                             const ImportOptions& options = {});
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <utility>
 
+#include "common/geometry/rotation.h"
 #include "fusion-server/fusion/bone_lengths.h"
 #include "fusion-server/fusion/joint_filters.h"
 #include "fusion-server/fusion/misfit_size.h"
@@ -55,7 +57,7 @@ class BodyFilter final : public Estimator {
     misfits_.learn(sighted.misfits(), passed, model());
     lengths_.learn(sighted.placed(), passed, model());
     const PlacedBody whole = held(sighted.placed(), expected);
-    if (model().bias_rate > 0) sighted.learn(biases_, whole, passed);
+    if (model().bias_rate > 0) sighted.learn(biases_, whole, passed, turned(whole));
     agreement_.follow(sighted.disagreement(whole), passed);
     scale_square_.follow(sighted.scale_square(), passed);
     middle_ = middle_of(whole);
@@ -72,6 +74,16 @@ class BodyFilter final : public Estimator {
 
  private:
   [[nodiscard]] const BodyModel& model() const { return config_->body; }
+
+  /// By how much the shoulders have turned since the last instant [rad]; 0 if that is not known.
+  [[nodiscard]] double turned(const PlacedBody& body) {
+    const PlacedJoint& left = body[index_of(JointId::ShoulderLeft)];
+    const PlacedJoint& right = body[index_of(JointId::ShoulderRight)];
+    if (!left.placed || !right.placed) return 0.0;
+    const Eigen::Vector3d across = left.position - right.position;
+    const double before = std::exchange(yaw_, std::atan2(across.z(), across.x()));
+    return std::abs(wrap_angle(yaw_ - before));
+  }
 
   /// The seen body, completed by what is expected, with bones of their lengths.
   [[nodiscard]] PlacedBody held(PlacedBody body, const PlacedBody& expected) const {
@@ -140,6 +152,7 @@ class BodyFilter final : public Estimator {
   Habit agreement_{kFirstAgreement};
   Habit scale_square_;
   std::optional<Eigen::Vector3d> middle_;  ///< Of the trunk.
+  double yaw_ = 0.0;                       ///< Of the shoulders, when last placed [rad].
   std::optional<Timestamp> last_;
 };
 

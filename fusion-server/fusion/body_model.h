@@ -20,9 +20,11 @@ struct BodyModel {
   double bone = 0.003;
   Duration bone_memory = std::chrono::seconds(60);
   /// Rate at which a sensor's offset of each joint is followed [1/s], 0: not at all; and the time
-  /// after which it is forgotten.
+  /// after which it is forgotten, or the angle [rad] by which the person has turned: a sensor errs
+  /// otherwise about somebody whom it sees from another side.
   double bias_rate = 3.0;
   Duration bias_memory = std::chrono::milliseconds(300);
+  double bias_turn = deg(15);
   /// Pose error in the weights of the views, as a fraction of what is stated (pose_error.h), and by
   /// what factor it is larger where a joint is inferred.
   double pose = 0.5;
@@ -32,16 +34,16 @@ struct BodyModel {
   /// Spectral densities of the white-noise acceleration of a resting and of a moving joint [m^2 /
   /// s^3]; `limb` is a factor for limbs.  Resting 0: no filter over time.
   double resting = 0.0005;
-  double moving = 20.0;
+  double moving = 3.0;
   double limb = 4.0;
   /// Fraction of one instant's stated standard deviation that is independent at the next instant.
-  double white = 0.2;
+  double white = 0.15;
   /// Stated errors only, 0: unused.  Sensors that differ in scale also have wrong proportions: this
   /// fraction of that difference, times a joint's distance from the trunk.
   double proportion = 0.6;
   /// And the mean squared residual, in variances, of views that disagree no more than usual: the
   /// stated variances are multiplied by what is found over this.
-  double agreement = 0.32;
+  double agreement = 0.4;
   /// How long a joint that nobody sees is predicted.
   Duration carry = std::chrono::seconds(1);
 

@@ -55,6 +55,7 @@ Eigen::Matrix3d line_of_sight_covariance(const Joint& joint, const Eigen::Vector
   const double along = usable(noise.along, factor);
   const double across = usable(noise.across, factor);
   const Eigen::Matrix3d round = across * across * Eigen::Matrix3d::Identity();
+  if (along == across) return round;
   const Eigen::Vector3d ray = joint.position - eye;
   const double length = ray.norm();
   if (!(length > kMinRay) || !std::isfinite(length)) return round;

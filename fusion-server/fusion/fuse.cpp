@@ -33,7 +33,10 @@ std::vector<FusedBody> Memory::fuse(const std::vector<Person>& people, const Ins
 FusedBody Memory::fuse(const Person& person, const Instant& instant) {
   const auto last = last_.find(person.id);
   const bool known = person.carried && last != last_.end();
-  const Method method = known ? last->second.method : method_for(person, config_);
+  Method method = known ? last->second.method : method_for(person, config_);
+  // Whoever several sources had a moment ago stays with the configured method while one is left.
+  const bool had = estimators_.contains({person.id, config_.method});
+  if (had && method == Method::InverseVariance) method = config_.method;
   auto& estimator = estimators_[{person.id, method}];
   if (!estimator) estimator = begin(method, config_);
   FusedBody body = estimator->fuse(person, instant);

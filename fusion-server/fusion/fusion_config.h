@@ -26,7 +26,7 @@ enum class Method {
 };
 
 struct FusionConfig {
-  Method method = Method::InverseVariance;
+  Method method = Method::BodyFilter;
   /// Otto weight given to every view that saw a joint when all their weights are zero (decision
   /// 0007); if this is 0, such a joint stays NotTracked.
   double zero_weight_floor = 0.02;

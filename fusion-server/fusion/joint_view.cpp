@@ -13,35 +13,43 @@ namespace {
 
 constexpr double kAxes = 3.0;
 
-std::uint64_t bit_of(const SensorId& sensor, const std::vector<SensorId>& sensors) {
-  const auto at = std::find(sensors.begin(), sensors.end(), sensor);
-  const auto index = static_cast<std::size_t>(at - sensors.begin());
-  return at == sensors.end() || index >= kMaxSensors ? 0 : std::uint64_t{1} << index;
-}
-
-JointView joint_view_of(const SensorView& view, JointId joint, const std::vector<SensorId>& sensors,
+JointView joint_view_of(const SensorView& view, JointId joint, std::uint64_t contributor,
                         const ErrorModel& errors) {
   JointView found;
   found.joint = view.skeleton[joint];
   found.weight = Weight::clamped(view.weight).value();
   found.covariance = errors.covariance(view, joint);
-  found.contributor = bit_of(view.sensor, sensors);
+  found.contributor = contributor;
   found.eye = view.eye;
   return found;
 }
 
 }  // namespace
 
+std::uint64_t contributor_of(const SensorId& sensor, const std::vector<SensorId>& sensors) {
+  const auto at = std::find(sensors.begin(), sensors.end(), sensor);
+  const auto index = static_cast<std::size_t>(at - sensors.begin());
+  return at == sensors.end() || index >= kMaxSensors ? 0 : std::uint64_t{1} << index;
+}
+
 std::vector<JointView> joint_views_of(JointId joint, const Person& person,
                                       const std::vector<SensorId>& sensors,
                                       const ErrorModel& errors) {
   std::vector<JointView> views;
   for (std::size_t i = 0; i < person.views.size(); ++i) {
-    if (!person.views[i].skeleton[joint].seen()) continue;
-    views.push_back(joint_view_of(person.views[i], joint, sensors, errors));
+    const SensorView& view = person.views[i];
+    if (!view.skeleton[joint].seen()) continue;
+    views.push_back(joint_view_of(view, joint, contributor_of(view.sensor, sensors), errors));
     views.back().view = i;
   }
   return views;
+}
+
+std::optional<JointView> point_or_ray_of(const SensorView& view, JointId joint,
+                                         std::uint64_t contributor, const ErrorModel& errors) {
+  const bool usable = view.skeleton[joint].seen() || view.eye.allFinite();
+  if (!usable || !view.skeleton[joint].given()) return std::nullopt;
+  return joint_view_of(view, joint, contributor, errors);
 }
 
 std::vector<JointView> points_and_rays_of(JointId joint, const Person& person,
@@ -50,9 +58,9 @@ std::vector<JointView> points_and_rays_of(JointId joint, const Person& person,
   std::vector<JointView> views;
   for (std::size_t i = 0; i < person.views.size(); ++i) {
     const SensorView& view = person.views[i];
-    const bool usable = view.skeleton[joint].seen() || view.eye.allFinite();
-    if (!usable || !view.skeleton[joint].given()) continue;
-    views.push_back(joint_view_of(view, joint, sensors, errors));
+    auto found = point_or_ray_of(view, joint, contributor_of(view.sensor, sensors), errors);
+    if (!found) continue;
+    views.push_back(*std::move(found));
     views.back().view = i;
   }
   return views;

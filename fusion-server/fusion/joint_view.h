@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "common/body/skeleton.h"
@@ -38,6 +39,15 @@ struct FusedJoint {
 [[nodiscard]] std::vector<JointView> points_and_rays_of(JointId joint, const Person& person,
                                                         const std::vector<SensorId>& sensors,
                                                         const ErrorModel& errors);
+
+/// What one view has of a joint, a point or a ray; none when it has neither.
+[[nodiscard]] std::optional<JointView> point_or_ray_of(const SensorView& view, JointId joint,
+                                                       std::uint64_t contributor,
+                                                       const ErrorModel& errors);
+
+/// The sensor's bit in FusedBody::contributors; 0 for one that is not listed.
+[[nodiscard]] std::uint64_t contributor_of(const SensorId& sensor,
+                                           const std::vector<SensorId>& sensors);
 
 /// Sets a fused joint's covariance and, computed from it, the mean variance.
 void state_covariance(FusedJoint& fused, const Eigen::Matrix3d& covariance);

@@ -35,6 +35,16 @@ bool nearly_a_ray(const Joint& joint) {
   return along > kElongated * kElongated * (covariance.trace() - along) / 2.0;
 }
 
+/// Whether one view alone has the person, and states the covariance of all its points: a body that
+/// somebody else has fused already.  The covariance has the slow errors in it, which a second
+/// filter would take for noise, and nobody contradicts it.
+bool fused_already(const Person& person) {
+  if (person.views.size() != 1) return false;
+  return std::ranges::all_of(person.views.front().skeleton.joints, [](const Joint& joint) {
+    return !joint.given() || (joint.seen() && joint.covariance.known());
+  });
+}
+
 }  // namespace
 
 std::span<const MethodRow> methods() { return kMethods; }
@@ -62,8 +72,10 @@ Method method_for(const Person& person, const FusionConfig& config) {
     });
   };
   if (!any(&Joint::seen)) return any(&Joint::bears) ? Method::PointsAndRays : config.method;
+  if (config.method != Method::BodyFilter) return config.method;
   const bool depth = any([](const Joint& joint) { return joint.seen() && !nearly_a_ray(joint); });
-  return config.method == Method::BodyFilter && !depth ? Method::PointsAndRays : config.method;
+  if (!depth) return Method::PointsAndRays;
+  return fused_already(person) ? Method::InverseVariance : config.method;
 }
 
 }  // namespace chorus::fusion

@@ -25,9 +25,10 @@ struct MethodRow {
 /// An estimator of this method for one person, with the configured parameters.
 [[nodiscard]] std::unique_ptr<Estimator> begin(Method method, const FusionConfig& config);
 
-/// The configured method; for a person seen only by rays, the method that can use rays.  Points
-/// whose stated depth is hardly known count as rays for the body filter, whose errors are those of
-/// depth sensors.
+/// The configured method; for a person seen only by rays, the method that can use rays.  The body
+/// filter corrects what depth sensors err by, so two kinds of people are not for it: points whose
+/// stated depth is hardly known count as rays, and a body that one source alone states with its
+/// covariances, as another fusion server or a file of fused frames does, is taken as it is.
 [[nodiscard]] Method method_for(const Person& person, const FusionConfig& config);
 
 }  // namespace chorus::fusion

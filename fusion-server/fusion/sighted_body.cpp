@@ -35,33 +35,50 @@ bool has_points(const SeenBody& seen) {
 SightedBody::SightedBody(const Person& person, const Instant& instant, const ErrorModel& errors,
                          const FusionConfig& config, const Biases& biases)
     : config_(config), person_(person), seen_(person.views.size()), misfits_(person.views.size()) {
-  for (std::size_t v = 0; v < person.views.size(); ++v) seen_[v].eye = person.views[v].eye;
-  for (std::size_t j = 0; j < kJointCount; ++j) take(j, instant, errors, biases);
+  for (Sights& sights : sights_) {
+    sights.views.reserve(person.views.size());
+    sights.weighings.reserve(person.views.size());
+  }
+  for (std::size_t v = 0; v < person.views.size(); ++v) {
+    const SensorId& sensor = person.views[v].sensor;
+    const auto bias = biases.find(sensor);
+    seen_[v].eye = person.views[v].eye;
+    take(v, contributor_of(sensor, instant.sensors), errors,
+         bias == biases.end() ? nullptr : &bias->second);
+  }
 }
 
-void SightedBody::take(std::size_t j, const Instant& instant, const ErrorModel& errors,
-                       const Biases& biases) {
-  const auto joint = static_cast<JointId>(j);
-  Sights& sights = sights_[j];
-  sights.views = points_and_rays_of(joint, person_, instant.sensors, errors);
-  sights.trust.assign(sights.views.size(), 1.0);
-  for (JointView& view : sights.views) {
-    const bool own = view.joint.covariance.known();
-    if (own || view.joint.bears()) sights.round = false;
-    sights.stated.push_back(mean_variance(view.covariance));
-    if (!own && view.joint.seen()) {
-      sights.stated.back() += pose_variance(config_.pose_error, joint, view.joint.state);
-      view.covariance += round_covariance(weighed_pose(config_, joint, view.joint.state));
+void SightedBody::take(std::size_t v, std::uint64_t contributor, const ErrorModel& errors,
+                       const Offsets* biases) {
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const auto joint = static_cast<JointId>(j);
+    auto view = point_or_ray_of(person_.views[v], joint, contributor, errors);
+    if (!view) continue;
+    view->view = v;
+    Sights& sights = sights_[j];
+    if (view->joint.covariance.known() || view->joint.bears()) sights.round = false;
+    sights.weighings.push_back(weighed(*view, joint, biases));
+    if (view->joint.seen()) {
+      view->joint.position -= sights.weighings.back().bias;
+      seen_[v].place[j] = view->joint.position;
+      seen_[v].information[j] = view->covariance.inverse();
     }
-    sights.variance.push_back(mean_variance(view.covariance));
-    sights.bias.emplace_back(Eigen::Vector3d::Zero());
-    if (!view.joint.seen()) continue;
-    const auto bias = biases.find(person_.views[view.view].sensor);
-    if (bias != biases.end()) sights.bias.back() = bias->second[j];
-    view.joint.position -= sights.bias.back();
-    seen_[view.view].place[j] = view.joint.position;
-    seen_[view.view].information[j] = view.covariance.inverse();
+    sights.views.push_back(*std::move(view));
   }
+}
+
+/// Also adds to the view's covariance the pose error that weights have.
+SightedBody::Weighing SightedBody::weighed(JointView& view, JointId joint,
+                                           const Offsets* biases) const {
+  Weighing weighing;
+  weighing.stated = mean_variance(view.covariance);
+  if (view.joint.seen() && !view.joint.covariance.known()) {
+    weighing.stated += pose_variance(config_.pose_error, joint, view.joint.state);
+    view.covariance += round_covariance(weighed_pose(config_, joint, view.joint.state));
+  }
+  weighing.variance = mean_variance(view.covariance);
+  if (view.joint.seen() && biases != nullptr) weighing.bias = (*biases)[index_of(joint)];
+  return weighing;
 }
 
 void SightedBody::settle(const HeldBones& bones, const PlacedBody& expected,
@@ -96,14 +113,15 @@ PlacedJoint SightedBody::robust_mean(Sights& sights, const PlacedJoint* start) c
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     double information = 0.0;
     for (std::size_t v = 0; v < sights.views.size(); ++v) {
+      Weighing& weighing = sights.weighings[v];
       const Eigen::Vector3d& place = sights.views[v].joint.position;
       // Knowing by how much a view is off does not make it right: its bias counts as distance too.
-      const Eigen::Vector3d off = place + sights.bias[v] - joint.position;
-      const double distance = off.norm() / std::sqrt(sights.variance[v]);
+      const Eigen::Vector3d off = place + weighing.bias - joint.position;
+      const double distance = off.norm() / std::sqrt(weighing.variance);
       const bool weigh = joint.placed && huber > 0 && distance > huber;
-      sights.trust[v] = weigh ? huber / distance : 1.0;
-      sum += sights.trust[v] / sights.variance[v] * place;
-      information += sights.trust[v] / sights.variance[v];
+      weighing.trust = weigh ? huber / distance : 1.0;
+      sum += weighing.trust / weighing.variance * place;
+      information += weighing.trust / weighing.variance;
     }
     joint = {sum / information, round_covariance(1.0 / information), true};
   }
@@ -122,7 +140,7 @@ PlacedJoint SightedBody::robust_squares(Sights& sights, const PlacedJoint& expec
     found = least_squares(views, config_.huber);
   }
   if (!found || largest_sigma(found->covariance) > config_.max_sigma) return {};
-  sights.trust = found->trust;
+  for (std::size_t v = 0; v < sights.views.size(); ++v) sights.weighings[v].trust = found->trust[v];
   return {found->position, found->covariance, true};
 }
 
@@ -131,7 +149,8 @@ void SightedBody::mend(const PlacedBody& body, const BodyModel& model) {
   for (std::size_t v = 0; v < seen_.size(); ++v) {
     misfits_[v] = misfit_of(seen_[v], body, misfits_[v], model);
   }
-  std::vector<std::array<Eigen::Vector3d, kJointCount>> places;
+  std::vector<Offsets> places;
+  places.reserve(seen_.size());
   for (std::size_t v = 0; v < seen_.size(); ++v)
     places.push_back(mended(seen_[v], body, misfits_[v]));
   for (std::size_t j = 0; j < kJointCount; ++j) {
@@ -141,9 +160,10 @@ void SightedBody::mend(const PlacedBody& body, const BodyModel& model) {
   }
 }
 
-void SightedBody::learn(Biases& biases, const PlacedBody& body, double passed) const {
+void SightedBody::learn(Biases& biases, const PlacedBody& body, double passed,
+                        double turned) const {
   const BodyModel& model = config_.body;
-  const double kept = std::exp(-passed / seconds(model.bias_memory));
+  const double kept = std::exp(-passed / seconds(model.bias_memory) - turned / model.bias_turn);
   const double share = std::min(1.0, passed * model.bias_rate);
   for (auto& [sensor, bias] : biases) {
     for (Eigen::Vector3d& each : bias) each *= kept;
@@ -164,7 +184,7 @@ Eigen::Matrix3d SightedBody::stated(std::size_t joint) const {
   if (!sights.round) return placed_[joint].covariance;
   double information = 0.0;
   for (std::size_t v = 0; v < sights.views.size(); ++v) {
-    information += sights.trust[v] / sights.stated[v];
+    information += sights.weighings[v].trust / sights.weighings[v].stated;
   }
   return round_covariance(1.0 / information);
 }
@@ -178,7 +198,7 @@ std::optional<double> SightedBody::disagreement(const PlacedBody& body) const {
     if (!determined(j) || !sights.round || sights.views.size() < 2) continue;
     for (std::size_t v = 0; v < sights.views.size(); ++v) {
       const Eigen::Vector3d off = sights.views[v].joint.position - body[j].position;
-      sum += sights.trust[v] * off.squaredNorm() / (kAxes * sights.variance[v]);
+      sum += sights.weighings[v].trust * off.squaredNorm() / (kAxes * sights.weighings[v].variance);
       count += 1.0;
     }
   }
@@ -205,13 +225,14 @@ FusedJoint SightedBody::shown(JointId joint) const {
   std::vector<Eigen::Quaterniond> rotations;
   std::vector<double> weights;
   for (std::size_t v = 0; v < sights.views.size(); ++v) {
-    if (sights.trust[v] == 0.0) continue;
+    const Weighing& weighing = sights.weighings[v];
+    if (weighing.trust == 0.0) continue;
     const JointView& view = sights.views[v];
     fused.joint.state = std::max(fused.joint.state, view.joint.state);
     fused.contributors |= view.contributor;
     if (!is_unit(view.joint.orientation)) continue;
     rotations.push_back(about_y(-misfits_[view.view].turn) * view.joint.orientation);
-    weights.push_back(sights.trust[v] / sights.variance[v]);
+    weights.push_back(weighing.trust / weighing.variance);
   }
   if (!rotations.empty()) fused.joint.orientation = weighted_lerp(rotations, weights);
   return fused;

@@ -37,8 +37,9 @@ class SightedBody {
   [[nodiscard]] const std::vector<Misfit>& misfits() const { return misfits_; }
   /// Whether the views alone determine the joint's place.
   [[nodiscard]] bool determined(std::size_t joint) const;
-  /// Updates the biases from the points' residuals against `body`, `passed` [s] after the last.
-  void learn(Biases& biases, const PlacedBody& body, double passed) const;
+  /// Updates the biases from the points' residuals against `body`, `passed` [s] after the last time
+  /// and with the person `turned` [rad] since.
+  void learn(Biases& biases, const PlacedBody& body, double passed, double turned) const;
   /// Mean squared residual between the points and `body`, per axis, in the points' variances; none
   /// without a joint that two views have.
   [[nodiscard]] std::optional<double> disagreement(const PlacedBody& body) const;
@@ -48,19 +49,25 @@ class SightedBody {
   [[nodiscard]] FusedJoint shown(JointId joint) const;
 
  private:
+  /// How one view of a joint counts.
+  struct Weighing {
+    double variance = 0.0;                           ///< Per axis, for weights [m^2].
+    double stated = 0.0;                             ///< Per axis, with the whole pose error [m^2].
+    Eigen::Vector3d bias = Eigen::Vector3d::Zero();  ///< What was subtracted [m].
+    double trust = 1.0;
+  };
   /// A joint's views, corrected, and how far each is trusted.
   struct Sights {
     std::vector<JointView> views;
-    std::vector<double> variance;       ///< Per axis, for weights [m^2].
-    std::vector<double> stated;         ///< Per axis, with the whole pose error [m^2].
-    std::vector<Eigen::Vector3d> bias;  ///< What was subtracted [m].
-    std::vector<double> trust;
-    bool round = true;     ///< All points have isotropic errors.
-    bool bounded = false;  ///< The predicted place was needed besides the views.
+    std::vector<Weighing> weighings;  ///< Of the same views.
+    bool round = true;                ///< All points have isotropic errors.
+    bool bounded = false;             ///< The predicted place was needed besides the views.
   };
+  using Offsets = std::array<Eigen::Vector3d, kJointCount>;
 
-  void take(std::size_t joint, const Instant& instant, const ErrorModel& errors,
-            const Biases& biases);
+  void take(std::size_t view, std::uint64_t contributor, const ErrorModel& errors,
+            const Offsets* biases);
+  [[nodiscard]] Weighing weighed(JointView& view, JointId joint, const Offsets* biases) const;
   void place_all(const PlacedBody& expected, const PlacedBody* start);
   [[nodiscard]] PlacedJoint robust_mean(Sights& sights, const PlacedJoint* start) const;
   [[nodiscard]] PlacedJoint robust_squares(Sights& sights, const PlacedJoint& expected) const;

@@ -7,7 +7,6 @@
 #include <Eigen/LU>
 
 #include "common/body/bones.h"
-#include "common/geometry/rotation.h"
 #include "fusion-server/fusion/joint_filters.h"
 
 namespace chorus::fusion {
@@ -19,34 +18,46 @@ constexpr double kLeastTurn = 0.005;  // [rad] prior for the turn of a frontal v
 constexpr double kOff = 1e-9;         // prior of a nuisance parameter that is switched off
 constexpr double kNarrow = 0.1;       // [m] shoulders closer together give no direction
 
+/// How the joints hang on the spine.
+struct Hanging {
+  std::array<std::size_t, kJointCount> axis{};  ///< The end of the spine that a joint hangs on.
+  std::array<bool, kJointCount> trunk{};
+};
+
+const Hanging& hanging() {
+  static const auto kHanging = [] {
+    Hanging hanging;
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      auto id = static_cast<JointId>(j);
+      hanging.trunk[j] = in_trunk(id);
+      while (!in_trunk(id)) id = parent_of(id);
+      hanging.axis[j] = index_of(id);
+    }
+    return hanging;
+  }();
+  return kHanging;
+}
+
 /// The centres of scaling and turning.
 struct Centres {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   const PlacedBody& body;
-};
+  const Hanging& hanging;
 
-/// The end of the spine that a joint is connected to.
-std::size_t axis_of(std::size_t joint) {
-  static const auto kAxis = [] {
-    std::array<std::size_t, kJointCount> axis{};
-    for (std::size_t j = 0; j < kJointCount; ++j) {
-      auto id = static_cast<JointId>(j);
-      while (!in_trunk(id)) id = parent_of(id);
-      axis[j] = index_of(id);
-    }
-    return axis;
-  }();
-  return kAxis[joint];
-}
+  /// About which the joint turns; null: it does not.
+  [[nodiscard]] const Eigen::Vector3d* axis_of(std::size_t joint) const {
+    const PlacedJoint& axis = body[hanging.axis[joint]];
+    return hanging.trunk[joint] || !axis.placed ? nullptr : &axis.position;
+  }
+};
 
 /// Derivatives d z_j / d scale and d z_j / d turn.
 Eigen::Matrix<double, 3, 2> slopes_at(std::size_t joint, const Centres& at) {
   const Eigen::Vector3d& place = at.body[joint].position;
   Eigen::Matrix<double, 3, 2> slopes = Eigen::Matrix<double, 3, 2>::Zero();
   slopes.col(0) = place - at.middle;
-  const std::size_t axis = axis_of(joint);
-  if (!in_trunk(static_cast<JointId>(joint)) && at.body[axis].placed) {
-    const Eigen::Vector3d lever = place - at.body[axis].position;
+  if (const Eigen::Vector3d* axis = at.axis_of(joint)) {
+    const Eigen::Vector3d lever = place - *axis;
     slopes.col(1) = Eigen::Vector3d(lever.z(), 0.0, -lever.x());
   }
   return slopes;
@@ -55,20 +66,21 @@ Eigen::Matrix<double, 3, 2> slopes_at(std::size_t joint, const Centres& at) {
 /// A misfit undone: the sines once for all joints.
 struct Mending {
   explicit Mending(const Misfit& misfit)
-      : scale(misfit.scale), back(about_y(-misfit.turn).toRotationMatrix()) {}
+      : scale(misfit.scale), sine(std::sin(misfit.turn)), cosine(std::cos(misfit.turn)) {}
+  /// Turned back about +y.
+  [[nodiscard]] Eigen::Vector3d back(const Eigen::Vector3d& way) const {
+    return {cosine * way.x() - sine * way.z(), way.y(), sine * way.x() + cosine * way.z()};
+  }
   double scale;
-  Eigen::Matrix3d back;
+  double sine;
+  double cosine;
 };
 
 /// The view's position of a joint, corrected for the misfit.
 Eigen::Vector3d mended_at(std::size_t joint, const SeenBody& seen, const Centres& at,
                           const Mending& mending) {
   Eigen::Vector3d place = seen.place[joint];
-  const std::size_t axis = axis_of(joint);
-  if (!in_trunk(static_cast<JointId>(joint)) && at.body[axis].placed) {
-    const Eigen::Vector3d& about = at.body[axis].position;
-    place = about + mending.back * (place - about);
-  }
+  if (const Eigen::Vector3d* axis = at.axis_of(joint)) place = *axis + mending.back(place - *axis);
   return place - mending.scale * (at.body[joint].position - at.middle);
 }
 
@@ -108,7 +120,7 @@ Misfit misfit_of(const SeenBody& seen, const PlacedBody& body, const Misfit& bef
                  const BodyModel& model) {
   const auto middle = middle_of(body);
   if (!middle) return {};
-  const Centres at{*middle, body};
+  const Centres at{*middle, body, hanging()};
   const double share = side_on_share(seen, at, model);
   const double turn = model.turn > 0 ? kLeastTurn + model.turn * share : kOff;
   const double scale = std::max(kOff, model.scale);
@@ -137,7 +149,7 @@ std::array<Eigen::Vector3d, kJointCount> mended(const SeenBody& seen, const Plac
   auto places = seen.place;
   const auto middle = middle_of(body);
   if (!middle) return places;
-  const Centres at{*middle, body};
+  const Centres at{*middle, body, hanging()};
   const Mending mending(misfit);
   for (std::size_t j = 0; j < kJointCount; ++j) {
     if (!seen.has(j) || !body[j].placed) continue;

@@ -1,6 +1,7 @@
 """A cell of real processes is recorded, killed, downloaded, replayed and fused again."""
 
 import json
+import math
 import pathlib
 import signal
 import subprocess
@@ -21,7 +22,8 @@ def chorus(*arguments, seconds=90):
 
 
 def positions(frame):
-    return {(body["bodyId"], name): tuple(joint[a] for a in "xyz")
+    """Of the joints of the only person; ids are given anew each time."""
+    return {name: tuple(joint[a] for a in "xyz")
             for body in frame["bodies"] for name, joint in body["joints"].items() if "x" in joint}
 
 
@@ -55,18 +57,30 @@ class Cell(Rig):
         file.write_bytes(get(fusion.url + report["download"].lstrip("/"), accept="*/*")[2])
         self.assertEqual(file.stat().st_size, report["bytes"])
 
-        # Raw frames through the pipeline twice: the result is the same, byte for byte, and equals what the server fused live.
+        # Raw frames through the pipeline twice: the result is the same, byte for byte.
         self.assertEqual(self.fuse(file, "a.mcap"), self.fuse(self.at / "rec/walk", "b.mcap"))
-        again = [json.loads(line) for line in self.fuse(file, "a.ndjson").splitlines()]
-        live = self.fused_frames(file)
+        # It is not what was fused live: the server remembers what it saw before the recording.  But it is close.
+        apart = self.apart_from_live(file)
+        self.assertLess(apart[len(apart) // 2], 0.015)
+        self.assertLess(apart[len(apart) * 95 // 100], 0.05)
+        self.assertNotEqual(self.fuse(file, "c.mcap", "--method", "mean"), (self.at / "a.mcap").read_bytes())
+
+    def test_without_memory_a_recording_is_fused_as_it_was_live(self):
+        fusion = self.cell(**{"fusion.method": "inverse-variance"})
+        self.assertEqual(send("POST", fusion.url + "recordings/", b'{"name": "walk", "seconds": 4}')[0], 201)
+        self.finished(fusion.url + "recordings/walk")
+        apart = self.apart_from_live(self.at / "rec/walk", "--method", "inverse-variance")
+        self.assertEqual(apart[len(apart) * 9 // 10], 0.0, "the beginning, where the recording lacks what came before, may differ")
+
+    def apart_from_live(self, file, *options):
+        """Distances of the joints that are fused again from where they were live [m], the shortest first."""
+        again = [json.loads(line) for line in self.fuse(file, "again.ndjson", *options).splitlines()]
         # Offline the 30 Hz instants are rounded, live they are truncated: a nanosecond apart.
         instant = lambda frame: round(int(frame["capturedNanoseconds"]) / 1e6)
-        by_instant = {instant(frame): frame for frame in again}
-        pairs = [(frame, by_instant[instant(frame)]) for frame in live if instant(frame) in by_instant]
+        by_instant = {instant(frame): positions(frame) for frame in again}
+        pairs = [(positions(frame), by_instant[instant(frame)]) for frame in self.fused_frames(file) if instant(frame) in by_instant]
         self.assertGreater(len(pairs), 80)
-        equal = sum(sorted(positions(a).values()) == sorted(positions(b).values()) for a, b in pairs)
-        self.assertGreater(equal / len(pairs), 0.9, "the beginning, where the recording lacks what came before, may differ")
-        self.assertNotEqual(self.fuse(file, "c.mcap", "--method", "mean"), (self.at / "a.mcap").read_bytes())
+        return sorted(math.dist(live[joint], joints[joint]) for live, joints in pairs for joint in live if joint in joints)
 
     def fused_frames(self, file):
         """Uses the recording's own probe, which is independent of the reader used for fusing."""

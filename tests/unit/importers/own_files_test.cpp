@@ -82,6 +82,8 @@ TEST(JointCsv, WhatExportWritesComesBack) {
     pose.skeleton = testing::standing_person({0.1 * i, 0, 0});
     pose.skeleton[JointId::HandLeft].state = JointState::Inferred;
     if (i == 1) testing::hide(pose.skeleton[JointId::Head]);
+    pose.variance.fill(4e-4);
+    pose.variance[index_of(JointId::Neck)] = -1.0;
     track.poses.push_back(pose);
   }
   take.persons.push_back(track);
@@ -97,6 +99,10 @@ TEST(JointCsv, WhatExportWritesComesBack) {
       EXPECT_EQ(body.skeleton.joints[j].state, written.state) << i << " " << j;
       if (!written.seen()) continue;
       EXPECT_LT((body.skeleton.joints[j].position - written.position).norm(), 2e-6);
+      const Covariance& covariance = body.skeleton.joints[j].covariance;
+      ASSERT_EQ(covariance.known(), j != index_of(JointId::Neck));
+      if (!covariance.known()) continue;
+      EXPECT_NEAR((covariance.matrix() - 4e-4 * Eigen::Matrix3d::Identity()).norm(), 0.0, 1e-9);
     }
   }
 }
