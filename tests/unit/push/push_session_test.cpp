@@ -1,6 +1,8 @@
 // One pushing program: its clock, its rate, and what it must not do.
 #include "services/sensor/device/bridge/push_session.h"
 
+#include <fstream>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -45,6 +47,26 @@ class Session : public ::testing::Test {
   PushRig rig;
   PushSession session{rig.desk, "WebSocket", "127.0.0.1"};
 };
+
+TEST_F(Session, AShapeBesidePixelsMakesPoints) {
+  std::ifstream lines("proto/golden/bridge/world.jsonl");
+  std::string hello;
+  std::string frame;
+  ASSERT_TRUE(std::getline(lines, hello) && std::getline(lines, frame));
+  ASSERT_THAT(hear(hello), IsOk());
+  const std::string stamp = "\"1795246200250000000\"";
+  frame.replace(frame.find(stamp), stamp.size(), text(rig.clock->now()));
+  ASSERT_THAT(hear(frame), IsOk());
+  const auto captures = rig.desk->captures(Duration{0});
+  ASSERT_EQ(captures.size(), 1u);
+  const auto& bodies = captures[0].frame.bodies;
+  ASSERT_EQ(bodies.size(), 2u);
+  const Joint& hips = bodies[0].skeleton[JointId::SpineBase];
+  EXPECT_TRUE(hips.seen() && hips.covariance.known());
+  EXPECT_LT((hips.position - Eigen::Vector3d(-0.4, -0.1, 3.2)).norm(), 0.05);
+  EXPECT_TRUE(bodies[0].skeleton[JointId::WristRight].bears()) << "the shape lacks it";
+  EXPECT_TRUE(bodies[1].skeleton[JointId::Head].bears()) << "no shape";
+}
 
 TEST_F(Session, AWrongClockIsEstimatedAndTakenOff) {
   ASSERT_THAT(hear(kSessionHello), IsOk());

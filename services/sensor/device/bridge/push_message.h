@@ -23,6 +23,8 @@ struct PushedFrame {
   Timestamp captured;                     ///< By the pusher's clock; the same for all bodies.
   /// In sensor space; bodies without joints are left out.
   std::vector<BodyFrame> bodies;
+  /// The shape of each body as `world` tells it (body_placing.h); without joints where it does not.
+  std::vector<Skeleton<SensorSpace>> shapes;
   std::optional<FloorPlane> floor;
 };
 

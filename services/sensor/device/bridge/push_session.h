@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "common/net/token_bucket.h"
+#include "common/sensor/body_placer.h"
 #include "services/sensor/device/bridge/push_desk.h"
 
 namespace chorus::bridge {
@@ -58,6 +59,7 @@ class PushSession {
   std::string why_ = "the connection ended";
   std::optional<Hello> hello_;
   PushDesk::Seat seat_ = 0;
+  BodyPlacer placer_;
   ClockFilter clock_;
   int exchanges_ = 0;
   /// Until then frames are left out, if the pusher's clock is unknown.

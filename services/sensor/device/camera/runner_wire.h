@@ -4,9 +4,8 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "services/sensor/device/bridge/hello.h"
+#include "services/sensor/device/bridge/push_message.h"
 #include "services/sensor/device/camera/lens.h"
 
 namespace chorus::camera {
@@ -29,17 +28,10 @@ struct Question {
 /// The line that precedes an image's bytes, including its line feed.
 [[nodiscard]] std::string image_header(const Question& question);
 
-/// What landmarks are turned into.
-enum class Depth {
-  None,      ///< Rays.
-  FromSize,  ///< Points, if the runner gives people's shape in metres; otherwise rays.
-};
-
-/// The people in the image of `question`.  `hello.camera` is the camera of the image in the size
-/// sent.
-[[nodiscard]] Result<std::vector<BodyFrame>> read_runner_answer(std::string_view line,
-                                                                const Question& question,
-                                                                const bridge::Hello& hello,
-                                                                Depth depth);
+/// The people in the image of `question`, as rays, and the shapes that the runner tells.
+/// `hello.camera` is the camera of the image in the size sent.
+[[nodiscard]] Result<bridge::PushedFrame> read_runner_answer(std::string_view line,
+                                                             const Question& question,
+                                                             const bridge::Hello& hello);
 
 }  // namespace chorus::camera
