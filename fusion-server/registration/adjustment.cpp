@@ -19,6 +19,7 @@ constexpr std::size_t kMinMeasurements = 20;  // with fewer a sensor keeps its c
 constexpr int kIterations = 40;
 constexpr int kScaleRounds = 2;                // of Tukey's scale
 constexpr double kSettled = 1e-6;              // [rad], [m]
+constexpr double kNearly = 1e-4;               // ... before the scale is read again
 constexpr std::size_t kBiasTerms = 1'000'000;  // of many sensors a part tells what bias does
 constexpr double kRidge = 1e-6;      // holds the state in directions that nothing observes
 constexpr double kGauge = 1e-5;      // [rad], [m] sigma of what is held of the master
