@@ -37,7 +37,8 @@ Result<void> RecordedFrames::read_one(std::size_t number) {
     return {};
   }
   const auto clock = clocks_.find((*frame)->sensor);
-  if (clock != clocks_.end()) move_in_time(**frame, clock->second.added);
+  if (clock != clocks_.end() && holds_for(clock->second, (*frame)->clock_sigma))
+    move_in_time(**frame, clock->second.added);
   lane.newest = std::max(lane.newest, (*frame)->captured);
   newest_ = std::max(newest_, lane.newest);
   const auto [entry, fresh] = streams_.try_emplace((*frame)->sensor);

@@ -208,6 +208,7 @@ void read_registration(ConfigReader reader, FusionSettings& out) {
   double target = chorus::seconds(live.session.target);
   reader.read("seconds", target, rest::kMinSession, rest::kMaxSession);
   live.session.target = from_seconds(target);
+  reader.read("target_m", live.session.target_radius, 0.0, 1.0);
   reader.read_s("first_solve_s", live.session.first_solve, seconds(2), seconds(60));
   reader.read_s("solve_every_s", live.session.solve_every, seconds(1), seconds(60));
   reader.read("file", at_start.registration_file);

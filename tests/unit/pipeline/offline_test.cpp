@@ -139,7 +139,9 @@ TEST(FuseOffline, WithoutACommonClockTheWalkTellsTheClocks) {
 /// Frames without bodies need memory, too: a recording that never gets on is given up.
 TEST(FuseOffline, ARecordingOfEmptyFramesThatStandsStillIsRefused) {
   OfflineInput input;
-  SensorFrame empty = testing::sensor_frame("s0", testing::kStart, {});
+  SensorFrame empty;
+  empty.sensor = sensor(0);
+  empty.captured = from_unix_ns(1'790'000'000'000'000'000);
   input.lanes.push_back(
       {"still", [empty]() -> Result<std::optional<SensorFrame>> { return std::optional(empty); }});
   input.sensors = {empty.sensor};
