@@ -15,6 +15,7 @@
 #include "common/base/strong_id.h"
 #include "common/body/body_frame.h"
 #include "common/sensor/sensor_frame.h"
+#include "common/time/clock_estimate.h"
 #include "common/time/timestamp.h"
 
 namespace chorus {
@@ -42,6 +43,9 @@ struct Extrinsics {
   Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
   std::vector<SensorId> chain;  ///< Master first, this sensor last (Otto 5.2.3).
   double error = 0.0;           ///< Sum of the edge errors along the chain [m].
+  /// The best chain that ends with another edge, and its error: why this one was chosen.
+  std::vector<SensorId> next_chain = {};
+  double next_error = 0.0;
   /// Covariance of (rotation vector, sensor position) in world axes, relative to the master [rad^2,
   /// rad m, m^2].
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
@@ -57,7 +61,13 @@ struct PairwiseRegistration {
   double icp_rms = 0.0;   ///< Residual after ICP refinement [m].
   std::size_t pairs = 0;  ///< Time-paired correspondences.
   std::size_t inliers = 0;
-  double spread = 0.0;     ///< RMS distance of the walk from its centroid, horizontally [m].
+  double spread = 0.0;  ///< RMS distance of the walk from its centroid, horizontally [m].
+  /// How far this pair alone would place a person in front of its source from where all pairs
+  /// together do [m]; none: not known.
+  std::optional<double> apart = {};
+  /// The worst loop closure error of the edge with two others, there and back again [m]; none: it
+  /// is in no such loop.
+  std::optional<double> loop = {};
   double inflation = 1.0;  ///< Because pairs are correlated: number of pairs per independent pair.
   /// Covariance of a small motion (omega, tau) on the target side: exp(omega), then tau [rad^2, rad
   /// m, m^2].
@@ -76,7 +86,23 @@ struct SensorVerdict {
 struct ClockOffset {
   Duration added{0};  ///< After this is added to them, its capture times are by the common clock.
   Duration sigma{0};  ///< Standard deviation; zero for the sensor whose clock is the common one.
+  /// The SensorFrame::clock_sigma of the capture times that it was found from.
+  Duration stated = from_seconds(kUnknownClock);
+  /// The shortest time from such a capture time to receipt during the walk; none: not known.
+  std::optional<Duration> least_age = {};
 };
+
+/// Whether the host of these capture times answers with its own time.
+[[nodiscard]] constexpr bool exchanges_time(double clock_sigma) {
+  return clock_sigma < 0.5 * kUnknownClock;
+}
+
+/// Whether the offset holds for capture times of this clock_sigma: it does not if the host has
+/// begun or ceased to answer with its time since, or if its own estimate has become the better one.
+[[nodiscard]] inline bool holds_for(const ClockOffset& clock, double clock_sigma) {
+  return exchanges_time(clock_sigma) == exchanges_time(seconds(clock.stated)) &&
+         clock_sigma > seconds(clock.sigma);
+}
 
 /// The places of all sensors.  It is replaced as a whole, stored, and has a version.
 struct Registration {

@@ -16,6 +16,7 @@
 #include "fusion-server/core/hindsight.h"
 #include "fusion-server/core/registrar.h"
 #include "fusion-server/core/tick_schedule.h"
+#include "fusion-server/core/walked_clocks.h"
 #include "fusion-server/pipeline/pipeline.h"
 #include "fusion-server/status.h"
 
@@ -75,7 +76,8 @@ class FusionCore {
   [[nodiscard]] std::size_t bodies(const SensorId& sensor, Timestamp now) const {
     return registrar_.last_seen().bodies(sensor, now);
   }
-  [[nodiscard]] std::uint64_t refused(const SensorId& sensor) const;
+  /// What became of frames whose time was not as it should be.
+  [[nodiscard]] FrameFates fates(const SensorId& sensor) const;
   /// Why something from this sensor was refused in the last few seconds; empty: nothing was.
   [[nodiscard]] std::string complaint(const SensorId& sensor, Timestamp now) const;
   [[nodiscard]] Share share(const SensorId& sensor) const { return shares_.of(sensor); }
@@ -89,6 +91,10 @@ class FusionCore {
   [[nodiscard]] std::optional<double> shift(const SensorId& sensor) const {
     return guard_.shift_of(sensor);
   }
+  /// What is added to this sensor's capture times because a walk told that its clock is off.
+  [[nodiscard]] std::optional<WalkedClock> walked_clock(const SensorId& sensor) const {
+    return clocks_.of(sensor);
+  }
   /// How often a sensor lost its place because it was moved.
   [[nodiscard]] std::uint64_t displaced() const noexcept { return displaced_; }
   [[nodiscard]] std::uint64_t skipped() const noexcept { return schedule_.skipped(); }
@@ -97,7 +103,7 @@ class FusionCore {
 
  private:
   struct Refusals {
-    std::uint64_t count = 0;
+    FrameFates fates;
     Timestamp last;  ///< When the last frame with something refused was received.
     std::string_view why;
   };
@@ -105,7 +111,9 @@ class FusionCore {
   void leave_world();
   [[nodiscard]] pipeline::Step step_at(const Tick& tick, Timestamp now);
   void displace_moved(Timestamp instant);
+  bool count(const SensorFrame& frame, align::PushVerdict verdict);
   void refuse(const SensorFrame& frame, std::string_view why);
+  [[nodiscard]] SensorFrame in_step(SensorFrame frame);
   void sift(SensorFrame& frame);
   [[nodiscard]] bool improves(const Answered& answered, Timestamp now) const;
 
@@ -114,6 +122,7 @@ class FusionCore {
   pipeline::Histories histories_;
   pipeline::Memory memory_;
   Registrar registrar_;
+  WalkedClocks clocks_;
   std::map<SensorId, Refusals> refused_;
   std::map<SensorId, associate::FrozenBodies> frozen_;
   pipeline::Waiting awaited_;           ///< To be waited for at the pending instant.

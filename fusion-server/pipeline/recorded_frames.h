@@ -64,7 +64,7 @@ class RecordedFrames {
   std::vector<Lane> lanes_;
   std::map<SensorId, ClockOffset> clocks_;
   std::map<SensorId, Stream> streams_;
-  std::size_t bodies_ = 0;  ///< Number of bodies in the waiting frames.
+  std::size_t waiting_ = 0;  ///< Number of waiting frames and of bodies in them.
   Timestamp newest_ = Timestamp::min();
 };
 

@@ -8,6 +8,7 @@
 #include "common/resource/frame_resource.h"
 #include "common/sensor/sensor_frame.h"
 #include "common/time/clock_estimate.h"
+#include "common/time/ntp_status.h"
 #include "fusion-server/poll/poll_fsm.h"
 
 namespace chorus::poll {
@@ -30,6 +31,9 @@ struct FrameAnswer {
 
 /// Reads the answer of /floor-plane; none when it is not a floor plane.
 [[nodiscard]] std::optional<FloorPlane> read_floor_answer(const http::ClientResponse& response);
+
+/// Reads the answer of /clock, in JSON: what the host says of its own clock; none when it is none.
+[[nodiscard]] std::optional<NtpStatus> read_clock_answer(const http::ClientResponse& response);
 
 /// The four time stamps of the exchange; none if the answer has no Chorus-Clock header.
 [[nodiscard]] std::optional<ClockExchange> exchange_of(const http::ClientResponse& response);

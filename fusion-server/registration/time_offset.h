@@ -6,6 +6,7 @@
 // what the network leaves open of its offset.  Derived in docs/papers/registration.md, Section 10.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <string>
@@ -26,11 +27,20 @@ struct WalkClocks {
   std::map<std::pair<SensorId, SensorId>, Error> open;
 };
 
-/// `stopped` is asked between pairs; once it says so, the rest is not measured and the result is of
-/// no use.
+/// How the pairs are searched: they do not depend on one another.
+struct PairSearch {
+  /// Asked before each pair; once it says so, the rest is not searched, and the result is of no
+  /// use.
+  std::function<bool()> stopped = [] { return false; };
+  /// Calls work(i) for each i below `count`, in any order and on any thread.
+  std::function<void(std::size_t count, const std::function<void(std::size_t)>& work)> for_each =
+      [](std::size_t count, const std::function<void(std::size_t)>& work) {
+        for (std::size_t i = 0; i < count; ++i) work(i);
+      };
+};
+
 [[nodiscard]] WalkClocks clocks_of(const std::vector<WalkTrack>& walk,
-                                   const RegistrationConfig& config,
-                                   const std::function<bool()>& stopped = {});
+                                   const RegistrationConfig& config, const PairSearch& search = {});
 
 /// Moves every stamp to the common clock.
 void bring_in_step(std::vector<WalkTrack>& walk, const WalkClocks& clocks);

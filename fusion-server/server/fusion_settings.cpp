@@ -213,6 +213,7 @@ void read_registration(ConfigReader reader, FusionSettings& out) {
   double target = chorus::seconds(live.session.target);
   reader.read("seconds", target, rest::kMinSession, rest::kMaxSession);
   live.session.target = from_seconds(target);
+  reader.read("target_m", live.session.target_radius, 0.0, 1.0);
   reader.read_s("first_solve_s", live.session.first_solve, std::chrono::seconds(2),
                 std::chrono::seconds(60));
   reader.read_s("solve_every_s", live.session.solve_every, std::chrono::seconds(1),

@@ -218,7 +218,8 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
   SensorStatus status;
   status.id = report.sensor.id;
   status.url = report.sensor.url;
-  if (report.newest) status.age = now - *report.newest;
+  const auto walked = core_.walked_clock(report.sensor.id);
+  if (report.newest) status.age = now - *report.newest - (walked ? walked->added : Duration{0});
   const bool silent = report.state == poll::SensorState::Live && status.age && *status.age > kStale;
   status.state = poll::name_of(silent ? poll::SensorState::Lost : report.state);
   status.last_error = report.last_error;
@@ -229,7 +230,10 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
   status.frames = report.frames;
   status.missed = report.missed;
   status.failures = report.failures;
-  status.refused = core_.refused(report.sensor.id) + report.refused;
+  status.fates = core_.fates(report.sensor.id);
+  status.fates.early += report.early;
+  status.fates.stale += report.stale;
+  status.refused = refused(status.fates);
   const core::Share share = core_.share(report.sensor.id);
   status.share = share.in_time;
   status.share_afterwards = share.afterwards;
@@ -239,6 +243,11 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
     status.clock_uncertainty = report.clock->uncertainty;
     status.clock_corrected = correction(report.clock) != Duration{0};
   }
+  if (walked && walked->added != Duration{0}) {
+    status.walked_offset = walked->added;
+    status.walked_sigma = walked->sigma;
+  }
+  status.host = report.host;
   const auto& reports = core_.reports();
   const auto own = std::find_if(reports.begin(), reports.end(), [&](const SensorReport& r) {
     return r.sensor == report.sensor.id;

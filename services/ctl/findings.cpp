@@ -106,6 +106,18 @@ ClockDifference clock_difference(const http::ClientResponse& answer) {
   return {(theirs - (sent + received) / 2) / kNsPerMs, (received - sent) / 2 / kNsPerMs};
 }
 
+/// What the host says of its own clock.
+std::string host_words(const http::ClientResponse& clock) {
+  const auto document = nlohmann::json::parse(clock.body, nullptr, false);
+  if (!document.is_object() || !document.contains("synchronised")) return {};
+  if (document["synchronised"] != true)
+    return " (follows no other clock; frames are corrected as its answers tell)";
+  const std::string text = text_in(document, "maxErrorNanoseconds");
+  const double most = text.empty() ? client::number_at(document, "maxErrorNanoseconds")
+                                   : std::strtod(text.c_str(), nullptr);
+  return fmt::format(" (synchronised, by its own account at most {:.1f} ms off)", most / kNsPerMs);
+}
+
 Finding of_answering(const std::string& subject, const std::string& url, const std::string& token,
                      const http::ClientResponse& clock, const tls::Trust& trust) {
   const auto [difference, uncertainty] = clock_difference(clock);
@@ -121,7 +133,8 @@ Finding of_answering(const std::string& subject, const std::string& url, const s
     return {false, subject, fmt::format("runs version {}, and this is {}", theirs, version()),
             "install the same packages on all hosts"};
   }
-  return {true, subject, fmt::format("answers at {}, clock {:+.1f} ms", url, difference)};
+  return {true, subject,
+          fmt::format("answers at {}, clock {:+.1f} ms{}", url, difference, host_words(clock))};
 }
 
 /// Whether we did not accept the certificate that the service showed (tls::Seal::failure); the

@@ -1,13 +1,16 @@
 // chorus register: starts a registration session, or joins the running one, and follows it until
 // its verdict.
 #include <chrono>
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <thread>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
+#include "common/base/units.h"
 #include "fusion-server/client/service_client.h"
 #include "fusion-server/rest/registration_resources.h"
 #include "services/ctl/command.h"
@@ -34,6 +37,7 @@ struct RegisterArguments {
   bool fresh = false;
   bool cancel = false;
   bool undo = false;
+  bool history = false;
   bool json = false;
 };
 
@@ -80,6 +84,25 @@ class Advice {
   std::string told_;
 };
 
+/// "Provisional, worst s3 41 mm of 30": how well the last solve places the sensors.
+std::string remark_of(const nlohmann::json& session) {
+  std::string text = text_at(session, "verdict");
+  double worst = 0.0;
+  std::string name;
+  for (const auto& own : part_at(session, "accuracy")) {
+    const double radius = client::number_at(own, "expectedRadius");
+    if (std::isfinite(radius) && radius <= worst) continue;
+    worst = radius;
+    name = text_at(own, "sensorId");
+    if (!std::isfinite(radius)) break;
+  }
+  if (name.empty()) return text;
+  if (!std::isfinite(worst)) return fmt::format("{}, {} has no place yet", text, printable(name));
+  text += fmt::format(", worst {} {:.0f} mm", printable(name), to_mm(worst));
+  const double target = client::number_at(session, "targetRadius");
+  return std::isfinite(target) ? text + fmt::format(" of {:.0f}", to_mm(target)) : text;
+}
+
 /// Follows one session to its end; every answer updates the bar.
 Result<nlohmann::json> follow(const ServiceClient& server, const std::string& path,
                               const std::string& url) {
@@ -101,7 +124,8 @@ Result<nlohmann::json> follow(const ServiceClient& server, const std::string& pa
     const double target = client::number_at(*session, "targetSeconds");
     if (elapsed > last_elapsed) last_step = std::chrono::steady_clock::now();
     last_elapsed = elapsed;
-    progress.show(elapsed / (target > 0.0 ? target : 1.0), state == "solving" ? state : verdict);
+    progress.show(elapsed / (target > 0.0 ? target : 1.0),
+                  state == "solving" ? state : remark_of(*session));
     advice.tell(*session, progress);
     std::this_thread::sleep_for(kAskEvery);
   }
@@ -133,6 +157,38 @@ int report(const nlohmann::json& session, const nlohmann::json& registration, bo
   return good ? kExitOk : kExitFailed;
 }
 
+Result<int> print_json(const Result<nlohmann::json>& document) {
+  if (!document) return pass(document);
+  std::cout << json_text(*document);
+  return kExitOk;
+}
+
+/// The last few sessions, newest first, and what became of each.
+Result<int> history(const ServiceClient& server, bool json) {
+  const auto registration = server.get("/registration");
+  if (!registration) return pass(registration);
+  nlohmann::json sessions = nlohmann::json::array();
+  for (const std::string& path : lines_at(*registration, "sessions")) {
+    if (auto session = server.get(path)) sessions.push_back(std::move(*session));
+  }
+  if (json) return print_json(sessions);
+  std::vector<std::vector<std::string>> rows{
+      {"session", "started", "by", "walked [s]", "state", "verdict", "adopted", "reasons"}};
+  for (const auto& session : sessions) {
+    const auto said = [&](const char* key) {
+      return session.contains(key) && session.at(key) == true;
+    };
+    rows.push_back({shown(client::number_at(session, "sessionId"), 0), text_at(session, "started"),
+                    said("automatic") ? "itself" : "hand",
+                    shown(client::number_at(session, "elapsedSeconds"), 0),
+                    text_at(session, "state"), text_at(session, "verdict"),
+                    said("adopted") ? "yes" : "no",
+                    fmt::format("{}", fmt::join(lines_at(session, "reasons"), "; "))});
+  }
+  std::cout << (rows.size() > 1 ? table(std::move(rows)) : "no session since the server started\n");
+  return kExitOk;
+}
+
 Result<int> cancel(const ServiceClient& server, const RegisterArguments& arguments) {
   const auto registration = server.get("/registration");
   if (!registration) return pass(registration);
@@ -142,13 +198,14 @@ Result<int> cancel(const ServiceClient& server, const RegisterArguments& argumen
   const auto path = session_of(*registration, arguments.url);
   if (!path) return pass(path);
   if (const auto cancelled = server.remove(*path); !cancelled) return pass(cancelled);
+  if (arguments.json) return print_json(server.get(*path));
   std::cout << "cancelled; the registration is what it was before the session\n";
   return kExitOk;
 }
 
-Result<int> undo(const ServiceClient& server) {
+Result<int> undo(const ServiceClient& server, bool json) {
   const auto registration = server.post("/registration/undo", nlohmann::json::object());
-  if (!registration) return pass(registration);
+  if (!registration || json) return print_json(registration);
   std::cout << "the registration from before is in use again; the same command brings this one "
                "back\n"
             << registration_report(*registration);
@@ -159,7 +216,8 @@ Result<int> run_register(const RegisterArguments& arguments) {
   const auto server = ServiceClient::of(arguments.url);
   if (!server) return pass(server);
   if (arguments.cancel) return cancel(*server, arguments);
-  if (arguments.undo) return undo(*server);
+  if (arguments.undo) return undo(*server, arguments.json);
+  if (arguments.history) return history(*server, arguments.json);
   if (arguments.fresh) {
     if (const auto forgotten = server->remove("/registration"); !forgotten) return pass(forgotten);
   }
@@ -187,11 +245,15 @@ Run add_register(CLI::App& options) {
           .add_flag("--cancel", arguments->cancel,
                     "End the session that runs; the registration is then what it was before")
           ->excludes(fresh);
-  options
-      .add_flag("--undo", arguments->undo,
-                "Go back to the registration before this one; twice changes nothing")
+  auto* undone = options
+                     .add_flag("--undo", arguments->undo,
+                               "Go back to the registration before this one; twice changes nothing")
+                     ->excludes(fresh)
+                     ->excludes(cancelled);
+  options.add_flag("--history", arguments->history, "List the last sessions, and start none")
       ->excludes(fresh)
-      ->excludes(cancelled);
+      ->excludes(cancelled)
+      ->excludes(undone);
   options.add_flag("--json", arguments->json, "Report as JSON");
   return [arguments] { return run_register(*arguments); };
 }

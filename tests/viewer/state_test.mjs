@@ -4,7 +4,7 @@ import { test } from 'node:test';
 
 import { Link, ServerClock } from '../../services/viewer/poll.js';
 import { REACH, axesOf, covarianceOf, jointLines, personLine, rootOf } from '../../services/viewer/certainty.js';
-import { lineOf, mapOf } from '../../services/viewer/coverage.js';
+import { accuracyLine, lineOf, mapOf } from '../../services/viewer/coverage.js';
 import { freshness, sidesOf, stateOf } from '../../services/viewer/state.js';
 
 const LIVE = { state: 'live' };
@@ -104,7 +104,15 @@ test('the map of a walk has its cells, its sensors, and the pairs that are linke
   assert.equal(links[1].to, undefined, 's3 has no place yet');
   assert.equal(lineOf(links[0]), 's1 – s2: 900 common sightings, ±41 mm expected');
   assert.match(lineOf(links[1]), /more than 1 m expected$/);
-  assert.deepEqual(mapOf(null), { cells: [], sensors: [], links: [] });
+  assert.deepEqual(mapOf(null), { cells: [], sensors: [], links: [], accuracy: [] });
+});
+
+test('what the walk tells of each sensor so far, the worst first', () => {
+  const { accuracy } = mapOf({ targetRadius: 0.03, accuracy: [
+    { sensorId: 's1', expectedRadius: 0.012 }, { sensorId: 's2', expectedRadius: 0.041 }, { sensorId: 's3' }] });
+  assert.deepEqual(accuracy.map(accuracyLine),
+    ['s3: no place yet', 's2: ±41 mm so far, ±30 wanted', 's1: ±12 mm so far, ±30 wanted']);
+  assert.deepEqual(accuracy.map(({ good }) => good), [false, false, true]);
 });
 
 /// R diag(variances) R^T of a turn about z, then about x.

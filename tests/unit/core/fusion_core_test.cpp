@@ -20,17 +20,6 @@ using testing::sensor_id;
 
 CoreConfig config() { return of_three<CoreConfig>(); }
 
-/// The sensor's view of a person walking in a small circle, `t` after the start.
-SensorFrame sight(int sensor, Duration t) {
-  const double angle = 0.6 * chorus::seconds(t);
-  const auto person =
-      testing::standing_person({0.6 * std::cos(angle), 0, 0.6 * std::sin(angle)}, angle);
-  const Timestamp captured = kStart + t;
-  return testing::sensor_frame(
-      name(sensor), captured,
-      {testing::body_seen_from(testing::ring_sensor(sensor, kSensors), person, captured)});
-}
-
 bool collecting(const FusionCore& core) {
   const auto sessions = core.progress(kStart).sessions;
   return !sessions.empty() && sessions.front().state == SessionState::Collecting;
@@ -117,7 +106,7 @@ TEST(FusionCore, StrangersAndFramesThatGoBackAreRefused) {
   SensorFrame back = sight(0, milliseconds(300));
   back.sequence = ~std::uint64_t{0};  // a later frame of the sensor
   core.take(back);
-  EXPECT_EQ(core.refused(sensor_id("s1")), 1u);
+  EXPECT_EQ(core.fates(sensor_id("s1")).backwards, 1u);
   SensorFrame stranger = sight(0, milliseconds(600));
   stranger.sensor = sensor_id("s9");
   core.take(stranger);

@@ -136,6 +136,21 @@ TEST(FuseOffline, WithoutACommonClockTheWalkTellsTheClocks) {
   EXPECT_LT(error(*fused), error(*right) + mm(10));
 }
 
+/// Frames without bodies need memory, too: a recording that never gets on is given up.
+TEST(FuseOffline, ARecordingOfEmptyFramesThatStandsStillIsRefused) {
+  OfflineInput input;
+  SensorFrame empty;
+  empty.sensor = sensor(0);
+  empty.captured = from_unix_ns(1'790'000'000'000'000'000);
+  input.lanes.push_back(
+      {"still", [empty]() -> Result<std::optional<SensorFrame>> { return std::optional(empty); }});
+  input.sensors = {empty.sensor};
+  const auto done = fuse_recordings(std::move(input), published(), {},
+                                    [](const Snapshot&) -> Result<void> { return {}; });
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().code, ErrorCode::TooLarge);
+}
+
 TEST(FuseOffline, AGapOfAYearIsSkippedNotCounted) {
   auto tracks = walk({.length = 4});
   for (WalkTrack& track : tracks) {
@@ -162,7 +177,7 @@ TEST(FuseOffline, RefusesWhatCannotWork) {
   EXPECT_FALSE(fuse_offline({}, published(), {}));
   EXPECT_FALSE(fuse_offline({{sensor(1), {}}}, published(), {}));
   EXPECT_FALSE(fuse_offline({tracks[0], tracks[0]}, published(), {}));
-  for (const double rate : {0.0, -30.0, std::nan(""), 1e9}) {
+  for (const double rate : {0.0, -30.0, std::nan(""), 1e9, 1e-4, 1e-300}) {
     OfflineConfig config;
     config.rate_hz = rate;
     EXPECT_FALSE(fuse_offline(tracks, published(), config)) << rate;

@@ -38,6 +38,25 @@ std::string why(const FrameAnswer& read) {
   return unreadable == nullptr ? "" : to_string(unreadable->error);
 }
 
+TEST(ClockAnswer, SaysWhatTheHostSaysOfItsClock) {
+  const auto host = read_clock_answer(
+      answer(200, "application/json",
+             R"({"@type": "Clock", "nowNanoseconds": "1795246200250000000", "synchronised": true,
+                 "offsetNanoseconds": -1500, "maxErrorNanoseconds": 2000000,
+                 "estimatedErrorNanoseconds": "3000", "frequencyPpm": -12.5})"));
+  ASSERT_TRUE(host);
+  EXPECT_TRUE(host->synchronised);
+  EXPECT_EQ(host->offset, Duration(-1500));
+  EXPECT_EQ(host->max_error, std::chrono::milliseconds(2));
+  EXPECT_EQ(host->est_error, std::chrono::microseconds(3));
+}
+
+TEST(ClockAnswer, IsNothingWhenItIsNone) {
+  for (const char* text : {"", "[]", "{}", R"({"synchronised": "yes"})", "@prefix ch: <x> ."})
+    EXPECT_FALSE(read_clock_answer(answer(200, "application/json", text))) << text;
+  EXPECT_FALSE(read_clock_answer(answer(404, "application/json", R"({"synchronised": true})")));
+}
+
 TEST(FrameAnswer, IsAFrameInEveryFormatASensorWrites) {
   for (const auto format :
        {resource::Format::Turtle, resource::Format::Json, resource::Format::JsonLd}) {

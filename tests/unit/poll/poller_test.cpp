@@ -340,7 +340,8 @@ TEST_F(Polling, StampsOfAnotherTimeAreRefusedByName) {
   EXPECT_NE(reports.at(0).last_error.find("s ahead of our clock"), std::string::npos)
       << reports.at(0).last_error;
   EXPECT_NE(reports.at(1).last_error.find("s behind our clock"), std::string::npos);
-  EXPECT_GE(reports.at(0).refused, 1u);
+  EXPECT_GE(reports.at(0).early, 1u);
+  EXPECT_GE(reports.at(1).stale, 1u);
   EXPECT_EQ(count("s1") + count("s2"), 0u);
 }
 
