@@ -72,9 +72,9 @@ struct SensorVerdict {
   std::vector<std::string> reasons;  ///< Human-readable: why the verdict is not Good.
 };
 
-/// The error of one sensor's clock, as found from the walk.
+/// The correction of one sensor's clock, as found from the walk.
 struct ClockOffset {
-  Duration added{0};  ///< After this is added to them, its capture times are by the common clock.
+  Duration added{0};  ///< Common clock minus the sensor's: added to its capture times.
   Duration sigma{0};  ///< Standard deviation; zero for the sensor whose clock is the common one.
 };
 

@@ -29,14 +29,14 @@ struct SensorStatus {
   double awaited = 0.0;
   std::optional<Duration> clock_offset;  ///< Our clock minus the sensor's.
   std::optional<Duration> clock_uncertainty;
-  bool clock_corrected = false;  ///< True if the offset is added to its capture times.
+  bool clock_corrected = false;  ///< True if `clock_offset` is added to its capture times.
   std::uint64_t frames = 0;      ///< Delivered since start.
   std::uint64_t missed = 0;      ///< Gaps in the sensor's frame numbers that were not filled.
   std::uint64_t refused = 0;     ///< Frames that went back in time or had an implausible time.
   std::uint64_t failures = 0;    ///< Requests without a usable answer.
 
-  /// How far from where the others see people it sees them, beyond what is usual for it [m]; none
-  /// until somebody has walked in view of it and of another one.
+  /// Distance between where this sensor and the others see the same people, less what is usual for
+  /// this sensor [m]; none until somebody has walked in view of it and of another one.
   std::optional<double> shift;
   std::string alarm;  ///< It was moved, as a sentence for people; empty: it stands as registered.
 

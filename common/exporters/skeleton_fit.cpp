@@ -105,8 +105,9 @@ Eigen::Quaterniond turn_between(const BonePairs& pairs, const Eigen::Quaterniond
   return nearest_rotation(cross + kLikely * cross.norm() * likely.toRotationMatrix());
 }
 
-/// Replaces the rest offsets of one joint's children by the mean of the shapes in which they are
-/// seen.
+/// Points the rest offset of each child in the mean direction in which that child was seen, over a
+/// sample of the frames in which all children were seen, each turned back to the rest pose.  The
+/// lengths of the bones stay.
 void average_shape(const PersonTrack& track, std::vector<FittedJoint>& joints, std::size_t joint,
                    const std::vector<std::size_t>& children) {
   std::vector<Eigen::Vector3d> sums(children.size(), Eigen::Vector3d::Zero());

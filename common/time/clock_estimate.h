@@ -88,7 +88,7 @@ class ClockFilter {
 
   ClockFilterLimits limits_;
   Timestamp origin_;
-  Duration base_{0};  ///< Theirs minus ours, roughly.
+  Duration base_{0};  ///< Their clock minus ours, roughly.
   Corridor corridor_;
   double rate_ = 0.0;
   double mean_delay_ = 0.0;  ///< Of both ways together [s].

@@ -176,7 +176,7 @@ std::vector<PlacedView> taken_rays(std::vector<PlacedView>& views) {
   return taken;
 }
 
-/// Makes a candidate of each group of views, with the places of the joints.
+/// Makes each group of views a new candidate, and locates its joints.
 std::vector<Candidate> found(std::vector<std::vector<PlacedView>> people, std::uint64_t& next_id,
                              const AssociationConfig& config) {
   std::vector<Candidate> candidates;

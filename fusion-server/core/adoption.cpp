@@ -137,7 +137,8 @@ Verdict least_of_placed(const Registration& registration) {
   return least;
 }
 
-/// Gives every sensor a verdict in registrations made before there were any, and in given ones.
+/// Gives each sensor without a verdict that of the whole registration.  Registrations from a file,
+/// and those that older versions stored, have no verdict per sensor.
 void spell_out_verdicts(Registration& registration) {
   for (const auto& [sensor, place] : registration.sensors)
     registration.verdicts.try_emplace(sensor, SensorVerdict{registration.verdict, {}});

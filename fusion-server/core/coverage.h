@@ -1,7 +1,7 @@
 // What the walk of a session has covered so far: which sensors saw somebody together, and where.
 //
-// Needs no places: common sightings are judged by the time of receipt, their spread in the space of
-// one of the two sensors.
+// Needs no extrinsics: whether two sensors saw somebody together is judged by the time of receipt,
+// and how far the person walked in the space of one of the two.
 #pragma once
 
 #include <map>
@@ -23,14 +23,14 @@ class Coverage {
 
   /// All pairs that saw somebody together, ordered by names.
   [[nodiscard]] std::vector<PairCoverage> pairs() const;
-  /// Where somebody walked in the world, by how many sensors each cell was seen.
+  /// The squares of the floor in which somebody walked, and by how many sensors each was seen.
   [[nodiscard]] std::vector<CoveredCell> cells(const Registration& registration) const;
 
  private:
   struct Sight {
     Timestamp received;
     Eigen::Vector3d place;       ///< Of the neck, in the sensor's space [m].
-    std::set<SensorId> counted;  ///< With which it was counted.
+    std::set<SensorId> counted;  ///< The sensors with which it was counted.
   };
   struct Common {
     std::size_t sightings = 0;

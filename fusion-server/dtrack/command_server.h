@@ -49,7 +49,7 @@ class CommandServer {
   [[nodiscard]] std::uint16_t port() const;
   /// May be called from any thread.
   [[nodiscard]] std::optional<Controller> controller() const;
-  /// The counters refused and clients.  May be called from any thread.
+  /// Only `refused` and `clients` are counted.  May be called from any thread.
   [[nodiscard]] SinkCounters counters() const;
 
  private:

@@ -35,7 +35,8 @@ double weight_of(const Skeleton<WorldSpace>& body, Ids... ids) {
   return seen ? (tracked ? 1.0 : kGuessed) : 0.0;
 }
 
-/// Offset of `p` from the nearest point of the line between `a` and `b`.
+/// Offset of `p` from the nearest point of the segment from `a` to `b`; zero if these nearly
+/// coincide.
 Eigen::Vector3d off_line(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
                          const Eigen::Vector3d& b) {
   constexpr double kMinLength = 1e-4;  // [m^2]

@@ -23,9 +23,9 @@ struct Figure {
 /// person stays as it is.
 [[nodiscard]] std::vector<Figure> stand_in(Person& person, const Eigen::Vector3d& core);
 
-/// Turns these views back into rays.  If the sides of a wide figure were exchanged meanwhile, they
-/// stay exchanged.  Changes to single limbs are discarded, because flat limbs are too inaccurate
-/// for them.
+/// Turns these views back into rays.  If left and right of a figure that is not narrow were swapped
+/// in between, they stay swapped.  Changes to single limbs are discarded, because flat limbs are
+/// too inaccurate for them.
 void back_to_rays(Person& person, const std::vector<Figure>& figures);
 
 }  // namespace chorus::facing

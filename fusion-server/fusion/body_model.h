@@ -19,8 +19,8 @@ struct BodyModel {
   /// How constant a bone's length is [m], and the time over which the length is learned.
   double bone = 0.003;
   Duration bone_memory = std::chrono::seconds(60);
-  /// Rate at which a sensor's offset of each joint is followed [1/s], 0: not at all; and the time
-  /// after which it is forgotten.
+  /// Rate at which each sensor's bias of each joint is learned [1/s]; 0: no biases.  `bias_memory`
+  /// is the time constant with which biases decay to zero.
   double bias_rate = 3.0;
   Duration bias_memory = std::chrono::milliseconds(300);
   /// Pose error in the weights of the views, as a fraction of what is stated (pose_error.h), and by

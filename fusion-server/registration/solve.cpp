@@ -156,7 +156,8 @@ FloorPlane guessed_floor(Work& work) {
   return floor_from_body(*work.tracks.at(work.result.master)).value_or(FloorPlane{});
 }
 
-/// "would hang head down" or the like; nothing when the place is possible.
+/// Why a sensor cannot stand there: "would hang head down", "would stand 0.35 m below the floor".
+/// None when it can.
 std::optional<std::string> impossible(const Eigen::Isometry3d& world_from_sensor) {
   if (!world_from_sensor.matrix().allFinite()) return "has no finite place";
   if (world_from_sensor.linear()(1, 1) < kMinUpright) return "would hang head down";

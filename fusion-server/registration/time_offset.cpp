@@ -24,11 +24,11 @@ constexpr double kOutlier = 3.0;       // sigmas from which a pair counts less a
 constexpr int kIterations = 10;
 constexpr double kMaxSpread = 0.05;  // [m] of the place, over what is open of the offset
 
-/// One pair's measurement: offset of source minus that of target.
+/// What one pair measures: the correction of the source's stamps minus that of the target's.
 struct Measured {
   std::size_t target;
   std::size_t source;
-  double range;                      ///< That was searched to either side [s].
+  double range;                      ///< Offsets from -range to +range were searched [s].
   std::optional<PairOffset> offset;  ///< None: it saw too little.
 };
 

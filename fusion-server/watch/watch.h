@@ -31,11 +31,12 @@ class Watch {
 
   /// The sensor that stands out most at present; none when none does.
   [[nodiscard]] std::optional<Finding> finding() const;
-  /// How far from the others this sensor sees people now, beyond what is usual for it [m]; none
-  /// until somebody has walked for a while.
+  /// Distance between where this sensor and the others see the same people now, less what is usual
+  /// for this sensor [m]; none until somebody has walked for a while.
   [[nodiscard]] std::optional<double> shift_of(const SensorId& sensor) const;
 
-  /// Forgets all that is usual: it was learned beside sensors of which one has another place now.
+  /// Forgets what is usual for each sensor.  Call this when a sensor has a new place, because it
+  /// was learned relative to that sensor, too.
   void forget();
 
  private:

@@ -28,7 +28,8 @@ namespace chorus::ctl {
 
 class Progress {
  public:
-  /// A terminal has one line that is redrawn; elsewhere each new tenth or remark prints a line.
+  /// On a terminal one line is redrawn in place; elsewhere a line is printed at every 10 % and for
+  /// every new remark.
   Progress(std::ostream& out, bool terminal, std::string label)
       : out_(out), terminal_(terminal), label_(std::move(label)) {}
 

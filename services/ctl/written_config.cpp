@@ -112,7 +112,7 @@ std::size_t ring_place_of(const std::string& id) {
   return (number.value_or(1) + kPlaces - 1) % kPlaces;
 }
 
-/// The section of the device itself, after its kind; empty where the defaults do.
+/// The device's own section of the configuration, which follows `kind`.
 std::string section_of(const SensorWishes& wishes) {
   if (wishes.device == "phone") {
     return "    // Serves /capture/, a page that makes the camera of a phone or laptop this "

@@ -161,7 +161,7 @@ void ablate(Report& report) {
   }
 }
 
-/// Turns one source of error after the other down and up.
+/// Scales each source of error in turn, down and up.
 void sweep(Report& report) {
   std::vector<Contender> contenders;
   for (Contender& each : all_contenders()) {

@@ -165,7 +165,7 @@ struct Stage {
   }
 };
 
-/// Makes the same views again, with the error covariances that only the judge knows.
+/// Builds the same views again, with the true error covariances, for the lower bounds.
 void confide(Stage& stage, const Period& period, const pipeline::PipelineConfig& config) {
   const Confided known = confided(stage.workshop);
   if (known.tracks.empty()) return;

@@ -41,7 +41,7 @@ struct Flaws {
   double noise = 4.0;    ///< Of the grey values, 0 to 255.
 };
 
-/// Renders pictures; the lens is evaluated once.
+/// Renders pictures.  The constructor computes the ray of each subpixel once.
 class BoardCamera {
  public:
   BoardCamera(const calibration::Board& board, const Intrinsics& camera);
