@@ -10,7 +10,7 @@
 namespace chorus::calibration {
 namespace {
 
-/// `parts`: of a unit.  Divided at the end, so that the nearest double is written in few digits.
+/// Rounds to 1/`parts`.  Divides last, so that the result prints in few digits.
 double rounded(double value, double parts) { return std::round(value * parts) / parts; }
 
 void draw_thirds(cv::Mat& picture) {
@@ -36,7 +36,7 @@ std::string intrinsics_json(const Intrinsics& camera, double focal_sigma) {
                              {"cy", rounded(camera.cy, kPixels)},
                              {"distortion", nlohmann::ordered_json::array()}};
   for (const double term : camera.distortion) out["distortion"].push_back(rounded(term, kTerms));
-  // Rounded up: 0 would say that it is known exactly.
+  // Rounded up, because 0 would mean that it is known exactly.
   out["focal_sigma_percent"] = std::ceil(focal_sigma * 1e4) / 100.0;
   return out.dump(1) + "\n";
 }

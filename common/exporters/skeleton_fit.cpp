@@ -14,7 +14,7 @@ namespace chorus::exporters {
 namespace {
 
 constexpr double kMinBone = 1e-4;           // [m]; a shorter bone has no direction
-constexpr int kProcrustesRounds = 3;        // After this many, the shape no longer changes.
+constexpr int kProcrustesRounds = 3;        // After this many rounds the shape no longer changes.
 constexpr std::size_t kShapeFrames = 2000;  // enough for a mean shape
 constexpr double kFootOut = 0.3;
 
@@ -44,7 +44,8 @@ Eigen::Vector3d t_pose_direction(JointId end) {
   return Eigen::Vector3d::UnitY();  // the spine points up
 }
 
-/// Median distance of two joints over the frames that have both; none if there is no such frame.
+/// Median distance between two joints over the frames that have both; none if there is no such
+/// frame.
 std::optional<double> bone_length(const PersonTrack& track, JointId a, JointId b) {
   std::vector<double> lengths;
   for (const Pose& pose : track.poses) {

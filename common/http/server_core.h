@@ -23,7 +23,7 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   ServerCore(ServerConfig server_config, std::shared_ptr<const Router> routes);
 
   [[nodiscard]] Result<void> listen();
-  /// Starts what must always be running (accepting, sweeping) if it is not running.
+  /// Starts accepting and sweeping, which must always run, if they are not running.
   void ensure();
   void welcome(net::Socket socket);
   /// From now on counts the connection for `account`, which a trusted proxy named; false when that

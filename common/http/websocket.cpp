@@ -10,8 +10,8 @@ namespace chorus::http {
 namespace {
 
 constexpr std::size_t kMaxSaid = 4096;  ///< Limit of one message from a client.
-/// Beast ends a broken or closed conversation by waiting for the client to hang up.  At this
-/// interval we check whether the conversation is over, and then hang up ourselves.
+/// After a broken or closed conversation, Beast waits for the client to hang up.  We check at this
+/// interval whether the conversation is over, and then hang up ourselves.
 constexpr std::chrono::milliseconds kLook{250};
 constexpr std::string_view kMediaType = "application/json";
 

@@ -13,7 +13,7 @@
 namespace chorus::importers {
 namespace {
 
-constexpr std::size_t kMaxCameras = 64;  // As many as a Snapshot can name.
+constexpr std::size_t kMaxCameras = 64;  // The number that a Snapshot can name.
 constexpr double kMaxPixels = 1e5;
 constexpr double kRotationSlack = 1e-3;  // Largest |R R^T - 1|; files round.
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr BodyId kOnlyBody{1};
 
-/// How a body is made of landmarks.
+/// How bodies are made from landmarks.
 struct Form {
   bool rays;
   Lateral lateral;

@@ -19,7 +19,7 @@ struct CellLine {
   std::vector<std::filesystem::path> files;  ///< In the order in which they were written.
   std::set<SensorId> sensors;                ///< The sensors that the files name.
   bool cell = false;                         ///< True if it has several sensors, with their clocks.
-  /// Damage that shows without unpacking, as "FILE: what and why".
+  /// Damage that is visible without unpacking, as "FILE: what and why".
   std::vector<std::string> damage;
 };
 

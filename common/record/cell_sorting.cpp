@@ -113,7 +113,7 @@ Result<Sorting::Stream*> Sorting::stream_of(const SensorId& sensor) {
     if (source_.single) stream.recording = source_.description;
     stream.recording.sensor = sensor;
     stream.floor = stream.recording.floor;
-    // What was imported together was recorded by one clock.
+    // Streams that were imported together share one clock.
     if (stream.recording.notes.contains("set_origin")) stream.clock_sigma = 0.0;
   }
   if (stream.line.newest == files_) return &stream;

@@ -26,7 +26,7 @@ namespace {
 
 using client::ServiceClient;
 
-constexpr double kFarthest = 1000.0;  // [m], the same as the server's
+constexpr double kFarthest = 1000.0;  // [m], the limit that the server has
 
 struct OriginArguments {
   std::string url = client::default_server();
@@ -38,7 +38,8 @@ struct OriginArguments {
   bool json = false;
 };
 
-/// Watches the person who stands there, on one connection: each frame once, as it comes.
+/// Watches the person who stands there.  Uses one connection and gets each frame once, as it is
+/// published.
 class Watch {
  public:
   Watch(const http::Url& server, tls::Trust trust)

@@ -34,7 +34,8 @@ std::string chain_shown(const nlohmann::json& sensor) {
   return text.empty() ? "-" : text;
 }
 
-/// "the clocks of s2 and s5 differ by 212 ms +- 4" for each clock that the walk told apart.
+/// "the clocks of s2 and s5 differ by 212 ms +- 4" for each clock that was found, from the walk, to
+/// differ.
 std::string clocks_shown(const nlohmann::json& registration) {
   std::vector<std::pair<std::string, double>> clocks;
   std::map<std::string, double> sigmas;
@@ -44,7 +45,7 @@ std::string clocks_shown(const nlohmann::json& registration) {
     clocks.emplace_back(name, offset);
     sigmas[name] = client::number_at(sensor, "clockUncertaintyMilliseconds");
   }
-  // The common clock is that of the sensor with an exact one.
+  // The common clock is that of the sensor whose uncertainty is zero.
   const auto common =
       std::ranges::find_if(clocks, [&](const auto& each) { return sigmas[each.first] == 0.0; });
   if (common == clocks.end()) return {};

@@ -1,4 +1,4 @@
-// A wrong host clock, for testing everything that has to cope with one.
+// A wrong host clock, for testing everything that has to tolerate one.
 #pragma once
 
 #include <memory>

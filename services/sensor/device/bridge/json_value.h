@@ -23,7 +23,7 @@ struct At {
   std::string_view key = {};
   std::optional<std::size_t> index = {};
 
-  /// Call it only on an At with a name, because the result points to that At.  `At{}` is the
+  /// The result points to this At, so call it only on an At that is a variable.  `At{}` is the
   /// message itself.
   [[nodiscard]] At operator[](std::string_view inner) const { return {outer(), inner, {}}; }
   [[nodiscard]] At operator[](std::size_t inner) const { return {outer(), {}, inner}; }

@@ -22,7 +22,7 @@ constexpr double kMaxPixels = 1e5;
 constexpr double kMaxVariance = 1e8;  // [m^2]
 constexpr JsonLimits kLimits{.bytes = 2'000'000, .nesting = 8};
 
-/// What an element says besides the landmark's place.
+/// What an element states besides the landmark's position.
 struct Sureness {
   double confidence = 1.0;
   std::optional<JointState> state;
@@ -136,7 +136,7 @@ Result<Landmark> read_pixel(const Json& value, const Hello& hello, const At& at)
   }
   const auto ray = ray_of({element->place[0], element->place[1]}, *hello.camera);
   if (!ray) return Landmark{};
-  // An image defines what "right" and "down" are, whatever the axes of the pusher's points are.
+  // Pixel axes are always right and down, whatever the axes of the pusher's points are.
   const Eigen::Matrix3d sensor_from_image = Eigen::Vector3d(-1.0, -1.0, 1.0).asDiagonal();
   Landmark landmark{sensor_from_image * *ray, state_of(element->sure, hello), Measurement::Ray};
   if (sigma)
@@ -201,7 +201,8 @@ Result<BodyFrame> read_body(const Json& value, const Hello& hello, const At& at)
                              : read_landmarks(*pixels, &read_pixel, hello, at["pixels"]);
   if (!landmarks) return pass(landmarks);
   BodyFrame body{BodyId{*number}, {}, {layout::joints_of(*hello.layout, *landmarks)}};
-  // Common to all landmarks: added to joints, so that the mean of two landmarks is no surer of it.
+  // The error of the focal length is common to all landmarks.  It is therefore added to the joints,
+  // where averaging two landmarks does not reduce it.
   for (Joint& joint : body.skeleton.joints) widen_ray(joint, hello.focal_sigma);
   return body;
 }

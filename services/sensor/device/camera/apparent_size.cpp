@@ -16,11 +16,12 @@ constexpr double kFarthest = 50.0;  // [m]
 constexpr double kOutlier = 0.04;   // Across the ray [m]; beyond it, a landmark's weight decreases.
 // Median [m]; beyond it, the landmarks are not a body of that shape.
 constexpr double kUseless = 0.15;
-// How people's sizes differ from the model's, which makes the distance wrong by the same share.
+// Relative spread of people's sizes about the model's, which is also the relative error of the
+// distance.
 constexpr double kSizeSigma = 0.10;
 constexpr double kShapeSigma = 0.15;  // Along the ray [m]; of one landmark relative to the others.
-// Least determinant of the fit's matrix, relative to its mean diagonal cubed; below it, all rays
-// are nearly parallel.
+// Smallest determinant of the fit's matrix, relative to the cube of its mean diagonal; below it,
+// all rays are nearly parallel.
 constexpr double kLeastSpread = 1e-3;
 
 /// Projector onto the plane perpendicular to the ray.

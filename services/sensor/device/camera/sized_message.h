@@ -8,8 +8,8 @@
 
 namespace chorus::camera {
 
-/// Returns the frame of `line`, in which bodies whose "pixels" and "world" fit each other have
-/// "points" in the hello's axes, with covariances, instead.  Needs hello.camera and pixel_sigma.
+/// Returns the frame of `line`.  Bodies whose "pixels" and "world" fit each other have "points" in
+/// the hello's axes, with covariances, instead of these.  Needs hello.camera and pixel_sigma.
 /// Malformed when "world" is not as proto/runner.md specifies.
 [[nodiscard]] Result<std::string> points_by_size(std::string_view line, const bridge::Hello& hello);
 

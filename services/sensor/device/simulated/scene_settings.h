@@ -25,7 +25,7 @@ namespace chorus::sensor_service {
 
 struct SceneSettings {
   synthetic::Scene scene;  ///< Without sensors.
-  std::string people;      ///< Where their motion comes from: "CMU walking", "motion of walk.bvh".
+  std::string people;      ///< The source of their motion: "CMU walking", "motion of walk.bvh".
 };
 
 /// Reads the settings; the reader's finish() reports mistakes.
