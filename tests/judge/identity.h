@@ -39,15 +39,15 @@ struct Identity {
   std::size_t switches = 0;        ///< How often the id under which a person is reported changed.
   std::size_t fragmentations = 0;  ///< How often the track of a person ended and began again.
   std::size_t ghosts = 0;          ///< Ids that mostly followed nobody.
-  double coverage = 0.0;           ///< Fraction of people's instants with an answer.
-  /// 2 IDTP / (people's instants + answers), with ids assigned once for all instants.
+  double coverage = 0.0;           ///< Fraction of people's instants at which they are reported.
+  /// 2 IDTP / (people's instants + reported bodies), with ids assigned once for all instants.
   double idf1 = 0.0;
   double minutes = 0.0;
-  /// Mean time from a person's appearance to the first answer, over those who got one [s].
+  /// Mean time from a person's appearance until they are reported, over those who are [s].
   double first_answer = 0.0;
   /// How often an id, after one person, followed another for a second or longer.
   std::size_t inherited = 0;
-  std::size_t spare_ids = 0;  ///< Ids of people who already had one.
+  std::size_t spare_ids = 0;  ///< Additional ids of people who already had one.
 };
 
 [[nodiscard]] Identity identity_of(const std::vector<Roll>& rolls,

@@ -35,7 +35,7 @@ struct Mean {
   [[nodiscard]] double value() const { return count > 0 ? sum / count : kNothing; }
 };
 
-/// Whether this pair of limbs is exchanged; none: it cannot be decided.
+/// True if this pair of limbs is swapped; none if that cannot be decided.
 std::optional<bool> is_exchanged(const Answer& answer, std::span<const JointId> left_limb) {
   double as_stated = 0.0;
   double exchanged = 0.0;
@@ -61,7 +61,7 @@ std::optional<double> length_of(const Skeleton<WorldSpace>& body, JointId child)
   return (body[child].position - body[parent].position).norm();
 }
 
-/// Whether the true ankle stands between this instant and the previous one.
+/// True if the true ankle stands between this instant and the previous one.
 bool stands(const Answers& answers, std::size_t at, JointId ankle) {
   const double dt = seconds(answers[at].instant - answers[at - 1].instant);
   const Eigen::Vector3d way =

@@ -22,14 +22,15 @@ using std::chrono::seconds;
 constexpr std::uint64_t kPurpose = 731;
 constexpr std::size_t kDraws = 20;
 constexpr std::size_t kQuickDraws = 1;
-constexpr Duration kPushedAt = seconds(180);  // sensors are known by then
-constexpr Duration kFollowed = seconds(60);   // after the push: the sensor is placed anew meanwhile
-constexpr double kShift = 0.05;               // [m]
+constexpr Duration kPushedAt = seconds(180);  // what is usual for each sensor is known by then
+constexpr Duration kFollowed =
+    seconds(60);                 // after the push; in this time the sensor is registered again
+constexpr double kShift = 0.05;  // [m]
 constexpr double kTurn = deg(2);
 constexpr double kEight = 8.0 * 3600.0;  // [s]
 constexpr const char* kProfiles[] = {"A", "B", "D"};
 
-/// What happens to one sensor, in a room of so many.
+/// What happens to one sensor, in a room with this many.
 struct BumpCase {
   const char* name;
   std::size_t sensors;
@@ -58,8 +59,8 @@ RoomSetting pushed_room(const BumpCase& each, std::uint64_t seed) {
   return room;
 }
 
-/// Time from the push to the first alarm that names the sensor, alone or in a pair [s]; not a
-/// number: there was none.
+/// Time from the push to the first alarm that names the sensor, alone or in a pair [s]; NaN: there
+/// was none.
 double detected_after(const RoomLog& log, const Push& push) {
   for (const RoomLog::Alarm& alarm : log.alarms) {
     if (alarm.sensor == push.sensor && alarm.at >= push.at)
@@ -68,7 +69,7 @@ double detected_after(const RoomLog& log, const Push& push) {
   return kNoRatio;
 }
 
-/// Alarms before the push, and after it for others than the one that was pushed.
+/// Number of alarms before the push, and of those after it that name another sensor.
 std::size_t wrong_alarms(const RoomLog& log, const Push& push) {
   return static_cast<std::size_t>(
       std::ranges::count_if(log.alarms, [&](const RoomLog::Alarm& alarm) {

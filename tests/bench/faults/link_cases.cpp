@@ -14,7 +14,8 @@ namespace {
 
 constexpr int kSensors = 4;
 constexpr double kPercent = 100.0;
-constexpr double kMaxLater = 0.030;  // what one bad link may add to the others' age, p90 [s]
+constexpr double kMaxLater =
+    0.030;  // how much one bad link may add to the age of the others' frames, p90 [s]
 
 CellPlan with_links(const LinkModel& link, int from, int to) {
   CellPlan plan;
@@ -133,8 +134,8 @@ class BusyMachine {
   std::vector<std::jthread> threads_;
 };
 
-/// Although the busy machine delays all frames at times, one bad link must cost the other sensors
-/// nothing.
+/// The busy machine delays all frames at times; still, one bad link must not affect the other
+/// sensors.
 Result<void> jitter_busy(Trial& trial) {
   auto cell = Cell::start(with_links({}, 1, 2));
   if (!cell) return pass(cell);

@@ -14,7 +14,7 @@ namespace {
 using namespace synthetic;
 
 constexpr double kTurnRate = deg(4.0);  // slow: at most 0.1 m/s at the hands
-constexpr double kDistance = 2.3;       // Otto Fig. 5 shows the body there [m]
+constexpr double kDistance = 2.3;       // distance of the body in Otto's Fig. 5 [m]
 constexpr double kSensorHeight = 1.0;   // Otto 3.1 [m]
 constexpr double kBendOverStep =
     std::numbers::sqrt3;       // ratio of second to first differences of white noise

@@ -67,7 +67,7 @@ TEST(LinearBound, IsBetterThanAnyFixedWayToCombineOnAverageAndHonest) {
     answers.push_back({at_frame(draw), linear_bound(person, kApart), exact, {}});
     bound += mean_error(answers.back().body, exact);
     mean += mean_error(product(fusion::Method::Mean)(person, at_frame(0)), exact);
-    Person silent = person;  // as in the contest: only the bound is given the covariances
+    Person silent = person;  // as in the contest: only the bound gets the covariances
     for (SensorView& view : silent.views) {
       for (Joint& joint : view.skeleton.joints) joint.covariance = {};
     }

@@ -1,4 +1,4 @@
-// Depth from apparent size: a projected body is reconstructed at its original place.
+// Depth from apparent size: a projected body is reconstructed at its original position.
 #include "services/sensor/device/camera/apparent_size.h"
 
 #include <cmath>
@@ -92,7 +92,7 @@ TEST(ApparentSize, DepthIsWorseThanDirectionAndTheSizeIsInCommon) {
   EXPECT_EQ(ray.covariance, joint.covariance);
 }
 
-/// An answer with a person at (0.5, 0, 4) [m]; axes right, down, forward.
+/// A runner's answer with a person at (0.5, 0, 4) [m]; axes right, down, forward.
 nlohmann::json answer() {
   nlohmann::json pixels = nlohmann::json::array();
   nlohmann::json world = nlohmann::json::array();

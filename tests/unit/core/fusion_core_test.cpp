@@ -38,7 +38,7 @@ bool collecting(const FusionCore& core) {
 }
 
 struct Answers : std::vector<Snapshot> {
-  Duration worst{0};  ///< Longest time from an instant to its answer.
+  Duration worst{0};  ///< Longest time from an instant to its snapshot.
 };
 
 /// Runs the core from `from` for `length` as the server would: each sensor has its own phase; time
@@ -141,7 +141,7 @@ TEST(FusionCore, StartsASessionByItselfWhenSensorsHaveNoPlace) {
   EXPECT_LT(t, seconds(8));
   EXPECT_EQ(job->walk.size(), 3u);
   EXPECT_TRUE(collecting(core));
-  // Only one job is out at a time.
+  // There is only one job at a time.
   (void)run(core, t, seconds(4));
   EXPECT_FALSE(core.due_job(kStart + t + seconds(4)));
   EXPECT_EQ(core.solved({job->session, job->kind, ring(3, Verdict::Provisional)}, kStart + t),

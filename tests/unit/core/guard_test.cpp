@@ -1,4 +1,4 @@
-// What people are told of a sensor that was moved, and what happens to its place.
+// What is reported about a sensor that was moved, and what happens to its registration.
 #include "fusion-server/core/guard.h"
 
 #include <gmock/gmock.h>
@@ -86,7 +86,7 @@ TEST_F(Pushed, ASensorLosesItsPlaceIsToldOfAndPlacedAnewWithoutAJump) {
   const double usual = run(seconds(40));
   pushed_ = 1;
   push_ = 0.08;
-  run(milliseconds(200));  // the push itself shows
+  run(milliseconds(200));  // during the push itself bodies may jump
   EXPECT_LT(run(seconds(8)), usual + 0.005);
   const SensorId moved = sensor_id("s2");
   ASSERT_FALSE(core_.registration().sensors.contains(moved));

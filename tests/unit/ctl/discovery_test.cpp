@@ -44,7 +44,7 @@ TEST(Discovery, AStrangerWithTheSameIdIsShownBesidesTheSensor) {
               ElementsAre(::testing::_, stranger, sensor));
 }
 
-/// An avahi-browse that prints this, for as long as it lives.
+/// Replaces avahi-browse by a program that prints this, while the object exists.
 class Browsed {
  public:
   explicit Browsed(const std::string& text) : path_(::getenv("PATH")) {

@@ -77,7 +77,7 @@ using std::chrono::seconds;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-constexpr auto kPatience = seconds(20);  // never waited for unless something is broken
+constexpr auto kPatience = seconds(20);  // reached only if something is broken
 
 RawFrame raw(int i, int bodies = 0) {
   const Timestamp t = kStart + kFrameInterval * i;

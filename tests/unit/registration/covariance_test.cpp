@@ -1,4 +1,4 @@
-// Compares every stated covariance with a numeric derivative of the estimated place itself.
+// Compares every stated covariance with a numeric derivative of the estimated pose itself.
 #include <functional>
 
 #include <gtest/gtest.h>
@@ -152,7 +152,7 @@ TEST(EdgeCovariance, IsStatedInTheTargetsOwnAxesHoweverItIsTilted) {
 TEST(EdgeCovariance, HasAFloorThatGrowsWithTheAngleBetweenTheViews) {
   const auto position_sigma = [](double angle) {
     const Matrix6 covariance = edge_of(kTarget, ring_place(deg(angle))).covariance;
-    // At the middle of the walk, where an exact walk leaves almost no error of its own.
+    // At the middle of the walk, where an exact walk leaves almost no error.
     const Matrix6 shift = at_point(Eigen::Vector3d(0, 0, 3.1));
     const Matrix6 there = shift * covariance * shift.transpose();
     return std::sqrt(there.bottomRightCorner<3, 3>().trace() / 3.0);
