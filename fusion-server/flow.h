@@ -19,11 +19,11 @@
 
 namespace chorus {
 
-/// How the answer for an instant was obtained.
+/// How a sensor's bodies at an instant were obtained.
 enum class Basis {
   Exact,         ///< The sensor captured at exactly that instant.
   Interpolated,  ///< The instant is between two captures.
-  Pending,       ///< A later capture may still arrive: ask again.
+  Pending,       ///< A later capture may still arrive; ask again.
   /// There will be none: the sensor is past the instant, or the gap between captures is too wide.
   Lost,
 };
@@ -57,8 +57,9 @@ struct PairwiseRegistration {
   double icp_rms = 0.0;   ///< Residual after ICP refinement [m].
   std::size_t pairs = 0;  ///< Time-paired correspondences.
   std::size_t inliers = 0;
-  double spread = 0.0;     ///< RMS distance of the walk from its centroid, horizontally [m].
-  double inflation = 1.0;  ///< Because pairs are correlated: number of pairs per independent pair.
+  double spread = 0.0;  ///< RMS distance of the walk from its centroid, horizontally [m].
+  double inflation =
+      1.0;  ///< Number of pairs per independent pair; above one because pairs are correlated.
   /// Covariance of a small motion (omega, tau) on the target side: exp(omega), then tau [rad^2, rad
   /// m, m^2].
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
@@ -66,7 +67,7 @@ struct PairwiseRegistration {
 
 enum class Verdict { None, Provisional, Good, Refused };
 
-/// How far one sensor's place may be trusted.
+/// How far one sensor's place can be trusted.
 struct SensorVerdict {
   Verdict verdict = Verdict::None;   ///< Refused: the sensor has no place.
   std::vector<std::string> reasons;  ///< Human-readable: why the verdict is not Good.
@@ -114,10 +115,10 @@ struct SensorView {
 struct Person {
   PersonId id;
   std::vector<SensorView> views;
-  /// Probability that left and right are not exchanged; none if the sides were not resolved.
+  /// Probability that left and right are not swapped; none if the sides were not resolved.
   std::optional<double> sides_confidence = {};
-  /// Set if nobody sees the person: where their middle is expected, world [m].  Then there are no
-  /// views.
+  /// Set if no sensor sees the person: where their middle is expected, world [m].  Then there are
+  /// no views.
   std::optional<Eigen::Vector3d> carried = {};
 };
 
@@ -129,8 +130,8 @@ struct FusedBody {
   std::array<std::uint64_t, kJointCount> contributors{};
   std::optional<std::size_t> slot;  ///< The person's slot in every output; none: no slot.
   std::optional<double> sides_confidence = {};  ///< Copied from Person.
-  /// For how long nobody has seen the person [s]; meanwhile they are where they are expected.  None
-  /// while they are seen.
+  /// For how long no sensor has seen the person [s]; meanwhile they are where they are expected.
+  /// None while they are seen.
   std::optional<double> carried_for = {};
 };
 

@@ -21,7 +21,7 @@ struct SensorStatus {
   bool streaming = false;       ///< True while its frames come by event stream instead of polling.
   std::optional<Duration> age;  ///< Since its newest capture, by our clock; none: no frame yet.
   double rate_hz = 0.0;
-  std::size_t bodies = 0;  ///< In its newest frame.
+  std::size_t bodies = 0;  ///< Number of bodies in its newest frame.
   double weight = 0.0;     ///< Largest Otto weight of its views; only "otto" methods use weights.
   double share = 0.0;  ///< Share of the joints fused in the last second to which it contributed.
   double share_afterwards = 0.0;  ///< The same, including its late frames, as /frame?at= shows it.
@@ -38,7 +38,8 @@ struct SensorStatus {
   /// Distance between where this sensor and the others see the same people, less what is usual for
   /// this sensor [m]; none until somebody has walked in view of it and of another one.
   std::optional<double> shift;
-  std::string alarm;  ///< It was moved, as a sentence for people; empty: it stands as registered.
+  std::string
+      alarm;  ///< That it was moved, as a sentence for people; empty if it stands as registered.
 
   bool operator==(const SensorStatus&) const = default;
 };
@@ -54,7 +55,7 @@ enum class SessionState {
 struct PairCoverage {
   SensorId first;
   SensorId second;
-  std::size_t sightings = 0;  ///< Instants at which both saw the one person.
+  std::size_t sightings = 0;  ///< Instants at which both saw the only person.
   double spread = 0.0;        ///< rms radius of these about their centre [m].
   /// Radius inside which one would be placed relative to the other, in 95 % [m].
   double expected = 0.0;
@@ -64,9 +65,9 @@ struct PairCoverage {
 
 /// A square of half a metre of the floor on which somebody walked.
 struct CoveredCell {
-  double x = 0.0;           ///< Of its middle, world [m].
+  double x = 0.0;           ///< x of its middle, world [m].
   double z = 0.0;           ///< [m]
-  std::size_t sensors = 0;  ///< That saw somebody there.
+  std::size_t sensors = 0;  ///< Number of sensors that saw somebody there.
 
   bool operator==(const CoveredCell&) const = default;
 };
@@ -83,7 +84,7 @@ struct SessionStatus {
   bool adopted = false;  ///< True if its result is, or was, in use and was not withdrawn.
   /// What the last solve lacked, and what became of its result.
   std::vector<std::string> reasons;
-  std::vector<PairCoverage> pairs;  ///< What the walk has covered; by pairs of sensors ...
+  std::vector<PairCoverage> pairs;  ///< What the walk has covered, by pairs of sensors ...
   std::vector<CoveredCell> cells;   ///< ... and from above, once sensors have places.
 
   bool operator==(const SessionStatus&) const = default;

@@ -1,8 +1,8 @@
 // One side of a TLS connection (1.2 or 1.3) without sockets: encrypted bytes in and out towards the
 // network, plain bytes towards the program.
 //
-// Asio's TLS stream sends each buffer as a separate record, cannot send its end without waiting for
-// the other side's, and needs sockets in tests; therefore this uses OpenSSL directly.
+// This uses OpenSSL directly, because Asio's TLS stream sends each buffer as a separate record,
+// cannot send its end without waiting for the other side's, and needs sockets in tests.
 #pragma once
 
 #include <cstddef>

@@ -13,8 +13,8 @@
 namespace chorus::core {
 namespace {
 
-constexpr double kReach = 2.5;   // [m] sensor to walk: rotation errors are judged at this range
-constexpr double kMisfit = 0.3;  // [m] held sensors that differ by more were moved
+constexpr double kReach = 2.5;  // [m] from sensor to walk; rotation errors are judged at this range
+constexpr double kMisfit = 0.3;  // [m]; held sensors that differ by more were moved
 
 int rank(Verdict verdict) {
   switch (verdict) {
@@ -42,7 +42,7 @@ bool stands_well(const Registration& registration, const SensorId& sensor) {
   return verdict_of(registration, sensor) == Verdict::Good;
 }
 
-/// Sensors that the candidate adds, or places well where the registration in use does not.
+/// Sensors that the candidate adds, or that it places well while the registration in use does not.
 std::set<SensorId> newcomers(const Registration& current, const Registration& candidate,
                              SolveKind kind) {
   std::set<SensorId> found;
@@ -158,7 +158,7 @@ bool should_replace(const Registration& current, const Registration& candidate, 
   if (!covers(candidate, current)) return false;
   if (rank(candidate.verdict) != rank(current.verdict))
     return rank(candidate.verdict) > rank(current.verdict);
-  // A provisional solve in mid-walk does not replace a good registration; the final one may.
+  // A provisional solve during the walk does not replace a good registration; the final one may.
   return kind == SolveKind::Final || current.verdict == Verdict::Provisional;
 }
 

@@ -45,8 +45,8 @@ class Coverage {
   std::map<SensorId, std::map<Cell, Eigen::Vector3d>> seen_;  ///< In each sensor's own space.
 };
 
-/// What is expected of a pair that has so many sightings: radius [m] inside which the place of one
-/// is known relative to the other, in 95 % (algorithm: docs/papers/registration.md, Coverage).
+/// The 95 % radius [m] to which the place of one sensor will be known relative to the other's, for
+/// a pair with this many common views (docs/papers/registration.md, Coverage).
 [[nodiscard]] double expected_radius(std::size_t sightings, double spread, double distance);
 
 /// Sentences for people about what the walk still needs, the most important first; empty: nothing.

@@ -11,8 +11,9 @@ struct BodyModel {
   /// Where the estimate of misfits starts (misfit_size.h).  Standard deviation of the ratio by
   /// which a sensor's whole body is too large or too small.
   double scale = 0.06;
-  /// How far it is turned about the vertical axis when seen from the side [rad]: zero up to
-  /// `turn_from`, in full from `turn_full` on; both are angles between frontal and side-on.
+  /// Standard deviation of the turn of a sensor's whole body about the vertical axis, when seen
+  /// from the side [rad]: zero up to `turn_from`, in full from `turn_full` on; both are angles
+  /// between frontal and side-on.
   double turn = deg(20);
   double turn_from = deg(40);
   double turn_full = deg(90);
@@ -36,13 +37,13 @@ struct BodyModel {
   double limb = 4.0;
   /// Fraction of one instant's stated standard deviation that is independent at the next instant.
   double white = 0.2;
-  /// Stated errors only, 0: unused.  Sensors that differ in scale also have wrong proportions: this
-  /// fraction of that difference, times a joint's distance from the trunk.
+  /// Only for stated errors; 0: unused.  Sensors that differ in scale also have wrong proportions,
+  /// by this fraction of that difference, times a joint's distance from the trunk.
   double proportion = 0.6;
-  /// And the mean squared residual, in variances, of views that disagree no more than usual: the
-  /// stated variances are multiplied by what is found over this.
+  /// Likewise: mean squared residual, in variances, of views that disagree no more than usual.  The
+  /// stated variances are multiplied by the ratio of the actual one to this.
   double agreement = 0.32;
-  /// How long a joint that nobody sees is predicted.
+  /// How long a joint that no sensor sees is predicted.
   Duration carry = std::chrono::seconds(1);
 
   bool operator==(const BodyModel&) const = default;

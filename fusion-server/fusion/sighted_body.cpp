@@ -97,7 +97,7 @@ PlacedJoint SightedBody::robust_mean(Sights& sights, const PlacedJoint* start) c
     double information = 0.0;
     for (std::size_t v = 0; v < sights.views.size(); ++v) {
       const Eigen::Vector3d& place = sights.views[v].joint.position;
-      // Knowing by how much a view is off does not make it right: its bias counts as distance too.
+      // A view with a known bias is still less reliable, so its bias counts as distance, too.
       const Eigen::Vector3d off = place + sights.bias[v] - joint.position;
       const double distance = off.norm() / std::sqrt(sights.variance[v]);
       const bool weigh = joint.placed && huber > 0 && distance > huber;

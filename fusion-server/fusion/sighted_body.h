@@ -25,19 +25,21 @@ class SightedBody {
   SightedBody(const Person& person, const Instant& instant, const ErrorModel& errors,
               const FusionConfig& config, const Biases& biases);
 
-  /// Solves for everything; `model` has the sizes of misfits found so far; bones of known length
-  /// keep it.  `expected`: predicted places, which limit the depth of joints shown by too few rays.
+  /// Solves for everything.  `model` contains the sizes of misfits found so far; bones of known
+  /// length keep it.  `expected`: predicted positions, which limit the depth of joints shown by too
+  /// few rays.
   void settle(const HeldBones& bones, const PlacedBody& expected, const BodyModel& model);
 
   /// The joints according to the corrected views, without the constraint of the bones.
   [[nodiscard]] const PlacedBody& placed() const { return placed_; }
-  /// What the views say about how uncertain a joint's place is.  Bones do not count: the views that
-  /// measure a joint also measured its bones, and may agree on wrong lengths.
+  /// Covariance of a joint's position according to the views.  The bones' lengths are not used,
+  /// because they were learned from the same views, which may agree on wrong lengths.
   [[nodiscard]] Eigen::Matrix3d stated(std::size_t joint) const;
   [[nodiscard]] const std::vector<Misfit>& misfits() const { return misfits_; }
-  /// Whether the views alone determine the joint's place.
+  /// True if the views alone determine the joint's position.
   [[nodiscard]] bool determined(std::size_t joint) const;
-  /// Updates the biases from the points' residuals against `body`, `passed` [s] after the last.
+  /// Updates the biases from the points' residuals against `body`, `passed` [s] after the last
+  /// update.
   void learn(Biases& biases, const PlacedBody& body, double passed) const;
   /// Mean squared residual between the points and `body`, per axis, in the points' variances; none
   /// without a joint that two views have.
@@ -48,15 +50,15 @@ class SightedBody {
   [[nodiscard]] FusedJoint shown(JointId joint) const;
 
  private:
-  /// A joint's views, corrected, and how far each is trusted.
+  /// A joint's corrected views, and the trust in each.
   struct Sights {
     std::vector<JointView> views;
-    std::vector<double> variance;       ///< Per axis, for weights [m^2].
-    std::vector<double> stated;         ///< Per axis, with the whole pose error [m^2].
+    std::vector<double> variance;       ///< Variance per axis, for weights [m^2].
+    std::vector<double> stated;         ///< Variance per axis, with the whole pose error [m^2].
     std::vector<Eigen::Vector3d> bias;  ///< What was subtracted [m].
     std::vector<double> trust;
-    bool round = true;     ///< All points have isotropic errors.
-    bool bounded = false;  ///< The predicted place was needed besides the views.
+    bool round = true;     ///< True if all points have isotropic errors.
+    bool bounded = false;  ///< True if the predicted position was needed in addition to the views.
   };
 
   void take(std::size_t joint, const Instant& instant, const ErrorModel& errors,

@@ -1,7 +1,8 @@
-// Notices that a sensor was moved, from where it sees people in everyday use beside the others.
+// Detects that a sensor was moved, by comparing where it and the other sensors see people in
+// everyday use.
 //
 // Pure: views of people go in, instant by instant; findings come out.  Only people who walk count:
-// the error of somebody who stands still lasts, and tells nothing new.
+// the error of somebody who stands still is constant and contains nothing new.
 #pragma once
 
 #include <deque>
@@ -20,7 +21,7 @@ struct Finding {
   /// Only these two saw people together: one of them was moved, and it cannot be told which.
   std::optional<SensorId> or_else;
   double shift = 0.0;    ///< Distance between where it and where the others see people [m].
-  bool drifted = false;  ///< It has been so for minutes; else it began lately.
+  bool drifted = false;  ///< True if it has lasted for minutes, false if it began recently.
   Timestamp since;       ///< When it began, or was first certain.
 };
 
@@ -41,13 +42,14 @@ class Watch {
 
  private:
   struct Watched {
-    std::vector<Residual> open;  ///< Of the block that is being filled.
+    std::vector<Residual> open;  ///< Residuals of the block that is being filled.
     Timestamp began;
-    std::deque<Block> recent;  ///< Not yet learned from, so that a shift is compared with before.
+    std::deque<Block>
+        recent;  ///< Not yet learned from, so that a shift is compared with the time before it.
     StandingError usual;
     ShiftTest test;
     Shift shift;
-    double drift = 0.0;  ///< Of the place alone [m]; 0: not significant.
+    double drift = 0.0;  ///< Error of the place alone [m]; 0: not significant.
   };
   struct Walker {
     Eigen::Vector3d smoothed = Eigen::Vector3d::Zero();

@@ -95,7 +95,7 @@ Node newest_session(const RegistrationProgress& progress) {
   return node;
 }
 
-/// What each two sensors saw together.
+/// What each pair of sensors saw together.
 std::vector<Node> pair_nodes(const SessionStatus& session) {
   constexpr int kDigits = 3;
   std::vector<Node> nodes;
@@ -135,7 +135,7 @@ void add_storage(Node& node, const StorageStatus& storage) {
                                    : storage.trouble);
 }
 
-/// What an undo goes back to.
+/// The registration that an undo goes back to.
 Node earlier_node(const Registration& registration) {
   return {"_",
           {"EarlierRegistration"},
