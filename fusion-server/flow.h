@@ -58,8 +58,8 @@ struct PairwiseRegistration {
   std::size_t pairs = 0;  ///< Time-paired correspondences.
   std::size_t inliers = 0;
   double spread = 0.0;  ///< RMS distance of the walk from its centroid, horizontally [m].
-  double inflation =
-      1.0;  ///< Number of pairs per independent pair; above one because pairs are correlated.
+  /// Number of pairs per independent pair; above one because pairs are correlated.
+  double inflation = 1.0;
   /// Covariance of a small motion (omega, tau) on the target side: exp(omega), then tau [rad^2, rad
   /// m, m^2].
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();

@@ -38,8 +38,8 @@ struct SensorStatus {
   /// Distance between where this sensor and the others see the same people, less what is usual for
   /// this sensor [m]; none until somebody has walked in view of it and of another one.
   std::optional<double> shift;
-  std::string
-      alarm;  ///< That it was moved, as a sentence for people; empty if it stands as registered.
+  /// That it was moved, as a sentence for people; empty if it stands as registered.
+  std::string alarm;
 
   bool operator==(const SensorStatus&) const = default;
 };

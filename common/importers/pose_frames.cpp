@@ -22,13 +22,13 @@ using nlohmann::json;
 constexpr double kMaxPixel = 1e5;
 constexpr double kMaxConfidence = 1e3;  // some networks exceed 1, which then counts as 1
 constexpr std::uint64_t kMostId = 1'000'000'000;
-constexpr double kLongest =
-    1e7;  // [s] after the first picture: 115 days; more does not fit a Timestamp
+// [s] after the first picture: 115 days; more does not fit a Timestamp.
+constexpr double kLongest = 1e7;
 /// Standard deviation of a landmark, relative to the height of the person: about 8 px at 500 px.
 constexpr double kSigmaByHeight = 0.016;
 constexpr double kLeastSigma = 2.0;  // [px]
-constexpr double kOutside =
-    0.2;  // if this share of the landmarks is outside the picture, the size is wrong
+// If this share of the landmarks is outside the picture, the size is wrong.
+constexpr double kOutside = 0.2;
 
 struct Count {
   std::size_t points;

@@ -8,8 +8,8 @@
 namespace chorus::importers {
 namespace {
 
-constexpr double kNear =
-    0.5;  // share of a person's size that the person may move from one picture to the next
+// Share of a person's size that the person may move from one picture to the next.
+constexpr double kNear = 0.5;
 constexpr int kRemembered = 30;  // pictures
 constexpr double kSure = 0.1;    // lowest confidence of a point that counts here
 

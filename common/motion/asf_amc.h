@@ -4,9 +4,10 @@
 // end. With C the rotation of the bone's `axis` and R that of its channels (both about fixed axes,
 // x first: Rz Ry Rx),
 //   world_from_bone = world_from_parent * C * R * C^-1,
-//   end = parent end + length * world_from_bone * direction (Lander, "Working with motion capture
-//   file formats"; checked against a second reader and by tests: feet on the floor, left on the
-//   left).  In CMU files, lengths are inches times the unit `length` of the header.
+//   end = parent end + length * world_from_bone * direction
+// (Lander, "Working with motion capture file formats"; checked against a second reader and by
+// tests: feet on the floor, left on the left).  In CMU files, lengths are inches times the unit
+// `length` of the header.
 #pragma once
 
 #include <array>

@@ -81,8 +81,8 @@ class Sorting {
     std::optional<Timestamp> newest;  ///< Capture time of the newest frame kept.
     std::size_t left_out = 0;
     std::size_t kept_before = 0;  ///< The value of `kept` when the current file began.
-    std::optional<Timestamp>
-        newest_out;  ///< Newest of the frames of the current file that were left out.
+    /// Newest of the frames of the current file that were left out.
+    std::optional<Timestamp> newest_out;
   };
 
   void note_cell(const std::vector<Channel>& channels);

@@ -197,8 +197,8 @@ void Path::assemble() {
   for (int i = 0; i < kStations; ++i) {
     for (int k = 0; k < kReachesPerStation; ++k) {
       const bool left = k % 2 == 0;
-      const double aside =
-          draw.uniform(-0.05, 0.35);  // from slightly across the middle to far outside [m]
+      // From slightly across the middle to far outside [m].
+      const double aside = draw.uniform(-0.05, 0.35);
       const double height = kReachHeights[static_cast<std::size_t>(i + k) % kReachHeights.size()];
       reach_for(left, {left ? aside : -aside, height, kReachForward},
                 draw.uniform(kMinHold, kMaxHold));

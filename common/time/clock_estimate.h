@@ -98,8 +98,8 @@ class ClockFilter {
   double mean_delay_ = 0.0;  ///< Of both directions together [s].
   double exchanges_ = 0.0;   ///< Number of exchanges in mean_delay_.
   std::optional<Timestamp> last_;
-  std::vector<ClockExchange>
-      pending_;  ///< Contradictory exchanges, until it is clear what they mean.
+  /// Contradictory exchanges, until it is clear what they mean.
+  std::vector<ClockExchange> pending_;
 };
 
 /// What to add to the sensor's capture times: the estimate rounded to 10 us, so that it changes

@@ -159,8 +159,8 @@ std::vector<Person> published(std::vector<Candidate>& candidates, Timestamp inst
   std::vector<Person> people;
   for (Candidate& candidate : candidates) {
     const Track& track = candidate.track;
-    const bool placed =
-        instant - track.seen <= config.carry;  // A single ray body does not determine a position.
+    // A single ray body does not determine a position.
+    const bool placed = instant - track.seen <= config.carry;
     if (placed && track.named && is_settled(track, config)) people.push_back(person_of(candidate));
   }
   keep_the_best(people);

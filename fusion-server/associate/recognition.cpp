@@ -15,10 +15,10 @@ constexpr double kManyViews = 4.0;
 constexpr double kImpossible = -4.0;  // Log odds at which a person is excluded.
 // Prior log odds that a person found at the expected place is the lost one.
 constexpr double kContinuity = 1.5;
-constexpr double kUnlikely =
-    -0.5;  // Log odds below which a person who was lost and found loses the id.
-constexpr Duration kNoBones =
-    std::chrono::seconds(2);  // A build is not waited for longer than this.
+// Log odds below which a person who was lost and found loses the id.
+constexpr double kUnlikely = -0.5;
+// A build is not waited for longer than this.
+constexpr Duration kNoBones = std::chrono::seconds(2);
 
 /// True if the candidate's person is missing.  A candidate without an id has given it back, and is
 /// about to be erased.

@@ -124,8 +124,8 @@ class FusionCore {
   std::vector<SensorReport> reports_;
   Guard guard_;
   CrossFade fade_;
-  std::optional<Registration>
-      before_;  ///< The old registration, from which to fade; set until the next instant.
+  /// The old registration, from which to fade; set until the next instant.
+  std::optional<Registration> before_;
   std::map<SensorId, Timestamp> displaced_at_;  ///< When each sensor last lost its place.
   std::uint64_t displaced_ = 0;
 };

@@ -17,8 +17,8 @@ struct SensorAlarm {
   double shift = 0.0;  ///< How far from where the others see them it sees people [m].
   Timestamp since;
   bool drifted = false;  ///< True if it happened gradually, false if at once.
-  std::optional<SensorId>
-      or_else;  ///< Either the sensor or this one was moved; two sensors do not show which.
+  /// Either the sensor or this one was moved; two sensors do not show which.
+  std::optional<SensorId> or_else;
 
   bool operator==(const SensorAlarm&) const = default;
 };

@@ -7,13 +7,13 @@
 namespace chorus::facing {
 namespace {
 
-constexpr double kSpanSigma =
-    0.2;  // [m]; error of all pairs of a view together, including slow errors.
+// [m]; error of all pairs of a view together, including slow errors.
+constexpr double kSpanSigma = 0.2;
 constexpr double kMaxAgree = 4.0;  // Limit on the log odds of one instant, because errors persist.
 
 /// The state of a two-state chain after one more observation.
 struct Chain {
-  double likelihood = 0.0;  ///< Of the observation.
+  double likelihood = 0.0;  ///< Likelihood of the observation.
   double exchanged = 0.0;   ///< Probability afterwards.
 };
 

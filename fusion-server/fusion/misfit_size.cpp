@@ -9,8 +9,8 @@ namespace {
 constexpr double kPrior = 1.0;    // [s] of evidence for which the configured sizes count
 constexpr double kMemory = 5.0;   // [s]
 constexpr double kLongest = 0.1;  // [s] an instant counts for at most this, after a gap
-constexpr double kLeastSideOn =
-    0.3;  // a view nearer to frontal contains no information about turns
+// A view nearer to frontal contains no information about turns.
+constexpr double kLeastSideOn = 0.3;
 constexpr double kLeastVariance = 1e-16;
 
 }  // namespace

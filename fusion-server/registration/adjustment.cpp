@@ -17,21 +17,26 @@
 namespace chorus::registration {
 namespace {
 
-constexpr std::size_t kMaxPoints = 1500;      // of the walk; successive ones are redundant
-constexpr std::size_t kPointsEach = 100;      // of many sensors: each overlap needs its own
-constexpr std::size_t kMinMeasurements = 20;  // with fewer a sensor keeps its chain's place
+constexpr std::size_t kMaxPoints = 1500;  // points of the walk; more would be redundant
+// For each sensor, if there are many: each overlap needs points.
+constexpr std::size_t kPointsEach = 100;
+// With fewer, a sensor keeps the place given by its chain.
+constexpr std::size_t kMinMeasurements = 20;
 constexpr int kIterations = 40;
-constexpr double kSettled = 1e-6;    // [rad], [m]
-constexpr double kMinScale = 0.02;   // in standard deviations
-constexpr double kRidge = 1e-6;      // holds the state in directions that nothing observes
-constexpr double kGauge = 1e-5;      // [rad], [m] sigma of what is held of the master
-constexpr double kFarthest = 1.0;    // [m] that an adjustment may move a sensor
+constexpr double kSettled = 1e-6;   // [rad], [m]
+constexpr double kMinScale = 0.02;  // in standard deviations
+constexpr double kRidge = 1e-6;     // fixes directions that no measurement determines
+// [rad], [m] sigma with which the master's yaw and position are held.
+constexpr double kGauge = 1e-5;
+constexpr double kFarthest = 1.0;    // [m] an adjustment may move a sensor by at most this
 constexpr double kLevelView = 0.05;  // with a smaller horizontal part a view has no direction
-constexpr double kFarFloor = 4.0;    // in sigmas; a floor this far off has a quarter of its say
+constexpr double kFarFloor = 4.0;    // in sigmas; a floor this far off has a quarter of its weight
 constexpr FloorPrior kGuessedFloor{deg(2), mm(50)};
-constexpr double kIndependent = 1.2;   // [1/s] of real joints, whose errors last
-constexpr double kPriorFreedom = 3.0;  // what that is worth: as much as one sensor's own blocks
-constexpr Eigen::Index kAlong[] = {1, 3, 5};   // yaw and place along the floor
+// [1/s] independent measurements of a joint, whose errors last.
+constexpr double kIndependent = 1.2;
+// Degrees of freedom that this prior counts for, as many as one sensor's own blocks.
+constexpr double kPriorFreedom = 3.0;
+constexpr Eigen::Index kAlong[] = {1, 3, 5};   // yaw and position on the floor
 constexpr Eigen::Index kUpward[] = {0, 2, 4};  // tilt and height
 
 /// A sensor during the adjustment.
@@ -40,9 +45,9 @@ struct Station {
   const Walker* walker = nullptr;
   Eigen::Isometry3d level_from_sensor = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d world_from_level = Eigen::Isometry3d::Identity();
-  FloorPrior floor = {};  ///< How well its own floor is known; zero: not at all.
+  FloorPrior floor = {};  ///< Uncertainty of its own floor; zero: there is none.
   bool master = false;
-  bool fixed = false;  ///< Has too few common points.
+  bool fixed = false;  ///< True if it has too few common points.
 
   [[nodiscard]] Eigen::Isometry3d world_from_sensor() const {
     return world_from_level * level_from_sensor;
@@ -174,8 +179,8 @@ double floor_misfit(const Station& station) {
          height * height;
 }
 
-/// Tukey's loss of the points, from which their weights are derived, over the variance factor, and
-/// that of the floors.
+/// Tukey's loss of the points (from which their weights are derived), divided by the variance
+/// factor, plus that of the floors.
 double cost_of(const Adjustment& adjustment, double factor) {
   const double limit = kTukey * adjustment.scale;
   double cost = 0.0;
@@ -197,7 +202,7 @@ void add_floors(PlaceEquations& equations, const std::vector<Station>& stations)
   for (std::size_t i = 0; i < stations.size(); ++i) {
     if (!(stations[i].floor.tilt > 0) || stations[i].fixed) continue;
     Normal normal;
-    // A floor is known best right under its own sensor.
+    // A floor is best known right below its own sensor.
     add_prior(normal, stations[i].floor, stations[i].world_from_level, Eigen::Vector3d::Zero());
     const double root = 1.0 / (1.0 + floor_misfit(stations[i]) / (kFarFloor * kFarFloor));
     const auto at = static_cast<Eigen::Index>(6 * i);
@@ -206,7 +211,7 @@ void add_floors(PlaceEquations& equations, const std::vector<Station>& stations)
   }
 }
 
-/// The master keeps its place along the floor and the direction in which it looks.
+/// Holds the master's position on the floor, and its yaw.
 void hold_gauge(PlaceEquations& equations, const std::vector<Station>& stations) {
   for (std::size_t i = 0; i < stations.size(); ++i) {
     if (!stations[i].master) continue;
@@ -240,7 +245,7 @@ void hold_fixed(PlaceEquations& equations, const std::vector<Station>& stations)
   }
 }
 
-/// Parameters of all sensors that can move against the master.
+/// The given parameters of all sensors that can move relative to the master.
 std::vector<Eigen::Index> chosen(const std::vector<Station>& stations,
                                  std::span<const Eigen::Index> of_each) {
   std::vector<Eigen::Index> all;
@@ -251,7 +256,7 @@ std::vector<Eigen::Index> chosen(const std::vector<Station>& stations,
   return all;
 }
 
-/// Variance of a measurement, in units of its own.
+/// Actual variance of a measurement, in units of its stated one.
 struct Misfit {
   double squares = 0.0;
   double freedom = 0.0;
@@ -267,7 +272,8 @@ struct Misfit {
   }
 };
 
-/// All joints of a second or so err alike: the walk is worth as many points.
+/// The expected factor: all joints have nearly the same error for about a second, so the walk has
+/// only that many independent points.
 BlockScores::Prior expected(const Misfit& misfit, const Adjustment& adjustment) {
   const double independent = std::max(1.0, kIndependent * adjustment.points.back().time);
   const double variance =
@@ -275,7 +281,7 @@ BlockScores::Prior expected(const Misfit& misfit, const Adjustment& adjustment) 
   return {variance * std::max(1.0, misfit.weights / independent), kPriorFreedom};
 }
 
-/// The equations of the walk alone, whose points count as many times as they are independent.
+/// The equations of the walk alone, with its points weighted by how independent they are.
 PlaceEquations walk_equations(Adjustment& adjustment) {
   const Eigen::Index size = adjustment.size();
   BlockScores blocks(adjustment.points.back().time);
@@ -320,7 +326,7 @@ PlaceEquations equations_of(Adjustment& adjustment) {
   return equations;
 }
 
-/// Inverse information, where along the floor and upwards have variance factors of their own.
+/// Inverse information, with separate variance factors along the floor and upwards.
 Eigen::MatrixXd covariance_of(Adjustment& adjustment) {
   PlaceEquations equations = walk_equations(adjustment);
   Eigen::VectorXd shrink(adjustment.size());
@@ -368,7 +374,8 @@ Adjusted adjusted(Adjustment& adjustment) {
   return result;
 }
 
-/// Chains of pairs are robust: who ends far from them was led away by wrong sights.
+/// True if no sensor has moved far.  Chains of pairs are robust, so a sensor that ends far from its
+/// chain was misled by wrong views.
 bool near(const Places& start, const Places& end) {
   return std::ranges::all_of(start, [&](const auto& each) {
     return (end.at(each.first).translation() - each.second.translation()).norm() < kFarthest;

@@ -11,7 +11,7 @@ namespace {
 constexpr double kBlock = 2.0;     // [s] errors of joints last 0.2 to 1 s
 constexpr double kFewest = 4.0;    // blocks of a walk
 constexpr double kShortest = 0.1;  // [s]
-constexpr double kLeast = 1e-6;    // of the factor and of the denominator
+constexpr double kLeast = 1e-6;    // smallest factor, and smallest denominator
 constexpr double kRidge = 1e-9;    // relative, for what no measurement determines
 
 }  // namespace
@@ -30,7 +30,8 @@ double BlockScores::factor(std::span<const Eigen::Index> parameters, const Prior
   const auto count = static_cast<Eigen::Index>(chosen.size());
   if (blocks_.size() < 2 || count == 0) return prior.factor;
   Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(count, count);
-  Eigen::VectorXd left = Eigen::VectorXd::Zero(count);  // of the scores, where something else pulls
+  // The rest of the scores, where something else pulls on the estimate.
+  Eigen::VectorXd left = Eigen::VectorXd::Zero(count);
   for (const Block& block : blocks_) {
     whole += block.information(chosen, chosen);
     left += block.score(chosen);

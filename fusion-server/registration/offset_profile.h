@@ -22,8 +22,8 @@ struct OffsetFit {
 /// The offset between a pair's clocks, from the walk alone.
 struct PairOffset {
   double offset = 0.0;  ///< Target's clock minus the source's: added to the source's stamps [s].
-  double sigma =
-      0.0;  ///< [s]; as large as the searched range if the walk does not determine the offset.
+  /// [s]; as large as the searched range if the walk does not determine the offset.
+  double sigma = 0.0;
 };
 
 /// The walk, reduced to what a profile needs.

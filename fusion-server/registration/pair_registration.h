@@ -9,7 +9,7 @@
 
 namespace chorus::registration {
 
-/// One sensor's walk, with all that is computed once per sensor.
+/// One sensor's walk, with everything that is computed once per sensor.
 struct Walker {
   Trail trail;
   WalkFloor floor;
@@ -18,7 +18,7 @@ struct Walker {
 [[nodiscard]] Walker walker_of(const WalkTrack& walk, const RegistrationConfig& config);
 
 /// Errors: NotFound, the two sensors never saw the person together; Unavailable, they saw too
-/// little; Conflict, their observations are inconsistent.
+/// little; Conflict, their views are inconsistent.
 [[nodiscard]] Result<PairwiseRegistration> register_walkers(const Walker& target,
                                                             const Walker& source,
                                                             const RegistrationConfig& config);
@@ -26,8 +26,7 @@ struct Walker {
 /// Estimates an edge from two walks.
 using PairEstimator = std::function<Result<PairwiseRegistration>(const Walker&, const Walker&)>;
 
-/// solve() with another estimator of edges and everything else the same, to compare
-/// estimators.
+/// Like solve(), but with another estimator of edges, to compare estimators.
 [[nodiscard]] Registration solve_with(const PairEstimator& estimate,
                                       const std::vector<WalkTrack>& walk, Timestamp now,
                                       const RegistrationConfig& config);

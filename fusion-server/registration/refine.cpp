@@ -13,8 +13,9 @@ namespace chorus::registration {
 namespace {
 
 constexpr int kIterations = 15;
-constexpr double kSettled = 1e-7;        // [rad], [m]
-constexpr double kMaxCorrelated = 0.98;  // a larger rho means "constant error", not "no samples"
+constexpr double kSettled = 1e-7;  // [rad], [m]
+// A larger rho would mean a constant error, not a lack of samples.
+constexpr double kMaxCorrelated = 0.98;
 constexpr double kTiny = 1e-12;
 constexpr double kMinScale = 0.02;  // in sigmas; avoids a division by zero for perfect pairs
 constexpr double kAxes = 3.0;
@@ -81,7 +82,7 @@ Eigen::Vector3d centre_of(const std::vector<Pair>& pairs, const std::vector<doub
   return total > 0 ? Eigen::Vector3d(sum / total) : sum;
 }
 
-/// Mean whitened residual of each instant, and the scatter of single pairs.
+/// The mean whitened residual of each instant, and the scatter of single pairs.
 struct Instants {
   std::vector<Eigen::Vector3d> means;
   double squares = 0.0;

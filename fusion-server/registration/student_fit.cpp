@@ -8,7 +8,7 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kFreedom = 4.0;  // heavy tails for a few wrong frames
+constexpr double kFreedom = 4.0;  // heavy tails, because a few frames are wrong
 constexpr double kAxes = 3.0;
 constexpr int kIterations = 12;
 constexpr double kMinScale = 0.001;  // [m]
@@ -17,7 +17,7 @@ constexpr double kUncorrelated = 0.05;
 struct Residuals {
   std::vector<Eigen::Vector3d> off;
   std::vector<double> weights;
-  double variance = 1.0;  ///< Per axis [m^2].
+  double variance = 1.0;  ///< Variance per axis [m^2].
 
   explicit Residuals(std::size_t count) : off(count), weights(count, 1.0) {}
 

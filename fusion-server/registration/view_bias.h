@@ -1,5 +1,5 @@
-// What no length of walk shows about two sensors: joints lie differently in a body that is seen
-// from elsewhere (docs/papers/registration.md, Section 8).
+// The part of two sensors' error that no length of walk reveals: a body's joints appear at other
+// positions when it is seen from elsewhere (docs/papers/registration.md, Section 8).
 #pragma once
 
 #include "fusion-server/registration/adjoint.h"

@@ -22,8 +22,8 @@ constexpr double kLasting = 0.5;
 
 struct Mean {
   Eigen::Vector3d news = Eigen::Vector3d::Zero();
-  Eigen::Vector3d limited =
-      Eigen::Vector3d::Zero();  ///< The same, with each block limited to kMostNews.
+  /// The same, with each block limited to kMostNews.
+  Eigen::Vector3d limited = Eigen::Vector3d::Zero();
   Rows rows = Rows::Zero();
   std::set<SensorId> others;
 };

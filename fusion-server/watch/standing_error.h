@@ -16,8 +16,8 @@ namespace chorus::watch {
 
 /// Order: yaw [rad]; x, y, z [m]; a0, a1, a2; b1, b2; c1 [m].
 inline constexpr int kParameters = 10;
-inline constexpr int kRigid =
-    4;  ///< The first four are errors of the place, the others of the tracker.
+/// The first four are errors of the place, the others of the tracker.
+inline constexpr int kRigid = 4;
 using Parameters = Eigen::Matrix<double, kParameters, 1>;
 using Rows = Eigen::Matrix<double, 3, kParameters>;
 

@@ -44,8 +44,8 @@ class Watch {
   struct Watched {
     std::vector<Residual> open;  ///< Residuals of the block that is being filled.
     Timestamp began;
-    std::deque<Block>
-        recent;  ///< Not yet learned from, so that a shift is compared with the time before it.
+    /// Not yet learned from, so that a shift is compared with the time before it.
+    std::deque<Block> recent;
     StandingError usual;
     ShiftTest test;
     Shift shift;

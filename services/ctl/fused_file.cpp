@@ -36,8 +36,8 @@ class Partial {
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] const std::string& file() const { return file_; }
   [[nodiscard]] Result<void> take_place() const {
-    if (auto ok = may_write(file_, {}); !ok)
-      return ok;  // another process may have created the file
+    // Another process may have created the file.
+    if (auto ok = may_write(file_, {}); !ok) return ok;
     std::error_code error;
     fs::rename(path_, file_, error);
     if (error) return fail(ErrorCode::Io, file_, error.message());

@@ -56,8 +56,8 @@ Result<std::string> start(const ServiceClient& server, const RegisterArguments& 
   if (started.error().code != ErrorCode::Conflict) return pass(started);
   const auto registration = server.get("/registration");
   if (!registration) return pass(registration);
-  if (idle(*registration))
-    return pass(started);  // refused for another reason, or the session has just ended
+  // Refused for another reason, or the session has just ended.
+  if (idle(*registration)) return pass(started);
   std::cerr << "a session is running already; this is its progress "
                "(chorus register --cancel ends it)\n";
   return session_of(*registration, arguments.url);

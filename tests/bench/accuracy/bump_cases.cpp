@@ -23,8 +23,8 @@ constexpr std::uint64_t kPurpose = 731;
 constexpr std::size_t kDraws = 20;
 constexpr std::size_t kQuickDraws = 1;
 constexpr Duration kPushedAt = seconds(180);  // what is usual for each sensor is known by then
-constexpr Duration kFollowed =
-    seconds(60);                 // after the push; in this time the sensor is registered again
+// After the push; in this time the sensor is registered again.
+constexpr Duration kFollowed = seconds(60);
 constexpr double kShift = 0.05;  // [m]
 constexpr double kTurn = deg(2);
 constexpr double kEight = 8.0 * 3600.0;  // [s]

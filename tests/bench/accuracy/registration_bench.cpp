@@ -204,8 +204,8 @@ void measure_all_short_walks(Report& report, std::size_t count) {
 
 /// The outcome for the sensors of one ring.
 struct RingFate {
-  bool odd_named =
-      false;  ///< True if the sensor that followed somebody else got no place, and a reason.
+  /// True if the sensor that followed somebody else got no place, and a reason.
+  bool odd_named = false;
   std::size_t refused = 0;  ///< Number of other sensors that were refused.
   std::size_t lost = 0;     ///< Number of other sensors that were placed more than 100 mm off.
 };

@@ -43,8 +43,8 @@ struct CellPlan {
   Settings fusion = {};
   bool secure = false;                  ///< The server asks the sensors by https.
   ChildSurroundings surroundings = {};  ///< What chorus-fusion starts with.
-  bool placed =
-      true;  ///< True: extrinsics are configured; false: the sensors have to be registered.
+  /// True: extrinsics are configured; false: the sensors have to be registered.
+  bool placed = true;
   /// The extrinsics are in the server's state folder, not in registration.file.
   bool stored = false;
   bool start_all = true;              ///< False: no sensor is started yet.

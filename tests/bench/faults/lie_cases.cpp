@@ -208,8 +208,8 @@ Result<void> coat_stand(Trial& trial) {
   constexpr std::int64_t kMaxVersions = 3;
   const auto place = place_of(3, kRing);
   Guest guest("x", [&](Timestamp when) {
-    auto said =
-        honest(place, Timestamp(std::chrono::hours(1)));  // the person's pose at a fixed time
+    // The person's pose at a fixed time.
+    auto said = honest(place, Timestamp(std::chrono::hours(1)));
     said.captured = when;
     for (BodyFrame& body : said.bodies) body.captured = when;
     return said;

@@ -14,8 +14,8 @@ namespace {
 
 constexpr int kSensors = 4;
 constexpr double kPercent = 100.0;
-constexpr double kMaxLater =
-    0.030;  // how much one bad link may add to the age of the others' frames, p90 [s]
+// How much one bad link may add to the age of the others' frames, p90 [s].
+constexpr double kMaxLater = 0.030;
 
 CellPlan with_links(const LinkModel& link, int from, int to) {
   CellPlan plan;

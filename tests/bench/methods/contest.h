@@ -54,8 +54,8 @@ struct Contender {
 
 struct Contest {
   Setting setting;
-  bool own_registration =
-      false;  ///< True: registered from the frames themselves; false: the true registration.
+  /// True: registered from the frames themselves; false: the true registration.
+  bool own_registration = false;
   /// Includes the best sensor and the filter at arrival, which are not of type Method.
   bool every_method = true;
   pipeline::PipelineConfig pipeline = {};

@@ -38,8 +38,8 @@ struct Score {
   std::size_t asked = 0;        ///< Number of sensors.
   std::size_t refused = 0;      ///< Number of sensors that were left out, with a reason.
   std::size_t lost = 0;         ///< Number of sensors that were placed more than 100 mm off.
-  std::size_t covered =
-      0;  ///< Number of sensors whose 95 % ellipse on the floor contains the truth.
+  /// Number of sensors whose 95 % ellipse on the floor contains the truth.
+  std::size_t covered = 0;
   std::size_t inside = 0;  ///< Number of sensors within their stated 95 % radius on the floor.
   std::vector<double> stated = {};  ///< These radii [m].
   std::vector<double> off = {};     ///< The true errors on the floor, in the same order [m].

@@ -37,8 +37,8 @@ struct Row {
   double ratio = kNoRatio;  ///< Ours / baseline, from the same run; not finite: not given.
   std::optional<Spread> spread = {};  ///< Spread of `value` over draws.
   std::optional<Spread> beside = {};  ///< Spread of the baseline over the same draws.
-  double won_percent =
-      kNoRatio;  ///< Percentage of the draws in which `value` is better than the baseline's.
+  /// Percentage of the draws in which `value` is better than the baseline's.
+  double won_percent = kNoRatio;
 };
 
 struct Options {
@@ -46,8 +46,8 @@ struct Options {
   std::uint64_t seed = 1;  ///< The first seed; runs use seed, seed + 1, ...
   bool quick = false;      ///< Fewer runs, for a smoke test; the numbers are then only indicative.
   std::string plots = {};  ///< Folder for charts, where a subcommand draws any; empty: none.
-  std::string only =
-      {};  ///< Name of a single case to run, if the subcommand supports that; empty: all.
+  /// Name of a single case to run, if the subcommand supports that; empty: all.
+  std::string only = {};
   bool list = false;  ///< Only print the names of the cases, if the subcommand supports that.
 };
 

@@ -21,8 +21,8 @@ struct PoseWishes {
   std::size_t count = 20;
   double share = 0.5;  ///< Share of the picture's width that the board takes.
   double tilt = 0.6;   ///< Largest tilt [rad].
-  double reach =
-      0.3;  ///< Largest distance of the board's centre from the picture's, as a share of its sides.
+  /// Largest distance of the board's centre from the picture's, as a share of its sides.
+  double reach = 0.3;
   std::uint64_t seed = 1;
 };
 

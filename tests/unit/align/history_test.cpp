@@ -32,8 +32,8 @@ TEST(HistoryPush, TheSameCaptureTimeIsTakenOnce) {
   history.push(frame_at(milliseconds(0)));
   history.push(frame_at(milliseconds(33)));
   EXPECT_EQ(history.push(frame_at(milliseconds(33))), PushVerdict::Duplicate);
-  EXPECT_EQ(history.push(frame_at(milliseconds(0))),
-            PushVerdict::Duplicate);  // as a cache would do
+  // As a cache would do.
+  EXPECT_EQ(history.push(frame_at(milliseconds(0))), PushVerdict::Duplicate);
   EXPECT_EQ(history.frames().size(), 2u);
 }
 

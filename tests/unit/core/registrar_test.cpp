@@ -74,8 +74,8 @@ TEST_F(Sessions, HaveANumberFromTheStartAndStayReadable) {
   auto job = walk(seconds(20));
   ASSERT_TRUE(job);
   EXPECT_EQ(job->kind, SolveKind::Provisional);
-  EXPECT_EQ(answer(*job, ring()),
-            Outcome::Nothing);  // half a walk does not replace a good registration
+  // Half a walk does not replace a good registration.
+  EXPECT_EQ(answer(*job, ring()), Outcome::Nothing);
   job = walk(seconds(20));
   ASSERT_EQ(job->kind, SolveKind::Final);
   EXPECT_EQ(newest().state, SessionState::Solving);

@@ -23,8 +23,8 @@ double place(int i, double speed) { return i < 30 ? 0.0 : speed * kStep * (i - 3
 
 /// Errors at each of 60 steps, over many draws.
 struct Errors {
-  std::vector<double> squared =
-      std::vector<double>(60, 0.0);  ///< Mean squared error per axis [m^2].
+  /// Mean squared error per axis [m^2].
+  std::vector<double> squared = std::vector<double>(60, 0.0);
   std::vector<double> variance = std::vector<double>(60, 0.0);  ///< Mean stated variance [m^2].
 };
 

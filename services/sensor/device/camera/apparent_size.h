@@ -19,9 +19,9 @@ namespace chorus::camera {
 /// One landmark, in the camera's axes: x right, y down, z ahead.
 struct SizedLandmark {
   Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();  ///< Unit vector towards the landmark.
-  Eigen::Vector3d shape =
-      Eigen::Vector3d::Zero();  ///< Position in metres from some point of the body.
-  double weight = 0.0;          ///< 0: not seen.
+  /// Position in metres from some point of the body.
+  Eigen::Vector3d shape = Eigen::Vector3d::Zero();
+  double weight = 0.0;                                       ///< 0: not seen.
   Eigen::Matrix3d ray_covariance = Eigen::Matrix3d::Zero();  ///< [rad^2]
 };
 
