@@ -17,25 +17,20 @@
 namespace chorus::registration {
 namespace {
 
-constexpr std::size_t kMaxPoints = 1500;  // points of the walk; more would be redundant
-// For each sensor, if there are many: each overlap needs points.
-constexpr std::size_t kPointsEach = 100;
-// With fewer, a sensor keeps the place given by its chain.
-constexpr std::size_t kMinMeasurements = 20;
+constexpr std::size_t kMaxPoints = 1500;      // points of the walk; more would be redundant
+constexpr std::size_t kPointsEach = 100;      // for each sensor: every overlap needs points
+constexpr std::size_t kMinMeasurements = 20;  // with fewer a sensor keeps its chain's place
 constexpr int kIterations = 40;
-constexpr double kSettled = 1e-6;   // [rad], [m]
-constexpr double kMinScale = 0.02;  // in standard deviations
-constexpr double kRidge = 1e-6;     // fixes directions that no measurement determines
-// [rad], [m] sigma with which the master's yaw and position are held.
-constexpr double kGauge = 1e-5;
+constexpr double kSettled = 1e-6;    // [rad], [m]
+constexpr double kMinScale = 0.02;   // in standard deviations
+constexpr double kRidge = 1e-6;      // fixes directions that no measurement determines
+constexpr double kGauge = 1e-5;      // [rad], [m] sigma that holds the master's yaw and position
 constexpr double kFarthest = 1.0;    // [m] an adjustment may move a sensor by at most this
 constexpr double kLevelView = 0.05;  // with a smaller horizontal part a view has no direction
 constexpr double kFarFloor = 4.0;    // in sigmas; a floor this far off has a quarter of its weight
 constexpr FloorPrior kGuessedFloor{deg(2), mm(50)};
-// [1/s] independent measurements of a joint, whose errors last.
-constexpr double kIndependent = 1.2;
-// Degrees of freedom that this prior counts for, as many as one sensor's own blocks.
-constexpr double kPriorFreedom = 3.0;
+constexpr double kIndependent = 1.2;   // [1/s] independent measurements: a joint's errors last
+constexpr double kPriorFreedom = 3.0;  // what that counts for: as much as a sensor's own blocks
 constexpr Eigen::Index kAlong[] = {1, 3, 5};   // yaw and position on the floor
 constexpr Eigen::Index kUpward[] = {0, 2, 4};  // tilt and height
 
@@ -179,8 +174,7 @@ double floor_misfit(const Station& station) {
          height * height;
 }
 
-/// Tukey's loss of the points (from which their weights are derived), divided by the variance
-/// factor, plus that of the floors.
+/// Tukey's loss of the points, which gives their weights, over the factor; plus that of the floors.
 double cost_of(const Adjustment& adjustment, double factor) {
   const double limit = kTukey * adjustment.scale;
   double cost = 0.0;
@@ -272,8 +266,7 @@ struct Misfit {
   }
 };
 
-/// The expected factor: all joints have nearly the same error for about a second, so the walk has
-/// only that many independent points.
+/// The expected factor: a joint's error lasts for about a second, so few points are independent.
 BlockScores::Prior expected(const Misfit& misfit, const Adjustment& adjustment) {
   const double independent = std::max(1.0, kIndependent * adjustment.points.back().time);
   const double variance =
@@ -374,8 +367,7 @@ Adjusted adjusted(Adjustment& adjustment) {
   return result;
 }
 
-/// True if no sensor has moved far.  Chains of pairs are robust, so a sensor that ends far from its
-/// chain was misled by wrong views.
+/// True if no sensor ends far from its chain, which is robust: wrong views would have misled it.
 bool near(const Places& start, const Places& end) {
   return std::ranges::all_of(start, [&](const auto& each) {
     return (end.at(each.first).translation() - each.second.translation()).norm() < kFarthest;
