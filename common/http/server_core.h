@@ -41,7 +41,7 @@ struct ServerCore : std::enable_shared_from_this<ServerCore> {
   void wait_for(std::size_t entry, std::shared_ptr<Connection> connection);
   void stop_waiting(std::size_t entry, const Connection* connection);
   void forget(const Connection* connection);
-  /// Puts `by` in the place of a connection; both are the same client, which stays counted once.
+  /// Replaces a connection with `by`.  Both are the same client, which is still counted once.
   void replace(const Connection* connection, std::shared_ptr<Connection> by);
   void begin_stop();
 

@@ -62,7 +62,8 @@ void PeopleNumbers::follow(const std::vector<PosePerson>& people,
 
 std::vector<std::uint64_t> PeopleNumbers::number(const std::vector<PosePerson>& people) {
   std::vector<std::uint64_t> numbers(people.size(), 0);
-  // Also after pictures of nobody, or of people with ids, so that people are forgotten in time.
+  // Done even if the picture shows nobody, or people with ids, so that people are forgotten in
+  // time.
   std::erase_if(known_, [](const Known& each) { return each.missed > kRemembered; });
   for (Known& each : known_) ++each.missed;
   if (!people.empty() && all_have_their_own_id(people)) {

@@ -23,8 +23,8 @@ struct CellLine {
   std::vector<std::string> damage;
 };
 
-/// Groups files into lines, ordered by when the lines begin.  Conflict when two files are the same
-/// part of a recording.
+/// Groups files into lines (see CellLine), ordered by their beginnings.  Conflict when two files
+/// are the same part of a recording.
 [[nodiscard]] Result<std::vector<CellLine>> cell_lines(
     const std::vector<std::filesystem::path>& files);
 
