@@ -20,11 +20,11 @@
 
 namespace chorus {
 
-/// How the answer for an instant was obtained.
+/// How a sensor's bodies at an instant were obtained.
 enum class Basis {
   Exact,         ///< The sensor captured at exactly that instant.
   Interpolated,  ///< The instant is between two captures.
-  Pending,       ///< A later capture may still arrive: ask again.
+  Pending,       ///< A later capture may still arrive; ask again.
   /// There will be none: the sensor is past the instant, or the gap between captures is too wide.
   Lost,
 };
@@ -76,15 +76,15 @@ struct PairwiseRegistration {
 
 enum class Verdict { None, Provisional, Good, Refused };
 
-/// How far one sensor's place may be trusted.
+/// How far one sensor's place can be trusted.
 struct SensorVerdict {
   Verdict verdict = Verdict::None;   ///< Refused: the sensor has no place.
   std::vector<std::string> reasons;  ///< Human-readable: why the verdict is not Good.
 };
 
-/// The error of one sensor's clock, as found from the walk.
+/// The correction of one sensor's clock, as found from the walk.
 struct ClockOffset {
-  Duration added{0};  ///< After this is added to them, its capture times are by the common clock.
+  Duration added{0};  ///< Common clock minus the sensor's: added to its capture times.
   Duration sigma{0};  ///< Standard deviation; zero for the sensor whose clock is the common one.
   /// The SensorFrame::clock_sigma of the capture times that it was found from.
   Duration stated = from_seconds(kUnknownClock);
@@ -140,10 +140,10 @@ struct SensorView {
 struct Person {
   PersonId id;
   std::vector<SensorView> views;
-  /// Probability that left and right are not exchanged; none if the sides were not resolved.
+  /// Probability that left and right are not swapped; none if the sides were not resolved.
   std::optional<double> sides_confidence = {};
-  /// Set if nobody sees the person: where their middle is expected, world [m].  Then there are no
-  /// views.
+  /// Set if no sensor sees the person: where their middle is expected, world [m].  Then there are
+  /// no views.
   std::optional<Eigen::Vector3d> carried = {};
 };
 
@@ -155,8 +155,8 @@ struct FusedBody {
   std::array<std::uint64_t, kJointCount> contributors{};
   std::optional<std::size_t> slot;  ///< The person's slot in every output; none: no slot.
   std::optional<double> sides_confidence = {};  ///< Copied from Person.
-  /// For how long nobody has seen the person [s]; meanwhile they are where they are expected.  None
-  /// while they are seen.
+  /// For how long no sensor has seen the person [s]; meanwhile they are where they are expected.
+  /// None while they are seen.
   std::optional<double> carried_for = {};
 };
 

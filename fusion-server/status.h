@@ -39,7 +39,7 @@ struct SensorStatus {
   bool streaming = false;       ///< True while its frames come by event stream instead of polling.
   std::optional<Duration> age;  ///< Since its newest capture, by our clock; none: no frame yet.
   double rate_hz = 0.0;
-  std::size_t bodies = 0;  ///< In its newest frame.
+  std::size_t bodies = 0;  ///< Number of bodies in its newest frame.
   double weight = 0.0;     ///< Largest Otto weight of its views; only "otto" methods use weights.
   double share = 0.0;  ///< Share of the joints fused in the last second to which it contributed.
   double share_afterwards = 0.0;  ///< The same, including its late frames, as /frame?at= shows it.
@@ -58,10 +58,11 @@ struct SensorStatus {
   FrameFates fates;               ///< Early, backwards and stale ones count as refused, too.
   std::uint64_t failures = 0;     ///< Requests without a usable answer.
 
-  /// How far from where the others see people it sees them, beyond what is usual for it [m]; none
-  /// until somebody has walked in view of it and of another one.
+  /// Distance between where this sensor and the others see the same people, less what is usual for
+  /// this sensor [m]; none until somebody has walked in view of it and of another one.
   std::optional<double> shift;
-  std::string alarm;  ///< It was moved, as a sentence for people; empty: it stands as registered.
+  /// That it was moved, as a sentence for people; empty if it stands as registered.
+  std::string alarm;
 
   bool operator==(const SensorStatus&) const = default;
 };
@@ -83,7 +84,7 @@ enum class SessionState {
 struct PairCoverage {
   SensorId first;
   SensorId second;
-  std::size_t sightings = 0;  ///< Instants at which both saw the one person.
+  std::size_t sightings = 0;  ///< Instants at which both saw the only person.
   double spread = 0.0;        ///< rms radius of these about their centre [m].
   /// Radius inside which one would be placed relative to the other, in 95 % [m].
   double expected = 0.0;
@@ -93,9 +94,9 @@ struct PairCoverage {
 
 /// A square of half a metre of the floor on which somebody walked.
 struct CoveredCell {
-  double x = 0.0;           ///< Of its middle, world [m].
+  double x = 0.0;           ///< x of its middle, world [m].
   double z = 0.0;           ///< [m]
-  std::size_t sensors = 0;  ///< That saw somebody there.
+  std::size_t sensors = 0;  ///< Number of sensors that saw somebody there.
 
   bool operator==(const CoveredCell&) const = default;
 };

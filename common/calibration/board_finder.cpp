@@ -67,7 +67,7 @@ std::vector<Corner> BoardFinder::Pattern::find_chessboard(const cv::Mat& grey) c
           grey, inner, pixels,
           cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK))
     return {};
-  // The window stays within a square of its corner, or it would see the neighbours.
+  // The search window must not reach neighbouring corners, so it is smaller than a square.
   double step = std::max(grey.cols, grey.rows);
   for (std::size_t i = 1; i < pixels.size(); ++i)
     step = std::min(step, cv::norm(pixels[i] - pixels[i - 1]));

@@ -9,7 +9,7 @@
 namespace chorus::calibration {
 
 std::shared_ptr<cv::aruco::Dictionary> dictionary_of(const Board& board) {
-  // The enumeration counts DICT_4X4_50, _100, _250, _1000, DICT_5X5_50, ...
+  // The enumeration runs DICT_4X4_50, _100, _250, _1000, DICT_5X5_50, ...
   const auto size =
       std::find(kDictionarySizes.begin(), kDictionarySizes.end(), markers_in_dictionary(board));
   const auto step = static_cast<int>(size - kDictionarySizes.begin());

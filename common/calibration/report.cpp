@@ -10,7 +10,7 @@
 namespace chorus::calibration {
 namespace {
 
-/// `parts`: of a unit.  Divided at the end, so that the nearest double is written in few digits.
+/// Rounds to 1/`parts`.  Divides last, so that the result prints in few digits.
 double rounded(double value, double parts) { return std::round(value * parts) / parts; }
 
 void draw_thirds(cv::Mat& picture) {

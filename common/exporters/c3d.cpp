@@ -12,7 +12,7 @@ namespace chorus::exporters {
 namespace {
 
 constexpr std::size_t kBlock = 512;
-// The parameters may fill so many blocks, because one byte counts these.
+// Largest number of blocks for the parameters, because one byte counts them.
 constexpr std::size_t kMaxBlocks = 255;
 constexpr std::size_t kMaxPersons = 100;
 constexpr std::size_t kLabelsPerParameter = 255;  // A dimension is stored in a byte.
@@ -34,7 +34,7 @@ void append_float(std::string& bytes, float value) {
   append_word(bytes, bits >> 16);
 }
 
-/// The content of a parameter: type, dimensions, values.
+/// A parameter's type, dimensions and values.
 struct Content {
   int type = 2;  ///< -1: text, 1: bytes, 2: words, 4: floats.
   std::vector<std::size_t> dimensions;

@@ -173,7 +173,7 @@ Result<void> C3dReader::read_processor() {
 
 Result<void> C3dReader::read_parameters() {
   const std::size_t blocks = static_cast<std::uint8_t>(bytes_[parameters_at_ + 2]);
-  // Some writers leave the count at 0; then only the list of parameters says where it ends.
+  // Some writers leave the count at 0; then the list of parameters ends by its own mark.
   const std::size_t end =
       std::min(bytes_.size(), parameters_at_ + (blocks == 0 ? 255 : blocks) * kBlock);
   std::size_t at = parameters_at_ + 4;

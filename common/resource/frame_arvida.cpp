@@ -1,8 +1,8 @@
 // Profile "arvida": the full ARVIDA pattern, one spatial relationship per joint (proto/README.md).
 //
 // In a relationship, the source is the tracker's space, the target is the joint, and the
-// translation is the joint's position in the source.  No document states this direction; we follow
-// a published client.
+// translation is the joint's position in the source.  No document specifies this direction; we
+// follow a published client.
 #include <algorithm>
 #include <array>
 

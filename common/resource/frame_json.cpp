@@ -70,8 +70,8 @@ class JsonFrame {
   }
 
  private:
-  /// `living`: the document is about the body itself, not about one instant of it, and states the
-  /// body's type.
+  /// `living`: the document describes the body itself, not its state at one instant, and states its
+  /// type.
   void put_body_head(const BodyResource& body, bool living) {
     pen_.put("\"@id\":\"");
     put_body_name(body);

@@ -21,10 +21,10 @@ constexpr double kTurnStep = 0.35;      // Amplitude of the strides when turning
 constexpr double kPauseShare = 0.35;    // Probability of a pause at a way-point of a random walk.
 constexpr double kMinPause = 0.5;       // [s]
 constexpr double kMaxPause = 3.0;       // [s]
-constexpr double kRandomLoop = 240.0;   // Least length of the loop of a random walk [s].
+constexpr double kRandomLoop = 240.0;   // Shortest loop of a random walk [s].
 constexpr double kStandLoop = 60.0;     // [s]
 constexpr double kLinePause = 0.4;      // At each end, before turning [s].
-// Least length of a leg, as a share of the reach; shorter legs are drawn again.
+// Shortest leg, as a share of the reach; shorter ones are drawn again.
 constexpr double kMinLegShare = 0.5;
 constexpr double kMinAmplitude = 0.3;
 constexpr double kMaxAmplitude = 1.4;
@@ -83,7 +83,7 @@ void Path::pause(double duration) {
 
 void Path::turn_to(double heading) {
   turn_by(wrap_angle(heading - heading_));
-  heading_ = wrap_angle(heading);  // Set again, because the sum was rounded.
+  heading_ = wrap_angle(heading);  // Set exactly, because the sum was rounded.
 }
 
 void Path::turn_by(double turn) {
@@ -197,7 +197,8 @@ void Path::assemble() {
   for (int i = 0; i < kStations; ++i) {
     for (int k = 0; k < kReachesPerStation; ++k) {
       const bool left = k % 2 == 0;
-      const double aside = draw.uniform(-0.05, 0.35);  // From across the middle to far outside [m].
+      // From slightly across the middle to far outside [m].
+      const double aside = draw.uniform(-0.05, 0.35);
       const double height = kReachHeights[static_cast<std::size_t>(i + k) % kReachHeights.size()];
       reach_for(left, {left ? aside : -aside, height, kReachForward},
                 draw.uniform(kMinHold, kMaxHold));

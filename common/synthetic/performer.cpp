@@ -21,12 +21,12 @@ double length_of(const motion::Motion& motion) {
                                : static_cast<double>(motion.frames.size() - 1) / motion.rate_hz;
 }
 
-/// Turns the time since the reversal at one end into a place; a parabola smooths the reversal.
+/// Position in the motion after the reversal at one end; a parabola smooths the reversal.
 double rounded(double time, double round) {
   return time < round ? 0.5 * (time * time / round + round) : time;
 }
 
-/// Place in the motion [s] when it is played back and forth; `time` is in [0, 2 length).
+/// Position in the motion [s] when it is played back and forth; `time` is in [0, 2 length).
 double played(double time, double length) {
   if (!(length > 0.0)) return 0.0;
   const double round = std::min(kTurnRound, 0.5 * length);

@@ -12,7 +12,7 @@ constexpr std::size_t kMinHabit = 10;  ///< With fewer there is no habit, except
 constexpr std::size_t kMinSlow = 4;    ///< A slow sensor needs only this many.
 constexpr Duration kSlow = std::chrono::seconds(1);
 
-/// Keeps only the first of several bodies with the same id, because they cannot be told apart
+/// Keeps only the first of several bodies with the same id, because they cannot be distinguished
 /// later.
 void keep_first_of_each_id(std::vector<BodyFrame>& bodies) {
   for (std::size_t i = 1; i < bodies.size();) {

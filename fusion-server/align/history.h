@@ -14,7 +14,7 @@ namespace chorus::align {
 
 enum class PushVerdict {
   Added,
-  Duplicate,  ///< There is a frame of this capture time already (polled faster than captured).
+  Duplicate,  ///< There already is a frame with this capture time (polled faster than captured).
   Late,       ///< Its sequence is before that of the newest frame; inserted at its place.
   Stale,      ///< The same, but too late to be of use; refused.
   Backwards,  ///< Its sequence is later, but it was captured before the newest frame; refused.
@@ -36,7 +36,7 @@ struct HistoryLimits {
   int steps_to_restart = 3;
 };
 
-/// How a sensor's recent frames have arrived.
+/// How a sensor's recent frames arrived.
 struct Habit {
   /// The longest time that an instant just after a capture, which waits longest, had to wait until
   /// a frame captured at or after it arrived.  Frames that arrived after later ones do not count.

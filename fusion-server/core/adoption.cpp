@@ -42,7 +42,7 @@ bool stands_well(const Registration& registration, const SensorId& sensor) {
   return verdict_of(registration, sensor) == Verdict::Good;
 }
 
-/// Sensors that the candidate adds, or places well where the registration in use does not.
+/// Sensors that the candidate adds, or that it places well while the registration in use does not.
 std::set<SensorId> newcomers(const Registration& current, const Registration& candidate,
                              SolveKind kind) {
   std::set<SensorId> found;
@@ -183,7 +183,8 @@ Verdict least_of_placed(const Registration& registration) {
   return least;
 }
 
-/// Gives every sensor a verdict in registrations made before there were any, and in given ones.
+/// Gives each sensor without a verdict that of the whole registration.  Registrations from a file,
+/// and those that older versions stored, have no verdict per sensor.
 void spell_out_verdicts(Registration& registration) {
   for (const auto& [sensor, place] : registration.sensors)
     registration.verdicts.try_emplace(sensor, SensorVerdict{registration.verdict, {}});
@@ -203,7 +204,7 @@ bool should_replace(const Registration& current, const Registration& candidate, 
   if (!covers(candidate, current)) return false;
   if (rank(candidate.verdict) != rank(current.verdict))
     return rank(candidate.verdict) > rank(current.verdict);
-  // A provisional solve in mid-walk does not replace a good registration; the final one may.
+  // A provisional solve during the walk does not replace a good registration; the final one may.
   return kind == SolveKind::Final || current.verdict == Verdict::Provisional;
 }
 

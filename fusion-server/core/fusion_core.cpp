@@ -24,7 +24,8 @@ constexpr std::string_view kStaleFrame =
 constexpr std::string_view kFrozen =
     "a body is left out: its coordinates are repeated to the last digit under new stamps";
 
-/// Whether some sensor stands in both where people would be matched: the two are one world.
+/// True if some sensor has nearly the same place in both registrations, so that people can be
+/// matched: both use the same world.
 bool share_a_place(const Registration& one, const Registration& other) {
   constexpr double kSame = 0.3;  // [m]
   const Eigen::Vector3d mark = kReach * Eigen::Vector3d::UnitZ();
@@ -147,8 +148,8 @@ std::optional<Snapshot> FusionCore::tick(Timestamp now) {
   return std::move(step.snapshot);
 }
 
-/// Fuses one instant; after a change of places by the places before, too, so that bodies move from
-/// the one to the other little by little.
+/// Fuses one instant; after a change of places also with the old places, so that bodies move
+/// gradually from the old to the new positions.
 pipeline::Step FusionCore::step_at(const Tick& tick, Timestamp now) {
   const pipeline::Inputs in{tick.instant, now, tick.sequence};
   pipeline::Step step = pipeline::step(in, histories_, registration(), memory_, config_.pipeline);
@@ -162,8 +163,9 @@ pipeline::Step FusionCore::step_at(const Tick& tick, Timestamp now) {
   return step;
 }
 
-/// A sensor that was moved has no place from the next instant on, and waits for another one.  If it
-/// is off again soon, another walk would not mend it: the alarm stays, and people decide.
+/// A sensor that was moved has no place from the next instant on, until it is registered again.  If
+/// it soon raises another alarm, registering it once more would not help: the alarm stays, and
+/// people decide.
 void FusionCore::displace_moved(Timestamp instant) {
   constexpr Duration kAgain = std::chrono::minutes(30);
   const auto moved = guard_.moved();
@@ -252,7 +254,7 @@ Result<void> FusionCore::undo() {
   return done;
 }
 
-/// What is remembered of people belongs to the world before.
+/// What is remembered about people belongs to the old world.
 void FusionCore::leave_world() {
   memory_.tracks.people.clear();  // ids continue to count
   memory_.sides.people.clear();   // what was learned about each sensor stays

@@ -81,11 +81,11 @@ class FusionCore {
   /// Why something from this sensor was refused in the last few seconds; empty: nothing was.
   [[nodiscard]] std::string complaint(const SensorId& sensor, Timestamp now) const;
   [[nodiscard]] Share share(const SensorId& sensor) const { return shares_.of(sensor); }
-  /// The sensor does not stand where its place says; none: nothing of that kind is known.
+  /// Set if the sensor does not stand where it was registered, as far as known.
   [[nodiscard]] std::optional<SensorAlarm> alarm(const SensorId& sensor) const {
     return guard_.alarm_of(sensor);
   }
-  /// The same as a sentence for people; empty: none.
+  /// The same as a sentence for people; empty if there is no alarm.
   [[nodiscard]] std::string alarm_text(const SensorId& sensor, Timestamp now) const;
   /// As SensorStatus::shift.
   [[nodiscard]] std::optional<double> shift(const SensorId& sensor) const {
@@ -125,7 +125,7 @@ class FusionCore {
   WalkedClocks clocks_;
   std::map<SensorId, Refusals> refused_;
   std::map<SensorId, associate::FrozenBodies> frozen_;
-  pipeline::Waiting awaited_;           ///< To be waited for at the pending instant.
+  pipeline::Waiting awaited_;           ///< The sensors to wait for at the pending instant.
   std::uint64_t awaited_by_ = 0;        ///< Sequence of that instant; zero: none.
   std::vector<SensorId> last_awaited_;  ///< Sensors waited for until the last answer was given.
   Hindsight hindsight_;
@@ -133,7 +133,8 @@ class FusionCore {
   std::vector<SensorReport> reports_;
   Guard guard_;
   CrossFade fade_;
-  std::optional<Registration> before_;  ///< Until the next instant: what is to be faded from.
+  /// The old registration, from which to fade; set until the next instant.
+  std::optional<Registration> before_;
   std::map<SensorId, Timestamp> displaced_at_;  ///< When each sensor last lost its place.
   std::uint64_t displaced_ = 0;
 };

@@ -140,7 +140,7 @@ void Registrar::show_progress(SessionStatus& session) const {
 }
 
 void Registrar::forget() {
-  if (before_) registration_ = *before_;  // a session's own is not worth going back to
+  if (before_) registration_ = *before_;  // a session's own result is not worth going back to
   end_session(SessionState::Cancelled);
   if (!registration_.sensors.empty()) forgotten_ = registration_.sensors;
   lacks_displaced_ = false;
@@ -198,7 +198,7 @@ Result<void> Registrar::move_origin(const Origin& origin) {
   return {};
 }
 
-/// After somebody has made us forget, the world is still the one that everybody works in.
+/// After forget(), everybody still works in the old world, so a new registration is moved into it.
 Result<Registration> Registrar::successor(const Registration& base, const Registration& candidate,
                                           SolveKind kind) const {
   auto next = adopted(base, candidate, kind, sessions_.front().automatic);
@@ -225,7 +225,7 @@ void Registrar::start_by_itself(Timestamp now) {
 
 std::optional<SolveJob> Registrar::due_job(Timestamp now) {
   if (solving_) {
-    // A provisional result for half of the walk is of no use any more.
+    // A provisional result for half of the walk is no longer useful.
     if (solving_kind_ == SolveKind::Provisional && session_.final_due()) stop_solve_.request_stop();
     return std::nullopt;
   }
@@ -366,7 +366,8 @@ std::vector<std::string> Registrar::awaits(Timestamp now) const {
   return awaited(situation);
 }
 
-/// Time until the first unplaced sensor that sees a body may start a session; nothing: now.
+/// Time until the first unplaced sensor that sees a body may start a session; none: it may start
+/// now.
 std::optional<Duration> Registrar::retry_in(Timestamp now) const {
   std::optional<Timestamp> first;
   for (const SensorId& sensor : unplaced(registration_, last_seen_.seeing(now))) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kClear = 2.0;  // Log odds from which on one view alone counts as certain.
 constexpr double kBlind = 1.0;  // Log odds of all views together; with less, they show nothing.
-constexpr double kFrameTime = 0.033;  // [s]; the labels of one frame are one observation.
+constexpr double kFrameTime = 0.033;  // [s]; the labels of one frame count as one observation.
 
 /// What the model computes for one person at one instant.
 struct Instant {
@@ -23,7 +23,7 @@ struct Instant {
   std::vector<Spans> views;
   std::vector<double> agree;     ///< Log odds of each view, see agreement_log_odds().
   std::vector<bool> exchanged;   ///< For each view, whether it opposes the held sides.
-  std::vector<LabelStep> steps;  ///< For each view; its `exchanged` is 0.5 if unknown.
+  std::vector<LabelStep> steps;  ///< For each view; `exchanged` is 0.5 if unknown.
 };
 
 std::vector<Spans> all_spans(const Person& person) {
@@ -50,7 +50,7 @@ void keep_lost(Spans& spans, const Spans& before) {
 }
 
 /// True if the view opposes the held sides.  A view that clearly shows left and right is trusted;
-/// for an unclear one the last answer is kept.
+/// for an unclear one the last decision is kept.
 bool opposes(const SensorView& view, double agree, const Sides& sides) {
   if (std::abs(agree) > kClear) return agree < 0;
   const auto before = sides.views.find(view.sensor);
@@ -81,9 +81,9 @@ Spans joined(const Instant& now) {
   return spans;
 }
 
-/// How far a view's spans can be trusted, in [0, 1].  While a tracker changes its labels, it draws
-/// the sides together, and the spans may point anywhere.  A real body does not become narrower, so
-/// spans much shorter than the held ones show no direction.
+/// How far a view's spans can be trusted, in [0, 1].  While a tracker changes its labels, it moves
+/// left and right joints towards the middle, and the spans may point anywhere.  A real body does
+/// not become narrower, so spans much shorter than the held ones show no direction.
 double trust_in(const Spans& now, const Spans& before) {
   // Spans this short, relative to the held ones, are not trusted at all.
   constexpr double kNone = 0.5;

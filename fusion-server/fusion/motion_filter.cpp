@@ -9,7 +9,7 @@ namespace chorus::fusion {
 namespace {
 
 constexpr double kRests = 0.5;        // [s] mean time that a point stays at rest, or in motion
-constexpr double kLeastShare = 1e-3;  // a model's least probability: none is ever excluded
+constexpr double kLeastShare = 1e-3;  // smallest probability of a model: neither is ever excluded
 constexpr double kReach = 3.5;        // [standard deviations] farther measurements are clipped
 constexpr double kDimensions = 3.0;
 constexpr double kSlowing = 0.4;  // [s] time constant of the decay of an unseen point's speed
@@ -96,7 +96,8 @@ void MotionFilter::update(Timestamp instant, const Eigen::Vector3d& position, do
 std::optional<MotionFilter::Motion> MotionFilter::at(Timestamp instant) const {
   if (!updated_) return std::nullopt;
   const double passed = std::max(0.0, seconds(instant - *updated_));
-  const double way = kSlowing * (1.0 - std::exp(-passed / kSlowing));  // [s] at full speed
+  // [s] that it would take at full speed.
+  const double way = kSlowing * (1.0 - std::exp(-passed / kSlowing));
   Motion motion;
   for (const Model& model : models_) {
     motion.position += model.share * (model.position + way * model.velocity);

@@ -96,7 +96,7 @@ Result<std::optional<Timestamp>> RecordedFrames::next_after(Timestamp instant) {
     found = waiting_after(instant);
   }
   if (!found) return found;
-  // A frame of another sensor may have been captured earlier, but recorded later.
+  // A frame of another sensor may have been captured earlier but recorded later.
   if (auto ok = read_to(*found); !ok) return pass(ok);
   return waiting_after(instant);
 }

@@ -25,7 +25,7 @@ struct FrameLane {
 class RecordedFrames {
  public:
   /// `sensors`: the sensors known in advance; others are added with their first frame.  `clocks`:
-  /// what was found about the sensors' clocks; it is added to their capture times.
+  /// the clock offsets of sensors, which are added to their capture times.
   RecordedFrames(std::vector<FrameLane> lanes, const std::vector<SensorId>& sensors,
                  std::map<SensorId, ClockOffset> clocks = {});
 

@@ -19,8 +19,8 @@ struct FrameAnswer {
 };
 
 /// Reads the answer to a request for a frame.  Its event is Unreadable for a content type that is
-/// no frame, an unreadable frame, or a frame of another sensor.  A frame in world space may have
-/// any source, because fusion servers can be chained.
+/// not a frame's, an unreadable frame, or a frame of another sensor.  A frame in world space may
+/// have any source, because fusion servers can be chained.
 [[nodiscard]] FrameAnswer read_frame_answer(const http::ClientResponse& response,
                                             const SensorId& expected);
 
@@ -38,8 +38,8 @@ struct FrameAnswer {
 /// The four time stamps of the exchange; none if the answer has no Chorus-Clock header.
 [[nodiscard]] std::optional<ClockExchange> exchange_of(const http::ClientResponse& response);
 
-/// The frame with its times moved to our clock as `clock` says, and with its floor; in world space
-/// that is y = 0.
+/// The frame with its times corrected to our clock by `clock`, and with its floor, which is y = 0
+/// in world space.
 [[nodiscard]] SensorFrame place_in_time(const resource::FrameResource& frame,
                                         const SensorId& sensor, Timestamp received,
                                         const std::optional<ClockEstimate>& clock,

@@ -25,11 +25,11 @@ constexpr double kRidge = 1e-6;      // holds the state in directions that nothi
 constexpr double kGauge = 1e-5;      // [rad], [m] sigma of what is held of the master
 constexpr double kFarthest = 1.0;    // [m] that an adjustment may move a sensor
 constexpr double kLevelView = 0.05;  // with a smaller horizontal part a view has no direction
-constexpr double kFarFloor = 4.0;    // in sigmas; a floor this far off has a quarter of its say
+constexpr double kFarFloor = 4.0;    // in sigmas; a floor this far off has a quarter of its weight
 constexpr FloorPrior kGuessedFloor{deg(2), mm(50)};
-constexpr double kIndependent = 1.2;   // [1/s] of real joints, whose errors last
-constexpr double kPriorFreedom = 3.0;  // what that is worth: as much as one sensor's own blocks
-constexpr Eigen::Index kAlong[] = {1, 3, 5};   // yaw and place along the floor
+constexpr double kIndependent = 1.2;   // [1/s] independent measurements: a joint's errors last
+constexpr double kPriorFreedom = 3.0;  // what that counts for: as much as a sensor's own blocks
+constexpr Eigen::Index kAlong[] = {1, 3, 5};   // yaw and position on the floor
 constexpr Eigen::Index kUpward[] = {0, 2, 4};  // tilt and height
 
 std::vector<Station> stations_of(const Places& places, const Walkers& walkers, bool use_floor) {
@@ -99,8 +99,7 @@ double floor_misfit(const Station& station) {
          height * height;
 }
 
-/// Tukey's loss of the points, from which their weights are derived, over the variance factor, and
-/// that of the floors.
+/// Tukey's loss of the points, which gives their weights, over the factor; plus that of the floors.
 double cost_of(const Adjustment& adjustment, double factor) {
   const double limit = kTukey * adjustment.scale;
   double cost = 0.0;
@@ -122,7 +121,7 @@ void add_floors(PlaceEquations& equations, const std::vector<Station>& stations)
   for (std::size_t i = 0; i < stations.size(); ++i) {
     if (!(stations[i].floor.tilt > 0) || stations[i].fixed) continue;
     Normal normal;
-    // A floor is known best right under its own sensor.
+    // A floor is best known right below its own sensor.
     add_prior(normal, stations[i].floor, stations[i].world_from_level, Eigen::Vector3d::Zero());
     const double root = 1.0 / (1.0 + floor_misfit(stations[i]) / (kFarFloor * kFarFloor));
     const auto at = static_cast<Eigen::Index>(6 * i);
@@ -131,7 +130,7 @@ void add_floors(PlaceEquations& equations, const std::vector<Station>& stations)
   }
 }
 
-/// The master keeps its place along the floor and the direction in which it looks.
+/// Holds the master's position on the floor, and its yaw.
 void hold_gauge(PlaceEquations& equations, const std::vector<Station>& stations) {
   for (std::size_t i = 0; i < stations.size(); ++i) {
     if (!stations[i].master) continue;
@@ -165,7 +164,7 @@ void hold_fixed(PlaceEquations& equations, const std::vector<Station>& stations)
   }
 }
 
-/// Parameters of all sensors that can move against the master.
+/// The given parameters of all sensors that can move relative to the master.
 std::vector<Eigen::Index> chosen(const std::vector<Station>& stations,
                                  std::span<const Eigen::Index> of_each) {
   std::vector<Eigen::Index> all;
@@ -176,7 +175,7 @@ std::vector<Eigen::Index> chosen(const std::vector<Station>& stations,
   return all;
 }
 
-/// Variance of a measurement, in units of its own.
+/// Actual variance of a measurement, in units of its stated one.
 struct Misfit {
   double squares = 0.0;
   double freedom = 0.0;
@@ -192,7 +191,7 @@ struct Misfit {
   }
 };
 
-/// All joints of a second or so err alike: the walk is worth as many points.
+/// The expected factor: a joint's error lasts for about a second, so few points are independent.
 BlockScores::Prior expected(const Misfit& misfit, const Adjustment& adjustment) {
   const double independent = std::max(1.0, kIndependent * adjustment.points.back().time);
   const double variance =
@@ -200,7 +199,7 @@ BlockScores::Prior expected(const Misfit& misfit, const Adjustment& adjustment) 
   return {variance * std::max(1.0, misfit.weights / independent), kPriorFreedom};
 }
 
-/// The equations of the walk alone, whose points count as many times as they are independent.
+/// The equations of the walk alone, with its points weighted by how independent they are.
 PlaceEquations walk_equations(Adjustment& adjustment) {
   const Eigen::Index size = adjustment.size();
   BlockScores blocks(adjustment.points.back().time);
@@ -245,7 +244,7 @@ PlaceEquations equations_of(Adjustment& adjustment) {
   return equations;
 }
 
-/// Inverse information, where along the floor and upwards have variance factors of their own.
+/// Inverse information, with separate variance factors along the floor and upwards.
 Eigen::MatrixXd covariance_of(Adjustment& adjustment) {
   PlaceEquations equations = walk_equations(adjustment);
   Eigen::VectorXd shrink(adjustment.size());
@@ -314,7 +313,7 @@ Adjusted adjusted(Adjustment& adjustment) {
   return result;
 }
 
-/// Chains of pairs are robust: who ends far from them was led away by wrong sights.
+/// True if no sensor ends far from its chain, which is robust: wrong views would have misled it.
 bool near(const Places& start, const Places& end) {
   return std::ranges::all_of(start, [&](const auto& each) {
     return (end.at(each.first).translation() - each.second.translation()).norm() < kFarthest;

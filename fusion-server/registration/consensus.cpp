@@ -16,10 +16,10 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kLeastLoop = 0.15;  // [m] triangles that close to within this are closed
-constexpr double kLoopOfRms = 2.0;   // ... or within this much of the residuals of their edges
+constexpr double kLeastLoop = 0.15;  // [m] a triangle counts as closed up to this error
+constexpr double kLoopOfRms = 2.0;   // ... or up to this multiple of its edges' residuals
 constexpr double kLoopTurn = deg(15);
-constexpr double kSameRms = 1e-4;    // [m] no two sensors measure alike to within this
+constexpr double kSameRms = 1e-4;    // [m] two different sensors never agree this closely
 constexpr double kSamePlace = 1e-3;  // [m], [rad]
 
 bool of(const SensorId& sensor, const SensorId& target, const SensorId& source) {
@@ -64,13 +64,13 @@ std::set<SensorId> sensors_of(const Evidence& evidence) {
   return all;
 }
 
-/// What speaks for and against one sensor.
+/// The evidence for and against one sensor.
 struct Standing {
   int credit = 0;
   int blame = 0;
-  double misfit = 0.0;  ///< Sum over its edges: residual over the share of pairs that agree [m].
+  double misfit = 0.0;  ///< Sum over its edges of residual / share of pairs that agree [m].
   std::set<SensorId> accusers;
-  double widest = 0.0;  ///< Largest loop error [m]; infinite: turned.
+  double widest = 0.0;  ///< Largest loop error [m]; infinite if a loop turns its sensors.
 
   [[nodiscard]] int excess() const { return blame - credit; }
 };
@@ -127,7 +127,8 @@ Standings standings_of(const Evidence& evidence) {
   return standings;
 }
 
-/// Who stands worst; of equals, whose pairs fit worst.  None where there is nothing to blame.
+/// The sensor with the worst evidence; of equal ones, the one whose pairs fit worst.  None if
+/// nothing speaks against any sensor.
 std::optional<SensorId> worst_of(const Standings& standings) {
   const auto key = [](const Standing& standing) {
     const bool convicted = standing.blame > 0 && (standing.excess() >= 0 || standing.widest > 0.0);
@@ -160,7 +161,7 @@ std::string reason_for(const SensorId& sensor, const Standing& standing) {
       sensor.str(), fmt::join(accusers, ", "), by);
 }
 
-/// Two sensors that report the same numbers: the second repeats the first.
+/// A sensor that reports the same numbers as another, that is, a copy.
 std::optional<Outcast> copy_among(const Evidence& evidence) {
   for (const PairwiseRegistration& edge : evidence.edges) {
     const double off = edge.target_from_source.translation().norm() +

@@ -58,7 +58,8 @@ class Scan : public pcl::search::KdTree<pcl::PointXYZ> {
 
  private:
   Eigen::Array<float, Eigen::Dynamic, 3> points_;
-  mutable Eigen::ArrayXf squares_;  ///< Of the last search; one thread uses one ICP.
+  /// Squared distances of the last search; an ICP is used by one thread only.
+  mutable Eigen::ArrayXf squares_;
 };
 
 /// At most kMaxCloudPoints points, evenly chosen.

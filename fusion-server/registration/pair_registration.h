@@ -9,7 +9,7 @@
 
 namespace chorus::registration {
 
-/// One sensor's walk, with all that is computed once per sensor.
+/// One sensor's walk, with everything that is computed once per sensor.
 struct Walker {
   Trail trail;
   WalkFloor floor;
@@ -18,7 +18,7 @@ struct Walker {
 [[nodiscard]] Walker walker_of(const WalkTrack& walk, const RegistrationConfig& config);
 
 /// Errors: NotFound, the two sensors never saw the person together; Unavailable, they saw too
-/// little; Conflict, their observations are inconsistent.
+/// little; Conflict, their views are inconsistent.
 [[nodiscard]] Result<PairwiseRegistration> register_walkers(const Walker& target,
                                                             const Walker& source,
                                                             const RegistrationConfig& config);

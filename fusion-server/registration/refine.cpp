@@ -80,7 +80,7 @@ Eigen::Vector3d centre_of(const std::vector<Pair>& pairs, const std::vector<doub
   return total > 0 ? Eigen::Vector3d(sum / total) : sum;
 }
 
-/// Mean whitened residual of each instant, and the scatter of single pairs.
+/// The mean whitened residual of each instant, and the scatter of single pairs.
 struct Instants {
   std::vector<Eigen::Vector3d> means;
   double squares = 0.0;

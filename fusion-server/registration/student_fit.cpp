@@ -17,7 +17,7 @@ constexpr double kUncorrelated = 0.05;
 struct Residuals {
   std::vector<Eigen::Vector3d> off;
   std::vector<double> weights;
-  double variance = 1.0;  ///< Per axis [m^2].
+  double variance = 1.0;  ///< Variance per axis [m^2].
 
   explicit Residuals(std::size_t count) : off(count), weights(count, 1.0) {}
 

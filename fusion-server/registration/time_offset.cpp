@@ -15,7 +15,8 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kKnown = 0.002;       // [s] a pair known this well is not searched: 2 mm of walk
+// [s] a pair known this well is not searched; corresponds to 2 mm of walk.
+constexpr double kKnown = 0.002;
 constexpr double kMostSearched = 1.1;  // [s]
 constexpr double kSearchSigmas = 4.0;
 constexpr double kLeastSigma = 0.001;  // [s] of a pair: what views differ in is no time
@@ -24,11 +25,11 @@ constexpr double kOutlier = 3.0;       // sigmas from which a pair counts less a
 constexpr int kSolveIterations = 10;
 constexpr double kMaxSpread = 0.05;  // [m] of the place, over what is open of the offset
 
-/// One pair's measurement: offset of source minus that of target.
+/// What one pair measures: the correction of the source's stamps minus that of the target's.
 struct Measured {
   std::size_t target;
   std::size_t source;
-  double range;                      ///< That was searched to either side [s].
+  double range;                      ///< Offsets from -range to +range were searched [s].
   std::optional<PairOffset> offset;  ///< None: it saw too little.
 };
 
@@ -52,7 +53,7 @@ struct Network {
   static Eigen::Index at(std::size_t sensor) { return static_cast<Eigen::Index>(sensor); }
 };
 
-/// The sigma that half of the frames state at most.
+/// The median of the sigmas that the frames state.
 double prior_of(const WalkTrack& track) {
   if (track.frames.empty()) return kExact;
   std::vector<double> stated;
@@ -99,7 +100,8 @@ double weight_of(const Network& network, const Measured& pair) {
   return 1.0 / (sigma * sigma) / (1.0 + off * off);
 }
 
-/// One step of re-weighted least squares over all pairs and priors; the first has all weights.
+/// One step of re-weighted least squares over all pairs and priors; in the first step all weights
+/// are one.
 void solve(Network& network) {
   const auto size = Network::at(network.sensors.size());
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size);
@@ -122,8 +124,8 @@ void solve(Network& network) {
   network.offsets = network.covariance * right;
 }
 
-/// How far the source's place moves while the offset goes through what is open of it [m]; infinite
-/// when that cannot be seen.
+/// How far the source's place moves over the offsets that remain possible [m]; infinite if that
+/// cannot be determined.
 double place_spread(const Network& network, const Measured& pair,
                     const RegistrationConfig& config) {
   const double middle = network.between(pair);

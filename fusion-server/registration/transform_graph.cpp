@@ -9,7 +9,7 @@
 namespace chorus::registration {
 namespace {
 
-constexpr double kEdgeFloor = 0.002;  // [m] least error per hop, however long the walk
+constexpr double kEdgeFloor = 0.002;  // [m] smallest error per hop, however long the walk
 constexpr double kLever = 2.5;        // [m] sensor to walk; the best distance of Otto Eq. (1)
 constexpr double kMinSpread = 0.01;   // [m]
 

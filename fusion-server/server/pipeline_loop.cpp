@@ -22,8 +22,8 @@ constexpr Duration kStatusInterval = std::chrono::milliseconds(200);
 constexpr Duration kAfterFailure = std::chrono::milliseconds(10);
 constexpr Duration kStale = std::chrono::milliseconds(1500);
 
-/// Bounds [s]: around one frame interval, around the alignment delay, and values that should never
-/// occur.
+/// Upper bounds [s]: around one frame interval, around the alignment delay, and values that should
+/// never occur.
 const std::vector<double> kAgeBounds{0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.08, 0.1, 0.15, 0.2, 0.5};
 
 std::string joined(const std::vector<std::string>& reasons) {
@@ -94,7 +94,7 @@ void PipelineLoop::turn() {
 }
 
 /// Takes the frames that have arrived, or waits for the first.  With many sensors a frame arrives
-/// every other millisecond; frames are collected, so that not each of them wakes this thread.
+/// every other millisecond, so frames are collected instead of waking this thread for each.
 void PipelineLoop::gather(Duration idle) {
   const auto since = std::chrono::steady_clock::now() - gathered_at_;
   if (since < kGathering) {
@@ -128,7 +128,8 @@ void PipelineLoop::start_session(const StartSession& wish) {
   obeyed_ = wish.ticket;
   const Timestamp now = options_.clock->now();
   const auto progress = core_.progress(now);
-  // The session that ran when the client asked may have ended; then that session is the answer.
+  // The session that ran when the client asked may have ended; then that session counts as the
+  // requested one.
   const bool over =
       wish.session < progress.next_session &&
       !(running(progress.sessions.front()) && progress.sessions.front().id == wish.session);
@@ -259,7 +260,7 @@ SensorStatus PipelineLoop::status_of(const poll::PollReport& report, Timestamp n
   return status;
 }
 
-/// Stores that a sensor has lost its place, and says so; the sensor needs another one.
+/// Stores and logs that a sensor has lost its place.
 void PipelineLoop::note_displaced() {
   if (core_.displaced() == displaced_) return;
   displaced_ = core_.displaced();

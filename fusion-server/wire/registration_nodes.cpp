@@ -163,7 +163,7 @@ void add_storage(Node& node, const StorageStatus& storage) {
                                    : storage.trouble);
 }
 
-/// What an undo goes back to.
+/// The registration that an undo goes back to.
 Node earlier_node(const Registration& registration) {
   return {"_",
           {"EarlierRegistration"},

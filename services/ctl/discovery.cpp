@@ -38,7 +38,7 @@ std::optional<std::array<std::string_view, Count>> fields_of(std::string_view li
   return fields;
 }
 
-/// The value in: "tls=1" "id=s1"
+/// The value of a key in a list such as: "tls=1" "id=s1"
 std::string text_of(std::string_view texts, const std::string& key) {
   const std::size_t at = texts.find("\"" + key + "=");
   if (at == std::string_view::npos) return {};
@@ -152,7 +152,7 @@ std::vector<FoundSensor> read_browsed(std::string_view text) {
 }
 
 Result<std::vector<FoundSensor>> discovered_sensors() {
-  // The command is fixed: nothing of a caller or of the network is in it.
+  // The command is fixed; it contains nothing from a caller or from the network.
   FILE* const pipe = ::popen(
       "avahi-browse --resolve --parsable --terminate --no-db-lookup _chorus-sensor._tcp 2>&1", "r");
   if (pipe == nullptr) return fail(ErrorCode::Io, "avahi-browse", "cannot be started");

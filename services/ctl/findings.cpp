@@ -30,7 +30,7 @@ constexpr double kLeastFree = 1024.0;          // [MB]: half an hour of six sens
 constexpr double kBytesPerMb = 1e6;
 constexpr double kNsPerMs = 1e6;
 
-/// `trust`: for an https:// service; none: client::authorities().
+/// `trust` is for https:// services; if it is none, client::authorities() is used.
 Result<http::ClientResponse> ask(const std::string& base, const std::string& path,
                                  const std::string& token,
                                  const std::optional<tls::Trust>& trust = {}) {
@@ -92,7 +92,7 @@ std::string version_in(const std::string& metrics) {
 
 /// The sensor host's clock minus ours [ms], and its uncertainty: half of the round-trip time.
 struct ClockDifference {
-  double ms = 0.0;  ///< NaN when the host does not tell.
+  double ms = 0.0;  ///< NaN when the host does not report its clock.
   double uncertainty = 0.0;
 };
 
@@ -137,8 +137,8 @@ Finding of_answering(const std::string& subject, const std::string& url, const s
           fmt::format("answers at {}, clock {:+.1f} ms{}", url, difference, host_words(clock))};
 }
 
-/// Whether we did not accept the certificate that the service showed (tls::Seal::failure); the
-/// message then says what to do.
+/// True if we refused the service's certificate (tls::Seal::failure); the message then says what to
+/// do.
 bool refuses_certificate(const Error& error) { return error.code == ErrorCode::Forbidden; }
 
 Finding unreached(const std::string& subject, const Error& error) {

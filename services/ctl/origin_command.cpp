@@ -26,7 +26,7 @@ namespace {
 
 using client::ServiceClient;
 
-constexpr double kFarthest = 1000.0;  // [m], the same as the server's
+constexpr double kFarthest = 1000.0;  // [m], the limit that the server has
 
 struct OriginArguments {
   std::string url = client::default_server();

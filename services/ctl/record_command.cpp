@@ -135,7 +135,7 @@ void print_summary(const nlohmann::json& summary, bool json) {
     std::cerr << fmt::format("{}: the last error: {}\n", path, trouble.get<std::string>());
 }
 
-/// The streams that the service announced but that never had a frame.
+/// The streams that the service announced but that never delivered a frame.
 std::vector<std::string> silent_streams(const client::LiveRecording& live) {
   std::vector<std::string> silent;
   for (const auto& [topic, count] : live.counts()) {

@@ -27,8 +27,8 @@ using client::ServiceClient;
 using client::text_at;
 
 constexpr std::chrono::milliseconds kAskEvery{250};
-/// The server counts only the time in which somebody is seen; if nobody is seen for this long,
-/// nobody will come.
+/// The server counts only the time in which somebody is seen.  If nobody is seen for this long, we
+/// give up.
 constexpr std::chrono::seconds kPatience{60};
 
 struct RegisterArguments {
@@ -60,13 +60,15 @@ Result<std::string> start(const ServiceClient& server, const RegisterArguments& 
   if (started.error().code != ErrorCode::Conflict) return pass(started);
   const auto registration = server.get("/registration");
   if (!registration) return pass(registration);
-  if (idle(*registration)) return pass(started);  // refused for another reason, or over by now
+  // Refused for another reason, or the session has just ended.
+  if (idle(*registration)) return pass(started);
   std::cerr << "a session is running already; this is its progress "
                "(chorus register --cancel ends it)\n";
   return session_of(*registration, arguments.url);
 }
 
-/// Prints what is missing whenever that changes; the bar shows how long there is still to walk.
+/// Prints what is missing whenever that changes.  The bar shows how long the person still has to
+/// walk.
 class Advice {
  public:
   void tell(const nlohmann::json& session, Progress& progress) {

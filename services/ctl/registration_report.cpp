@@ -66,7 +66,7 @@ std::string clocks_shown(const nlohmann::json& registration) {
     clocks.emplace_back(name, offset);
     sigmas[name] = client::number_at(sensor, "clockUncertaintyMilliseconds");
   }
-  // The common clock is that of the sensor with an exact one.
+  // The common clock is that of the sensor whose uncertainty is zero.
   const auto common =
       std::ranges::find_if(clocks, [&](const auto& each) { return sigmas[each.first] == 0.0; });
   if (common == clocks.end()) return {};

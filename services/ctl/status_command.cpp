@@ -59,7 +59,7 @@ std::string sensors_report(const nlohmann::json& sensors) {
   return text;
 }
 
-/// What the sensor's own service reports as wrong with its device; empty when nothing is.
+/// What the sensor's own service reports as wrong with its device; empty if nothing is wrong.
 std::string own_words(const std::string& sensor_url) {
   constexpr http::ClientLimits kBrief{1 << 16, std::chrono::seconds(1), std::chrono::seconds(1)};
   const auto url = http::parse_url(sensor_url);
@@ -71,7 +71,7 @@ std::string own_words(const std::string& sensor_url) {
   return client::text_at(nlohmann::json::parse(answer->body, nullptr, false), "detail", "");
 }
 
-/// For each sensor that answers the server but has no frames, adds the sensor's own reason.
+/// Adds, for each sensor that answers the server but has no frames, the sensor's own reason.
 void ask_the_silent(nlohmann::json& sensors) {
   for (auto& sensor : sensors) {
     const std::string error = client::text_at(sensor, "lastError", "");
@@ -108,7 +108,7 @@ Result<int> run_status(const StatusArguments& arguments) {
   if (!sensors) return pass(sensors);
   const auto registration = server->get("/registration");
   if (!registration) return pass(registration);
-  // Before the first fused frame the server answers 503: that is a state, not a failure.
+  // Before the first fused frame the server answers with 503, which is a state, not a failure.
   const auto frame = server->get("/frame");
   const nlohmann::json shown_frame = frame ? *frame : nlohmann::json();
   nlohmann::json polled = client::part_at(*sensors, "sensors");

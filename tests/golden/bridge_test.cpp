@@ -1,4 +1,5 @@
-// proto/golden/bridge read by our reader: what is accepted, and what is refused with which words.
+// Reads the golden files in proto/golden/bridge: which messages are accepted, and with what error
+// the others are refused.
 #include <fstream>
 #include <set>
 #include <sstream>

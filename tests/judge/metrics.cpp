@@ -88,7 +88,7 @@ double variation_of(const Answers& answers, JointId child) {
   return std::sqrt(square.value()) / mean.value();
 }
 
-/// Distances of the labelled pairs from the truth, as given and with left and right exchanged.
+/// Distances of the labelled pairs from the truth, as given and with left and right swapped.
 struct Labelling {
   double as_stated = 0.0;
   double exchanged = 0.0;
@@ -110,7 +110,7 @@ Labelling labelling_of(const Answer& answer) {
   return labelling;
 }
 
-/// Correlation of stated steps with the true ones `lag` instants earlier.
+/// Correlation of reported steps with the true ones `lag` instants earlier.
 double correlation(const Answers& answers, std::ptrdiff_t lag) {
   double both = 0.0;
   double stated_square = 0.0;
@@ -126,7 +126,7 @@ double correlation(const Answers& answers, std::ptrdiff_t lag) {
       const Joint& before = at(i - 1).body.joints[j];
       if (!now.seen() || !before.seen()) continue;
       const Eigen::Vector3d stated = now.position - before.position;
-      if (stated.norm() > kJump) continue;  // a jump is no motion
+      if (stated.norm() > kJump) continue;  // a jump is not motion
       const Eigen::Vector3d exact =
           at(i - lag).exact.joints[j].position - at(i - lag - 1).exact.joints[j].position;
       both += stated.dot(exact);

@@ -41,7 +41,7 @@ void each_stated(const Answers& answers, const Sighted& which, const Visit& visi
   }
 }
 
-/// e^T P^-1 e; infinite if the stated matrix is no covariance.
+/// e^T P^-1 e; infinite if the stated matrix is not a covariance.
 double distance_of(const Eigen::Vector3d& off, const Eigen::Matrix3d& covariance) {
   const Eigen::LLT<Eigen::Matrix3d> root(covariance);
   if (root.info() != Eigen::Success) return std::numeric_limits<double>::infinity();

@@ -28,7 +28,7 @@ constexpr double kTurn = deg(2);
 constexpr double kEight = 8.0 * 3600.0;  // [s]
 constexpr const char* kProfiles[] = {"A", "B", "D"};
 
-/// What happens to one sensor, in a room of so many.
+/// What happens to one sensor, in a room with this many.
 struct BumpCase {
   const char* name;
   std::size_t sensors;
@@ -57,8 +57,8 @@ RoomSetting pushed_room(const BumpCase& each, std::uint64_t seed) {
   return room;
 }
 
-/// Time from the push to the first alarm that names the sensor, alone or in a pair [s]; not a
-/// number: there was none.
+/// Time from the push to the first alarm that names the sensor, alone or in a pair [s]; NaN: there
+/// was none.
 double detected_after(const RoomLog& log, const Push& push) {
   for (const RoomLog::Alarm& alarm : log.alarms) {
     if (alarm.sensor == push.sensor && alarm.at >= push.at)
@@ -67,7 +67,7 @@ double detected_after(const RoomLog& log, const Push& push) {
   return kNoRatio;
 }
 
-/// Alarms before the push, and after it for others than the one that was pushed.
+/// Number of alarms before the push, and of those after it that name another sensor.
 std::size_t wrong_alarms(const RoomLog& log, const Push& push) {
   return static_cast<std::size_t>(
       std::ranges::count_if(log.alarms, [&](const RoomLog::Alarm& alarm) {

@@ -66,14 +66,14 @@ class Room {
   RoomSetting setting_;
   Timestamp begin_;
   synthetic::Scene scene_;
-  synthetic::Scene after_;  ///< With one sensor moved.
+  synthetic::Scene after_;  ///< The scene with one sensor moved.
   Eigen::Isometry3d world_from_scene_;
-  Eigen::Isometry3d pushed_place_;  ///< Of the pushed sensor, in the world of the tracker.
+  Eigen::Isometry3d pushed_place_;  ///< Pose of the pushed sensor in the tracker's world.
   std::optional<core::FusionCore> core_;
   std::vector<Lane> lanes_;
   std::set<SensorId> alarmed_;
   bool lost_ = false;                           ///< The pushed sensor has lost its place.
-  std::map<PersonId, Eigen::Vector3d> errors_;  ///< Of the trunk, at the instant before.
+  std::map<PersonId, Eigen::Vector3d> errors_;  ///< Error of the trunk at the previous instant.
   RoomLog log_;
   double before_sum_ = 0.0, after_sum_ = 0.0;
   std::size_t before_count_ = 0, after_count_ = 0;
@@ -129,7 +129,7 @@ void Room::advance(Lane& lane) const {
   while (!lane.next && lane.sensor->next_exposure() < end) lane.next = lane.sensor->next();
 }
 
-/// From now on the pushed sensor looks from where it was moved to.
+/// From now on the pushed sensor sees the scene from its new pose.
 void Room::push() {
   Lane& lane = lanes_[setting_.push->sensor];
   lane.sensor = make(after_, setting_.push->sensor, begin_ + setting_.push->at);
@@ -196,7 +196,7 @@ void Room::score(const Snapshot& snapshot) {
   errors_ = std::move(errors);
 }
 
-/// Solves what is due at once, as a worker would in the meantime.
+/// Does the jobs that are due at once; in a server the worker does them.
 void Room::work(Timestamp now) {
   const auto job = core_->due_job(now);
   if (!job) return;

@@ -24,7 +24,7 @@ struct CostCase {
   const char* name;
   std::size_t sensors;
   std::size_t persons;
-  double most_p99_ms;  ///< The condition.
+  double most_p99_ms;  ///< Limit that the condition sets.
 };
 constexpr std::array kCostCases{CostCase{"cost-10x6", 10, 6, 2.0},
                                 CostCase{"scale-64x2", 64, 2, 5.0}};

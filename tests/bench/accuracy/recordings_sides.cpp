@@ -1,7 +1,7 @@
 // Left and right in single-sensor recordings after the whole pipeline.
 //
 // In most collections people face the sensor: its labels are the truth.  In NW-UCLA they walk
-// about, and the direction of walking is the truth; seen from behind, their labels are exchanged.
+// about, and the direction of walking is the truth; seen from behind, their labels are swapped.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -48,7 +48,7 @@ struct Share {
 
 struct Shares {
   Share as_labelled;  ///< Frames in which the sensor's labels are right.
-  Share exchanged;    ///< Frames in which they are exchanged.
+  Share exchanged;    ///< Frames in which they are swapped.
 };
 
 /// The sensor's body nearest to a fused one.
@@ -131,7 +131,7 @@ struct Collection {
   const char* beginning;
   Reader read;
   Judge judge;
-  /// Required share of right answers where the labels are right; 0: only reported.
+  /// Required share of correct results where the labels are right; 0: only reported.
   double least_percent;
 };
 

@@ -47,7 +47,7 @@ void watch(Report& report, const RegistrationCase& each, const std::vector<Score
                    median(position) < kCeiling);
 }
 
-/// The claim for white noise, from before the sensor model existed; kept so that it can be
+/// The claim for white noise, which is older than the sensor model; kept so that it can be
 /// repeated.
 void measure_gauss(Report& report) {
   Setting setting;
@@ -65,7 +65,7 @@ void measure_gauss(Report& report) {
                    holds);
 }
 
-/// One row per baseline: a ring of three, 10 s, with one source of error turned up or down.
+/// One row per baseline: a ring of three, 10 s, with one source of error scaled up or down.
 void measure_stress(Report& report, const std::string& name,
                     const std::vector<synthetic::Stress>& stress) {
   RegistrationCase each{name, {}, {kStressWalk}, timed_baselines()};
@@ -94,17 +94,19 @@ void sweep_stress(Report& report) {
   }
 }
 
-/// One of the short walks and what was made of it.
+/// One of the short walks, and its result.
 struct ShortWalk {
   Score score;
-  /// A uniform circle or a straight line: from the first no clock can be told, in principle.
+  /// True for a uniform circle or a straight line.  A circle does not determine a clock, in
+  /// principle.
   bool marked = false;
-  double offset_error = kNoRatio;  ///< Of the pair's clocks, found from the motion [ms]; NaN: none.
-  double offset_sigma = kNoRatio;  ///< As stated [ms].
+  double offset_error = kNoRatio;  ///< Error of the pair's clock offset, as found from the motion
+                                   ///< [ms]; NaN: none was found.
+  double offset_sigma = kNoRatio;  ///< Its stated standard deviation [ms].
 };
 
-/// What has to be added to the second sensor's stamps at mid-walk, they are by the first one's
-/// clock [s].
+/// First sensor's clock minus the second's, at mid-walk: to be added to the second one's stamps
+/// [s].
 double true_offset(const Workshop& workshop) {
   const Timestamp middle = workshop.begin + workshop.setting.length / 2;
   return seconds(workshop.clocks[0].host_time(middle) - workshop.clocks[1].host_time(middle));
@@ -147,7 +149,7 @@ double percent(std::size_t part, std::size_t whole) {
   return whole == 0 ? kNoRatio : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// How well the clocks were told where a place was accepted.
+/// How accurate the clock offsets were where the pair was accepted.
 void report_offsets(Report& report, const std::string& name, const std::vector<ShortWalk>& walks) {
   constexpr double kP95 = 0.95;
   constexpr double kSigmas95 = 1.96;
@@ -191,7 +193,7 @@ void measure_short_walks(Report& report, const std::string& name, std::size_t co
                    percent(unmarked_refused, unmarked) <= kMaxRefused);
 }
 
-/// A thousand short walks, or fewer; 200 of them say nearly as much.
+/// A thousand short walks, or fewer; 200 of them show nearly as much.
 void measure_all_short_walks(Report& report, std::size_t count) {
   measure_short_walks(report, "walks-1000-synced", count, true);
   measure_short_walks(report, "walks-1000", count, false);
@@ -201,11 +203,12 @@ void measure_all_short_walks(Report& report, std::size_t count) {
       "with stamps corrected from exchanges.  Marked are uniform circles and straight lines.");
 }
 
-/// What became of the sensors of one ring.
+/// The outcome for the sensors of one ring.
 struct RingFate {
-  bool odd_named = false;   ///< The one that followed somebody else has no place, and a reason.
-  std::size_t refused = 0;  ///< Of the others.
-  std::size_t lost = 0;     ///< ... that were placed more than 100 mm off.
+  /// True if the sensor that followed somebody else got no place, and a reason.
+  bool odd_named = false;
+  std::size_t refused = 0;  ///< Number of other sensors that were refused.
+  std::size_t lost = 0;     ///< Number of other sensors that were placed more than 100 mm off.
 };
 
 /// A ring of four, 20 s; with `bystander`, one of its sensors followed somebody else all the time.

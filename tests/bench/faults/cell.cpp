@@ -92,7 +92,8 @@ Result<void> Cell::take_ports() {
   return {};
 }
 
-/// Puts two pumps that only forward between server and sensor, one at each end of the lossy path.
+/// Connects server and sensor through two pumps that only forward, one at each end of the lossy
+/// path.
 Result<void> Cell::lead_through_path(int index) {
   std::uint16_t port = 0;
   Result<void> listens;

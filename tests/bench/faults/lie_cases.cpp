@@ -57,7 +57,7 @@ std::set<std::uint64_t> ids_near_person(const std::vector<FusedInstant>& seen, T
   return out;
 }
 
-/// Makes of the truth what a liar reports, once the cell has settled.
+/// Turns the truth into what a liar reports, once the cell has settled.
 using Lie = std::function<Guest::Said(Timestamp now, Guest::Said truth)>;
 
 struct Liars {
@@ -124,8 +124,8 @@ Result<void> no_second_person(Trial& trial, const Lie& lie) {
   return {};
 }
 
-/// The time within the minute before `when` at which the person was farthest from where it will be
-/// two seconds after `when`.
+/// The time, in the minute before `when`, at which the person was farthest from its position two
+/// seconds after `when`.
 Timestamp furthest_before(Timestamp when) {
   constexpr int kLookedBack = 60;  // [s]
   const Eigen::Vector3d soon = truth_at(when + std::chrono::seconds(2));
@@ -208,7 +208,8 @@ Result<void> coat_stand(Trial& trial) {
   constexpr std::int64_t kMaxVersions = 3;
   const auto place = place_of(3, kRing);
   Guest guest("x", [&](Timestamp when) {
-    auto said = honest(place, Timestamp(std::chrono::hours(1)));  // the person as it stood then
+    // The person's pose at a fixed time.
+    auto said = honest(place, Timestamp(std::chrono::hours(1)));
     said.captured = when;
     for (BodyFrame& body : said.bodies) body.captured = when;
     return said;

@@ -135,8 +135,8 @@ class BusyMachine {
   std::vector<std::jthread> threads_;
 };
 
-/// Although the busy machine delays all frames at times, one bad link must cost the other sensors
-/// nothing.
+/// The busy machine delays all frames at times; still, one bad link must not affect the other
+/// sensors.
 Result<void> jitter_busy(Trial& trial) {
   auto cell = Cell::start(with_links({}, 1, 2));
   if (!cell) return pass(cell);

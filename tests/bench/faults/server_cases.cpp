@@ -213,7 +213,7 @@ Result<std::optional<Ending>> start_with_memory(std::size_t bytes) {
   return std::optional(ending);
 }
 
-/// With any amount of memory, the program either runs or says why it does not.
+/// Whatever the amount of memory, the program either runs or says why it does not.
 Result<void> little_memory(Trial& trial) {
   constexpr std::size_t kMegabyte = 1U << 20U;
   constexpr int kSignalled = 128;

@@ -1,6 +1,6 @@
 // Reads any lines as what a runner says: the first as its hello, the others as its answers to one
-// image, with and without depth from people's size.  Each is read or refused with words, and what
-// is read may be published.
+// image, with and without depth from people's size.  Each is read, or refused with a message, and
+// what is read may be published.
 #include <cstddef>
 #include <cstdint>
 

@@ -37,7 +37,8 @@ TEST(HistoryPush, TheSameCaptureTimeIsTakenOnce) {
   history.push(frame_at(milliseconds(0)));
   history.push(frame_at(milliseconds(33)));
   EXPECT_EQ(history.push(frame_at(milliseconds(33))), PushVerdict::Duplicate);
-  EXPECT_EQ(history.push(frame_at(milliseconds(0))), PushVerdict::Duplicate);  // as if from a cache
+  // As a cache would do.
+  EXPECT_EQ(history.push(frame_at(milliseconds(0))), PushVerdict::Duplicate);
   EXPECT_EQ(history.frames().size(), 2u);
 }
 

@@ -133,7 +133,7 @@ TEST(RayMatching, IdsStayWhenTwoPassEachOther) {
   }
 }
 
-/// Camera 2 sees both in line; only the size of the body shows which one is behind.
+/// Camera 2 sees one person behind the other; only the size of the bodies shows which is which.
 TEST(RayMatching, OneBehindAnotherIsToldApartBySize) {
   RayRoom room;
   const std::vector people{standing_person({1.2, 0, 0.3}), standing_person({-1.2, 0, 0.3})};

@@ -1,4 +1,5 @@
-// Who comes, goes and comes back: known again by their build, or not taken for somebody else.
+// People come, leave and return: they are recognised by their build, and not taken for somebody
+// else.
 #include "fusion-server/associate/recognition.h"
 
 #include <algorithm>
@@ -154,7 +155,7 @@ TEST(Recognition, WhoIsLostAndFoundKeepsTheIdAllTheTime) {
   }
 }
 
-/// Somebody of this size: if `gone`, a person who has left, else one whom four sensors see now.
+/// Somebody of this size: a person who has left if `gone`, otherwise one whom four sensors see now.
 Candidate candidate(std::uint64_t id, double size, bool gone) {
   Candidate out;
   out.track.id = PersonId{id};

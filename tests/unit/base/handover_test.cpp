@@ -1,4 +1,4 @@
-// The giver never waits; the taker learns how much it missed.
+// The producer never waits; the consumer learns how much it missed.
 #include "common/base/handover.h"
 
 #include <thread>

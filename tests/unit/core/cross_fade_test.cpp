@@ -1,4 +1,4 @@
-// Bodies move from the places before to the places now little by little.
+// Bodies move gradually from where the old registration puts them to where the new one does.
 #include "fusion-server/core/cross_fade.h"
 
 #include <gtest/gtest.h>

@@ -26,7 +26,7 @@ bool collecting(const FusionCore& core) {
 }
 
 struct Answers : std::vector<Snapshot> {
-  Duration worst{0};  ///< Longest time from an instant to its answer.
+  Duration worst{0};  ///< Longest time from an instant to its snapshot.
 };
 
 /// Runs the core from `from` for `length` as the server would: each sensor has its own phase; time

@@ -1,4 +1,4 @@
-// What people are told of a sensor that was moved, and what happens to its place.
+// What is reported about a sensor that was moved, and what happens to its registration.
 #include "fusion-server/core/guard.h"
 
 #include <gmock/gmock.h>

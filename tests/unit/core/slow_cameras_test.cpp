@@ -17,7 +17,7 @@ using testing::sensor_id;
 
 struct Source {
   Duration period;
-  Duration jitter;  ///< Added to the period and to the delay, at most.
+  Duration jitter;  ///< Largest time added to the period and to the delay.
   Duration delay;
   bool rays = true;
 };

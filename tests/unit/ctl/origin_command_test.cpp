@@ -31,7 +31,7 @@ TEST(Origin, ThePersonIsWatchedOnOneConnection) {
   for (int i = 0; i < 40; ++i) frames.push_back(frame_text(i));
   const ScriptedServer server(ScriptedServer::Texts{{"/frame", frames}});
   const Outcome done = run_chorus({"origin", "--url", server.url(), "--here", "--seconds", "0.6"});
-  // The server of this test knows no origins; what is asked of it is what counts.
+  // The server of this test has no /registration/origin; only the request counts.
   EXPECT_THAT(done.error, HasSubstr("/registration/origin"));
   EXPECT_LE(server.connections(), 2u) << "one for the frames, one to set the origin";
 }

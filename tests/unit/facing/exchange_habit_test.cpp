@@ -30,7 +30,7 @@ TEST(ExchangeHabit, OfASensorThatNeverExchangesIsKnownWithinSeconds) {
   ExchangeHabit camera;
   watch(camera, deg(170), 10.0, false);
   EXPECT_LT(chance(camera, deg(170)), 0.1);
-  EXPECT_LT(chance(camera, deg(110)), 0.2);  // also predicted for angles not observed
+  EXPECT_LT(chance(camera, deg(110)), 0.2);  // also predicted for angles that were never seen
 }
 
 TEST(ExchangeHabit, KeepsTheWayOutApartFromTheWayBack) {

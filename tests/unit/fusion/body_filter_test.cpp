@@ -120,7 +120,8 @@ TEST(BodyFilter, AViewThatIsTooLargeAsAWholeIsShrunk) {
   EXPECT_LT(error(0.06), 0.5 * error(0.0));
 }
 
-/// A camera that guesses depth has everything too far along its line of sight, and says so.
+/// A camera that guesses depth puts everything too far away along its line of sight, and states
+/// that uncertainty.
 TEST(BodyFilter, AnUncertainDepthIsNotTakenForAWrongSize) {
   const auto exact = standing();
   const auto guessed = [&](int number) {
@@ -137,7 +138,7 @@ TEST(BodyFilter, AnUncertainDepthIsNotTakenForAWrongSize) {
   Room room;
   FusedBody body;
   for (int i = 0; i < 30; ++i) {
-    // One joint of known depth, or the person would be one for points-and-rays.
+    // One joint has a known depth; without it, points-and-rays would fuse this person.
     std::vector<SensorView> views{guessed(1), guessed(2), guessed(3), guessed(4)};
     views[0].skeleton[SpineMid].covariance = {};
     body = room.at(i, views);

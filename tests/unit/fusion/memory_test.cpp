@@ -119,7 +119,7 @@ TEST(FusionMemory, ABodyIsAsSureOfItsSidesAsThePerson) {
   EXPECT_EQ(memory.fuse({person}, {kMemoryStart, kMemorySensors}, {})[0].sides_confidence, 0.75);
 }
 
-/// Somebody whom nobody sees, expected at x.
+/// Somebody whom no sensor sees, expected at x.
 Person expected_at(double x) {
   Person person{PersonId{1}, {}};
   person.carried = Eigen::Vector3d(x, 1, 0);

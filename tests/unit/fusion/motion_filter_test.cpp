@@ -21,10 +21,11 @@ Timestamp at_motion_step(int i) { return kMotionStart + from_seconds(kMotionStep
 /// At rest for a second; then away at a constant speed [m/s].
 double place(int i, double speed) { return i < 30 ? 0.0 : speed * kMotionStep * (i - 30); }
 
-/// Over many draws, at each of 60 steps.
+/// Errors at each of 60 steps, over many draws.
 struct Errors {
-  std::vector<double> squared = std::vector<double>(60, 0.0);   ///< Mean, per axis [m^2].
-  std::vector<double> variance = std::vector<double>(60, 0.0);  ///< Mean stated one.
+  /// Mean squared error per axis [m^2].
+  std::vector<double> squared = std::vector<double>(60, 0.0);
+  std::vector<double> variance = std::vector<double>(60, 0.0);  ///< Mean stated variance [m^2].
 };
 
 template <class Filter, class Variance>

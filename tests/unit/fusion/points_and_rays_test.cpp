@@ -1,4 +1,4 @@
-// The method that takes points and rays, with its memory.
+// Method::PointsAndRays, including what it remembers between instants.
 #include "fusion-server/fusion/points_and_rays.h"
 
 #include <gtest/gtest.h>

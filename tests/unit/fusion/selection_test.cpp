@@ -1,4 +1,4 @@
-// The methods that trust one view at a time.
+// The methods that use one view at a time.
 #include "fusion-server/fusion/selection.h"
 
 #include <limits>
@@ -45,7 +45,7 @@ TEST(ViewScore, IsTheTrackedSharePlusHowSquarelyTheBodyFacesTheSensor) {
 TEST(JointCounting, TakesTheMostTrackedJointsWhateverTheFacing) {
   const auto body = fused(Method::JointCounting, {view_of(1, 20, 0, 1), view_of(2, 21, deg(180), 2),
                                                   view_of(3, 21, 0, 3)});
-  EXPECT_EQ(x_of(body, Neck), 2);  // of two equals, the one with the lower id
+  EXPECT_EQ(x_of(body, Neck), 2);  // of two equal ones, the one with the lower id
   EXPECT_EQ(body.contributors[index_of(Neck)], 2u);
   EXPECT_FALSE(fused(Method::JointCounting, {}).skeleton[Neck].seen());
 }

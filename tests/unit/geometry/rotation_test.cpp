@@ -1,4 +1,4 @@
-// The laws of the rotation group; and no input breaks a function, as the header promises.
+// The laws of the rotation group, and the header's promise that every input is accepted.
 #include "common/geometry/rotation.h"
 
 #include <array>

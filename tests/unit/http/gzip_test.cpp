@@ -6,7 +6,7 @@
 namespace chorus::http {
 namespace {
 
-/// What a gzip reader decodes from the bytes so far.
+/// What a gzip reader decodes from these bytes.
 std::string unpacked(const std::string& bytes) {
   z_stream stream{};
   EXPECT_EQ(inflateInit2(&stream, 16 + MAX_WBITS), Z_OK);

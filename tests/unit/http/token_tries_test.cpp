@@ -7,7 +7,7 @@ namespace {
 
 constexpr TokenTries::Time kStart{std::chrono::hours(1)};
 
-/// How many of `asked` wrong tries, evenly spread over `time`, were let through to a check.
+/// How many of `asked` wrong tokens, evenly spread over `time`, were checked.
 int looked_at(TokenTries& tries, int asked, std::chrono::milliseconds time) {
   int looked = 0;
   for (int i = 0; i < asked; ++i) {

@@ -1,4 +1,4 @@
-// Cameras without depth in the whole pipeline: two to eight of them, known places, rays only.
+// Cameras without depth in the whole pipeline: two to eight of them, at known positions, rays only.
 #include <algorithm>
 #include <random>
 

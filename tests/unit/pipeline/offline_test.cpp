@@ -113,7 +113,7 @@ TEST(FuseOffline, SameInputsSameBytes) {
   }
 }
 
-/// Recordings made by hosts without a common clock are brought in step by the walk, and fused so.
+/// Recordings from hosts without a common clock are synchronised by the walk and then fused.
 TEST(FuseOffline, WithoutACommonClockTheWalkTellsTheClocks) {
   const auto in_step = walk({.noise = 0.005});
   auto tracks = in_step;

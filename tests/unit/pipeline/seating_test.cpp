@@ -75,7 +75,7 @@ TEST(Seating, IsKeptAsLongAsAskedToTheInstant) {
   room.at(milliseconds(0), {1});
   EXPECT_EQ(room.at(milliseconds(200), {2}), (Slots{{1, 2}}));
   EXPECT_EQ(room.at(milliseconds(201), {2}), (Slots{{0, 2}}));
-  // A clock that is set back by more than `keep` starts anew, as in association.
+  // If the clock is set back by more than `keep`, everything starts over, as in association.
   EXPECT_EQ(room.at(milliseconds(-100), {3}), (Slots{{0, 3}}));
 }
 

@@ -1,4 +1,4 @@
-// Which pusher holds the sensor, and what people are told about it.
+// Which pusher holds the sensor, and how that is reported.
 #include "services/sensor/device/bridge/push_desk.h"
 
 #include <gmock/gmock.h>

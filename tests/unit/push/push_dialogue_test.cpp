@@ -1,4 +1,4 @@
-// What a pusher is told, message by message.
+// What is sent to a pusher, message by message.
 #include "services/sensor/device/bridge/push_dialogue.h"
 
 #include <gmock/gmock.h>

@@ -32,7 +32,7 @@ Hello hello_of(const Json& message) {
   return read ? std::get<Hello>(*read) : Hello{};
 }
 
-/// 17 landmarks, all null except the given ones.
+/// 17 landmarks, all null except those in `given`.
 Json landmarks(const std::map<std::size_t, Json>& given) {
   Json all = Json::array();
   for (std::size_t i = 0; i < 17; ++i) all.push_back(given.contains(i) ? given.at(i) : Json());

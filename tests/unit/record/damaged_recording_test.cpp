@@ -1,4 +1,4 @@
-// Files as left by a crash, a bad disk or an attacker: refused or read in part, always with a
+// Files as a crash, a bad disk or an attacker leaves them: refused or read in part, always with a
 // reason.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -162,7 +162,7 @@ TEST(AdjustTogether, TheMasterKeepsItsPlaceAlongTheFloorAndItsDirectionAlone) {
   const Eigen::Isometry3d& after = adjusted->places.at(sensor(0));
   EXPECT_NEAR(after.translation().x(), before.x(), mm(0.5));
   EXPECT_NEAR(after.translation().z(), before.z(), mm(0.5));
-  EXPECT_LT(std::abs(after.translation().y() - 1.8), mm(2));  // its floor put it right
+  EXPECT_LT(std::abs(after.translation().y() - 1.8), mm(2));  // its floor corrected it
   const Matrix6 shift = at_point(after.translation());
   const Matrix6 at_eye = shift * adjusted->covariances.at(sensor(0)) * shift.transpose();
   EXPECT_LT(to_mm(std::sqrt(at_eye(3, 3))), 0.1);
@@ -170,7 +170,8 @@ TEST(AdjustTogether, TheMasterKeepsItsPlaceAlongTheFloorAndItsDirectionAlone) {
   EXPECT_GT(to_deg(std::sqrt(at_eye(0, 0))), 0.1);
 }
 
-/// An exact walk of any length leaves what a body seen from elsewhere does to its joints.
+/// However long and exact the walk is, the errors of joints that depend on the direction of view
+/// remain.
 TEST(AdjustTogether, AnExactWalkStillLeavesYawAndPlaceUncertain) {
   const Scene scene = scene_of({.noise = 0.0});
   const auto adjusted = scene.look(scene.truth);

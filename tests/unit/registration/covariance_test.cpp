@@ -1,4 +1,4 @@
-// Compares every stated covariance with a numeric derivative of the estimated place itself.
+// Compares every stated covariance with a numeric derivative of the estimated pose itself.
 #include <functional>
 
 #include <gtest/gtest.h>

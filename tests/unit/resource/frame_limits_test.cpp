@@ -1,4 +1,5 @@
-// The largest and strangest frames that can be written are read back; digits are as by printf.
+// The largest and strangest frames that can be written are read back; digits agree with those of
+// printf.
 #include <cmath>
 #include <cstdio>
 #include <limits>

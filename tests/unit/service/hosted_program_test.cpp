@@ -31,7 +31,7 @@ Result<Settings> read_settings(ConfigReader root) {
   return out;
 }
 
-/// A host that remembers what it was last configured with.
+/// A host that remembers its latest configuration.
 struct Host {
   static inline Settings made;
   static inline int volume = 0;

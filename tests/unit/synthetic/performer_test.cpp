@@ -26,8 +26,8 @@ std::string refusal(const MotionFile& file) {
   return read ? "" : to_string(read.error());
 }
 
-/// A person a few centimetres tall who sits down by the height of the second frame: twelve joints
-/// and a head, as in a BVH file.
+/// A BVH file of a person a few centimetres tall, with twelve joints and a head, who is lower in
+/// the second frame.
 std::string small_bvh() {
   const auto limb = [](const std::string& a, const std::string& b, const std::string& c,
                        const std::string& at, const std::string& reach) {
@@ -137,7 +137,7 @@ TEST(Performance, WhatCannotBePlayedIsRefusedWithTheReason) {
 
 TEST(Performer, NeitherPlaceNorVelocityJumps) {
   const Performer performer(take(), {});
-  constexpr double kMaxSpeed = 6.0;           // of a wrist in this walk [m/s]
+  constexpr double kMaxSpeed = 6.0;           // largest speed of a wrist in this walk [m/s]
   constexpr double kMaxAcceleration = 400.0;  // heels strike; corners would have 2000 [m/s^2]
   const double dt = seconds(kPerformerStep);
   for (const JointId joint : {JointId::SpineBase, JointId::WristRight, JointId::FootLeft}) {

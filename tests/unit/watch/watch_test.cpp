@@ -1,4 +1,4 @@
-// Sensors around somebody who walks: which of them was moved.
+// Sensors around somebody who walks, one of which is moved.
 #include "fusion-server/watch/watch.h"
 
 #include <cmath>
@@ -24,8 +24,8 @@ constexpr Duration kStep = milliseconds(100);
 
 SensorId name(int sensor) { return sensor_id("s" + std::to_string(sensor + 1)); }
 
-/// Sensors on a ring with the errors of real ones: some last half a second, some depend on how the
-/// person stands to the sensor.
+/// Sensors on a ring with the errors of real ones: some last half a second, some depend on the
+/// person's orientation towards the sensor.
 class Room : public ::testing::Test {
  protected:
   void furnish(int sensors) {
@@ -42,7 +42,7 @@ class Room : public ::testing::Test {
     moved_[static_cast<std::size_t>(sensor)] = move;
   }
 
-  /// Until somebody stands out; the time that took, or none within `length`.
+  /// Time until a sensor stands out; none if that does not happen within `length`.
   std::optional<double> walk(Duration length, double speed = 0.9) {
     const Timestamp begin = now_;
     for (; now_ < begin + length; now_ += kStep) {

@@ -23,8 +23,8 @@ struct At {
   std::string_view key = {};
   std::optional<std::size_t> index = {};
 
-  /// Call it only on an At with a name, because the result points to that At.  `At{}` is the
-  /// message itself.
+  /// The result points to this At, so call this only on a named variable, not on a temporary.
+  /// `At{}` is the message itself.
   [[nodiscard]] At operator[](std::string_view inner) const { return {outer(), inner, {}}; }
   [[nodiscard]] At operator[](std::size_t inner) const { return {outer(), {}, inner}; }
   [[nodiscard]] std::string text() const;

@@ -12,7 +12,7 @@ namespace chorus::camera {
 
 /// What a runner says about itself.
 struct RunnerHello {
-  bridge::Hello hello;  ///< Without the camera, which only the sensor knows.
+  bridge::Hello hello;  ///< Does not contain the camera, which only the sensor knows.
   int max_side = 640;   ///< Largest width and height of an image [px].
 };
 
@@ -20,7 +20,7 @@ struct RunnerHello {
 struct Question {
   std::uint64_t sequence = 0;
   Timestamp captured;
-  Size size;  ///< In which it is sent.
+  Size size;  ///< Size in which it is sent.
 };
 
 [[nodiscard]] Result<RunnerHello> read_runner_hello(std::string_view line);

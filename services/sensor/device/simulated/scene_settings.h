@@ -28,7 +28,7 @@ inline constexpr int kMaxSeed = 1'000'000'000;
 
 struct SceneSettings {
   synthetic::Scene scene;  ///< Without sensors.
-  std::string people;      ///< Where their motion comes from: "CMU walking", "motion of walk.bvh".
+  std::string people;      ///< The source of their motion: "CMU walking", "motion of walk.bvh".
 };
 
 /// Reads the settings; the reader's finish() reports mistakes.

@@ -73,7 +73,7 @@ void read_profile(ConfigReader& config, synthetic::SensorChoice& choice) {
   config.read("profile_draw", draw, 0, kMaxSeed);
   choice.profile = kProfiles.at(profile);
   if (draw > 0) choice.draw = static_cast<std::uint64_t>(draw);
-  choice.own_clock = false;  // Own clock off: the service sets the host's clock.
+  choice.own_clock = false;  // No clock of its own: the service provides the host's clock.
 }
 
 }  // namespace
