@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
 
 #include "common/base/parse.h"
 
@@ -13,25 +14,50 @@ namespace chorus::resource {
 namespace {
 
 constexpr double kMaxWritable = 1e15;  // Larger doubles have no decimals.
-constexpr std::array<std::int64_t, 9> kPowersOfTen{
+constexpr std::size_t kMostDecimals = 8;
+constexpr std::array<std::int64_t, kMostDecimals + 1> kPowersOfTen{
     1, 10, 100, 1'000, 10'000, 100'000, 1'000'000, 10'000'000, 100'000'000};
+
+/// "00", "01", ... "99".
+constexpr auto kPairs = [] {
+  std::array<char, 200> pairs{};
+  for (std::size_t i = 0; i < 100; ++i) {
+    pairs[2 * i] = static_cast<char>('0' + i / 10);
+    pairs[2 * i + 1] = static_cast<char>('0' + i % 10);
+  }
+  return pairs;
+}();
+
+void write_pair(char* at, std::uint32_t below_100) {
+  std::memcpy(at, kPairs.data() + std::size_t{2} * below_100, 2);
+}
 
 }  // namespace
 
 char* write_fixed(char* at, double value, int decimals) noexcept {
-  const std::int64_t scale = kPowersOfTen[static_cast<std::size_t>(decimals)];
-  std::int64_t scaled = std::llrint(value * static_cast<double>(scale));
+  const auto places = static_cast<std::size_t>(decimals);
+  std::int64_t scaled = std::llrint(value * static_cast<double>(kPowersOfTen[places]));
   if (scaled < 0) {
     *at++ = '-';
     scaled = -scaled;
   }
-  std::int64_t fraction = scaled % scale;
-  at = std::to_chars(at, at + kMaxFixedLength, scaled / scale).ptr;
-  *at++ = '.';
-  for (int i = decimals - 1; i >= 0; --i) {
-    at[i] = static_cast<char>('0' + fraction % 10);
-    fraction /= 10;
+  // All eight decimals are written, so that every divisor is a constant; the caller's next bytes
+  // overwrite those that were not asked for.
+  const auto units = static_cast<std::uint64_t>(scaled * kPowersOfTen[kMostDecimals - places]);
+  const std::uint64_t whole = units / 100'000'000U;
+  const auto fraction = static_cast<std::uint32_t>(units % 100'000'000U);
+  if (whole < 10) {
+    *at++ = static_cast<char>('0' + whole);
+  } else {
+    at = std::to_chars(at, at + kMaxFixedLength, whole).ptr;
   }
+  *at++ = '.';
+  const std::uint32_t high = fraction / 10'000U;
+  const std::uint32_t low = fraction % 10'000U;
+  write_pair(at, high / 100U);
+  write_pair(at + 2, high % 100U);
+  write_pair(at + 4, low / 100U);
+  write_pair(at + 6, low % 100U);
   return at + decimals;
 }
 

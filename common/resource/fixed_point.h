@@ -15,7 +15,7 @@ inline constexpr double kMaxFixed = 1e6;
 inline constexpr int kMaxFixedLength = 17;
 
 /// Writes `value`, rounded to 1..8 `decimals`, and returns the end.  |value| must be at most
-/// kMaxFixed.
+/// kMaxFixed, and `at` must have room for kMaxFixedLength bytes: those after the end are undefined.
 char* write_fixed(char* at, double value, int decimals) noexcept;
 
 /// Writes any number with fixed decimals; nullopt when it is not finite or is beyond 1e15.
