@@ -317,7 +317,9 @@ Contender labelled(Contender contender) {
 }
 
 std::vector<Contender> all_contenders() {
-  std::vector<Contender> contenders{ours()};
+  fusion::FusionConfig instant;
+  instant.method = fusion::Method::InverseVariance;
+  std::vector<Contender> contenders{ours(), ours(instant, "inverse-variance")};
   for (const baselines::Baseline& each : baselines::all()) {
     contenders.push_back({std::string(each.name), each.begin});
   }
