@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-#include "tests/bench/camera/camera_cases.h"
+#include "tests/bench/camera/four_views.h"
 
 namespace chorus::bench {
 namespace {
@@ -15,8 +15,8 @@ struct Case {
 };
 constexpr std::array kCases{
     Case{"people", simulated_people, true}, Case{"four-views", four_views, true},
-    Case{"four-views-live", live_views, false}, Case{"video", runner_speed, false},
-    Case{"calibrate", lens_calibration, false}};
+    Case{"distance", placed_people, true},  Case{"four-views-live", live_views, false},
+    Case{"video", runner_speed, false},     Case{"calibrate", lens_calibration, false}};
 
 }  // namespace
 

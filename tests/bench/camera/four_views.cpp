@@ -1,5 +1,8 @@
+#include <cstdlib>
+
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -8,7 +11,7 @@
 #include "common/base/units.h"
 #include "fusion-server/pipeline/offline.h"
 #include "services/sensor/device/camera/film.h"
-#include "tests/bench/camera/camera_cases.h"
+#include "tests/bench/camera/four_views.h"
 #include "tests/judge/statistics.h"
 
 namespace chorus::bench {
@@ -30,27 +33,7 @@ Result<ImportedSet> published() {
 
 using Tracks = std::vector<registration::WalkTrack>;
 
-Result<Agreement> fused(const Tracks& tracks, const ImportedSet& set) {
-  pipeline::OfflineConfig config;  // as shipped
-  config.rate_hz = kTruthHz;
-  const auto result = pipeline::fuse_offline(tracks, published_places(set), config);
-  if (!result) return pass(result);
-  Agreement agreement;
-  std::vector<bool> answered(set.truth.size(), false);
-  for (const Snapshot& snapshot : result->snapshots) {
-    const double at = seconds(snapshot.instant - importers::kDefaultStart) * kTruthHz;
-    const auto index = static_cast<std::size_t>(std::max(0.0, std::round(at)));
-    if (index >= set.truth.size() || snapshot.bodies.empty()) continue;
-    agreement.add(snapshot.bodies.front().skeleton, set.truth[index].skeleton);
-    answered[index] = true;
-  }
-  for (std::size_t i = 0; i < answered.size(); ++i) {
-    if (!answered[i]) agreement.missed(set.truth[i].skeleton);
-  }
-  return agreement;
-}
-
-/// Settings of a camera, as in the demo.
+/// Lens and file of a camera, as the demo has them.
 Result<camera::CameraSettings> settings_of(const std::string& id) {
   std::ifstream file(fmt::format("{}/{}.json", kFourVideos, id));
   const auto all = nlohmann::json::parse(file, nullptr, false, true);
@@ -73,23 +56,59 @@ Result<camera::CameraSettings> settings_of(const std::string& id) {
   return settings;
 }
 
-Result<Tracks> looked_at(const std::string& model, const ImportedSet& set) {
-  Tracks tracks;
-  for (const auto& recording : set.recordings) {
-    auto settings = settings_of(recording.sensor.str());
-    if (!settings) return pass(settings);
-    auto film = camera::look_through(
-        {std::move(*settings), runner_of(model), recording.sensor, importers::kDefaultStart});
-    if (!film) return pass(film);
-    tracks.push_back({recording.sensor, std::move(film->frames)});
-  }
-  return tracks;
-}
-
 }  // namespace
 
 std::vector<std::string> runner_of(const std::string& model) {
   return {"node", "services/pose-runner/runner.mjs", "--model", model};
+}
+
+Result<Agreement> fused(const Tracks& tracks, const ImportedSet& set) {
+  pipeline::OfflineConfig config;  // as shipped
+  config.rate_hz = kTruthHz;
+  const auto result = pipeline::fuse_offline(tracks, published_places(set), config);
+  if (!result) return pass(result);
+  Agreement agreement;
+  std::vector<bool> answered(set.truth.size(), false);
+  for (const Snapshot& snapshot : result->snapshots) {
+    const double at = seconds(snapshot.instant - importers::kDefaultStart) * kTruthHz;
+    const auto index = static_cast<std::size_t>(std::max(0.0, std::round(at)));
+    if (index >= set.truth.size() || snapshot.bodies.empty()) continue;
+    agreement.add(snapshot.bodies.front().skeleton, set.truth[index].skeleton);
+    answered[index] = true;
+  }
+  for (std::size_t i = 0; i < answered.size(); ++i) {
+    if (!answered[i]) agreement.missed(set.truth[i].skeleton);
+  }
+  return agreement;
+}
+
+Answers::Answers() : folder_("/tmp/chorus-answers-XXXXXX") {
+  if (mkdtemp(folder_.data()) == nullptr) folder_.clear();
+}
+
+Answers::~Answers() {
+  std::error_code failed;
+  if (!folder_.empty()) std::filesystem::remove_all(folder_, failed);
+}
+
+std::vector<std::string> Answers::runner_of(const std::string& model,
+                                            const std::string& camera) const {
+  return {"node", "tests/bench/camera/recalling_runner.mjs",
+          fmt::format("{}/{}-{}.jsonl", folder_, model, camera), "--model", model};
+}
+
+Result<Tracks> looked_at(const std::string& model, const ImportedSet& set, const Answers& answers) {
+  Tracks tracks;
+  for (const auto& recording : set.recordings) {
+    auto settings = settings_of(recording.sensor.str());
+    if (!settings) return pass(settings);
+    auto film = camera::look_through({std::move(*settings),
+                                      answers.runner_of(model, recording.sensor.str()),
+                                      recording.sensor, importers::kDefaultStart});
+    if (!film) return pass(film);
+    tracks.push_back({recording.sensor, std::move(film->frames)});
+  }
+  return tracks;
 }
 
 Registration published_places(const ImportedSet& set) {
@@ -137,15 +156,17 @@ Result<void> four_views(Report& report) {
   report.condition("four-views-landmarks: joints within 40 mm of the published triangulation",
                    percentile(landmarks->errors, 0.5) <= kTarget);
   if (report.quick()) return {};
+  const Answers answers;
   for (const char* model : {"movenet", "blazepose-lite", "blazepose-full"}) {
-    const auto looked = looked_at(model, *set);
+    const auto looked = looked_at(model, *set, answers);
     if (!looked) return pass(looked);
     const auto agreement = fused(*looked, *set);
     if (!agreement) return pass(agreement);
     agreement->report(report, fmt::format("four-views-pixels-{}", model));
   }
   report.note(
-      "four-views: joints beside the published linear triangulation of MediaPipe's landmarks, "
+      "four-views: every picture of the videos (30 Hz), offline; joints beside the published "
+      "linear triangulation of MediaPipe's landmarks, "
       "which "
       "is good to a few centimetres itself.  Target for pixels: 40 mm.  limb: the twelve joints "
       "that "
